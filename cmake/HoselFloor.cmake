@@ -1,0 +1,22 @@
+# One floor of the house: the static library of all sources in a folder, linked to the floors below.
+function(hosel_floor name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.hpp)
+  list(FILTER sources EXCLUDE REGEX "/app/main\\.cpp$")
+  if(NOT sources)
+    add_library(hosel_${name} INTERFACE)
+    set(scope INTERFACE)
+  else()
+    add_library(hosel_${name} STATIC ${sources} ${headers})
+    set(scope PUBLIC)
+    target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow
+                           $<$<BOOL:${HOSEL_WERROR}>:-Werror>)
+  endif()
+  add_library(hosel::${name} ALIAS hosel_${name})
+  set_target_properties(hosel_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(hosel_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:include/hosel>)
+  target_link_libraries(hosel_${name} ${scope} ${ARGN})
+  target_compile_features(hosel_${name} ${scope} cxx_std_20)
+  set_property(GLOBAL APPEND PROPERTY HOSEL_FLOORS hosel_${name})
+endfunction()

@@ -1,0 +1,75 @@
+/// One physical contribution to the equations of motion, and the system that gathers them.
+///
+/// The equations at time t are   inertia(q, v, a, t) + force(q, v, t) = 0,
+/// `force` being internal minus external. A term adds to one or both, gives its tangent and its
+/// energies, and owns its history (viscous strains, friction tractions): history moves only in
+/// accept(). Evaluations at a trial state are made against the last accepted state.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/state.hpp"
+
+namespace hosel::fem {
+
+/// Weights of the tangent: stiffness * d/dq + damping * d/dv + mass * d/da, where d/dq is taken
+/// along body-frame increments for rotations.
+struct Weights {
+  double stiffness = 0, damping = 0, mass = 0;
+};
+
+/// Where a tangent goes: dense blocks at lists of equation numbers; the pattern is fixed at set-up.
+class TangentSink {
+ public:
+  virtual ~TangentSink() = default;
+  /// Adds `block` (row-major meaning irrelevant: block(i, j) at row rows[i], column columns[j]).
+  virtual void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
+                   const Eigen::Ref<const Eigen::MatrixXd>& block) = 0;
+};
+
+/// Joules. Stored energies are states; dissipations and external work are cumulative since the start.
+struct Energies {
+  double kinetic = 0;
+  double strain = 0;    ///< elastic storage, equilibrium and viscous branches
+  double contact = 0;   ///< stored by the contact's penalty
+  double friction = 0;  ///< dissipated by sliding, cumulative
+  double viscous = 0;   ///< dissipated by materials and dampers, cumulative
+  double external = 0;  ///< work done on the system by loads, gravity and prescribed motion, cumulative
+};
+
+class Term {
+ public:
+  virtual ~Term() = default;
+  /// "ball", "shaft", "head", "contact": the body whose column of the ledger this term feeds.
+  virtual std::string body() const = 0;
+  /// Lists of equations that this term couples (each a dense block of the pattern).
+  virtual void pattern(std::vector<std::vector<Index>>& blocks) const = 0;
+  /// Adds to both vectors (Layout::size() entries).
+  virtual void residual(const State& trial, Vector& inertia, Vector& force) const = 0;
+  virtual void tangent(const State& trial, const Weights& weights, TangentSink& sink) const = 0;
+  /// At the accepted state (cumulative figures as of the last accept()).
+  virtual Energies energies(const State& accepted) const = 0;
+  /// The step from the last accepted state to this one is accepted: history moves, work accumulates.
+  virtual void accept(const State& accepted) { (void)accepted; }
+  /// A longest admissible next step [s], e.g. near a contact event; infinity where none.
+  virtual double step_limit(const State& accepted) const;
+};
+
+/// A motion imposed on some equations: q, v, a are given, the residual there is a reaction.
+class Prescribed {
+ public:
+  virtual ~Prescribed() = default;
+  virtual const std::vector<Index>& equations() const = 0;
+  /// Writes q (whole blocks), v and a of the imposed motion at state.time.
+  virtual void impose(State& state) const = 0;
+};
+
+struct System {
+  Layout layout;
+  std::vector<std::unique_ptr<Term>> terms;
+  std::vector<std::unique_ptr<Prescribed>> prescribed;
+};
+
+}  // namespace hosel::fem

@@ -1,0 +1,70 @@
+#include "models/rigid_eccentric.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+namespace hosel::models {
+
+ContactGeometry contact_geometry(const Blow& blow) {
+  const Delivery& d = blow.delivery;
+  const Head& head = blow.club.head;
+  const Mat3 R = d.face_to_global();
+  const double yc = -d.impact_toe, zc = d.impact_high;
+  ContactGeometry g;
+  g.normal = R * head.face.normal(yc, zc);
+  g.point = -blow.ball.radius * g.normal;
+  g.head_arm = R * (head.face.point(yc, zc) - head.cg);
+  g.head_inertia = R * head.inertia * R.transpose();
+  g.approach = d.velocity() + d.head_angular_velocity.cross(g.head_arm);
+  return g;
+}
+
+Launch RigidEccentric::launch(const Blow& blow) const {
+  const ContactGeometry g = contact_geometry(blow);
+  const Ball& ball = blow.ball;
+  const Head& head = blow.club.head;
+  const double approach = g.approach.dot(g.normal);
+  if (!(approach > 0)) throw std::invalid_argument("the head moves away from the ball");
+
+  const Vec3 slip = g.approach - approach * g.normal;
+  const double slip_speed = slip.norm();
+  // The normal force passes offset * r from the ball's centre, on the side that adds spin.
+  const Vec3 along = slip_speed > 0 ? Vec3(slip / slip_speed) : Vec3::Zero();
+  const Vec3 offset = blow.contact.normal_force_offset * ball.radius * along;
+  const Vec3 arm = -ball.radius * g.normal;  // from the ball's centre to P
+
+  const Mat3 head_mobility = Mat3::Identity() / head.mass -
+                             skew(g.head_arm) * g.head_inertia.inverse() * skew(g.head_arm);
+  const Mat3 ball_mobility =
+      Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
+  const Mat3 K = ball_mobility + head_mobility;
+
+  // Columns of `effect`: change of the relative surface velocity at P by an impulse along n (with
+  // its offset couple) and across n.
+  Mat3 effect = K;
+  const Vec3 couple = offset.cross(g.normal) / ball.inertia();
+  effect += couple.cross(arm) * g.normal.transpose();
+
+  const double distance = std::hypot(blow.delivery.impact_toe, blow.delivery.impact_high);
+  const double e = blow.contact.normal_restitution(approach, distance);
+  const double et = blow.contact.tangential_restitution;
+  const Vec3 wanted = (1 + e) * approach * g.normal + (1 + et) * slip;
+  Vec3 J = effect.partialPivLu().solve(wanted);
+  const double Jn = J.dot(g.normal);
+  const Vec3 Jt = J - Jn * g.normal;
+  if (Jt.norm() > blow.contact.friction * Jn) {
+    const Vec3 d = g.normal + blow.contact.friction * Jt.normalized();
+    J = (1 + e) * approach / g.normal.dot(effect * d) * d;
+  }
+
+  Launch out;
+  out.velocity = J / ball.mass;
+  out.spin = (arm.cross(J) + offset.cross(g.normal) * J.dot(g.normal)) / ball.inertia();
+  out.head_velocity = blow.delivery.velocity() - J / head.mass;
+  out.head_spin = blow.delivery.head_angular_velocity -
+                  g.head_inertia.inverse() * g.head_arm.cross(J);
+  return out;
+}
+
+}  // namespace hosel::models
