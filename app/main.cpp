@@ -1,1 +1,98 @@
-int main() { return 0; }
+// The hosel command. Exit status: 0 done, 2 bad input, 3 no convergence, 1 anything else.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "app/cases.hpp"
+#include "app/job.hpp"
+#include "models/registry.hpp"
+#include "solvers/errors.hpp"
+
+namespace {
+
+using namespace hosel;
+
+struct Arguments {
+  std::string case_dir, out, from, log;
+  std::vector<std::string> sets;
+  bool force = false, quiet = false;
+};
+
+void run(const Arguments& a) {
+  const auto where = app::find_case(a.case_dir);
+  app::CaseFile file(where, a.sets);
+  const auto job = app::read_job(file);
+  const std::filesystem::path out =
+      a.out.empty() ? std::filesystem::path("out") / std::filesystem::canonical(file.directory()).filename()
+                    : std::filesystem::path(a.out);
+  app::Output output({.directory = out, .force = a.force, .quiet = a.quiet, .log = a.log}, file.resolved());
+  job->run(output);
+}
+
+void check(const Arguments& a) {
+  app::CaseFile file(app::find_case(a.case_dir), a.sets);
+  app::read_job(file);
+  fmt::print("{}", file.resolved());
+}
+
+void list() {
+  fmt::print("kinds\n");
+  for (const auto& k : app::kinds()) fmt::print("  {:<20} {}\n", k.name, k.what);
+  fmt::print("models\n");
+  for (const auto& m : models::registry()) fmt::print("  {:<20} {}\n", m.name, m.what);
+  for (const auto& section : app::more_lists()) {
+    fmt::print("{}\n", section.title);
+    for (const auto& [name, what] : section.entries) fmt::print("  {:<20} {}\n", name, what);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App cli{"hosel: what does the ball do after this blow, and how much of it is the shaft's doing?"};
+  cli.require_subcommand(1);
+  Arguments a;
+  const auto add_case = [&](CLI::App* c) {
+    c->add_option("CASE", a.case_dir, "case directory, case.toml, or the name of a shipped case")->required();
+    c->add_option("--set", a.sets, "override a key: table.key=value (repeatable)")->expected(1)->take_all();
+  };
+  CLI::App* run_command = cli.add_subcommand("run", "run a case");
+  add_case(run_command);
+  run_command->add_option("--out", a.out, "output directory (default: out/<case>)");
+  run_command->add_flag("--force", a.force, "overwrite a finished run");
+  run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
+  run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
+  run_command->callback([&] { run(a); });
+  CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");
+  add_case(check_command);
+  check_command->callback([&] { check(a); });
+  cli.add_subcommand("list", "the kinds, models, materials, effects and cases there are")->callback(list);
+  CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another");
+  new_command->add_option("DIR", a.case_dir, "the new directory")->required();
+  new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
+  new_command->callback([&] { app::copy_case(a.from, a.case_dir); });
+
+  try {
+    cli.parse(argc, argv);
+    return 0;
+  } catch (const CLI::CallForHelp& e) {
+    return cli.exit(e);
+  } catch (const CLI::ParseError& e) {
+    cli.exit(e);
+    return e.get_exit_code() == 0 ? 0 : 2;
+  } catch (const app::InputError& e) {
+    fmt::print(stderr, "hosel: {}\n", e.what());
+    return 2;
+  } catch (const solvers::NonConvergence& e) {
+    fmt::print(stderr, "hosel: no convergence: {}\n", e.what());
+    return 3;
+  } catch (const std::invalid_argument& e) {
+    fmt::print(stderr, "hosel: {}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "hosel: {}\n", e.what());
+    return 1;
+  }
+}

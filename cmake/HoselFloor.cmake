@@ -9,7 +9,7 @@ function(hosel_floor name)
   else()
     add_library(hosel_${name} STATIC ${sources} ${headers})
     set(scope PUBLIC)
-    target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow
+    target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict
                            $<$<BOOL:${HOSEL_WERROR}>:-Werror>)
   endif()
   add_library(hosel::${name} ALIAS hosel_${name})

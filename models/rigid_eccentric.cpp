@@ -34,8 +34,11 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   const Vec3 offset = blow.contact.normal_force_offset * ball.radius * along;
   const Vec3 arm = -ball.radius * g.normal;  // from the ball's centre to P
 
-  const Mat3 head_mobility = Mat3::Identity() / head.mass -
-                             skew(g.head_arm) * g.head_inertia.inverse() * skew(g.head_arm);
+  // A head of infinite mass is a wall: it gives way to nothing.
+  const bool wall = std::isinf(head.mass);
+  const Mat3 inverse_inertia = wall ? Mat3(Mat3::Zero()) : Mat3(g.head_inertia.inverse());
+  const Mat3 head_mobility =
+      Mat3::Identity() / head.mass - skew(g.head_arm) * inverse_inertia * skew(g.head_arm);
   const Mat3 ball_mobility =
       Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
   const Mat3 K = ball_mobility + head_mobility;
@@ -62,8 +65,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   out.velocity = J / ball.mass;
   out.spin = (arm.cross(J) + offset.cross(g.normal) * J.dot(g.normal)) / ball.inertia();
   out.head_velocity = blow.delivery.velocity() - J / head.mass;
-  out.head_spin = blow.delivery.head_angular_velocity -
-                  g.head_inertia.inverse() * g.head_arm.cross(J);
+  out.head_spin = blow.delivery.head_angular_velocity - inverse_inertia * g.head_arm.cross(J);
   return out;
 }
 

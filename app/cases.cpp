@@ -1,0 +1,58 @@
+#include "app/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/reader.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+namespace {
+
+/// The tree's cases first (a build in its checkout), then the installed ones.
+std::vector<fs::path> case_homes() { return {fs::path(HOSEL_SOURCE_DIR) / "cases", fs::path(HOSEL_INSTALLED_CASES)}; }
+
+std::vector<std::pair<std::string, std::string>> shipped() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const fs::path& home : case_homes()) {
+    if (!fs::is_directory(home)) continue;
+    for (const auto& entry : fs::directory_iterator(home)) {
+      if (!fs::is_regular_file(entry.path() / "case.toml")) continue;
+      std::string title;
+      try {
+        title = CaseFile(entry.path()).root().text("title", "");
+      } catch (const InputError& error) {
+        title = fmt::format("(unreadable: {})", error.what());
+      }
+      out.emplace_back(entry.path().filename().string(), title);
+    }
+    if (!out.empty()) break;
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+}  // namespace
+
+fs::path find_case(const std::string& named) {
+  if (fs::exists(named)) return named;
+  for (const fs::path& home : case_homes())
+    if (fs::is_regular_file(home / named / "case.toml")) return home / named;
+  std::vector<std::string> names;
+  for (const auto& [name, title] : shipped()) names.push_back(name);
+  const std::string near = nearest(named, names);
+  throw InputError(fmt::format("{}: no such case{}", named,
+                               near.empty() ? "; `hosel list` shows the shipped ones" : "; did you mean '" + near + "'?"));
+}
+
+void copy_case(const std::string& from, const fs::path& to) {
+  const fs::path source = find_case(from);
+  if (fs::exists(to)) throw InputError(fmt::format("{}: is there already", to.string()));
+  fs::create_directories(to);
+  fs::copy(fs::is_directory(source) ? source : source.parent_path(), to, fs::copy_options::recursive);
+}
+
+std::vector<ListSection> more_lists() { return {{"cases", shipped()}}; }
+
+}  // namespace hosel::app

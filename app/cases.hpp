@@ -1,0 +1,24 @@
+/// Shipped cases, by name; and what `hosel list` shows.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hosel::app {
+
+/// The path of a case: itself where it exists, else the shipped case of this name. Throws InputError
+/// with the nearest name.
+std::filesystem::path find_case(const std::string& named);
+/// A new case directory with the files of another; refuses to touch an existing one.
+void copy_case(const std::string& from, const std::filesystem::path& to);
+
+struct ListSection {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> entries;
+};
+/// Beyond kinds and models: materials, effects, balls, shafts, cases.
+std::vector<ListSection> more_lists();
+
+}  // namespace hosel::app

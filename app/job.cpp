@@ -1,0 +1,33 @@
+#include "app/job.hpp"
+
+#include <array>
+
+#include "app/kinds/impact.hpp"
+
+namespace hosel::app {
+namespace {
+
+constexpr std::array kKinds = {
+    Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
+};
+
+}  // namespace
+
+std::span<const Kind> kinds() { return kKinds; }
+
+std::unique_ptr<Job> read_job(CaseFile& file) {
+  Table root = file.root();
+  std::vector<std::string> names;
+  for (const Kind& k : kKinds) names.emplace_back(k.name);
+  root.text("title", "");
+  const std::string wanted = root.choice("kind", names, "impact");
+  for (const Kind& k : kKinds)
+    if (k.name == wanted) {
+      auto job = k.read(file);
+      file.finish();
+      return job;
+    }
+  return nullptr;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,142 @@
+#include "app/output.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "app/reader.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Progress::State {
+  std::string what;
+  bool quiet, terminal;
+  Clock::time_point start = Clock::now(), shown = start;
+  double shown_done = 0;
+  bool open = true;
+  std::mutex mutex;
+};
+
+Progress::Progress(std::string what, bool quiet) : state_(std::make_unique<State>()) {
+  state_->what = std::move(what);
+  state_->quiet = quiet;
+  state_->terminal = isatty(STDERR_FILENO);
+}
+
+Progress::~Progress() {
+  if (state_ && state_->open && state_->terminal && !state_->quiet) std::fputs("\n", stderr);
+}
+
+namespace {
+std::string clock_text(double seconds) {
+  const long s = std::lround(seconds);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+}  // namespace
+
+void Progress::update(double done, std::string_view note) {
+  State& s = *state_;
+  const std::lock_guard lock(s.mutex);
+  if (s.quiet || !s.open) return;
+  const auto now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - s.start).count();
+  const double since = std::chrono::duration<double>(now - s.shown).count();
+  const std::string left = done > 1e-3 ? clock_text(elapsed * (1 - done) / done) + " to go" : "";
+  if (s.terminal) {
+    if (since < 0.1) return;
+    constexpr int width = 30;
+    const int filled = std::clamp(int(done * width), 0, width);
+    fmt::print(stderr, "\r{:<24} [{}{}] {:3.0f} %  {:<14} {:<24}", s.what, std::string(std::size_t(filled), '='),
+               std::string(std::size_t(width - filled), ' '), 100 * done, left, note);
+  } else {
+    // Plain lines: at most one every ten seconds, so that a log stays readable.
+    if (since < 10) return;
+    fmt::print(stderr, "{}: {:.0f} %, {} {}\n", s.what, 100 * done, left, note);
+  }
+  std::fflush(stderr);
+  s.shown = now;
+  s.shown_done = done;
+}
+
+void Progress::finish(std::string_view note) {
+  State& s = *state_;
+  const std::lock_guard lock(s.mutex);
+  if (!s.open) return;
+  s.open = false;
+  if (s.quiet) return;
+  const double elapsed = std::chrono::duration<double>(Clock::now() - s.start).count();
+  fmt::print(stderr, "{}{:<24} done in {:.1f} s {:<52}\n", s.terminal ? "\r" : "", s.what, elapsed, note);
+  std::fflush(stderr);
+}
+
+struct Output::State {
+  OutputOptions options;
+  std::shared_ptr<spdlog::logger> logger;
+};
+
+Output::Output(OutputOptions options, std::string_view resolved) : state_(std::make_unique<State>()) {
+  state_->options = std::move(options);
+  const fs::path& out = directory();
+  if (fs::exists(out / "summary.json") && !state_->options.force)
+    throw InputError(fmt::format("{}: a finished run lies here; name another --out or overwrite it with --force", out.string()));
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
+  fs::remove(out / "summary.json", error);
+  const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), true);
+  std::vector<spdlog::sink_ptr> sinks{sink};
+  if (!state_->options.log.empty())
+    sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(state_->options.log.string(), true));
+  state_->logger = std::make_shared<spdlog::logger>("hosel", sinks.begin(), sinks.end());
+  state_->logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
+  state_->logger->flush_on(spdlog::level::info);
+  write("case.resolved.toml", resolved);
+}
+
+Output::~Output() = default;
+const fs::path& Output::directory() const { return state_->options.directory; }
+
+fs::path Output::path(std::string_view name) const {
+  const fs::path p = directory() / name;
+  fs::create_directories(p.parent_path());
+  return p;
+}
+
+bool Output::quiet() const { return state_->options.quiet; }
+
+void Output::say(std::string_view line) {
+  if (!quiet()) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  log(line);
+}
+
+void Output::log(std::string_view line) { state_->logger->info("{}", line); }
+
+Progress Output::progress(std::string what) const { return Progress(std::move(what), quiet()); }
+
+void Output::write(std::string_view name, std::string_view content) const {
+  const fs::path target = path(name), beside = target.string() + ".part";
+  {
+    std::ofstream file(beside, std::ios::binary);
+    file << content;
+    if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", target.string()));
+  }
+  fs::rename(beside, target);
+}
+
+void Output::write_json(std::string_view name, const nlohmann::json& content) const {
+  write(name, content.dump(1) + "\n");
+}
+
+void Output::write_summary(const nlohmann::json& summary) const { write_json("summary.json", summary); }
+
+}  // namespace hosel::app

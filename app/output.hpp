@@ -1,0 +1,65 @@
+/// The output directory of one run, its log, and what a person sees while it works.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace hosel::app {
+
+/// Verbosity and places, from the command line.
+struct OutputOptions {
+  std::filesystem::path directory;  ///< OUT
+  bool force = false;               ///< overwrite a finished run
+  bool quiet = false;
+  std::filesystem::path log;        ///< besides OUT/log.txt
+};
+
+/// Progress of one long piece of work: a bar with time to go on a terminal, plain lines elsewhere.
+class Progress {
+ public:
+  Progress(std::string what, bool quiet);
+  ~Progress();
+  /// `done` of 1; `note` is a short state ("t = 0.21 ms"). Thread-safe; cheap to call often.
+  void update(double done, std::string_view note = {});
+  void finish(std::string_view note = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+class Output {
+ public:
+  /// Creates OUT (refused with InputError where a finished run lies there, unless forced), writes
+  /// `case.resolved.toml` and opens `log.txt`.
+  Output(OutputOptions options, std::string_view resolved_case);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  const std::filesystem::path& directory() const;
+  std::filesystem::path path(std::string_view name) const;  ///< OUT/name, parent folders made
+  bool quiet() const;
+
+  /// A line for the person and the log.
+  void say(std::string_view line);
+  /// A line for the log alone.
+  void log(std::string_view line);
+  Progress progress(std::string what) const;
+  /// Written beside and renamed, so that a killed run never leaves half a file.
+  void write(std::string_view name, std::string_view content) const;
+  void write_json(std::string_view name, const nlohmann::json& content) const;
+  /// `summary.json` marks the run as finished.
+  void write_summary(const nlohmann::json& summary) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace hosel::app

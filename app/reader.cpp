@@ -1,0 +1,526 @@
+#include "app/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <toml++/toml.h>
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+
+namespace detail {
+struct Document {
+  fs::path directory, file;
+  toml::table root, resolved;
+  std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
+  std::map<const toml::table*, toml::table*> echo;                        // where each table is echoed
+};
+}  // namespace detail
+
+namespace {
+
+toml::table& as_table(void* node) { return *static_cast<toml::table*>(node); }
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+const Unit* find_unit(std::string_view suffix) {
+  const auto all = units();
+  const auto it = std::ranges::find(all, suffix, &Unit::suffix);
+  return it == all.end() ? nullptr : &*it;
+}
+
+std::string describe(const Range& r, double factor, std::string_view unit) {
+  const double lowest = std::numeric_limits<double>::lowest(), highest = std::numeric_limits<double>::max();
+  const bool below = r.min > lowest, above = r.max < highest;
+  const std::string space = unit.empty() ? "" : " ";
+  if (below && above)
+    return fmt::format("allowed: {}{:g} to {:g}{}{}", r.open_min ? "above " : "", r.min / factor, r.max / factor, space,
+                       unit);
+  if (below) return fmt::format("allowed: {} {:g}{}{}", r.open_min ? "above" : "at least", r.min / factor, space, unit);
+  if (above) return fmt::format("allowed: at most {:g}{}{}", r.max / factor, space, unit);
+  return r.max == highest ? "allowed: any finite number" : "allowed: any number but nan";
+}
+
+}  // namespace
+
+bool Range::contains(double x) const {
+  return !std::isnan(x) && (open_min ? x > min : x >= min) && x <= max;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& c : candidates)
+    if (const std::size_t d = edit_distance(word, c); d < least) {
+      least = d;
+      best = c;
+    }
+  return best;
+}
+
+fs::path data_directory() {
+  if (const char* named = std::getenv("HOSEL_DATA")) return named;
+#ifdef HOSEL_SOURCE_DIR
+  if (const fs::path beside = fs::path(HOSEL_SOURCE_DIR) / ".." / "shared" / "data"; fs::exists(beside))
+    return beside.lexically_normal();
+#endif
+  return fs::path("..") / "shared" / "data";
+}
+
+Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string path)
+    : document_(std::move(document)), node_(node), path_(std::move(path)) {}
+
+void Table::fail(std::string_view key, std::string_view what) const {
+  const toml::table& t = as_table(node_);
+  const toml::node* node = key.empty() ? nullptr : t.get(key);
+  const auto line = (node ? node->source() : t.source()).begin.line;
+  std::string name = path_;
+  if (!key.empty()) name += (name.empty() ? "" : ".") + std::string(key);
+  throw InputError(fmt::format("{}:{}: {}: {}", document_->file.string(), std::max<unsigned>(line, 1), name, what));
+}
+
+namespace {
+
+/// Common work of every typed read: mark as known, find, echo.
+struct Access {
+  detail::Document& document;
+  toml::table& table;
+  toml::node* find(std::string_view key) {
+    document.known[&table].emplace(key);
+    return table.get(key);
+  }
+  template <class T>
+  void echo(std::string_view key, T&& value) {
+    document.echo.at(&table)->insert_or_assign(key, std::forward<T>(value));
+  }
+};
+
+double read_number(const Table& t, std::string_view key, const toml::node& node) {
+  const auto x = node.value<double>();
+  if (!x || node.is_boolean()) t.fail(key, "expected a number");
+  if (std::isnan(*x)) t.fail(key, "nan is not a value");
+  return *x;
+}
+
+}  // namespace
+
+bool Table::has(std::string_view key) const { return as_table(node_).contains(key); }
+
+bool Table::has_quantity(std::string_view stem) const {
+  for (auto&& [key, value] : as_table(node_)) {
+    const SplitName split = split_unit(key.str());
+    if (split.unit && split.stem == stem) return true;
+  }
+  return false;
+}
+
+namespace {
+
+struct Found {
+  std::string key;
+  const Unit* unit;
+  toml::node* node;  // nullptr: absent
+};
+
+/// The one key of this stem, in whatever unit of the right dimension.
+Found find_quantity(const Table& t, Access access, std::string_view stem, std::string_view preferred,
+                    bool required) {
+  const Unit* unit = find_unit(preferred);
+  if (!unit) throw std::logic_error(fmt::format("no unit '{}' for key '{}'", preferred, stem));
+  std::vector<Found> found;
+  const Unit* wrong = nullptr;
+  std::string wrong_key;
+  for (auto&& [key, node] : access.table) {
+    const SplitName split = split_unit(key.str());
+    if (key.str() == stem) {
+      wrong_key = std::string(key.str());
+      continue;
+    }
+    if (!split.unit || split.stem != stem) continue;
+    if (split.unit->dimension != unit->dimension) {
+      wrong = find_unit(split.unit->suffix);
+      wrong_key = std::string(key.str());
+      continue;
+    }
+    found.push_back({std::string(key.str()), find_unit(split.unit->suffix), &node});
+  }
+  if (found.size() > 1) t.fail(found[1].key, fmt::format("given twice, also as '{}'", found[0].key));
+  if (found.size() == 1) {
+    access.find(found[0].key);
+    return found[0];
+  }
+  if (!wrong_key.empty()) {
+    std::string offered;
+    for (const Unit& u : units())
+      if (u.dimension == unit->dimension) offered += fmt::format("{}{}_{}", offered.empty() ? "" : ", ", stem, u.suffix);
+    if (wrong)
+      t.fail(wrong_key, fmt::format("unit '{}' is a {}, expected a {} ({})", wrong->suffix, name(wrong->dimension),
+                                    name(unit->dimension), offered));
+    t.fail(wrong_key, fmt::format("has no unit, expected a {} ({})", name(unit->dimension), offered));
+  }
+  const std::string key = fmt::format("{}_{}", stem, preferred);
+  if (required) {
+    // A misspelt key is the likeliest reason for a missing one: name it and its line.
+    for (auto&& [other, node] : access.table) {
+      if (access.document.known[&access.table].contains(other.str())) continue;
+      if (edit_distance(other.str(), key) <= std::max<std::size_t>(2, key.size() / 4))
+        t.fail(other.str(), fmt::format("unknown key; did you mean '{}'?", key));
+    }
+    t.fail("", fmt::format("'{}' is missing", key));
+  }
+  access.find(key);
+  return {key, unit, nullptr};
+}
+
+}  // namespace
+
+double Table::quantity(std::string_view stem, std::string_view unit, Range si, std::optional<double> standard) {
+  Access access{*document_, as_table(node_)};
+  const Found f = find_quantity(*this, access, stem, unit, !standard);
+  if (!f.node) {
+    access.echo(f.key, *standard / f.unit->si);
+    return *standard;
+  }
+  const double x = read_number(*this, f.key, *f.node);
+  if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+  access.echo(f.key, x);
+  return x * f.unit->si;
+}
+
+std::vector<double> Table::quantities(std::string_view stem, std::string_view unit, std::size_t size, Range si,
+                                      std::optional<std::vector<double>> standard) {
+  Access access{*document_, as_table(node_)};
+  const Found f = find_quantity(*this, access, stem, unit, !standard);
+  std::vector<double> out;
+  toml::array echoed;
+  if (!f.node) {
+    for (double x : *standard) echoed.push_back(x / f.unit->si);
+    access.echo(f.key, std::move(echoed));
+    return *standard;
+  }
+  const toml::array* list = f.node->as_array();
+  if (!list || (size && list->size() != size))
+    fail(f.key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
+  for (const toml::node& node : *list) {
+    const double x = read_number(*this, f.key, node);
+    if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+    out.push_back(x * f.unit->si);
+    echoed.push_back(x);
+  }
+  access.echo(f.key, std::move(echoed));
+  return out;
+}
+
+Vec3 Table::vector(std::string_view stem, std::string_view unit, std::optional<Vec3> standard) {
+  std::optional<std::vector<double>> list;
+  if (standard) list = std::vector<double>(standard->data(), standard->data() + 3);
+  const auto x = quantities(stem, unit, 3, Range::finite(), list);
+  return {x[0], x[1], x[2]};
+}
+
+Mat3 Table::matrix(std::string_view stem, std::string_view unit, std::optional<Mat3> standard) {
+  Access access{*document_, as_table(node_)};
+  const Found f = find_quantity(*this, access, stem, unit, !standard);
+  Mat3 out;
+  if (!f.node) {
+    out = *standard;
+  } else {
+    const toml::array* rows = f.node->as_array();
+    if (!rows || rows->size() != 3) fail(f.key, "expected a 3x3 matrix as a list of three rows");
+    for (std::size_t i = 0; i < 3; ++i) {
+      const toml::array* row = rows->get(i)->as_array();
+      if (!row || row->size() != 3) fail(f.key, "expected a 3x3 matrix as a list of three rows");
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double x = read_number(*this, f.key, *row->get(j));
+        if (!std::isfinite(x)) fail(f.key, "expected finite numbers");
+        out(Eigen::Index(i), Eigen::Index(j)) = x * f.unit->si;
+      }
+    }
+  }
+  toml::array echoed;
+  for (int i = 0; i < 3; ++i)
+    echoed.push_back(toml::array{out(i, 0) / f.unit->si, out(i, 1) / f.unit->si, out(i, 2) / f.unit->si});
+  access.echo(f.key, std::move(echoed));
+  return out;
+}
+
+double Table::number(std::string_view key, Range range, std::optional<double> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing ({})", key, describe(range, 1, "")));
+  const double x = node ? read_number(*this, key, *node) : *standard;
+  if (node && !range.contains(x)) fail(key, fmt::format("{:g} is out of range ({})", x, describe(range, 1, "")));
+  access.echo(key, x);
+  return x;
+}
+
+std::vector<double> Table::numbers(std::string_view key, std::size_t size, Range range,
+                                   std::optional<std::vector<double>> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
+  std::vector<double> out;
+  if (!node) {
+    out = *standard;
+  } else {
+    const toml::array* list = node->as_array();
+    if (!list || (size && list->size() != size))
+      fail(key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
+    for (const toml::node& item : *list) {
+      out.push_back(read_number(*this, key, item));
+      if (!range.contains(out.back()))
+        fail(key, fmt::format("{:g} is out of range ({})", out.back(), describe(range, 1, "")));
+    }
+  }
+  toml::array echoed;
+  for (double x : out) echoed.push_back(x);
+  access.echo(key, std::move(echoed));
+  return out;
+}
+
+long Table::integer(std::string_view key, long min, long max, std::optional<long> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing (a whole number from {} to {})", key, min, max));
+  long x = standard.value_or(0);
+  if (node) {
+    if (!node->is_integer()) fail(key, fmt::format("expected a whole number from {} to {}", min, max));
+    x = long(node->as_integer()->get());
+    if (x < min || x > max) fail(key, fmt::format("{} is out of range (allowed: {} to {})", x, min, max));
+  }
+  access.echo(key, std::int64_t(x));
+  return x;
+}
+
+bool Table::flag(std::string_view key, std::optional<bool> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing (true or false)", key));
+  if (node && !node->is_boolean()) fail(key, "expected true or false");
+  const bool x = node ? node->as_boolean()->get() : *standard;
+  access.echo(key, x);
+  return x;
+}
+
+std::string Table::text(std::string_view key, std::optional<std::string> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
+  if (node && !node->is_string()) fail(key, "expected a text in quotes");
+  const std::string x = node ? node->as_string()->get() : *standard;
+  access.echo(key, x);
+  return x;
+}
+
+std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed,
+                          std::optional<std::string> standard) {
+  const std::string x = text(key, standard);
+  if (std::ranges::find(allowed, x) != allowed.end()) return x;
+  std::string all;
+  for (const std::string& a : allowed) all += (all.empty() ? "" : ", ") + a;
+  const std::string near = nearest(x, allowed);
+  fail(key, near.empty() ? fmt::format("no '{}' (allowed: {})", x, all)
+                         : fmt::format("no '{}'; did you mean '{}'? (allowed: {})", x, near, all));
+}
+
+std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> standard) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
+  std::vector<std::string> out;
+  if (!node) {
+    out = *standard;
+  } else {
+    const toml::array* list = node->as_array();
+    if (!list) fail(key, "expected a list of texts");
+    for (const toml::node& item : *list) {
+      if (!item.is_string()) fail(key, "expected a list of texts");
+      out.push_back(item.as_string()->get());
+    }
+  }
+  toml::array echoed;
+  for (const std::string& x : out) echoed.push_back(x);
+  access.echo(key, std::move(echoed));
+  return out;
+}
+
+fs::path Table::file(std::string_view key) {
+  const fs::path path = document_->directory / text(key);
+  if (!fs::is_regular_file(path)) fail(key, fmt::format("no file '{}'", path.string()));
+  return path;
+}
+
+fs::path Table::data_file(std::string_view key) {
+  const std::string name = text(key);
+  const fs::path own = document_->directory / name;
+  return fs::is_regular_file(own) ? own : data_directory() / name;
+}
+
+Table Table::table(std::string_view key) {
+  auto found = optional_table(key);
+  if (found) return *found;
+  Access access{*document_, as_table(node_)};
+  for (auto&& [other, node] : access.table)
+    if (!access.document.known[&access.table].contains(other.str()) && node.is_table() &&
+        edit_distance(other.str(), key) <= 2)
+      fail(other.str(), fmt::format("unknown table; did you mean '[{}]'?", key));
+  fail("", fmt::format("table '[{}]' is missing", path_.empty() ? std::string(key) : path_ + "." + std::string(key)));
+}
+
+std::optional<Table> Table::optional_table(std::string_view key) {
+  Access access{*document_, as_table(node_)};
+  toml::node* node = access.find(key);
+  if (!node) return {};
+  toml::table* child = node->as_table();
+  if (!child) fail(key, "expected a table");
+  toml::table& home = *document_->echo.at(&access.table);
+  if (!home.contains(key)) {
+    home.insert_or_assign(key, toml::table{});
+    home.get(key)->as_table()->is_inline(child->is_inline());
+    document_->echo[child] = home.get(key)->as_table();
+    document_->known[child];
+  }
+  return Table(document_, child, path_.empty() ? std::string(key) : path_ + "." + std::string(key));
+}
+
+std::vector<Table> Table::tables(std::string_view key) {
+  Access access{*document_, as_table(node_)};
+  toml::node* node = access.find(key);
+  std::vector<Table> out;
+  if (!node) return out;
+  toml::array* list = node->as_array();
+  if (!list) fail(key, fmt::format("expected a list of tables [[{}]]", key));
+  toml::table& home = *document_->echo.at(&access.table);
+  const bool fresh = !home.contains(key);
+  if (fresh) {
+    toml::array echoed;
+    for (std::size_t i = 0; i < list->size(); ++i) echoed.push_back(toml::table{});
+    home.insert_or_assign(key, std::move(echoed));
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    toml::table* child = list->get(i)->as_table();
+    if (!child) fail(key, fmt::format("expected a list of tables [[{}]]", key));
+    if (fresh) {
+      document_->echo[child] = home.get(key)->as_array()->get(i)->as_table();
+      document_->known[child];
+    }
+    out.push_back(Table(document_, child, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, i + 1)));
+  }
+  return out;
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> out;
+  for (auto&& [key, node] : as_table(node_)) out.emplace_back(key.str());
+  return out;
+}
+
+namespace {
+
+void apply_override(detail::Document& document, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(fmt::format("--set {}: expected key=value, e.g. --set delivery.club_speed_mps=45", text));
+  const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
+  toml::table parsed;
+  try {
+    parsed = toml::parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    parsed.insert("value", value);
+  }
+  toml::table* at = &document.root;
+  std::stringstream parts(key);
+  std::vector<std::string> path;
+  for (std::string part; std::getline(parts, part, '.');) path.push_back(part);
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    if (!at->contains(path[i])) at->insert(path[i], toml::table{});
+    at = at->get(path[i])->as_table();
+    if (!at) throw InputError(fmt::format("--set {}: '{}' is not a table", text, path[i]));
+  }
+  // The same quantity in another unit is replaced, not doubled.
+  const SplitName split = split_unit(path.back());
+  if (split.unit) {
+    std::string doubled;
+    for (auto&& [other, node] : *at)
+      if (const SplitName s = split_unit(other.str()); s.unit && s.stem == split.stem && other.str() != path.back())
+        doubled = std::string(other.str());
+    if (!doubled.empty()) at->erase(doubled);
+  }
+  at->insert_or_assign(path.back(), *parsed.get("value"));
+}
+
+void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table& t, const std::string& path) {
+  const auto& known = d->known.at(&t);
+  for (auto&& [key, node] : t) {
+    const std::string name = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+    if (!known.contains(key.str())) {
+      const std::string near = nearest(key.str(), {known.begin(), known.end()});
+      std::string all;
+      for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+      throw InputError(fmt::format("{}:{}: {}: unknown {}; {}", d->file.string(),
+                                   std::max<unsigned>(node.source().begin.line, 1), name,
+                                   node.is_table() ? "table" : "key",
+                                   near.empty() ? "known here: " + all : "did you mean '" + near + "'?"));
+    }
+    if (const toml::table* child = node.as_table(); child && d->known.contains(child)) find_unknown(d, *child, name);
+    if (const toml::array* list = node.as_array())
+      for (const toml::node& item : *list)
+        if (const toml::table* child = item.as_table(); child && d->known.contains(child))
+          find_unknown(d, *child, name);
+  }
+}
+
+}  // namespace
+
+CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overrides)
+    : document_(std::make_shared<detail::Document>()) {
+  detail::Document& d = *document_;
+  d.file = fs::is_directory(where) ? where / "case.toml" : where;
+  d.directory = d.file.parent_path();
+  if (d.directory.empty()) d.directory = ".";
+  if (!fs::is_regular_file(d.file)) throw InputError(fmt::format("{}: no such case file", d.file.string()));
+  std::ifstream in(d.file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  try {
+    d.root = toml::parse(text.str(), d.file.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: not valid TOML: {}", d.file.string(), error.source().begin.line,
+                                 std::string(error.description())));
+  }
+  for (const std::string& o : overrides) apply_override(d, o);
+  d.echo[&d.root] = &d.resolved;
+  d.known[&d.root];
+}
+
+Table CaseFile::root() { return Table(document_, &document_->root, ""); }
+const fs::path& CaseFile::directory() const { return document_->directory; }
+const fs::path& CaseFile::file() const { return document_->file; }
+void CaseFile::finish() { find_unknown(document_, document_->root, ""); }
+
+std::string CaseFile::resolved() const {
+  std::ostringstream out;
+  out << toml::toml_formatter(document_->resolved, toml::format_flags::relaxed_float_precision) << '\n';
+  return out.str();
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,122 @@
+/// The strict case reader: every key is declared where it is read, with its dimension and range; what
+/// nobody asked for is an error with the nearest spelling. Keys carry their unit as a suffix.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "golf/units.hpp"
+#include "golf/vector.hpp"
+
+namespace hosel::app {
+
+/// One line a person can act on: `file:line: key: what is wrong (what is allowed)`. Exit status 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Allowed values, in SI. NaN is never allowed.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool open_min = false;  ///< min itself is not allowed
+
+  bool contains(double x) const;
+  static Range positive() { return {0, std::numeric_limits<double>::max(), true}; }
+  static Range non_negative() { return {0, std::numeric_limits<double>::max()}; }
+  static Range finite() { return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()}; }
+  static Range fraction() { return {0, 1}; }
+};
+
+namespace detail {
+struct Document;
+struct Node;
+}  // namespace detail
+
+/// A table of the case file. Reading a key marks it as known and echoes it, defaults included, into
+/// the resolved case.
+class Table {
+ public:
+  bool has(std::string_view key) const;
+  /// `stem` with any unit of the dimension (`club_speed_mps`, `club_speed_mph`).
+  bool has_quantity(std::string_view stem) const;
+
+  /// A quantity `stem_unit`; returns SI. Without a default the key is required. `unit` is the suffix
+  /// in which the default is echoed and which is offered where the key is missing.
+  double quantity(std::string_view stem, std::string_view unit, Range si = Range::finite(),
+                  std::optional<double> default_si = {});
+  /// As above for a list of `size` values (any size where 0).
+  std::vector<double> quantities(std::string_view stem, std::string_view unit, std::size_t size,
+                                 Range si = Range::finite(), std::optional<std::vector<double>> default_si = {});
+  Vec3 vector(std::string_view stem, std::string_view unit, std::optional<Vec3> default_si = {});
+  /// A 3x3 matrix as a list of rows.
+  Mat3 matrix(std::string_view stem, std::string_view unit, std::optional<Mat3> default_si = {});
+
+  double number(std::string_view key, Range range = Range::finite(), std::optional<double> standard = {});
+  std::vector<double> numbers(std::string_view key, std::size_t size, Range range = Range::finite(),
+                              std::optional<std::vector<double>> standard = {});
+  long integer(std::string_view key, long min, long max, std::optional<long> standard = {});
+  bool flag(std::string_view key, std::optional<bool> standard = {});
+  std::string text(std::string_view key, std::optional<std::string> standard = {});
+  /// One of the words, else an error that names the nearest.
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed,
+                     std::optional<std::string> standard = {});
+  std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> standard = {});
+  /// A file named relative to the case directory; must exist.
+  std::filesystem::path file(std::string_view key);
+  /// A large measured file: in the case directory, else in the folder that HOSEL_DATA names (default
+  /// ../shared/data beside the project or the working directory). Missing files are returned as
+  /// they would be expected, for the caller to say SKIPPED.
+  std::filesystem::path data_file(std::string_view key);
+
+  /// A sub-table; required unless `optional_table` is used instead.
+  Table table(std::string_view key);
+  std::optional<Table> optional_table(std::string_view key);
+  /// A list of tables `[[key]]`; empty where absent.
+  std::vector<Table> tables(std::string_view key);
+  /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.
+  std::vector<std::string> keys() const;
+
+  /// An error at this key (or at the table where the key is empty or absent).
+  [[noreturn]] void fail(std::string_view key, std::string_view what) const;
+
+ private:
+  friend class CaseFile;
+  Table(std::shared_ptr<detail::Document> document, void* node, std::string path);
+  std::shared_ptr<detail::Document> document_;
+  void* node_;        // toml::table*, kept out of this header for compile time
+  std::string path_;  // dotted, for messages
+};
+
+/// One `case.toml`, or a case directory that contains it.
+class CaseFile {
+ public:
+  /// `overrides` are `dotted.key=value` in TOML syntax (bare words are taken as strings).
+  explicit CaseFile(const std::filesystem::path& where, const std::vector<std::string>& overrides = {});
+
+  Table root();
+  const std::filesystem::path& directory() const;
+  const std::filesystem::path& file() const;
+  /// Every key that was not read is an error. Call it when reading is complete.
+  void finish();
+  /// The case with every default filled in, as TOML text.
+  std::string resolved() const;
+
+ private:
+  std::shared_ptr<detail::Document> document_;
+};
+
+/// The word of `candidates` nearest in spelling, or empty where none is near.
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Where large measured files are: HOSEL_DATA, else ../shared/data beside the project.
+std::filesystem::path data_directory();
+
+}  // namespace hosel::app

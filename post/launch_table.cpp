@@ -1,0 +1,66 @@
+#include "post/launch_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "golf/units.hpp"
+
+namespace hosel::post {
+namespace {
+constexpr std::array kChannels = {
+    Channel{"ball_speed", "mps", 1.0, &Launch::ball_speed, 2},
+    Channel{"launch_angle", "deg", kRadPerDeg, &Launch::launch_angle, 2},
+    Channel{"azimuth", "deg", kRadPerDeg, &Launch::azimuth, 2},
+    Channel{"backspin", "rpm", kRadPerSecPerRpm, &Launch::backspin, 0},
+    Channel{"sidespin", "rpm", kRadPerSecPerRpm, &Launch::sidespin, 0},
+    Channel{"riflespin", "rpm", kRadPerSecPerRpm, &Launch::riflespin, 0},
+    Channel{"spin_rate", "rpm", kRadPerSecPerRpm, &Launch::spin_rate, 0},
+    Channel{"spin_axis", "deg", kRadPerDeg, &Launch::spin_axis, 2},
+};
+}  // namespace
+
+std::span<const Channel> channels() { return kChannels; }
+
+const Channel* find_channel(std::string_view name) {
+  const auto it = std::ranges::find(kChannels, name, &Channel::name);
+  return it == kChannels.end() ? nullptr : &*it;
+}
+
+std::string channel_names() {
+  std::string all;
+  for (const Channel& c : kChannels) all += fmt::format("{}{}", all.empty() ? "" : ", ", c.name);
+  return all;
+}
+
+std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured) {
+  std::string text = fmt::format("{:<18}", "");
+  for (const LaunchColumn& c : columns) text += fmt::format("{:>17}", c.title);
+  if (!measured.empty()) text += fmt::format("{:>17}", "measured");
+  for (const Channel& channel : kChannels) {
+    text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
+    for (const LaunchColumn& c : columns) {
+      double shown = (c.launch.*channel.value)() / channel.si;
+      if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
+      text += fmt::format("{:>17.{}f}", shown, channel.decimals);
+    }
+    if (measured.empty()) continue;
+    const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);
+    text += it == measured.end() ? fmt::format("{:>17}", "-") : fmt::format("{:>17.{}f}", it->second / channel.si, channel.decimals);
+  }
+  return text;
+}
+
+nlohmann::json to_json(const Launch& launch) {
+  nlohmann::json out;
+  for (const Channel& c : kChannels) out[fmt::format("{}_{}", c.name, c.unit)] = (launch.*c.value)() / c.si;
+  const auto list = [](const Vec3& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+  out["head_velocity_mps"] = list(launch.head_velocity);
+  out["head_spin_rad_per_s"] = list(launch.head_spin);
+  return out;
+}
+
+}  // namespace hosel::post

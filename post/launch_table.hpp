@@ -1,0 +1,38 @@
+/// Launch conditions as people and files read them: names, units, tables.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "golf/launch.hpp"
+
+namespace hosel::post {
+
+/// One launch quantity in the unit in which it is shown.
+struct Channel {
+  std::string_view name;  ///< as in the data specification, without unit
+  std::string_view unit;  ///< suffix
+  double si;              ///< one of the unit in SI
+  double (Launch::*value)() const;
+  int decimals;
+};
+std::span<const Channel> channels();
+const Channel* find_channel(std::string_view name);  ///< nullptr where unknown
+std::string channel_names();                         ///< for messages
+
+using Measured = std::vector<std::pair<const Channel*, double>>;  ///< values in SI
+
+struct LaunchColumn {
+  std::string title;
+  Launch launch;
+};
+/// A text table: a row per quantity, a column per model, the measurement last where there is one.
+std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {});
+/// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
+nlohmann::json to_json(const Launch& launch);
+
+}  // namespace hosel::post
