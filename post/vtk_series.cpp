@@ -1,0 +1,157 @@
+#include "post/vtk_series.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLUtilities.h>
+
+#include <fstream>
+#include <stdexcept>
+
+namespace hosel::post {
+namespace fs = std::filesystem;
+namespace {
+
+struct Shape {
+  int vtk;
+  int points;
+};
+
+Shape shape(CellShape s) {
+  switch (s) {
+    case CellShape::vertex: return {VTK_VERTEX, 1};
+    case CellShape::line: return {VTK_LINE, 2};
+    case CellShape::triangle: return {VTK_TRIANGLE, 3};
+    case CellShape::quad: return {VTK_QUAD, 4};
+    case CellShape::wedge: return {VTK_WEDGE, 6};
+    case CellShape::hexahedron: return {VTK_HEXAHEDRON, 8};
+  }
+  return {VTK_EMPTY_CELL, 0};
+}
+
+vtkNew<vtkDoubleArray> array_of(const VtkField& field, std::size_t tuples) {
+  if (field.values.size() != tuples * std::size_t(field.components))
+    throw std::invalid_argument(fmt::format("array '{}' has {} values, expected {} x {}", field.name, field.values.size(),
+                                            tuples, field.components));
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(field.name.c_str());
+  array->SetNumberOfComponents(field.components);
+  array->SetNumberOfTuples(vtkIdType(tuples));
+  std::copy(field.values.begin(), field.values.end(), array->GetPointer(0));
+  if (!field.unit.empty()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.unit.c_str());
+  if (field.components == 6) {
+    constexpr const char* names[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
+    for (int i = 0; i < 6; ++i) array->SetComponentName(i, names[i]);
+  }
+  return array;
+}
+
+void fill(vtkPointSet& data, const VtkMesh& mesh, double time) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();  // VTK's default is single precision
+  points->SetNumberOfPoints(vtkIdType(mesh.points.size()));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) points->SetPoint(vtkIdType(i), mesh.points[i].data());
+  data.SetPoints(points);
+  for (const VtkField& f : mesh.point_fields) data.GetPointData()->AddArray(array_of(f, mesh.points.size()));
+  for (const VtkField& f : mesh.cell_fields) data.GetCellData()->AddArray(array_of(f, mesh.cells.size()));
+  vtkNew<vtkDoubleArray> stamp;
+  stamp->SetName("TimeValue");
+  stamp->InsertNextValue(time);
+  data.GetFieldData()->AddArray(stamp);
+}
+
+template <class Writer, class Data>
+void save(Data& data, const fs::path& file) {
+  vtkNew<Writer> writer;
+  writer->SetFileName(file.string().c_str());
+  writer->SetInputData(&data);
+  writer->SetDataModeToAppended();
+  if (!writer->Write()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+}
+
+}  // namespace
+
+VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3>& values) {
+  VtkField f{std::move(name), std::move(unit), 3, {}};
+  f.values.reserve(3 * values.size());
+  for (const Vec3& v : values) f.values.insert(f.values.end(), v.data(), v.data() + 3);
+  return f;
+}
+
+VtkSeries::VtkSeries(fs::path directory, std::string name, Form form, double resume_after)
+    : directory_(std::move(directory)), name_(std::move(name)), form_(form) {
+  if (resume_after >= 0 && fs::exists(file())) {
+    vtkSmartPointer<vtkXMLDataElement> root =
+        vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(file().string().c_str()));
+    vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
+    for (int i = 0; collection && i < collection->GetNumberOfNestedElements(); ++i) {
+      vtkXMLDataElement* e = collection->GetNestedElement(i);
+      double time = 0;
+      if (e->GetScalarAttribute("timestep", time) && time <= resume_after) entries_.push_back({time, e->GetAttribute("file")});
+    }
+  } else {
+    fs::remove_all(directory_ / name_);
+    fs::remove(file());
+  }
+  fs::create_directories(directory_ / name_);
+}
+
+fs::path VtkSeries::file() const { return directory_ / (name_ + ".pvd"); }
+
+void VtkSeries::write(double time, const VtkMesh& mesh) {
+  const std::string entry =
+      fmt::format("{0}/{0}_{1:04}.{2}", name_, entries_.size(), form_ == Form::surface ? "vtp" : "vtu");
+  const fs::path target = directory_ / entry, beside = target.string() + ".part";
+  if (form_ == Form::volume) {
+    vtkNew<vtkUnstructuredGrid> grid;
+    grid->Allocate(vtkIdType(mesh.cells.size()));
+    fill(*grid, mesh, time);
+    for (const auto& cell : mesh.cells) {
+      std::array<vtkIdType, 8> ids;
+      std::copy(cell.points.begin(), cell.points.end(), ids.begin());
+      grid->InsertNextCell(shape(cell.shape).vtk, shape(cell.shape).points, ids.data());
+    }
+    save<vtkXMLUnstructuredGridWriter>(*grid, beside);
+  } else {
+    vtkNew<vtkPolyData> surface;
+    fill(*surface, mesh, time);
+    vtkNew<vtkCellArray> verts, lines, faces;
+    for (const auto& cell : mesh.cells) {
+      std::array<vtkIdType, 8> ids;
+      std::copy(cell.points.begin(), cell.points.end(), ids.begin());
+      const int n = shape(cell.shape).points;
+      (n == 1 ? verts : n == 2 ? lines : faces)->InsertNextCell(n, ids.data());
+    }
+    surface->SetVerts(verts);
+    surface->SetLines(lines);
+    surface->SetPolys(faces);
+    save<vtkXMLPolyDataWriter>(*surface, beside);
+  }
+  fs::rename(beside, target);
+  entries_.push_back({time, entry});
+
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  for (const Entry& e : entries_)
+    text += fmt::format("    <DataSet timestep=\"{:.9g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", e.time, e.file);
+  text += "  </Collection>\n</VTKFile>\n";
+  const fs::path pvd_beside = file().string() + ".part";
+  {
+    std::ofstream out(pvd_beside);
+    out << text;
+    if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file().string()));
+  }
+  fs::rename(pvd_beside, file());
+}
+
+}  // namespace hosel::post

@@ -1,0 +1,60 @@
+/// A body over time as ParaView reads it: NAME.pvd beside a folder of .vtu (volumes) or .vtp (surfaces,
+/// lines) files. The .pvd is complete after every step, so that a killed run opens.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "golf/vector.hpp"
+
+namespace hosel::post {
+
+enum class CellShape : std::uint8_t { vertex, line, triangle, quad, wedge, hexahedron };
+
+/// One array at points or cells. Six components are a symmetric tensor in VTK's order XX YY ZZ XY YZ XZ.
+struct VtkField {
+  std::string name;
+  std::string unit;  ///< shown by ParaView as UNITS_LABEL
+  int components = 1;
+  std::vector<double> values;  ///< components of the first point, then of the second, ...
+};
+
+struct VtkMesh {
+  std::vector<Vec3> points;  ///< reference coordinates [m]
+  struct Cell {
+    CellShape shape;
+    std::array<std::int64_t, 8> points;
+  };
+  std::vector<Cell> cells;
+  std::vector<VtkField> point_fields, cell_fields;
+};
+
+/// Vectors have three components always: a two-component array would warp silently wrong.
+VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3>& values);
+
+class VtkSeries {
+ public:
+  enum class Form { surface, volume };
+  /// Writes DIRECTORY/NAME.pvd and DIRECTORY/NAME/NAME_0000.vt?. With `resume`, the entries of an
+  /// existing .pvd up to that time are kept; otherwise an old series of this name is removed.
+  VtkSeries(std::filesystem::path directory, std::string name, Form form, double resume_after = -1);
+  /// Adds one instant. Throws std::runtime_error where the disk refuses, std::invalid_argument where
+  /// an array's length does not fit the mesh.
+  void write(double time, const VtkMesh& mesh);
+  std::filesystem::path file() const;  ///< the .pvd
+
+ private:
+  struct Entry {
+    double time;
+    std::string file;
+  };
+  std::filesystem::path directory_;
+  std::string name_;
+  Form form_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace hosel::post

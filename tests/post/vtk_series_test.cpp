@@ -1,0 +1,116 @@
+// What is written is read back with VTK's own readers: names, components, units, times.
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "post/vtk_series.hpp"
+
+namespace hosel::post {
+namespace {
+
+namespace fs = std::filesystem;
+
+VtkMesh one_hexahedron() {
+  VtkMesh m;
+  for (int k = 0; k < 2; ++k)
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) m.points.emplace_back(x, y, k + 1e-9);
+  m.cells.push_back({CellShape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}});
+  m.point_fields.push_back(vector_field("displacement", "m", std::vector<Vec3>(8, Vec3(1e-3, 0, 2e-3))));
+  m.cell_fields.push_back({"cauchy_stress", "Pa", 6, {1, 2, 3, 4, 5, 6}});
+  return m;
+}
+
+fs::path fresh(const char* name) {
+  const fs::path dir = fs::path(testing::TempDir()) / name;
+  fs::remove_all(dir);
+  return dir;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::stringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+TEST(VtkSeries, VolumeReadsBack) {
+  const fs::path dir = fresh("hosel_vtk_volume");
+  VtkSeries series(dir, "ball", VtkSeries::Form::volume);
+  series.write(0, one_hexahedron());
+  series.write(2.5e-4, one_hexahedron());
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((dir / "ball" / "ball_0001.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  ASSERT_EQ(grid->GetNumberOfPoints(), 8);
+  EXPECT_EQ(grid->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(grid->GetPoint(0)[2], 1e-9);
+  vtkDataArray* u = grid->GetPointData()->GetArray("displacement");
+  ASSERT_NE(u, nullptr);
+  EXPECT_EQ(u->GetNumberOfComponents(), 3);
+  EXPECT_EQ(u->GetComponent(7, 2), 2e-3);
+  EXPECT_STREQ(u->GetInformation()->Get(vtkDataArray::UNITS_LABEL()), "m");
+  vtkDataArray* s = grid->GetCellData()->GetArray("cauchy_stress");
+  ASSERT_NE(s, nullptr);
+  EXPECT_STREQ(s->GetComponentName(5), "XZ");
+  EXPECT_EQ(grid->GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), 2.5e-4);
+  EXPECT_NE(text_of(series.file()).find("timestep=\"0.00025\""), std::string::npos);
+}
+
+TEST(VtkSeries, SurfaceAndLinesReadBack) {
+  const fs::path dir = fresh("hosel_vtk_surface");
+  VtkMesh m;
+  m.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  m.cells = {{CellShape::triangle, {0, 1, 2}}, {CellShape::line, {0, 1}}};
+  m.point_fields.push_back({"radius", "m", 1, {0.1, 0.2, 0.3}});
+  VtkSeries series(dir, "shaft", VtkSeries::Form::surface);
+  series.write(0, m);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((dir / "shaft" / "shaft_0000.vtp").c_str());
+  reader->Update();
+  EXPECT_EQ(reader->GetOutput()->GetNumberOfPolys(), 1);
+  EXPECT_EQ(reader->GetOutput()->GetNumberOfLines(), 1);
+  EXPECT_EQ(reader->GetOutput()->GetPointData()->GetArray("radius")->GetComponent(2, 0), 0.3);
+}
+
+TEST(VtkSeries, ResumeKeepsEarlierEntriesAndStartOverRemovesThem) {
+  const fs::path dir = fresh("hosel_vtk_resume");
+  {
+    VtkSeries series(dir, "ball", VtkSeries::Form::volume);
+    for (double t : {0.0, 1.0, 2.0}) series.write(t, one_hexahedron());
+  }
+  {
+    VtkSeries series(dir, "ball", VtkSeries::Form::volume, 1.0);
+    series.write(1.5, one_hexahedron());
+    const std::string text = text_of(series.file());
+    EXPECT_NE(text.find("timestep=\"1\""), std::string::npos);
+    EXPECT_NE(text.find("timestep=\"1.5\""), std::string::npos);
+    EXPECT_EQ(text.find("timestep=\"2\""), std::string::npos);
+  }
+  VtkSeries again(dir, "ball", VtkSeries::Form::volume);
+  again.write(0, one_hexahedron());
+  EXPECT_EQ(text_of(again.file()).find("timestep=\"1.5\""), std::string::npos);
+}
+
+TEST(VtkSeries, RefusesAnArrayOfTheWrongLength) {
+  VtkSeries series(fresh("hosel_vtk_wrong"), "ball", VtkSeries::Form::volume);
+  VtkMesh m = one_hexahedron();
+  m.point_fields[0].values.pop_back();
+  EXPECT_THROW(series.write(0, m), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hosel::post
