@@ -1,6 +1,8 @@
 /// What the ball does after the blow, at the instant contact ends.
 #pragma once
 
+#include <optional>
+
 #include "golf/vector.hpp"
 
 namespace hosel {
@@ -10,6 +12,9 @@ struct Launch {
   Vec3 spin = Vec3::Zero();              ///< angular velocity of the ball, global frame [rad/s]
   Vec3 head_velocity = Vec3::Zero();     ///< of the head's centre of gravity, global frame [m/s]
   Vec3 head_spin = Vec3::Zero();         ///< angular velocity of the head, global frame [rad/s]
+  std::optional<double> contact_time;    ///< [s]; absent where the model's blow has no duration
+  std::optional<double> peak_force;      ///< largest normal force [N]; absent likewise
+  std::optional<double> peak_compression;  ///< largest approach of ball and face [m]; absent likewise
 
   double ball_speed() const;    ///< [m/s]
   double launch_angle() const;  ///< upwards positive [rad]

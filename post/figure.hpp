@@ -1,0 +1,46 @@
+/// Figures: data and script in one gnuplot file, and the picture that gnuplot makes of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hosel::post {
+
+/// One curve or cloud of points.
+struct Series {
+  std::string label = {};           ///< in the key; empty: not in the key
+  std::vector<double> x = {}, y = {};  ///< same length
+  std::string style = "lines";      ///< gnuplot style: lines, points, linespoints, ...
+  std::vector<double> error = {};   ///< half-length of a bar in y; empty: none
+};
+
+/// One set of axes. With `map` non-empty it is a coloured map with contour lines, else curves.
+struct Panel {
+  std::string title = {};
+  std::string x_label = {}, y_label = {};  ///< with units: "dynamic loft [deg]"
+  bool log_x = false, log_y = false;
+  std::vector<Series> series = {};
+  std::string key = "top right";    ///< place of the key, as gnuplot says it
+
+  std::vector<double> map_x = {}, map_y = {};  ///< grid lines of the map
+  std::vector<double> map = {};      ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
+  std::string map_label = {};        ///< of the colour bar, with unit
+};
+
+struct Figure {
+  std::string title = {};
+  std::vector<Panel> panels = {};
+  int columns = 1;                  ///< of the grid of panels
+  int panel_width = 620, panel_height = 440;  ///< [pixel]
+};
+
+/// The gnuplot script with its data, which draws `png`.
+std::string gnuplot_script(const Figure& figure, const std::filesystem::path& png);
+
+/// Writes `stem`.gp and lets gnuplot draw `stem`.png. Returns an empty string, or a sentence why there
+/// is no picture (gnuplot absent or refusing); the script stays in both cases.
+/// Throws std::invalid_argument on series or maps whose lengths do not match.
+std::string draw(const Figure& figure, const std::filesystem::path& stem);
+
+}  // namespace hosel::post
