@@ -1,0 +1,67 @@
+#include "post/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hosel::post {
+namespace {
+
+/// Outline of a face in the plane: a super-ellipse, like a face seen from the front.
+Vec3 face_point(const Face& face, double u, double v, double width, double height) {
+  // Square to disc, then softened corners.
+  const double y = 0.5 * width * u * std::sqrt(1 - 0.35 * v * v), z = 0.5 * height * v * std::sqrt(1 - 0.35 * u * u);
+  return face.point(y, z);
+}
+
+}  // namespace
+
+VtkMesh face_mesh(const Face& face, double width, double height, int n) {
+  VtkMesh m;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) m.points.push_back(face_point(face, 2.0 * i / n - 1, 2.0 * j / n - 1, width, height));
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const std::int64_t a = j * (n + 1) + i;
+      m.cells.push_back({CellShape::quad, {a, a + 1, a + n + 2, a + n + 1}});
+    }
+  return m;
+}
+
+VtkMesh head_mesh(const Head& head, double width, double height) {
+  constexpr int around = 48, deep = 10;
+  const double depth = std::max(0.008, 2 * std::abs(head.cg.x()));
+  VtkMesh m;
+  for (int k = 0; k <= deep; ++k) {
+    const double s = double(k) / deep, shrink = std::sqrt(1 - 0.98 * s * s);
+    for (int i = 0; i < around; ++i) {
+      const double t = 2 * M_PI * i / around, c = std::cos(t), d = std::sin(t);
+      const double edge = std::max(std::abs(c), std::abs(d));
+      Vec3 p = face_point(head.face, c / edge, d / edge, width, height);
+      p.y() *= shrink;
+      p.z() *= shrink;
+      p.x() -= s * depth;
+      m.points.push_back(p);
+    }
+  }
+  for (int k = 0; k < deep; ++k)
+    for (int i = 0; i < around; ++i) {
+      const std::int64_t a = k * around + i, b = k * around + (i + 1) % around;
+      m.cells.push_back({CellShape::quad, {a, b, b + around, a + around}});
+    }
+  return m;
+}
+
+VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin) {
+  std::vector<Vec3> displacement, speed;
+  for (Vec3& p : mesh.points) {
+    const Vec3 arm = now.rotation * p, here = now.origin + arm;
+    p = start.origin + start.rotation * p;
+    displacement.push_back(here - p);
+    speed.push_back(velocity + spin.cross(arm));
+  }
+  mesh.point_fields.push_back(vector_field("displacement", "m", displacement));
+  mesh.point_fields.push_back(vector_field("velocity", "m/s", speed));
+  return mesh;
+}
+
+}  // namespace hosel::post

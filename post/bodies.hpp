@@ -1,0 +1,24 @@
+/// Rigid bodies and the shaft as meshes for looking.
+#pragma once
+
+#include "golf/head.hpp"
+#include "post/vtk_series.hpp"
+
+namespace hosel::post {
+
+/// Where a body's frame stands: x_global = origin + rotation * x_body.
+struct Pose {
+  Vec3 origin = Vec3::Zero();
+  Mat3 rotation = Mat3::Identity();
+};
+
+/// The face with its bulge and roll, as quads of an n x n grid over width x height [m], face frame.
+VtkMesh face_mesh(const Face& face, double width, double height, int n = 24);
+/// A stylised head behind that face: a rounded body twice as deep as the cg lies behind the face. It
+/// is for looking; mass and inertia are the case's own.
+VtkMesh head_mesh(const Head& head, double width, double height);
+/// The mesh moved to `start` (its reference), with the `displacement` and `velocity` of the pose `now`,
+/// the velocity of the frame's origin [m/s] and the angular velocity [rad/s], global frame.
+VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin);
+
+}  // namespace hosel::post
