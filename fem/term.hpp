@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ class Term {
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.
   virtual void accept(const State& accepted) { (void)accepted; }
+  /// The history as numbers, appended for a restart; restore() takes them back from the front.
+  virtual void save(std::vector<double>& history) const { (void)history; }
+  virtual void restore(std::span<const double>& history) { (void)history; }
   /// A longest admissible next step [s], e.g. near a contact event; infinity where none.
   virtual double step_limit(const State& accepted) const;
 };

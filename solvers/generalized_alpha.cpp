@@ -1,0 +1,262 @@
+#include "solvers/generalized_alpha.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "solvers/errors.hpp"
+
+namespace hosel::solvers {
+namespace {
+
+/// x with q1 = q0 o exp(x).
+Vector difference(const fem::Layout& layout, const Vector& q0, const Vector& q1) {
+  Vector x(layout.size());
+  for (const auto& b : layout.blocks()) {
+    if (!b.rotation) {
+      x.segment(b.v, b.size) = q1.segment(b.q, b.size) - q0.segment(b.q, b.size);
+      continue;
+    }
+    const Eigen::Quaterniond r0(Eigen::Vector4d(q0.segment<4>(b.q))), r1(Eigen::Vector4d(q1.segment<4>(b.q)));
+    x.segment<3>(b.v) = fem::rotation_log(r0.conjugate() * r1);
+  }
+  return x;
+}
+
+}  // namespace
+
+std::vector<std::string> GeneralizedAlphaOptions::faults() const {
+  std::vector<std::string> out = newton.faults();
+  if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("state rho_inf, in [0, 1]");
+  if (!(step_max > 0)) out.emplace_back("state step_max, above zero");
+  if (!(step_min > 0 && step_min <= step_max)) out.emplace_back("state step_min, above zero and not above step_max");
+  if (!(step_first >= 0 && step_first <= step_max)) out.emplace_back("step_first lies between zero and step_max");
+  if (!(error_vector > 0) || !(error_rotation > 0))
+    out.emplace_back("state both error tolerances (infinity: fixed steps)");
+  return out;
+}
+
+double Ledger::strain_total() const {
+  double sum = 0;
+  for (const auto& [body, value] : strain) sum += value;
+  return sum;
+}
+
+GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions options, fem::State initial)
+    : system_(system),
+      options_(options),
+      tangent_(system),
+      newton_(system, tangent_, options.newton),
+      state_(std::move(initial)) {
+  if (const auto faults = options.faults(); !faults.empty())
+    throw std::invalid_argument("generalized-alpha: " + faults.front());
+  const double rho = options.rho_inf;
+  am_ = (2 * rho - 1) / (rho + 1);
+  af_ = rho / (rho + 1);
+  gamma_ = 0.5 + af_ - am_;
+  beta_ = 0.25 * (gamma_ + 0.5) * (gamma_ + 0.5);
+  for (const auto& p : system.prescribed) imposed_.insert(imposed_.end(), p->equations().begin(), p->equations().end());
+  step_ = options.step_first > 0 ? options.step_first : options.step_max;
+
+  state_.a = Vector::Zero(system.layout.size());
+  impose(state_);
+  evaluate(state_, trial_inertia_, trial_force_);
+  if (tangent_.size() > 0) {
+    tangent_.assemble(system_, state_, {0, 0, 1});
+    Factorisation mass;
+    mass.factorise(tangent_);
+    tangent_.scatter(-mass.solve(tangent_.gather(trial_inertia_ + trial_force_)), state_.a);
+  }
+  auxiliary_ = state_.a;
+  evaluate(state_, inertia_, trial_force_);
+  residual_ = inertia_ + trial_force_;
+  ledger_.time = state_.time;
+  take_stock();
+  ledger_.initial = ledger_.kinetic + ledger_.strain_total() + ledger_.contact;
+  friction_before_ = ledger_.friction;
+  viscous_before_ = ledger_.viscous;
+  external_before_ = ledger_.external;
+  take_stock();
+}
+
+void GeneralizedAlpha::impose(fem::State& s) const {
+  for (const auto& p : system_.prescribed) p->impose(s);
+}
+
+void GeneralizedAlpha::evaluate(const fem::State& s, Vector& inertia, Vector& force) const {
+  inertia.setZero(system_.layout.size());
+  force.setZero(system_.layout.size());
+  for (const auto& term : system_.terms) term->residual(s, inertia, force);
+}
+
+NewtonReport GeneralizedAlpha::attempt(double h) {
+  // The auxiliary acceleration stands for vdot at t_n + (am - af) h: it moves when h changes.
+  Vector a0 = auxiliary_;
+  if (last_step_ > 0 && h != last_step_) a0 = state_.a + (h / last_step_) * (auxiliary_ - state_.a);
+
+  const double to_v = gamma_ / (beta_ * h), to_a = (1 - am_) / (beta_ * h * h * (1 - af_));
+  trial_ = state_;
+  trial_.time = state_.time + h;
+  Vector a1 = (state_.a - am_ * a0) / (1 - am_);  // vdot_{n+1} = vdot_n to begin with
+  increment_ = h * state_.v + h * h * ((0.5 - beta_) * a0 + beta_ * a1);
+  trial_.v = state_.v + h * ((1 - gamma_) * a0 + gamma_ * a1);
+  trial_.q = system_.layout.advanced(state_.q, increment_);
+  if (!imposed_.empty()) {
+    impose(trial_);
+    const Vector x = difference(system_.layout, state_.q, trial_.q);
+    for (Index e : imposed_) increment_[e] = x[e];
+  }
+
+  Vector full = Vector::Zero(system_.layout.size());
+  const NewtonProblem problem{
+      .residual =
+          [&](double& scale) {
+            evaluate(trial_, trial_inertia_, trial_force_);
+            scale = trial_inertia_.norm() + trial_force_.norm();
+            return tangent_.gather(trial_inertia_ + trial_force_);
+          },
+      .assemble =
+          [&] {
+            tangent_.assemble(system_, trial_, {1, to_v, to_a}, increment_);
+            tangent_step_ = h;
+          },
+      .advance =
+          [&](const Vector& dx) {
+            tangent_.scatter(dx, full);
+            increment_ += full;
+            trial_.v += to_v * full;
+            trial_.a += to_a * full;
+            trial_.q = system_.layout.advanced(state_.q, increment_);
+            if (!imposed_.empty()) impose(trial_);
+          }};
+  if (std::abs(h - tangent_step_) > 0.1 * tangent_step_) newton_.forget();
+  NewtonReport report = newton_.solve(problem);
+  counts_.iterations += report.iterations;
+  counts_.factorisations += report.factorisations;
+  if (!report.converged) return report;
+
+  trial_auxiliary_ = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
+  // O. C. Zienkiewicz, Y. M. Xie, Earthquake Eng. Struct. Dyn. 20 (1991): local error of Newmark's family.
+  const Vector e = (beta_ - 1.0 / 6) * h * h * (trial_auxiliary_ - a0);
+  error_ = 0;
+  for (const auto& b : system_.layout.blocks()) {
+    const double allowed = b.rotation ? options_.error_rotation : options_.error_vector;
+    error_ = std::max(error_, e.segment(b.v, b.size).cwiseAbs().maxCoeff() / allowed);
+  }
+  return report;
+}
+
+void GeneralizedAlpha::accept(double h) {
+  const double kinetic = ledger_.kinetic;
+  for (Index e : imposed_)
+    imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
+  const double inertial_work = 0.5 * (inertia_ + trial_inertia_).dot(increment_);
+  std::swap(state_, trial_);
+  auxiliary_ = trial_auxiliary_;
+  residual_ = trial_inertia_ + trial_force_;
+  std::swap(inertia_, trial_inertia_);
+  last_step_ = h;
+  for (const auto& term : system_.terms) term->accept(state_);
+  take_stock();
+  ledger_.numerical += inertial_work - (ledger_.kinetic - kinetic);
+  ledger_.closure = ledger_.initial + ledger_.external - ledger_.kinetic - ledger_.strain_total() -
+                    ledger_.contact - ledger_.friction - ledger_.viscous - ledger_.numerical;
+  ++counts_.steps;
+}
+
+void GeneralizedAlpha::take_stock() {
+  ledger_.time = state_.time;
+  ledger_.kinetic = ledger_.contact = ledger_.friction = ledger_.viscous = 0;
+  ledger_.external = imposed_work_ - external_before_;
+  for (auto& [body, value] : ledger_.strain) value = 0;
+  for (const auto& term : system_.terms) {
+    const fem::Energies e = term->energies(state_);
+    ledger_.kinetic += e.kinetic;
+    ledger_.contact += e.contact;
+    ledger_.friction += e.friction;
+    ledger_.viscous += e.viscous;
+    ledger_.external += e.external;
+    const std::string body = term->body();
+    auto it = std::ranges::find(ledger_.strain, body, &std::pair<std::string, double>::first);
+    if (it == ledger_.strain.end()) it = ledger_.strain.insert(it, {body, 0.0});
+    it->second += e.strain;
+  }
+  ledger_.viscous -= viscous_before_;
+  ledger_.friction -= friction_before_;
+}
+
+NewtonReport GeneralizedAlpha::step(double h) {
+  NewtonReport report = attempt(h);
+  if (report.converged)
+    accept(h);
+  else
+    ++counts_.rejected;
+  return report;
+}
+
+double GeneralizedAlpha::advance(double end) {
+  const double left = end - state_.time;
+  if (!(left > 0)) throw std::invalid_argument("generalized-alpha: the end of a step lies not ahead of it");
+  double h = step_;
+  for (const auto& term : system_.terms) h = std::min(h, term->step_limit(state_));
+  h = std::max(h, options_.step_min);
+  // The last two steps share what is left, so that no sliver remains.
+  if (h >= left * (1 - 1e-9))
+    h = left;
+  else if (2 * h > left)
+    h = left / 2;
+  const bool adaptive = std::isfinite(options_.error_vector) || std::isfinite(options_.error_rotation);
+  for (;;) {
+    const NewtonReport report = attempt(h);
+    if (report.converged && (!adaptive || error_ <= 1)) {
+      accept(h);
+      if (adaptive) {
+        const double grow = std::min(2.0, 0.9 * std::cbrt(1 / std::max(error_, 1e-9)));
+        // Small changes are not worth new factors.
+        if (grow > 1.25 || grow < 1) step_ = std::min(options_.step_max, h * grow);
+      } else if (step_ < options_.step_max) {
+        step_ = std::min(options_.step_max, 2 * step_);  // back up after a failure
+      }
+      return h;
+    }
+    ++counts_.rejected;
+    const double shrink = report.converged ? std::clamp(0.9 * std::cbrt(1 / error_), 0.2, 0.7) : 0.5;
+    h *= shrink;
+    step_ = h;
+    if (h < options_.step_min) {
+      std::ostringstream text;
+      text << "at t = " << state_.time << " s the time step fell below its minimum of " << options_.step_min
+           << " s (" << (report.converged ? "the error stays above its tolerance" : report.reason)
+           << "): allow smaller steps, or look for a load or stiffness that is out of scale";
+      throw NonConvergence(text.str());
+    }
+  }
+}
+
+Checkpoint GeneralizedAlpha::checkpoint() const {
+  Checkpoint c{state_, auxiliary_, step_, last_step_, ledger_, friction_before_, viscous_before_,
+               external_before_ - imposed_work_, {}};
+  for (const auto& term : system_.terms) term->save(c.history);
+  return c;
+}
+
+void GeneralizedAlpha::restore(const Checkpoint& saved) {
+  state_ = saved.state;
+  auxiliary_ = saved.auxiliary;
+  step_ = saved.step;
+  last_step_ = saved.last_step;
+  ledger_ = saved.ledger;
+  friction_before_ = saved.friction_before;
+  viscous_before_ = saved.viscous_before;
+  external_before_ = saved.external_before;
+  imposed_work_ = 0;
+  std::span<const double> history = saved.history;
+  for (const auto& term : system_.terms) term->restore(history);
+  if (!history.empty()) throw std::invalid_argument("the checkpoint is of another system");
+  evaluate(state_, inertia_, trial_force_);
+  residual_ = inertia_ + trial_force_;
+  newton_.forget();
+}
+
+}  // namespace hosel::solvers

@@ -1,0 +1,217 @@
+#include "solvers/linear.hpp"
+
+#include <umfpack.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "solvers/errors.hpp"
+
+namespace hosel::solvers {
+
+SparseTangent::SparseTangent(const fem::System& system) {
+  const auto n = static_cast<std::size_t>(system.layout.size());
+  reduced_.assign(n, 0);
+  for (const auto& p : system.prescribed)
+    for (Index e : p->equations()) reduced_[static_cast<std::size_t>(e)] = -1;
+  for (std::size_t e = 0; e < n; ++e)
+    if (reduced_[e] == 0) {
+      reduced_[e] = static_cast<int>(free_.size());
+      free_.push_back(static_cast<Index>(e));
+    }
+  rotation_of_.assign(n, -1);
+  for (const auto& b : system.layout.blocks())
+    if (b.rotation) {
+      for (Index i = 0; i < 3; ++i) rotation_of_[static_cast<std::size_t>(b.v + i)] = static_cast<int>(rotation_at_.size());
+      rotation_at_.push_back(b.v);
+    }
+
+  std::vector<std::vector<Index>> blocks;
+  for (const auto& term : system.terms) term->pattern(blocks);
+  std::vector<std::vector<int>> columns(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) columns[i].push_back(static_cast<int>(i));
+  for (const auto& block : blocks)
+    for (Index c : block) {
+      const int column = reduced_.at(static_cast<std::size_t>(c));
+      if (column < 0) continue;
+      auto& list = columns[static_cast<std::size_t>(column)];
+      for (Index r : block)
+        if (const int row = reduced_[static_cast<std::size_t>(r)]; row >= 0) list.push_back(row);
+      if (list.size() > 4096) {  // keeps the lists short while many blocks meet in one column
+        std::ranges::sort(list);
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+      }
+    }
+  starts_.push_back(0);
+  for (auto& list : columns) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    rows_.insert(rows_.end(), list.begin(), list.end());
+    starts_.push_back(static_cast<int>(rows_.size()));
+  }
+  values_.assign(rows_.size(), 0);
+}
+
+Vector SparseTangent::gather(const Vector& full) const {
+  Vector out(size());
+  for (Index i = 0; i < size(); ++i) out[i] = full[free_[static_cast<std::size_t>(i)]];
+  return out;
+}
+
+void SparseTangent::scatter(const Vector& reduced, Vector& full) const {
+  for (Index i = 0; i < size(); ++i) full[free_[static_cast<std::size_t>(i)]] = reduced[i];
+}
+
+void SparseTangent::assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
+                             const Vector& increment) {
+  std::ranges::fill(values_, 0.0);
+  turn_ = 0;
+  double largest = 0;
+  if (increment.size() > 0)
+    for (Index at : rotation_at_) largest = std::max(largest, increment.segment<3>(at).squaredNorm());
+  // Below this the transform changes the stiffness by less than Newton can feel; it costs a second pass.
+  constexpr double negligible = 1e-4;
+  if (largest < negligible * negligible) {
+    for (const auto& term : system.terms) term->tangent(trial, weights, *this);
+    return;
+  }
+  if (weights.damping != 0 || weights.mass != 0)
+    for (const auto& term : system.terms) term->tangent(trial, {0, weights.damping, weights.mass}, *this);
+  turn_ = 0;
+  transform_.clear();
+  for (Index at : rotation_at_) transform_.push_back(fem::rotation_tangent(increment.segment<3>(at)));
+  for (const auto& term : system.terms) term->tangent(trial, {weights.stiffness, 0, 0}, *this);
+  transform_.clear();
+}
+
+SparseTangent::Scatter SparseTangent::make_scatter(const std::vector<Index>& rows,
+                                                   const std::vector<Index>& columns) const {
+  Scatter s{rows, columns, {}, {}};
+  s.to.reserve(rows.size() * columns.size());
+  for (Index c : columns) {
+    const int column = reduced_[static_cast<std::size_t>(c)];
+    for (Index r : rows) {
+      const int row = reduced_[static_cast<std::size_t>(r)];
+      if (column < 0 || row < 0) {
+        s.to.push_back(-1);
+        continue;
+      }
+      const auto first = rows_.begin() + starts_[static_cast<std::size_t>(column)];
+      const auto last = rows_.begin() + starts_[static_cast<std::size_t>(column) + 1];
+      const auto it = std::lower_bound(first, last, row);
+      if (it == last || *it != row) throw std::logic_error("a term adds a tangent outside its pattern");
+      s.to.push_back(static_cast<int>(it - rows_.begin()));
+    }
+  }
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const int r = rotation_of_[static_cast<std::size_t>(columns[j])];
+    if (r < 0 || columns[j] != rotation_at_[static_cast<std::size_t>(r)]) continue;
+    std::array<int, 4> places{static_cast<int>(j), -1, -1, r};
+    for (int k = 1; k < 3; ++k) {
+      const auto it = std::ranges::find(columns, columns[j] + k);
+      if (it == columns.end()) throw std::logic_error("a tangent block splits a rotation");
+      places[static_cast<std::size_t>(k)] = static_cast<int>(it - columns.begin());
+    }
+    s.rotations.push_back(places);
+  }
+  return s;
+}
+
+void SparseTangent::add(const std::vector<Index>& rows, const std::vector<Index>& columns,
+                        const Eigen::Ref<const Eigen::MatrixXd>& block) {
+  if (turn_ == scatters_.size()) scatters_.push_back(make_scatter(rows, columns));
+  Scatter& s = scatters_[turn_++];
+  if (s.rows != rows || s.columns != columns) s = make_scatter(rows, columns);
+  const bool turned = !transform_.empty() && !s.rotations.empty();
+  if (turned) {
+    scratch_ = block;
+    for (const auto& p : s.rotations) {
+      const Mat3& t = transform_[static_cast<std::size_t>(p[3])];
+      for (int k = 0; k < 3; ++k)
+        scratch_.col(p[static_cast<std::size_t>(k)]) =
+            block.col(p[0]) * t(0, k) + block.col(p[1]) * t(1, k) + block.col(p[2]) * t(2, k);
+    }
+  }
+  const Eigen::Ref<const Eigen::MatrixXd> from = turned ? Eigen::Ref<const Eigen::MatrixXd>(scratch_) : block;
+  const int* to = s.to.data();
+  for (Index j = 0; j < from.cols(); ++j)
+    for (Index i = 0; i < from.rows(); ++i, ++to)
+      if (*to >= 0) values_[static_cast<std::size_t>(*to)] += from(i, j);
+}
+
+Vector SparseTangent::multiply(const Vector& x) const {
+  Vector y = Vector::Zero(size());
+  for (std::size_t c = 0; c < free_.size(); ++c)
+    for (int k = starts_[c]; k < starts_[c + 1]; ++k)
+      y[rows_[static_cast<std::size_t>(k)]] += values_[static_cast<std::size_t>(k)] * x[static_cast<Index>(c)];
+  return y;
+}
+
+Eigen::MatrixXd SparseTangent::dense() const {
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size(), size());
+  for (std::size_t c = 0; c < free_.size(); ++c)
+    for (int k = starts_[c]; k < starts_[c + 1]; ++k)
+      m(rows_[static_cast<std::size_t>(k)], static_cast<Index>(c)) = values_[static_cast<std::size_t>(k)];
+  return m;
+}
+
+struct Factorisation::State {
+  void* symbolic = nullptr;
+  void* numeric = nullptr;
+  const SparseTangent* matrix = nullptr;
+  std::vector<double> values;  // as factorised: UMFPACK refines against them
+  std::array<double, UMFPACK_CONTROL> control{};
+  ~State() {
+    if (symbolic) umfpack_di_free_symbolic(&symbolic);
+    if (numeric) umfpack_di_free_numeric(&numeric);
+  }
+};
+
+Factorisation::Factorisation() : state_(std::make_unique<State>()) {
+  umfpack_di_defaults(state_->control.data());
+}
+Factorisation::~Factorisation() = default;
+Factorisation::Factorisation(Factorisation&&) noexcept = default;
+Factorisation& Factorisation::operator=(Factorisation&&) noexcept = default;
+
+bool Factorisation::ready() const { return state_->numeric != nullptr; }
+
+void Factorisation::forget() {
+  if (state_->numeric) umfpack_di_free_numeric(&state_->numeric);
+  state_->numeric = nullptr;
+}
+
+void Factorisation::factorise(const SparseTangent& matrix) {
+  forget();
+  State& s = *state_;
+  const int n = static_cast<int>(matrix.size());
+  if (s.matrix != &matrix && s.symbolic) umfpack_di_free_symbolic(&s.symbolic);
+  s.matrix = &matrix;
+  s.values.assign(matrix.values().begin(), matrix.values().end());
+  const int *starts = matrix.column_starts().data(), *rows = matrix.row_indices().data();
+  if (!s.symbolic && umfpack_di_symbolic(n, n, starts, rows, s.values.data(), &s.symbolic, s.control.data(),
+                                         nullptr) < 0)
+    throw NonConvergence("the tangent matrix cannot be ordered: it holds numbers that are not finite");
+  const int status =
+      umfpack_di_numeric(starts, rows, s.values.data(), s.symbolic, &s.numeric, s.control.data(), nullptr);
+  if (status == UMFPACK_OK) return;
+  forget();
+  throw NonConvergence(
+      status == UMFPACK_ERROR_out_of_memory
+          ? "not enough memory to factorise the tangent matrix"
+          : "the tangent matrix is singular: some body is held by nothing, or a mass or stiffness is zero");
+}
+
+Vector Factorisation::solve(const Vector& right) const {
+  const State& s = *state_;
+  if (!s.numeric) throw std::logic_error("solve before factorise");
+  Vector x(right.size());
+  const int status = umfpack_di_solve(UMFPACK_A, s.matrix->column_starts().data(), s.matrix->row_indices().data(),
+                                      s.values.data(), x.data(), right.data(), s.numeric, s.control.data(), nullptr);
+  if (status != UMFPACK_OK || !x.allFinite())
+    throw NonConvergence("the tangent matrix gave no finite solution");
+  return x;
+}
+
+}  // namespace hosel::solvers

@@ -1,0 +1,85 @@
+/// One sparse matrix of fixed pattern for the whole system, and its LU factors (UMFPACK).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fem/term.hpp"
+
+namespace hosel::solvers {
+
+using fem::Index;
+using fem::Vector;
+
+/// The assembled tangent on the free equations (those that no fem::Prescribed imposes), compressed by
+/// columns. The pattern is the union of the terms' blocks; where each block goes is worked out the
+/// first time it is added and remembered by its turn in the assembly.
+class SparseTangent final : public fem::TangentSink {
+ public:
+  explicit SparseTangent(const fem::System& system);
+
+  Index size() const { return static_cast<Index>(free_.size()); }
+  /// Equation number of each row.
+  const std::vector<Index>& free_equations() const { return free_; }
+  Vector gather(const Vector& full) const;                 ///< entries of the free equations
+  void scatter(const Vector& reduced, Vector& full) const; ///< writes the free equations only
+
+  /// Assembles weights.stiffness K T + weights.damping C + weights.mass M, where T is the tangent of
+  /// the exponential map at `increment` (Layout::size() entries, body-frame rotation increments
+  /// since the start of the step): the derivative of the residual by the increment itself. An empty
+  /// increment means T = 1.
+  void assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
+                const Vector& increment = {});
+
+  void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
+           const Eigen::Ref<const Eigen::MatrixXd>& block) override;
+
+  Vector multiply(const Vector& reduced) const;
+  Eigen::MatrixXd dense() const;
+  std::span<const int> column_starts() const { return starts_; }
+  std::span<const int> row_indices() const { return rows_; }
+  std::span<const double> values() const { return values_; }
+  std::span<double> values() { return values_; }
+
+ private:
+  struct Scatter {
+    std::vector<Index> rows, columns;
+    std::vector<int> to;                            // place in values_, -1 where imposed
+    std::vector<std::array<int, 4>> rotations;      // places of a rotation's columns, and its number
+  };
+  Scatter make_scatter(const std::vector<Index>& rows, const std::vector<Index>& columns) const;
+
+  std::vector<Index> free_;
+  std::vector<int> reduced_;         // equation -> free row, or -1
+  std::vector<int> rotation_of_;     // equation -> rotation number, or -1
+  std::vector<Index> rotation_at_;   // rotation number -> its first equation
+  std::vector<Mat3> transform_;      // T of each rotation during the stiffness pass, else empty
+  std::vector<int> starts_, rows_;
+  std::vector<double> values_;
+  std::vector<Scatter> scatters_;
+  std::size_t turn_ = 0;
+  Eigen::MatrixXd scratch_;
+};
+
+/// LU of a SparseTangent: ordered once, factorised again whenever asked, kept while wanted.
+class Factorisation {
+ public:
+  Factorisation();
+  ~Factorisation();
+  Factorisation(Factorisation&&) noexcept;
+  Factorisation& operator=(Factorisation&&) noexcept;
+
+  /// Throws NonConvergence where the matrix is singular to working precision.
+  void factorise(const SparseTangent& matrix);
+  bool ready() const;
+  void forget();  ///< the factors, not the ordering
+  Vector solve(const Vector& right) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace hosel::solvers

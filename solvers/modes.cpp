@@ -1,0 +1,42 @@
+#include "solvers/modes.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/errors.hpp"
+#include "solvers/linear.hpp"
+
+namespace hosel::solvers {
+
+Modes modes(const fem::System& system, const fem::State& state, int count) {
+  SparseTangent tangent(system);
+  tangent.assemble(system, state, {1, 0, 0});
+  Eigen::MatrixXd K = tangent.dense();
+  K = (0.5 * (K + K.transpose())).eval();
+  tangent.assemble(system, state, {0, 0, 1});
+  Eigen::MatrixXd M = tangent.dense();
+  M = (0.5 * (M + M.transpose())).eval();
+  // Scaled by the mass diagonal: forces and moments differ by orders of magnitude.
+  if (M.diagonal().minCoeff() <= 0)
+    throw NonConvergence("modes need a positive mass at every degree of freedom: give the body a rotary inertia");
+  const Vector scale = M.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd Ks = scale.asDiagonal() * K * scale.asDiagonal();
+  const Eigen::MatrixXd Ms = scale.asDiagonal() * M * scale.asDiagonal();
+  // Inverted problem M phi = mu K phi would lose free bodies; the direct one keeps them.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Ks, Ms);
+  if (solver.info() != Eigen::Success)
+    throw NonConvergence("the eigenvalue problem was not solved: is the mass matrix positive definite?");
+  const Index n = std::min<Index>(count, K.rows());
+  Modes out;
+  out.shapes = Eigen::MatrixXd::Zero(system.layout.size(), n);
+  for (Index i = 0; i < n; ++i) {
+    out.omega.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[i])));
+    Vector full = Vector::Zero(system.layout.size());
+    tangent.scatter(scale.cwiseProduct(solver.eigenvectors().col(i)), full);
+    out.shapes.col(i) = full;
+  }
+  return out;
+}
+
+}  // namespace hosel::solvers

@@ -1,0 +1,20 @@
+/// Small vibrations about a state: K phi = omega^2 M phi, from the terms' tangents.
+#pragma once
+
+#include <vector>
+
+#include "fem/term.hpp"
+
+namespace hosel::solvers {
+
+struct Modes {
+  std::vector<double> omega;  ///< circular frequencies, ascending; rigid motions count, at about zero [rad/s]
+  Eigen::MatrixXd shapes;     ///< columns over all equations, phi' M phi = 1; zero on imposed equations
+};
+
+/// The `count` lowest modes at `state` (imposed equations held). Dense symmetric-definite
+/// eigensolution: for systems of up to a few thousand equations. Throws NonConvergence where the mass
+/// matrix is not positive definite.
+Modes modes(const fem::System& system, const fem::State& state, int count);
+
+}  // namespace hosel::solvers

@@ -1,0 +1,59 @@
+/// Newton's method on the manifold of the degrees of freedom, with factors kept while they work.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "solvers/linear.hpp"
+
+namespace hosel::solvers {
+
+/// When an iterate is a solution. Both criteria must hold; every tolerance is stated by the caller.
+struct NewtonOptions {
+  double residual_relative = 0;   ///< |r| <= relative * scale + absolute, scale as the problem gives it [-]
+  double residual_absolute = 0;   ///< [N] (forces; moments in N m count alike)
+  double increment_vector = 0;    ///< largest last increment of a plain number [m]; inf: not asked for
+  double increment_rotation = 0;  ///< largest last increment of a rotation [rad]; inf: not asked for
+  int max_iterations = 25;
+  /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration.
+  double renew_above = 0.2;
+
+  /// Sentences naming what is missing or cannot be; empty if all is well.
+  std::vector<std::string> faults() const;
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0, factorisations = 0;
+  double residual = 0, scale = 0;  ///< at the last iterate
+  std::string reason;              ///< why not, in one sentence
+};
+
+/// What Newton asks of a problem; vectors are on the free equations.
+struct NewtonProblem {
+  /// The residual at the present iterate; writes the scale that it is small against.
+  std::function<Vector(double& scale)> residual;
+  std::function<void()> assemble;               ///< the tangent at the present iterate
+  std::function<void(const Vector&)> advance;   ///< moves the iterate by an increment
+};
+
+/// Solves residual = 0. `factors` may come from earlier calls and are kept for later ones. Never
+/// throws on failure to converge: the report says so and the caller rejects the step.
+class Newton {
+ public:
+  Newton(const fem::System& system, SparseTangent& tangent, NewtonOptions options);
+  NewtonReport solve(const NewtonProblem& problem);
+  void forget() { factors_.forget(); }  ///< the next solve assembles afresh
+  Factorisation& factors() { return factors_; }
+
+ private:
+  double increment_measure(const Vector& increment) const;  // 1 at the tolerance
+
+  SparseTangent& tangent_;
+  NewtonOptions options_;
+  Factorisation factors_;
+  std::vector<bool> rotation_;  // of each free equation
+};
+
+}  // namespace hosel::solvers

@@ -1,0 +1,139 @@
+#include "solvers/statics.hpp"
+
+#include <kinsol/kinsol.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <Eigen/LU>
+#include <memory>
+
+#include "solvers/errors.hpp"
+
+namespace hosel::solvers {
+namespace {
+
+Vector residual_of(const fem::System& system, const fem::State& s, double* scale = nullptr) {
+  Vector inertia = Vector::Zero(system.layout.size()), force = inertia;
+  for (const auto& term : system.terms) term->residual(s, inertia, force);
+  if (scale) *scale = inertia.norm() + force.norm();
+  return inertia + force;
+}
+
+}  // namespace
+
+StaticsReport solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options) {
+  SparseTangent tangent(system);
+  Newton newton(system, tangent, options.newton);
+  StaticsReport out;
+  out.state = start;
+  for (const auto& p : system.prescribed) p->impose(out.state);
+  double scale0 = 0;
+  const Vector r0 = tangent.gather(residual_of(system, out.state, &scale0));
+  double done = 0, step = 1.0 / std::max(1, options.load_steps);
+  int bisections = 0;
+  fem::State trial = out.state;
+  while (done < 1) {
+    double next = done + step;
+    if (next > 1 - 1e-9) next = 1;
+    trial = out.state;
+    Vector full = Vector::Zero(system.layout.size());
+    const NewtonReport report = newton.solve({
+        .residual =
+            [&](double& scale) {
+              const Vector r = tangent.gather(residual_of(system, trial, &scale)) - (1 - next) * r0;
+              scale = std::max(scale, scale0);
+              return r;
+            },
+        .assemble = [&] { tangent.assemble(system, trial, {1, 0, 0}); },
+        .advance =
+            [&](const Vector& dx) {
+              tangent.scatter(dx, full);
+              trial.q = system.layout.advanced(trial.q, full);
+            },
+    });
+    out.iterations += report.iterations;
+    if (report.converged) {
+      out.state = trial;
+      done = next;
+      ++out.load_steps;
+    } else if (++bisections > options.max_bisections) {
+      throw NonConvergence("no static equilibrium found at " + std::to_string(100 * next) + " % of the load (" +
+                           report.reason + "): use more load steps, or look for a body that nothing holds");
+    } else {
+      step /= 2;
+    }
+  }
+  out.reactions = residual_of(system, out.state);
+  return out;
+}
+
+namespace {
+
+struct KinsolProblem {
+  const fem::System& system;
+  const fem::State& start;
+  SparseTangent tangent;
+  fem::State trial;
+  Vector x;  // full increment from the start
+
+  void set(N_Vector y) {
+    tangent.scatter(Eigen::Map<const Vector>(N_VGetArrayPointer(y), tangent.size()), x);
+    trial.q = system.layout.advanced(start.q, x);
+  }
+};
+
+int kinsol_residual(N_Vector y, N_Vector f, void* user) {
+  auto& p = *static_cast<KinsolProblem*>(user);
+  p.set(y);
+  Eigen::Map<Vector>(N_VGetArrayPointer(f), p.tangent.size()) = p.tangent.gather(residual_of(p.system, p.trial));
+  return 0;
+}
+
+int kinsol_tangent(N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector) {
+  auto& p = *static_cast<KinsolProblem*>(user);
+  p.set(y);
+  p.tangent.assemble(p.system, p.trial, {1, 0, 0}, p.x);
+  Eigen::Map<Eigen::MatrixXd>(SUNDenseMatrix_Data(J), p.tangent.size(), p.tangent.size()) = p.tangent.dense();
+  return 0;
+}
+
+}  // namespace
+
+StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& start, double residual_tolerance) {
+  fem::State from = start;
+  for (const auto& p : system.prescribed) p->impose(from);
+  KinsolProblem problem{system, from, SparseTangent(system), from, Vector::Zero(system.layout.size())};
+  const auto n = static_cast<sunindextype>(problem.tangent.size());
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  N_Vector y = N_VNew_Serial(n, context), ones = N_VNew_Serial(n, context);
+  N_VConst(0, y);
+  N_VConst(1, ones);
+  SUNMatrix J = SUNDenseMatrix(n, n, context);
+  SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
+  void* kin = KINCreate(context);
+  KINInit(kin, kinsol_residual, y);
+  KINSetUserData(kin, &problem);
+  KINSetLinearSolver(kin, linear, J);
+  KINSetJacFn(kin, kinsol_tangent);
+  KINSetFuncNormTol(kin, residual_tolerance);
+  KINSetMaxNewtonStep(kin, 1e3);
+  KINSetMaxSetupCalls(kin, 1);
+  const int status = KINSol(kin, y, KIN_LINESEARCH, ones, ones);
+  long iterations = 0;
+  KINGetNumNonlinSolvIters(kin, &iterations);
+  problem.set(y);
+  KINFree(&kin);
+  SUNLinSolFree(linear);
+  SUNMatDestroy(J);
+  N_VDestroy(y);
+  N_VDestroy(ones);
+  SUNContext_Free(&context);
+  if (status < 0)
+    throw NonConvergence("KINSOL found no static equilibrium (flag " + std::to_string(status) +
+                         "): start nearer to it, or look for a body that nothing holds");
+  return {problem.trial, residual_of(system, problem.trial), static_cast<int>(iterations), 1};
+}
+
+}  // namespace hosel::solvers
