@@ -7,6 +7,7 @@
 
 #include "app/cases.hpp"
 #include "app/job.hpp"
+#include "app/sweep.hpp"
 #include "models/registry.hpp"
 #include "solvers/errors.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 using namespace hosel;
 
 struct Arguments {
-  std::string case_dir, out, from, log;
+  std::string case_dir, out, from, log, shard = "1/1";
   std::vector<std::string> sets;
   bool force = false, quiet = false;
 };
@@ -73,6 +74,29 @@ int main(int argc, char** argv) {
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
   new_command->callback([&] { app::copy_case(a.from, a.case_dir); });
+
+  CLI::App* sweep = cli.add_subcommand("sweep", "the points of a sweep or a face map, in shards on several machines");
+  sweep->require_subcommand(1);
+  const auto add_directory = [&](CLI::App* c) {
+    c->add_option("OUT", a.out, "directory of the plan")->required();
+    c->add_flag("--quiet", a.quiet, "no progress, no tables");
+  };
+  CLI::App* plan = sweep->add_subcommand("plan", "read the case, count its points, write OUT/plan.json");
+  add_case(plan);
+  plan->add_option("--out", a.out, "directory for the plan and its points")->required();
+  plan->add_flag("--force", a.force, "discard what lies there");
+  plan->callback([&] { app::sweep_plan(a.case_dir, a.sets, {.directory = a.out, .force = a.force, .quiet = a.quiet}); });
+  CLI::App* shard = sweep->add_subcommand("run", "compute the missing points of one shard");
+  add_directory(shard);
+  shard->add_option("--shard", a.shard, "k/n: the k-th of n shares (default 1/1)");
+  shard->callback([&] { app::sweep_run(a.out, app::parse_shard(a.shard), a.quiet); });
+  CLI::App* merge = sweep->add_subcommand("merge", "tables and figures from all shards");
+  add_directory(merge);
+  merge->add_flag("--force", a.force, "overwrite a finished merge");
+  merge->callback([&] { app::sweep_merge(a.out, a.force, a.quiet); });
+  CLI::App* status = sweep->add_subcommand("status", "how many points are finished");
+  add_directory(status);
+  status->callback([&] { app::sweep_status(a.out); });
 
   try {
     cli.parse(argc, argv);

@@ -112,6 +112,7 @@ fs::path Output::path(std::string_view name) const {
 }
 
 bool Output::quiet() const { return state_->options.quiet; }
+bool Output::force() const { return state_->options.force; }
 
 void Output::say(std::string_view line) {
   if (!quiet()) fmt::print("{}\n", line);

@@ -1,6 +1,11 @@
 #include "app/read_blow.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+
+#include "models/registry.hpp"
 
 namespace hosel::app {
 namespace {
@@ -60,6 +65,30 @@ ContactLaw read_contact_law(Table table) {
   law.friction = table.number("friction", {0, kInf}, standard.friction);
   law.normal_force_offset = table.number("normal_force_offset", {-0.5, 0.5}, standard.normal_force_offset);
   return law;
+}
+
+std::vector<std::string> read_models(Table root) {
+  std::vector<std::string> known;
+  for (const auto& m : models::registry()) known.emplace_back(m.name);
+  std::vector<std::string> wanted = root.texts("models");
+  if (wanted.empty()) root.fail("models", "name at least one model");
+  for (const std::string& m : wanted)
+    if (!models::find(m)) {
+      const std::string near = nearest(m, known);
+      root.fail("models", near.empty() ? fmt::format("no model '{}'; `hosel list` shows them", m)
+                                       : fmt::format("no model '{}'; did you mean '{}'?", m, near));
+    }
+  return wanted;
+}
+
+Blow read_blow(Table root, const std::vector<std::string>& models) {
+  Blow blow;
+  blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+  const bool whole = std::ranges::any_of(models, [](const std::string& m) { return m != "rigid-planar"; });
+  blow.club.head = read_head(root.table("head"), whole);
+  blow.delivery = read_delivery(root.table("delivery"));
+  if (auto contact = root.optional_table("contact")) blow.contact = read_contact_law(*contact);
+  return blow;
 }
 
 }  // namespace hosel::app

@@ -1,6 +1,9 @@
 /// The domain's nouns from a case's tables: each key is declared here, once, with unit and range.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
 
@@ -11,5 +14,10 @@ Ball read_ball(Table table);
 Head read_head(Table table, bool whole = true);
 Delivery read_delivery(Table table);
 ContactLaw read_contact_law(Table table);
+
+/// `models = [...]`: names from the registry, at least one.
+std::vector<std::string> read_models(Table root);
+/// Everything that the models of a case are asked about, from its tables.
+Blow read_blow(Table root, const std::vector<std::string>& models);
 
 }  // namespace hosel::app

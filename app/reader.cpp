@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace detail {
 struct Document {
   fs::path directory, file;
+  std::vector<std::string> overrides;
+  std::vector<fs::path> named_files;
   toml::table root, resolved;
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
   std::map<const toml::table*, toml::table*> echo;                        // where each table is echoed
@@ -366,13 +368,15 @@ std::vector<std::string> Table::texts(std::string_view key, std::optional<std::v
 fs::path Table::file(std::string_view key) {
   const fs::path path = document_->directory / text(key);
   if (!fs::is_regular_file(path)) fail(key, fmt::format("no file '{}'", path.string()));
+  document_->named_files.push_back(path);
   return path;
 }
 
 fs::path Table::data_file(std::string_view key) {
   const std::string name = text(key);
   const fs::path own = document_->directory / name;
-  return fs::is_regular_file(own) ? own : data_directory() / name;
+  document_->named_files.push_back(fs::is_regular_file(own) ? own : data_directory() / name);
+  return document_->named_files.back();
 }
 
 Table Table::table(std::string_view key) {
@@ -494,6 +498,7 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
 CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overrides)
     : document_(std::make_shared<detail::Document>()) {
   detail::Document& d = *document_;
+  d.overrides = overrides;
   d.file = fs::is_directory(where) ? where / "case.toml" : where;
   d.directory = d.file.parent_path();
   if (d.directory.empty()) d.directory = ".";
@@ -515,6 +520,8 @@ CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overri
 Table CaseFile::root() { return Table(document_, &document_->root, ""); }
 const fs::path& CaseFile::directory() const { return document_->directory; }
 const fs::path& CaseFile::file() const { return document_->file; }
+const std::vector<std::string>& CaseFile::overrides() const { return document_->overrides; }
+const std::vector<fs::path>& CaseFile::named_files() const { return document_->named_files; }
 void CaseFile::finish() { find_unknown(document_, document_->root, ""); }
 
 std::string CaseFile::resolved() const {

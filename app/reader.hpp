@@ -104,6 +104,9 @@ class CaseFile {
   Table root();
   const std::filesystem::path& directory() const;
   const std::filesystem::path& file() const;
+  const std::vector<std::string>& overrides() const;
+  /// The files that the case names and that have been asked for, in the order of asking.
+  const std::vector<std::filesystem::path>& named_files() const;
   /// Every key that was not read is an error. Call it when reading is complete.
   void finish();
   /// The case with every default filled in, as TOML text.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
@@ -16,21 +15,8 @@ class ImpactJob final : public Job {
  public:
   explicit ImpactJob(CaseFile& file) {
     Table root = file.root();
-    std::vector<std::string> names;
-    for (const auto& m : models::registry()) names.emplace_back(m.name);
-    models_ = root.texts("models");
-    if (models_.empty()) root.fail("models", "name at least one model");
-    for (const std::string& m : models_)
-      if (!models::find(m)) {
-        const std::string near = nearest(m, names);
-        root.fail("models", near.empty() ? fmt::format("no model '{}'; `hosel list` shows them", m)
-                                         : fmt::format("no model '{}'; did you mean '{}'?", m, near));
-      }
-    blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
-    const bool whole = std::ranges::any_of(models_, [](const std::string& m) { return m != "rigid-planar"; });
-    blow_.club.head = read_head(root.table("head"), whole);
-    blow_.delivery = read_delivery(root.table("delivery"));
-    if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    models_ = read_models(root);
+    blow_ = read_blow(root, models_);
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
         const SplitName split = split_unit(key);

@@ -1,0 +1,203 @@
+#include "app/sweep.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/cases.hpp"
+#include "app/sweep_store.hpp"
+#include "solvers/errors.hpp"
+
+// Present where OpenBLAS is the BLAS; its own threads would fight with one thread a point.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+struct Plan {
+  std::string fingerprint, version;
+  std::size_t points = 0;
+};
+
+Plan plan_of(const PointJob& job, const std::string& resolved_case) {
+  const std::string version = program_version();
+  return {digest(version + '\n' + resolved_case + '\n' + job.identity()), version, job.size()};
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The points of this shard that no shard has finished yet, on all cores.
+void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root, Shard shard, Output& out) {
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  const fs::path shards = root / "shards", own = shards / fmt::format("{}-of-{}", shard.index, shard.count);
+  const auto finished = read_points(shards, plan.fingerprint);
+  std::vector<std::size_t> todo;
+  for (std::size_t p = shard.index - 1; p < plan.points; p += shard.count)
+    if (!finished.contains(p)) todo.push_back(p);
+  fs::create_directories(own);
+  PointStore store(own, plan.fingerprint);
+  if (!finished.empty()) out.say(fmt::format("{} of {} points are on disk already", finished.size(), plan.points));
+  if (todo.empty()) return;
+
+  Progress progress = out.progress(fmt::format("{} points", todo.size()));
+  std::atomic<std::size_t> done = 0;
+  std::atomic<double> busy = 0;
+  const auto clock = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
+  const auto start = clock();
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, todo.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const auto from = clock();
+          json result;
+          try {
+            result = job.compute(todo[i], own / fmt::format("point-{:06}", todo[i]));
+          } catch (const solvers::NonConvergence& error) {
+            result = {{"error", fmt::format("no convergence: {}", error.what())}};
+          } catch (const std::invalid_argument& error) {
+            result = {{"error", error.what()}};
+          }
+          const double seconds = std::chrono::duration<double>(clock() - from).count();
+          store.append(todo[i], seconds, result);
+          busy.fetch_add(seconds);
+          const std::size_t n = done.fetch_add(1) + 1;
+          progress.update(double(n) / double(todo.size()), fmt::format("{} of {}", n, todo.size()));
+        }
+      },
+      tbb::simple_partitioner());
+  progress.finish();
+  const double wall = std::chrono::duration<double>(clock() - start).count();
+  out.log(fmt::format("{} points in {:.2f} s of wall time, {:.2f} s of work", todo.size(), wall, busy.load()));
+}
+
+/// Every point, in order; where some are missing, an InputError that says how many.
+std::vector<json> all_points(const Plan& plan, const fs::path& root) {
+  auto found = read_points(root / "shards", plan.fingerprint);
+  if (found.size() != plan.points)
+    throw InputError(fmt::format("{}: {} of {} points are finished; nothing merged", root.string(), found.size(), plan.points));
+  std::vector<json> points;
+  for (auto& [number, result] : found) points.push_back(std::move(result));
+  return points;
+}
+
+void report_all(const PointJob& job, const std::vector<json>& points, Output& out) {
+  job.report(out, points);
+  std::size_t failed = 0, first = 0;
+  for (std::size_t p = points.size(); p-- > 0;)
+    if (points[p].contains("error")) {
+      ++failed;
+      first = p;
+    }
+  if (failed)
+    throw solvers::NonConvergence(fmt::format("{} of {} points have no answer; the first is point {}: {}", failed,
+                                              points.size(), first, points[first]["error"].get<std::string>()));
+}
+
+struct Planned {
+  std::unique_ptr<CaseFile> file;
+  std::unique_ptr<Job> job;
+  const PointJob* points;
+  Plan plan;
+};
+
+Planned read_planned(const fs::path& where, const std::vector<std::string>& overrides) {
+  Planned p;
+  p.file = std::make_unique<CaseFile>(where, overrides);
+  p.job = read_job(*p.file);
+  p.points = dynamic_cast<const PointJob*>(p.job.get());
+  if (!p.points)
+    throw InputError(fmt::format("{}: a case of this kind is one piece of work; sweeps and face maps have points",
+                                 p.file->file().string()));
+  p.plan = plan_of(*p.points, p.file->resolved());
+  return p;
+}
+
+/// The plan of a directory, with the case read again and found the same.
+Planned open_plan(const fs::path& out) {
+  if (!fs::is_regular_file(out / "plan.json"))
+    throw InputError(fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
+  const json plan = json::parse(text_of(out / "plan.json"));
+  Planned p = read_planned(plan.at("case").get<std::string>(), plan.at("set").get<std::vector<std::string>>());
+  if (plan.at("version") != p.plan.version)
+    throw InputError(fmt::format("{}: planned with version {}, this program is {}; plan again", out.string(),
+                                 plan.at("version").get<std::string>(), p.plan.version));
+  if (plan.at("fingerprint") != p.plan.fingerprint)
+    throw InputError(fmt::format("{}: the case {} has changed since it was planned; plan again", out.string(),
+                                 plan.at("case").get<std::string>()));
+  return p;
+}
+
+}  // namespace
+
+void PointJob::run(Output& out) {
+  if (out.force()) fs::remove_all(out.directory() / "shards");
+  const Plan plan = plan_of(*this, text_of(out.path("case.resolved.toml")));
+  compute_missing(*this, plan, out.directory(), {}, out);
+  report_all(*this, all_points(plan, out.directory()), out);
+}
+
+Shard parse_shard(const std::string& text) {
+  std::size_t index = 0, count = 0, end = 0;
+  const std::size_t slash = text.find('/');
+  try {
+    index = std::stoul(text.substr(0, slash), &end);
+    const bool clean = end == slash;
+    count = std::stoul(text.substr(slash + 1), &end);
+    if (!clean || end != text.size() - slash - 1) index = 0;
+  } catch (const std::exception&) {
+    index = 0;
+  }
+  if (slash == std::string::npos || index < 1 || index > count)
+    throw InputError(fmt::format("--shard {}: expected k/n with k from 1 to n, e.g. 2/8", text));
+  return {index, count};
+}
+
+void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides, OutputOptions options) {
+  const fs::path found = find_case(where.string());
+  const Planned p = read_planned(found, overrides);
+  const fs::path root = options.directory;
+  if (fs::exists(root / "shards") && options.force) fs::remove_all(root / "shards");
+  read_points(root / "shards", p.plan.fingerprint);  // refuses a directory with other points
+  Output out(options, p.file->resolved());
+  out.write_json("plan.json", {{"case", fs::canonical(found).string()},
+                               {"set", overrides},
+                               {"points", p.plan.points},
+                               {"version", p.plan.version},
+                               {"fingerprint", p.plan.fingerprint}});
+  out.say(fmt::format("{} points planned in {}", p.plan.points, root.string()));
+}
+
+void sweep_run(const fs::path& root, Shard shard, bool quiet) {
+  const Planned p = open_plan(root);
+  // A directory of its own: shards run side by side and share no file.
+  Output out({.directory = root / "shards" / fmt::format("{}-of-{}", shard.index, shard.count), .quiet = quiet},
+             p.file->resolved());
+  compute_missing(*p.points, p.plan, root, shard, out);
+}
+
+void sweep_merge(const fs::path& root, bool force, bool quiet) {
+  const Planned p = open_plan(root);
+  const auto points = all_points(p.plan, root);
+  Output out({.directory = root, .force = force, .quiet = quiet}, p.file->resolved());
+  report_all(*p.points, points, out);
+}
+
+void sweep_status(const fs::path& root) {
+  const Planned p = open_plan(root);
+  const auto points = read_points(root / "shards", p.plan.fingerprint);
+  std::size_t failed = 0;
+  for (const auto& [number, result] : points) failed += result.contains("error");
+  fmt::print("{} of {} points finished, {} without an answer{}\n", points.size(), p.plan.points, failed,
+             fs::exists(root / "summary.json") ? "; merged" : "");
+}
+
+}  // namespace hosel::app

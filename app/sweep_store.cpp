@@ -1,0 +1,114 @@
+#include "app/sweep_store.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/uuid/name_generator_sha1.hpp>
+#include <boost/uuid/string_generator.hpp>
+#include <boost/uuid/uuid_io.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "app/reader.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+namespace {
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::string digest(const std::string& text) {
+  return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::oid())(text));
+}
+
+std::string program_version() {
+  static const std::string version = fmt::format("{} build {}", HOSEL_VERSION, digest(content("/proc/self/exe")));
+  return version;
+}
+
+std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, const std::string& fingerprint) {
+  std::map<std::size_t, nlohmann::json> points;
+  if (!fs::is_directory(directory)) return points;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (fs::is_regular_file(entry.path() / "points.jsonl")) files.push_back(entry.path() / "points.jsonl");
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    const std::string text = content(file);
+    std::size_t at = 0;
+    for (int line = 1;; ++line) {
+      const std::size_t end = text.find('\n', at);
+      if (end == std::string::npos) break;  // cut short by a kill, or the end
+      nlohmann::json entry;
+      try {
+        entry = nlohmann::json::parse(text.begin() + long(at), text.begin() + long(end));
+        if (line == 1) {
+          if (entry.at("fingerprint") != fingerprint)
+            throw InputError(fmt::format("{}: holds points of another case or another version of the program; "
+                                         "start a new directory, or discard them with --force", file.string()));
+        } else {
+          const std::size_t number = entry.at("point");
+          const auto [it, fresh] = points.emplace(number, entry.at("result"));
+          if (!fresh && it->second != entry.at("result"))
+            throw InputError(fmt::format("{}:{}: point {} has two different results", file.string(), line, number));
+        }
+      } catch (const nlohmann::json::exception&) {
+        throw InputError(fmt::format("{}:{}: not a finished point", file.string(), line));
+      }
+      at = end + 1;
+    }
+  }
+  return points;
+}
+
+PointStore::PointStore(const fs::path& directory, const std::string& fingerprint)
+    : file_((directory / "points.jsonl").string()), descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  if (descriptor_ < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+  try {
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+      throw InputError(fmt::format("{}: another process is computing this shard", file_));
+    const std::string text = content(file_);
+    const std::size_t last = text.rfind('\n');
+    const std::size_t whole = last == std::string::npos ? 0 : last + 1;
+    if (::ftruncate(descriptor_, off_t(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
+      throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+    if (whole == 0) write_line(nlohmann::json{{"fingerprint", fingerprint}, {"version", program_version()}}.dump());
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+PointStore::~PointStore() { ::close(descriptor_); }
+
+void PointStore::append(std::size_t point, double seconds, const nlohmann::json& result) {
+  const std::string line = nlohmann::json{{"point", point}, {"seconds", seconds}, {"result", result}}.dump();
+  const std::lock_guard lock(mutex_);
+  write_line(line);
+}
+
+void PointStore::write_line(const std::string& line) {
+  // One write a line: a kill leaves it whole or cuts the last one short, and that is seen by its end.
+  const std::string text = line + "\n";
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = ::write(descriptor_, text.data() + done, text.size() - done);
+    if (n < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+    done += std::size_t(n);
+  }
+}
+
+}  // namespace hosel::app

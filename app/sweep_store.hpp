@@ -1,0 +1,42 @@
+/// Finished points on disk: JSON lines, appended one by one, complete or absent after any kill.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace hosel::app {
+
+/// Name-based UUID (SHA-1) of a text.
+std::string digest(const std::string& text);
+/// The project's version and a digest of the running program.
+std::string program_version();
+
+/// Every point found in DIRECTORY/*/points.jsonl, by its number. A last line cut short by a kill is
+/// not a point. Throws InputError where a file belongs to another `fingerprint`, or where two files
+/// disagree about a point.
+std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& directory, const std::string& fingerprint);
+
+/// The points file of one shard, held by one process at a time.
+class PointStore {
+ public:
+  /// Opens DIRECTORY/points.jsonl for appending, behind its last whole line. Throws InputError where
+  /// another process holds it.
+  PointStore(const std::filesystem::path& directory, const std::string& fingerprint);
+  ~PointStore();
+  PointStore(const PointStore&) = delete;
+  PointStore& operator=(const PointStore&) = delete;
+  /// On disk when it returns. Thread-safe.
+  void append(std::size_t point, double seconds, const nlohmann::json& result);
+
+ private:
+  void write_line(const std::string& line);
+  std::string file_;
+  int descriptor_;
+  std::mutex mutex_;
+};
+
+}  // namespace hosel::app
