@@ -5,6 +5,7 @@
 
 #include "models/rigid_eccentric.hpp"
 #include "models/rigid_planar.hpp"
+#include "models/volumetric.hpp"
 
 namespace hosel::models {
 namespace {
@@ -14,9 +15,14 @@ std::unique_ptr<ImpactModel> plain(const Options&) {
   return std::make_unique<Model>();
 }
 
+std::unique_ptr<ImpactModel> volumetric(const Options& o) {
+  return std::make_unique<Volumetric>(o.volumetric, o.volumetric_solution);
+}
+
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
     ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", plain<RigidEccentric>},
+    ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover", volumetric},
 };
 
 }  // namespace

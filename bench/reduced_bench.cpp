@@ -1,0 +1,51 @@
+// Cost of one reduced impact on one core, and of 10,000 on all cores.
+#include <benchmark/benchmark.h>
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include "golf/units.hpp"
+#include "models/volumetric.hpp"
+
+namespace {
+using namespace hosel;
+
+Blow blow(double toe) {
+  Blow b;
+  b.club.head.mass = 0.204;
+  b.club.head.cg = {-0.0423, 0.001, 0.0029};
+  b.club.head.inertia = Vec3(2.843e-4, 4.085e-4, 5.679e-4).asDiagonal();
+  b.club.head.face = {0.305, 0.305};
+  b.delivery = {.club_speed = 48, .attack_angle = radians(2), .club_path = radians(-3), .dynamic_loft = radians(13),
+                .face_angle = radians(2), .impact_toe = toe, .impact_high = -0.007};
+  return b;
+}
+
+void Volumetric(benchmark::State& state) {
+  const Blow b = blow(0.014);
+  const models::Volumetric model;
+  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+}
+BENCHMARK(Volumetric)->Unit(benchmark::kMicrosecond);
+
+void VolumetricCvode(benchmark::State& state) {
+  const Blow b = blow(0.014);
+  const models::Volumetric model({}, {models::Integrator::cvode, 1e-6});
+  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+}
+BENCHMARK(VolumetricCvode)->Unit(benchmark::kMicrosecond);
+
+/// Efficiency = time of one thread / (2 x time of two).
+void TenThousand(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, state.range(0));
+  const models::Volumetric model;
+  for (auto _ : state) {
+    tbb::parallel_for(tbb::blocked_range<int>(0, 10000, 50), [&](const auto& range) {
+      for (int i = range.begin(); i < range.end(); ++i)
+        benchmark::DoNotOptimize(model.launch(blow(-0.02 + 4e-6 * i)));
+    });
+  }
+}
+BENCHMARK(TenThousand)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace

@@ -1,0 +1,1 @@
+#include "models/shaft_impedance.hpp"

@@ -1,0 +1,52 @@
+/// Volume of the intersection of the ball with the face, exact.
+#pragma once
+
+#include "golf/units.hpp"
+
+namespace hosel::models {
+
+/// Overlap of a ball of radius r with a convex spherical face of radius R = 1 / curvature (curvature
+/// 0: a plane, the ball's side open), whose surfaces overlap by `depth` on the line of centres.
+///   V = pi d^2 (12 r - 4 (1 + c r) d + c d^2) / (12 (1 + c (r - d))),  c = 1/R, d = depth,
+/// which is the lens formula pi (r + R - a)^2 (a^2 + 2 a (r + R) - 3 (r - R)^2) / (12 a) for the
+/// distance a = r + R - d of the centres, written so that R -> infinity loses no digits.
+struct Overlap {
+  double volume = 0;    ///< [m^3]
+  double area = 0;      ///< dV/d(depth) [m^2]: the disc that the two spheres have in common
+  double centroid = 0;  ///< distance of the overlap's centroid from the ball's centre [m]
+};
+
+/// depth <= 0: separate, all zero (the centroid is then the ball's radius, its limit).
+/// depth >= 2 min(r, R): the smaller one lies inside the other; the volume is its own.
+/// This stands up to depth 2 max(r, R), where the smaller one would leave on the far side.
+/// Precondition: radius > 0, curvature >= 0.
+inline Overlap overlap(double depth, double radius, double curvature) {
+  const double r = radius, c = curvature, d = depth;
+  Overlap o;
+  o.centroid = r;
+  if (!(d > 0)) return o;
+  const double smaller = c * r > 1 ? 1 / c : r;
+  if (d >= 2 * smaller) {  // contained
+    o.volume = 4.0 / 3.0 * kPi * smaller * smaller * smaller;
+    // The smaller body's centre: the ball's own, or that of the face's sphere at r + R - d.
+    o.centroid = c * r > 1 ? r + smaller - d : 0;
+    return o;
+  }
+  const double D = 1 + c * (r - d);  // distance of the centres over R
+  o.volume = kPi * d * d * (12 * r - 4 * (1 + c * r) * d + c * d * d) / (12 * D);
+  o.area = kPi * d * (2 * r - d) * (2 - c * d) * (2 * (1 + c * r) - c * d) / (4 * D * D);
+  // Two caps on the common disc at z0 from the ball's centre: the ball's beyond it, of height d - c eta,
+  // and the face's before it, of height c eta.
+  const double eta = d * (2 * r - d) / (2 * D);
+  const double z0 = r - d + c * eta, beyond = (d - c * eta) * (r + z0);
+  const double face_cap = kPi * (c * eta * eta - c * c * c * eta * eta * eta / 3);
+  const double moment = kPi / 4 * beyond * beyond + (r - d) * face_cap +
+                        kPi * (2 * c * c * eta * eta * eta / 3 - c * c * c * c * eta * eta * eta * eta / 4);
+  o.centroid = moment / o.volume;
+  return o;
+}
+
+/// Integral of the volume over the depth from 0 [m^4]: the potential of a force k V is k times it.
+double overlap_potential(double depth, double radius, double curvature);
+
+}  // namespace hosel::models
