@@ -47,6 +47,8 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
     term.tangent(s, weights, sink);
     for (unsigned seed = 1; seed <= 2; ++seed) {
       const Eigen::VectorXd d = random_vector(n, seed);
+      // Residuals are at most quadratic in v and linear in a: a large step is exact there.
+      const double h0 = what == 0 ? step : 1;
       const auto at = [&](double h) {
         fem::State t = s;
         if (what == 0) t.q = layout.advanced(s.q, h * d);
@@ -54,7 +56,7 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
         if (what == 2) t.a += h * d;
         return total_residual(term, t);
       };
-      const Eigen::VectorXd difference = (at(step) - at(-step)) / (2 * step);
+      const Eigen::VectorXd difference = (at(h0) - at(-h0)) / (2 * h0);
       const Eigen::VectorXd product = sink.matrix * d;
       EXPECT_LE((difference - product).norm(), tolerance * (product.norm() + difference.norm()) + 1e-30)
           << "derivative by " << (what == 0 ? "q" : what == 1 ? "v" : "a");

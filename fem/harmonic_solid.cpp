@@ -1,0 +1,550 @@
+#include "fem/harmonic_solid.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hosel::fem {
+namespace {
+
+using Fields = Eigen::Matrix<double, 8, Eigen::Dynamic>;
+
+/// Gauss points and weights on [-1, 1].
+std::vector<std::pair<double, double>> gauss(int n) {
+  switch (n) {
+    case 1: return {{0, 2}};
+    case 2: return {{-1 / std::sqrt(3.0), 1}, {1 / std::sqrt(3.0), 1}};
+    case 3: return {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
+    default: throw std::invalid_argument("harmonic solid: 1, 2 or 3 Gauss points each way");
+  }
+}
+
+int largest_order(const Family& family) {
+  int order = 0;
+  for (const auto& f : family) order = std::max(order, f.order);
+  return order;
+}
+
+}  // namespace
+
+HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family, SolidQuadrature quadrature,
+                             std::vector<Solid> materials, Placement placement, std::string body)
+    : body_(std::move(body)), mesh_(std::move(mesh)), family_(std::move(family)), quadrature_(std::move(quadrature)),
+      materials_(std::move(materials)), placement_(std::move(placement)) {
+  if (static_cast<int>(materials_.size()) != mesh_.layers)
+    throw std::invalid_argument("harmonic solid: one material for each layer");
+  for (const Solid& m : materials_) {
+    if (const auto faults = m.faults(); !faults.empty()) throw std::invalid_argument("harmonic solid: " + faults.front());
+    corotated_ = corotated_ || m.linear();
+  }
+  dissipated_.assign(materials_.size(), 0);
+
+  const Index K = unknowns();
+  Index count = 0;
+  for (std::size_t n = 0; n < mesh_.nodes.size(); ++n)
+    for (Index k = 0; k < K; ++k) {
+      const bool free = !mesh_.on_axis(static_cast<int>(n)) || family_[static_cast<std::size_t>(k)].order == 0;
+      equation_.push_back(free ? count++ : -1);
+    }
+  block_ = layout.add_vector(count);
+  for (Index& e : equation_)
+    if (e >= 0) e += block_.v;
+
+  for (const auto& element : mesh_.elements) {
+    element_equations_.emplace_back();
+    element_places_.emplace_back();
+    for (int i = 0; i < 8; ++i)
+      for (Index k = 0; k < K; ++k)
+        if (const Index e = equation(element[static_cast<std::size_t>(i)], k); e >= 0) {
+          element_equations_.back().push_back(e);
+          element_places_.back().push_back(static_cast<int>(i * K + k));
+        }
+  }
+
+  const AngularRule circle = full_circle(2 * largest_order(family_) + 3);
+  gram_ = Eigen::MatrixXd::Zero(K, K);
+  for (double theta : circle.theta)
+    for (Index k = 0; k < K; ++k)
+      for (Index l = 0; l < K; ++l)
+        gram_(k, l) += circle.weight * family_[static_cast<std::size_t>(k)].at(theta).dot(
+                                           family_[static_cast<std::size_t>(l)].at(theta));
+  const AngularRule& angles = quadrature_.angles;
+  const auto n = static_cast<Index>(angles.theta.size());
+  functions_.resize(3 * n, K);
+  derivatives_.resize(3 * n, K);
+  for (Index j = 0; j < n; ++j) {
+    const double theta = angles.theta[static_cast<std::size_t>(j)];
+    for (Index k = 0; k < K; ++k) {
+      functions_.block<3, 1>(3 * j, k) = family_[static_cast<std::size_t>(k)].at(theta);
+      derivatives_.block<3, 1>(3 * j, k) = family_[static_cast<std::size_t>(k)].derivative(theta);
+    }
+    Mat3 frame;
+    frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
+    frames_.push_back(frame);
+  }
+
+  const auto rule = gauss(quadrature_.points), mass_rule = gauss(3);
+  const auto shape = [&](const std::array<int, 8>& element, double x, double y, double w) {
+    const mesh::Q8 q = mesh::Q8::at(x, y);
+    Eigen::Matrix<double, 8, 2> nodes;
+    for (int i = 0; i < 8; ++i) nodes.row(i) = mesh_.nodes[static_cast<std::size_t>(element[static_cast<std::size_t>(i)])];
+    const Eigen::Matrix2d jacobian = q.derivative.transpose() * nodes;  // rows d/dxi, d/deta
+    const double det = jacobian.determinant();
+    if (!(det > 0)) throw std::invalid_argument("harmonic solid: an element of the mesh is turned inside out");
+    const Eigen::Matrix<double, 8, 2> gradient = q.derivative * jacobian.inverse().transpose();
+    Point p{q.value, gradient.col(0), gradient.col(1), nodes.col(1).dot(q.value), 0};
+    p.weight = det * w * p.rho;
+    return p;
+  };
+  std::size_t start = 0;
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+    for (const auto& [y, wy] : rule)
+      for (const auto& [x, wx] : rule) {
+        Point p = shape(mesh_.elements[e], x, y, wx * wy);
+        p.weight *= angles.weight;
+        points_.push_back(p);
+        history_start_.push_back(start);
+        start += static_cast<std::size_t>(material.history_size() * n);
+      }
+    Eigen::Matrix<double, 8, 8> m = Eigen::Matrix<double, 8, 8>::Zero();
+    for (const auto& [y, wy] : mass_rule)
+      for (const auto& [x, wx] : mass_rule) {
+        const Point p = shape(mesh_.elements[e], x, y, wx * wy);
+        m += material.density * p.weight * p.value * p.value.transpose();
+        volume_ += 2 * M_PI * p.weight;
+      }
+    element_mass_.push_back(m);
+  }
+  history_.assign(start, 0);
+  const std::size_t per = points_.size() / mesh_.elements.size();
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[p / per])];
+    const auto size = static_cast<std::size_t>(material.history_size());
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
+      material.start(std::span(history_).subspan(history_start_[p] + j * size, size));
+  }
+
+  if (corotated_) {
+    // Volume mean of the displacement gradient as a linear function of the unknowns.
+    mean_gradient_ = Eigen::MatrixXd::Zero(9, count);
+    double total = 0;
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      const Point& g = points_[p];
+      const auto& element = mesh_.elements[p / per];
+      total += g.weight * static_cast<double>(n);
+      for (int i = 0; i < 8; ++i)
+        for (Index k = 0; k < K; ++k) {
+          const Index e = equation(element[static_cast<std::size_t>(i)], k);
+          if (e < 0) continue;
+          Mat3 sum = Mat3::Zero();
+          for (Index j = 0; j < n; ++j) {
+            const Mat3& f = frames_[static_cast<std::size_t>(j)];
+            sum += functions_.block<3, 1>(3 * j, k) * (g.ds[i] * f.col(0) + g.drho[i] * f.col(1)).transpose() +
+                   derivatives_.block<3, 1>(3 * j, k) * (g.value[i] / g.rho * f.col(2)).transpose();
+          }
+          mean_gradient_.col(e - block_.v) += g.weight * Eigen::Map<Eigen::Matrix<double, 9, 1>>(sum.data());
+        }
+    }
+    mean_gradient_ /= total;
+  }
+}
+
+Index HarmonicSolid::offset(int node, Index k) const {
+  const Index e = equation(node, k);
+  return e < 0 ? -1 : e - block_.v + block_.q;
+}
+
+void HarmonicSolid::pattern(std::vector<std::vector<Index>>& blocks) const {
+  blocks.insert(blocks.end(), element_equations_.begin(), element_equations_.end());
+}
+
+Eigen::MatrixXd HarmonicSolid::element_fields(const Vector& numbers, Index shift, std::size_t e) const {
+  const Index K = unknowns();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(8, K);
+  const auto& equations = element_equations_[e];
+  const auto& places = element_places_[e];
+  for (std::size_t i = 0; i < equations.size(); ++i) out(places[i] / K, places[i] % K) = numbers[equations[i] + shift];
+  return out;
+}
+
+Mat3 HarmonicSolid::mean_rotation(const State& s) const {
+  if (!corotated_) return Mat3::Identity();
+  Eigen::Matrix<double, 9, 1> g = mean_gradient_ * s.q.segment(block_.q, block_.size);
+  const Mat3 F = Mat3::Identity() + Eigen::Map<Mat3>(g.data());
+  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+/// Calls visit(element, point, angle, F, frame) with F at every point; F in the placement's axes.
+template <class Visit>
+void HarmonicSolid::visit_points(const State& s, Visit&& visit) const {
+  const auto n = static_cast<Index>(frames_.size());
+  const std::size_t per = points_.size() / mesh_.elements.size();
+  const Mat3 R = mean_rotation(s);
+  Eigen::MatrixXd gradient(3 * n, 3);
+  Vector d(unknowns());
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+    const Eigen::MatrixXd U = element_fields(s.q, block_.q - block_.v, e);
+    for (std::size_t p = e * per; p < (e + 1) * per; ++p) {
+      const Point& g = points_[p];
+      d.noalias() = U.transpose() * g.ds;
+      gradient.col(0).noalias() = functions_ * d;
+      d.noalias() = U.transpose() * g.drho;
+      gradient.col(1).noalias() = functions_ * d;
+      d.noalias() = U.transpose() * (g.value / g.rho);
+      gradient.col(2).noalias() = derivatives_ * d;
+      for (Index j = 0; j < n; ++j) {
+        const Mat3& frame = frames_[static_cast<std::size_t>(j)];
+        const Mat3 F = gradient.block<3, 3>(3 * j, 0) + frame;
+        visit(e, p, j, F, corotated_ ? Mat3(R * frame) : frame);
+      }
+    }
+  }
+}
+
+void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) const {
+  const Index K = unknowns();
+  const auto n = static_cast<Index>(frames_.size());
+  const std::size_t per = points_.size() / mesh_.elements.size();
+  const double dt = s.time - time_;
+  Eigen::MatrixXd stress(3 * n, 3), fe(8, K);
+  Eigen::RowVectorXd r(K);
+  PointResponse response;
+  Mat3 twist = Mat3::Zero();  // integral of P F^T in Cartesian components, for the corotated frame
+  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
+    const Point& g = points_[p];
+    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+    const auto size = static_cast<std::size_t>(material.history_size());
+    respond(material, F, frame, dt,
+            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
+    stress.block<3, 3>(3 * j, 0) = g.weight * response.stress;
+    if (corotated_) twist += g.weight * response.stress * F.transpose();
+    if (j + 1 < n) return;
+    if (p == e * per) fe.setZero();
+    r.noalias() = stress.col(0).transpose() * functions_;
+    fe.noalias() += g.ds * r;
+    r.noalias() = stress.col(1).transpose() * functions_;
+    fe.noalias() += g.drho * r;
+    r.noalias() = stress.col(2).transpose() * derivatives_;
+    fe.noalias() += (g.value / g.rho) * r;
+    if (p + 1 < (e + 1) * per) return;
+    const Eigen::MatrixXd ie =
+        element_mass_[e] * element_fields(s.a, 0, e) * gram_;
+    const auto& equations = element_equations_[e];
+    const auto& places = element_places_[e];
+    for (std::size_t i = 0; i < equations.size(); ++i) {
+      force[equations[i]] += fe(places[i] / K, places[i] % K);
+      inertia[equations[i]] += ie(places[i] / K, places[i] % K);
+    }
+  });
+  if (!corotated_) return;
+  // The mean rotation R follows the unknowns: dR = R [w], (tr U - U) w = axial(R^T dF - dF^T R) of the
+  // mean gradient F = R U; the energy changes by -w . axial of the unbalanced moment.
+  const Mat3 R = mean_rotation(s);
+  Eigen::Matrix<double, 9, 1> mean = mean_gradient_ * s.q.segment(block_.q, block_.size);
+  const Mat3 U = R.transpose() * (Mat3::Identity() + Eigen::Map<Mat3>(mean.data()));
+  const Mat3 Y = R.transpose() * twist * R;
+  const auto axial = [](const Mat3& m) { return Vec3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)); };
+  const Vec3 moment = -axial(Y);
+  const Vec3 b = (U.trace() * Mat3::Identity() - U).transpose().partialPivLu().solve(moment);
+  // b . axial(R^T dF - dF^T R) = [b] : (R^T dF) = (R [b]) : dF, and axial counts each pair once.
+  const Mat3 conjugate = R * skew(b);
+  force.segment(block_.v, block_.size) +=
+      mean_gradient_.transpose() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(conjugate.data());
+}
+
+void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
+  const Index K = unknowns();
+  const auto n = static_cast<Index>(frames_.size());
+  const std::size_t per = points_.size() / mesh_.elements.size();
+  Eigen::MatrixXd ke = Eigen::MatrixXd::Zero(8 * K, 8 * K), reduced, product(K, K);
+  const auto finish = [&](std::size_t e) {
+    if (weights.mass != 0)
+      for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) ke.block(i * K, j * K, K, K) += weights.mass * element_mass_[e](i, j) * gram_;
+    const auto& equations = element_equations_[e];
+    const auto& places = element_places_[e];
+    if (static_cast<Index>(equations.size()) == 8 * K) {
+      sink.add(equations, equations, ke);
+    } else {
+      reduced = ke(places, places);
+      sink.add(equations, equations, reduced);
+    }
+    ke.setZero();
+  };
+  if (weights.stiffness == 0) {
+    for (std::size_t e = 0; e < mesh_.elements.size(); ++e) finish(e);
+    return;
+  }
+  const double dt = s.time - time_;
+  PointResponse response;
+  // For each pair (J, L) of derivatives: sum over angles of f_J^T (dP_J / dF_L) f_L.
+  std::vector<Eigen::MatrixXd> right(9, Eigen::MatrixXd(3 * n, K)), pair(9, Eigen::MatrixXd(K, K));
+  std::array<Eigen::MatrixXd, 3> half;
+  half.fill(Eigen::MatrixXd(K, K));
+  const auto of = [&](int J) -> const Eigen::MatrixXd& { return J == 2 ? derivatives_ : functions_; };
+  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
+    const Point& g = points_[p];
+    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+    const auto size = static_cast<std::size_t>(material.history_size());
+    respond(material, F, frame, dt,
+            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), true, response);
+    for (int J = 0; J < 3; ++J)
+      for (int L = 0; L < 3; ++L)
+        right[static_cast<std::size_t>(3 * J + L)].block(3 * j, 0, 3, K).noalias() =
+            (g.weight * weights.stiffness * response.tangent.block<3, 3>(3 * J, 3 * L)) * of(L).block(3 * j, 0, 3, K);
+    if (j + 1 < n) return;
+    for (int J = 0; J < 3; ++J)
+      for (int L = 0; L < 3; ++L) {
+        const auto q = static_cast<std::size_t>(3 * J + L);
+        pair[q].noalias() = of(J).transpose() * right[q];
+      }
+    const Eigen::Matrix<double, 8, 1> around = g.value / g.rho;
+    const Eigen::Matrix<double, 8, 1>* B[3] = {&g.ds, &g.drho, &around};
+    for (int b = 0; b < 8; ++b) {
+      for (std::size_t J = 0; J < 3; ++J)
+        half[J] = (*B[0])[b] * pair[3 * J] + (*B[1])[b] * pair[3 * J + 1] + (*B[2])[b] * pair[3 * J + 2];
+      for (int a = 0; a < 8; ++a)
+        ke.block(a * K, b * K, K, K) += (*B[0])[a] * half[0] + (*B[1])[a] * half[1] + (*B[2])[a] * half[2];
+    }
+    if (p + 1 == (e + 1) * per) finish(e);
+  });
+}
+
+Energies HarmonicSolid::energies(const State& s) const {
+  Energies out;
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+    const Eigen::MatrixXd V = element_fields(s.v, 0, e);
+    out.kinetic += 0.5 * (V.transpose() * element_mass_[e] * V * gram_).trace();
+  }
+  for (double w : strain_by_layer(s)) out.strain += w;
+  for (double d : dissipated_) out.viscous += d;
+  return out;
+}
+
+std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
+  std::vector<double> out(materials_.size(), 0);
+  PointResponse response;
+  const double dt = s.time - time_;
+  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
+    const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
+    const auto size = static_cast<std::size_t>(materials_[layer].history_size());
+    respond(materials_[layer], F, frame, dt,
+            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
+    out[layer] += points_[p].weight * response.energy;
+  });
+  return out;
+}
+
+void HarmonicSolid::accept(const State& s) {
+  const double dt = s.time - time_;
+  if (!history_.empty())
+    visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3&) {
+      const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
+      const auto size = static_cast<std::size_t>(materials_[layer].history_size());
+      dissipated_[layer] +=
+          points_[p].weight *
+          move_history(materials_[layer], F, dt,
+                       std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size));
+    });
+  time_ = s.time;
+}
+
+void HarmonicSolid::save(std::vector<double>& out) const {
+  out.push_back(time_);
+  out.insert(out.end(), dissipated_.begin(), dissipated_.end());
+  out.insert(out.end(), history_.begin(), history_.end());
+}
+
+void HarmonicSolid::restore(std::span<const double>& in) {
+  const auto take = [&](std::span<double> to) {
+    if (in.size() < to.size()) throw std::invalid_argument("harmonic solid: the history is too short");
+    std::ranges::copy(in.first(to.size()), to.begin());
+    in = in.subspan(to.size());
+  };
+  take({&time_, 1});
+  take(dissipated_);
+  take(history_);
+}
+
+Eigen::MatrixXd HarmonicSolid::displacement_fields(const State& s) const {
+  const Index K = unknowns();
+  const auto nodes = static_cast<Index>(mesh_.nodes.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(nodes, K);
+  for (Index i = 0; i < nodes; ++i)
+    for (Index k = 0; k < K; ++k)
+      if (const Index o = offset(static_cast<int>(i), k); o >= 0) out(i, k) = s.q[o];
+  return out;
+}
+
+Eigen::MatrixXd HarmonicSolid::velocity_fields(const State& s) const {
+  const Index K = unknowns();
+  const auto nodes = static_cast<Index>(mesh_.nodes.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(nodes, K);
+  for (Index i = 0; i < nodes; ++i)
+    for (Index k = 0; k < K; ++k)
+      if (const Index e = equation(static_cast<int>(i), k); e >= 0) out(i, k) = s.v[e];
+  return out;
+}
+
+Vec3 HarmonicSolid::reference(int node, double theta) const {
+  const Eigen::Vector2d& x = mesh_.nodes[static_cast<std::size_t>(node)];
+  return placement_.origin + placement_.axes * Vec3(x.x(), x.y() * std::cos(theta), x.y() * std::sin(theta));
+}
+
+Vec3 HarmonicSolid::vector_at(const Eigen::MatrixXd& fields, int node, double theta) const {
+  Vec3 v = Vec3::Zero();
+  for (Index k = 0; k < unknowns(); ++k) v += fields(node, k) * family_[static_cast<std::size_t>(k)].at(theta);
+  return placement_.axes * v;
+}
+
+std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vector<double>& theta) const {
+  if (quadrature_.points != 2) throw std::invalid_argument("harmonic solid: stress recovery needs the 2 x 2 rule");
+  // Points of the angular rule carry the history; stresses at other angles by trigonometric interpolation.
+  const auto n = static_cast<Index>(frames_.size());
+  const std::size_t per = 4;
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_points(points_.size(), Eigen::Matrix<double, 6, Eigen::Dynamic>(6, n));
+  PointResponse response;
+  const double dt = s.time - time_;
+  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
+    const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
+    const auto size = static_cast<std::size_t>(materials_[layer].history_size());
+    respond(materials_[layer], F, frame, dt,
+            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
+    // In the cylindrical frame, so that an axisymmetric state is constant over theta.
+    const Mat3 sigma = response.stress * F.transpose() / F.determinant();
+    at_points[p].col(j) = to_sym(frames_[static_cast<std::size_t>(j)].transpose() * sigma * frames_[static_cast<std::size_t>(j)]);
+  });
+  const std::size_t angles = theta.size(), nodes = mesh_.nodes.size();
+  // Nearest angle of the rule, or its mirror image where the rule covers half the circle.
+  const auto sample = [&](std::size_t p, double t) -> Sym {
+    if (n == 1) return at_points[p].col(0);
+    double best = INFINITY;
+    Index at = 0;
+    bool mirrored = false;
+    const bool half = quadrature_.angles.theta.front() > 0;
+    for (Index j = 0; j < n; ++j)
+      for (int mirror = 0; mirror < (half ? 2 : 1); ++mirror) {
+        const double a = (mirror ? -1 : 1) * quadrature_.angles.theta[static_cast<std::size_t>(j)];
+        const double distance = std::abs(std::remainder(t - a, 2 * M_PI));
+        if (distance < best) best = distance, at = j, mirrored = mirror;
+      }
+    Sym out = at_points[p].col(at);
+    if (mirrored) out[4] = -out[4], out[5] = -out[5];
+    return out;
+  };
+  std::vector<Sym> out(nodes * angles, Sym::Zero());
+  std::vector<int> count(nodes, 0);
+  constexpr double xi[8] = {-1, 1, 1, -1, 0, 1, 0, -1}, eta[8] = {-1, -1, 1, 1, -1, 0, 1, 0};
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e)
+    for (int i = 0; i < 8; ++i) {
+      const auto node = static_cast<std::size_t>(mesh_.elements[e][static_cast<std::size_t>(i)]);
+      ++count[node];
+      const double x = std::sqrt(3.0) * xi[i], y = std::sqrt(3.0) * eta[i];
+      const double w[4] = {0.25 * (1 - x) * (1 - y), 0.25 * (1 + x) * (1 - y), 0.25 * (1 - x) * (1 + y),
+                           0.25 * (1 + x) * (1 + y)};
+      for (std::size_t t = 0; t < angles; ++t)
+        for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * sample(e * per + p, theta[t]);
+    }
+  for (std::size_t node = 0; node < nodes; ++node)
+    for (std::size_t t = 0; t < angles; ++t) {
+      Mat3 frame;
+      frame << 1, 0, 0, 0, std::cos(theta[t]), -std::sin(theta[t]), 0, std::sin(theta[t]), std::cos(theta[t]);
+      const Mat3 Q = placement_.axes * frame;
+      Sym& sym = out[node * angles + t];
+      sym = to_sym(Q * to_matrix(sym / count[node]) * Q.transpose());
+    }
+  return out;
+}
+
+void HarmonicSolid::set_velocity(State& s, const Vec3& linear, const Vec3& angular) const {
+  const Vec3 v = placement_.axes.transpose() * linear, w = placement_.axes.transpose() * angular;
+  const AngularRule circle = full_circle(2 * largest_order(family_) + 5);
+  // Projections of the parts of v + w x (s e1 + rho e_rho): constant, times s, times rho.
+  const Index K = unknowns();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> part = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, K);
+  for (double theta : circle.theta) {
+    const Vec3 radial(0, std::cos(theta), std::sin(theta));
+    for (Index k = 0; k < K; ++k) {
+      const Vec3 f = circle.weight / gram_(k, k) * family_[static_cast<std::size_t>(k)].at(theta);
+      part(0, k) += f.dot(v);
+      part(1, k) += f.dot(w.cross(Vec3::UnitX()));
+      part(2, k) += f.dot(w.cross(radial));
+    }
+  }
+  for (std::size_t i = 0; i < mesh_.nodes.size(); ++i)
+    for (Index k = 0; k < K; ++k)
+      if (const Index e = equation(static_cast<int>(i), k); e >= 0)
+        s.v[e] = part(0, k) + mesh_.nodes[i].x() * part(1, k) + mesh_.nodes[i].y() * part(2, k);
+}
+
+MeanMotion HarmonicSolid::motion(const State& s) const {
+  const Index K = unknowns();
+  // The reference position is two more fields: s along e1, rho along e_rho.
+  Family family = family_;
+  family.push_back({0, Vec3::UnitX(), Vec3::Zero()});
+  family.push_back({1, Vec3::UnitY(), Vec3::UnitZ()});
+  const AngularRule circle = full_circle(2 * largest_order(family) + 3);
+  const auto at = [&](Index k, double theta) { return family[static_cast<std::size_t>(k)].at(theta); };
+
+  double mass = 0;
+  Vec3 first = Vec3::Zero(), momentum = Vec3::Zero();
+  Eigen::MatrixXd second = Eigen::MatrixXd::Zero(K + 2, K + 2), cross = Eigen::MatrixXd::Zero(K + 2, K);
+  Eigen::VectorXd sum_x = Eigen::VectorXd::Zero(K + 2), sum_v = Eigen::VectorXd::Zero(K);
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+    Eigen::MatrixXd X(8, K + 2);
+    X.leftCols(K) = element_fields(s.q, block_.q - block_.v, e);
+    for (int i = 0; i < 8; ++i)
+      X.row(i).tail<2>() = mesh_.nodes[static_cast<std::size_t>(mesh_.elements[e][static_cast<std::size_t>(i)])].transpose();
+    const Eigen::MatrixXd V = element_fields(s.v, 0, e);
+    const auto& m = element_mass_[e];
+    mass += 2 * M_PI * m.sum();
+    sum_x += X.transpose() * m.rowwise().sum();
+    sum_v += V.transpose() * m.rowwise().sum();
+    second += X.transpose() * m * X;
+    cross += X.transpose() * m * V;
+  }
+  Mat3 moments = Mat3::Zero();
+  Vec3 spin = Vec3::Zero();
+  for (double theta : circle.theta) {
+    for (Index k = 0; k < K + 2; ++k) {
+      const Vec3 f = circle.weight * at(k, theta);
+      first += sum_x[k] * f;
+      if (k < K) momentum += sum_v[k] * f;
+      for (Index l = 0; l < K + 2; ++l) {
+        moments += second(k, l) * f * at(l, theta).transpose();
+        if (l < K) spin += cross(k, l) * f.cross(at(l, theta));
+      }
+    }
+  }
+  MeanMotion out;
+  out.mass = mass;
+  const Vec3 centre = first / mass;
+  const Mat3 about = moments - mass * centre * centre.transpose();
+  out.centre = placement_.origin + placement_.axes * centre;
+  out.momentum = placement_.axes * momentum;
+  out.velocity = out.momentum / mass;
+  out.angular_momentum = placement_.axes * (spin - centre.cross(momentum));
+  out.inertia = placement_.axes * (about.trace() * Mat3::Identity() - about) * placement_.axes.transpose();
+  return out;
+}
+
+double HarmonicSolid::mass() const {
+  double m = 0;
+  for (const auto& e : element_mass_) m += 2 * M_PI * e.sum();
+  return m;
+}
+
+double HarmonicSolid::largest_strain(const State& s) const {
+  double largest = 0;
+  visit_points(s, [&](std::size_t, std::size_t, Index, const Mat3& F, const Mat3&) {
+    largest = std::max(largest, 0.5 * (F.transpose() * F - Mat3::Identity()).norm());
+  });
+  return largest;
+}
+
+}  // namespace hosel::fem

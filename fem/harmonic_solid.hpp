@@ -1,0 +1,123 @@
+/// A solid of revolution whose displacement is a sum of angular functions times meridian fields.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/harmonics.hpp"
+#include "fem/materials/solid.hpp"
+#include "fem/term.hpp"
+#include "mesh/meridian.hpp"
+
+namespace hosel::fem {
+
+/// Where the solid lies in space before it moves.
+struct Placement {
+  Vec3 origin = Vec3::Zero();      ///< of the meridian's s axis, global [m]
+  Mat3 axes = Mat3::Identity();    ///< columns: s axis, direction of theta = 0, of theta = 90 degrees
+};
+
+/// Numerical integration of the volume.
+struct SolidQuadrature {
+  AngularRule angles;
+  int points = 2;  ///< Gauss points each way; 2 is the reduced rule, free of volumetric locking
+};
+
+/// Velocity of the whole in the sense of momentum.
+struct MeanMotion {
+  double mass = 0;                              ///< [kg]
+  Vec3 centre = Vec3::Zero();                   ///< of mass, global [m]
+  Vec3 velocity = Vec3::Zero();                 ///< of the centre of mass, global [m/s]
+  Vec3 momentum = Vec3::Zero();                 ///< [kg m/s]
+  Vec3 angular_momentum = Vec3::Zero();         ///< about the centre of mass [kg m^2/s]
+  Mat3 inertia = Mat3::Zero();                  ///< about the centre of mass, present shape [kg m^2]
+};
+
+/// Finite-strain (or corotated small-strain) solid on a meridian mesh of eight-node elements with
+/// quadratic meridian fields U_k(s, rho): u = sum_k U_k f_k(theta), in the axes of its placement.
+/// Total Lagrangian; consistent mass. Equations: axial node by node, unknown by unknown; on the axis
+/// only functions of order 0 have one. Harmonics of nonlinear elasticity: cf. E.L. Wilson, AIAA J. 3
+/// (1965) for the linear semi-analytical method; sums over angles evaluate products here.
+class HarmonicSolid final : public Term {
+ public:
+  /// `materials[layer]` for the mesh's layers. Adds its unknowns to `layout`. Throws
+  /// std::invalid_argument where a material or the number of them cannot be.
+  HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family, SolidQuadrature quadrature,
+                std::vector<Solid> materials, Placement placement, std::string body = "ball");
+
+  std::string body() const override { return body_; }
+  void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  void residual(const State& trial, Vector& inertia, Vector& force) const override;
+  void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  Energies energies(const State& accepted) const override;
+  void accept(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
+
+  const mesh::Meridian& mesh() const { return mesh_; }
+  const Family& family() const { return family_; }
+  const Placement& placement() const { return placement_; }
+  const std::vector<Solid>& materials() const { return materials_; }
+  Index unknowns() const { return static_cast<Index>(family_.size()); }
+  /// Equation of unknown k at a node; -1 where the axis leaves none.
+  Index equation(int node, Index k) const { return equation_[static_cast<std::size_t>(node * unknowns() + k)]; }
+  Index offset(int node, Index k) const;  ///< the same as an entry of State::q, or -1
+
+  /// Meridian fields U (nodes x unknowns) of the state's displacement [m], velocity [m/s].
+  Eigen::MatrixXd displacement_fields(const State& s) const;
+  Eigen::MatrixXd velocity_fields(const State& s) const;
+  /// Reference position, displacement from it and velocity of a node at an angle, global.
+  Vec3 reference(int node, double theta) const;
+  Vec3 vector_at(const Eigen::MatrixXd& fields, int node, double theta) const;
+
+  /// Cauchy stress, extrapolated to the nodes and averaged over the elements that meet there: at each
+  /// node and angle of `theta` a symmetric tensor in global axes [Pa], node by node (first all angles).
+  std::vector<Sym> cauchy_at_nodes(const State& accepted, const std::vector<double>& theta) const;
+
+  /// The velocity field of a rigid motion about the placement's origin [m/s; rad/s, global], where the
+  /// solid has not moved yet. What the family cannot represent is left out.
+  void set_velocity(State& s, const Vec3& linear, const Vec3& angular) const;
+
+  MeanMotion motion(const State& s) const;
+  double mass() const;                                           ///< of the mesh [kg]
+  const std::vector<double>& dissipated() const { return dissipated_; }  ///< by layer, cumulative [J]
+  std::vector<double> strain_by_layer(const State& accepted) const;      ///< [J]
+  /// Largest |strain| measure max |eigenvalue of F^T F - 1|/2 over all points.
+  double largest_strain(const State& s) const;
+
+ private:
+  struct Point {  // Gauss point of the meridian
+    Eigen::Matrix<double, 8, 1> value, ds, drho;
+    double rho = 0, weight = 0;  // of the meridian area times rho times the angular weight
+  };
+  template <class Visit>
+  void visit_points(const State& s, Visit&& visit) const;
+  Eigen::MatrixXd element_fields(const Vector& numbers, Index offset, std::size_t element) const;
+  Mat3 mean_rotation(const State& s) const;
+
+  std::string body_;
+  mesh::Meridian mesh_;
+  Family family_;
+  SolidQuadrature quadrature_;
+  std::vector<Solid> materials_;
+  Placement placement_;
+  Layout::Block block_;
+  std::vector<Index> equation_;
+  std::vector<std::vector<Index>> element_equations_;        // free ones of each element
+  std::vector<std::vector<int>> element_places_;             // their place i * K + k in the element's fields
+  std::vector<Point> points_;                                // element by element
+  std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;    // density included, angular part not
+  Eigen::MatrixXd functions_, derivatives_;                  // (3 angles) x K: f_k, f_k'
+  std::vector<Mat3> frames_;                                 // columns e_s, e_rho, e_theta at each angle
+  Eigen::MatrixXd gram_;                                     // integral of f_k . f_l over theta
+  bool corotated_ = false;
+  Eigen::MatrixXd mean_gradient_;                            // 9 x equations: volume mean of F - 1
+  double volume_ = 0;
+
+  double time_ = 0;                                          // of the last accepted state
+  std::vector<std::size_t> history_start_;                   // of each meridian point
+  std::vector<double> history_;
+  std::vector<double> dissipated_;
+};
+
+}  // namespace hosel::fem

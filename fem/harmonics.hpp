@@ -1,0 +1,51 @@
+/// Angular functions about the axis of revolution: how a displacement varies with theta.
+#pragma once
+
+#include <vector>
+
+#include "golf/vector.hpp"
+
+namespace hosel::fem {
+
+/// One unknown's direction over theta, in Cartesian components (1 along the axis, 2 where theta = 0,
+/// 3 where theta = 90 degrees): cosine * cos(order theta) + sine * sin(order theta). Only functions of
+/// order 0 survive on the axis, where the direction may not depend on theta.
+struct AngularFunction {
+  int order = 0;
+  Vec3 cosine = Vec3::Zero();
+  Vec3 sine = Vec3::Zero();
+
+  Vec3 at(double theta) const;
+  Vec3 derivative(double theta) const;
+};
+
+/// The displacement of a meridian point is sum_k U_k f_k(theta).
+using Family = std::vector<AngularFunction>;
+
+/// Axial and radial displacement of a solid of revolution: 2 unknowns a node.
+Family axisymmetric_family();
+/// Cartesian components, 1 and 2 in cos m theta (m = 0...symmetric), 3 in sin m theta: 3 N + 2
+/// unknowns, mirror symmetry about the plane of axes 1 and 2; then, up to `antisymmetric`, the other
+/// half (1 and 2 in sin, 3 in cos): with antisymmetric = symmetric the full family of 3 (2 N + 1)
+/// unknowns; -1 leaves it out. Rigid rotations of any size are exact from order 1 on, in the plane of
+/// symmetry, and in space where antisymmetric >= 1.
+Family cartesian_family(int symmetric, int antisymmetric = -1);
+/// The displacements u = U cos m theta, v = V sin m theta, w = W cos m theta in cylindrical components:
+/// the linear problem of one harmonic; with m = 0 the radial and axial part.
+Family cylindrical_family(int order);
+/// Rotation of every meridian point about the axis.
+Family torsion_family();
+
+/// Equidistant angles of equal weight.
+struct AngularRule {
+  std::vector<double> theta;
+  double weight = 0;  ///< of each; the weights sum to 2 pi
+};
+/// One angle, for integrands that do not depend on theta.
+AngularRule single_angle();
+/// `count` angles over the full circle; exact for harmonics below `count`.
+AngularRule full_circle(int count);
+/// `count` angles over the half circle, for integrands symmetric about it; as exact as 2 count on the full.
+AngularRule half_circle(int count);
+
+}  // namespace hosel::fem

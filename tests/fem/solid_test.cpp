@@ -1,0 +1,217 @@
+#include "fem/materials/solid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hosel::fem {
+namespace {
+
+Mat3 random_gradient(std::mt19937& g, double size) {
+  std::uniform_real_distribution<double> u(-size, size);
+  Mat3 F = Mat3::Identity();
+  for (double& x : F.reshaped()) x += u(g);
+  return F;
+}
+
+struct Named {
+  const char* name;
+  Solid solid;
+};
+
+std::vector<Named> materials() {
+  const Lame l = Lame::of(100e6, 0.49);
+  const std::vector<MaxwellBranch> two{{20e6, 1e-4}, {15e6, 3e-5}};
+  return {{"linear", {.elastic = LinearElastic{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
+          {"st-venant-kirchhoff", {.elastic = StVenantKirchhoff{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
+          {"neo-hooke", {.elastic = Hyperelastic::neo_hooke(l), .branches = {}, .density = 1100}},
+          {"mooney-rivlin", {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
+          {"yeoh", {.elastic = Hyperelastic{.c10 = 10e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
+          {"neo-hooke with branches", {.elastic = Hyperelastic::neo_hooke(l), .branches = two, .density = 1100}},
+          {"yeoh with branches",
+           {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 2e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = two, .density = 1100}}};
+}
+
+TEST(Solid, EnergyStressTangentAgree) {
+  std::mt19937 g(1);
+  for (const auto& [name, solid] : materials())
+    for (int trial = 0; trial < 20; ++trial) {
+      std::vector<double> history(static_cast<std::size_t>(solid.history_size()));
+      solid.start(history);
+      move_history(solid, random_gradient(g, 0.2), 3e-5, history);
+      move_history(solid, random_gradient(g, 0.2), 3e-5, history);
+      const Mat3 F = random_gradient(g, 0.2), Q = Eigen::Quaterniond::UnitRandom().toRotationMatrix();
+      const Mat3 D = random_gradient(g, 1) - Mat3::Identity();
+      const double h = 2e-6;
+      // With dt = 0 the history is frozen and P is the energy's gradient; with dt > 0 the tangent is
+      // that of the update.
+      PointResponse at, plus, minus;
+      respond(solid, F, Q, 0, history, true, at);
+      respond(solid, F + h * D, Q, 0, history, false, plus);
+      respond(solid, F - h * D, Q, 0, history, false, minus);
+      const double slope = (plus.energy - minus.energy) / (2 * h), product = at.stress.cwiseProduct(D).sum();
+      EXPECT_NEAR(slope, product, 1e-7 * (std::abs(product) + at.stress.norm() * D.norm())) << name;
+      for (double dt : {0.0, 5e-5}) {
+        respond(solid, F, Q, dt, history, true, at);
+        respond(solid, F + h * D, Q, dt, history, false, plus);
+        respond(solid, F - h * D, Q, dt, history, false, minus);
+        const Eigen::Matrix<double, 9, 1> difference =
+            ((plus.stress - minus.stress) / (2 * h)).reshaped();
+        const Eigen::Matrix<double, 9, 1> predicted = at.tangent * D.reshaped();
+        EXPECT_LE((difference - predicted).norm(), 1e-7 * predicted.norm()) << name << " dt " << dt;
+      }
+    }
+}
+
+/// Benchmark 2.3: stretch, lateral stretch, Cauchy stress of uniaxial tension, W = mu/2 (I1'-3) + K/2 (J-1)^2.
+TEST(Solid, NeoHookeUniaxial) {
+  Hyperelastic law{.c10 = 33.5570469798658e6 / 2, .bulk = 1666.66666666667e6};
+  const Solid solid{.elastic = law, .branches = {}, .density = 1};
+  const double table[6][3] = {{.5, 1.40583200, -5.909099e7}, {.7, 1.19145481, -3.152400e7}, {.9, 1.05303128, -1.006309e7},
+                              {1.1, .95441588, 1.000321e7},  {1.5, .82073098, 5.199507e7},  {2, .71503833, 1.127982e8}};
+  for (const auto& row : table) {
+    double lateral = 1 / std::sqrt(row[0]);
+    PointResponse r;
+    for (int i = 0; i < 30; ++i) {  // lateral stress to zero
+      respond(solid, Vec3(row[0], lateral, lateral).asDiagonal(), Mat3::Identity(), 0, {}, true, r);
+      lateral -= r.stress(1, 1) / (r.tangent(4, 4) + r.tangent(4, 8));
+    }
+    EXPECT_NEAR(lateral, row[1], 1e-8);
+    const double cauchy = r.stress(0, 0) / (lateral * lateral);
+    EXPECT_NEAR(cauchy, row[2], 1e-6 * std::abs(row[2]));
+  }
+  Mat3 shear = Mat3::Identity();
+  shear(0, 1) = 0.5;
+  PointResponse r;
+  respond(solid, shear, Mat3::Identity(), 0, {}, false, r);
+  const Mat3 sigma = r.stress * shear.transpose();
+  EXPECT_NEAR(sigma(0, 1), 16778523.49, 0.01);
+  EXPECT_NEAR(sigma(0, 0), 5592841.16, 0.01);
+  EXPECT_NEAR(sigma(1, 1), -2796420.58, 0.01);
+  respond(solid, Vec3(.9, 1, 1).asDiagonal(), Mat3::Identity(), 0, {}, false, r);
+  EXPECT_NEAR(r.stress(0, 0), -1.7173317268e8, 1);
+}
+
+/// Benchmark 2.4: G = 20 + 10 e^(-t/1e-4) + 10 e^(-t/1e-3) MPa in shear. Strains are scaled down so far
+/// that the finite-strain terms (of relative size strain^2) fall below the tolerance.
+class Prony : public testing::Test {
+ protected:
+  Solid solid{.elastic = Hyperelastic{.c10 = 10e6, .bulk = 4e9}, .branches = {{10e6, 1e-4}, {10e6, 1e-3}}, .density = 1};
+  static constexpr double scale = 1e-5;
+  std::vector<double> history = std::vector<double>(static_cast<std::size_t>(solid.history_size()));
+  double work = 0;
+
+  static Mat3 shear(double gamma) {
+    Mat3 F = Mat3::Identity();
+    F(0, 1) = scale * gamma;
+    return F;
+  }
+  double stress(double gamma, double dt) {
+    PointResponse r;
+    respond(solid, shear(gamma), Mat3::Identity(), dt, history, false, r);
+    return r.stress(0, 1) / scale;
+  }
+  /// Shear stress after a ramp of `steps` from gamma(t0) to gamma(t1).
+  template <class Strain>
+  double run(Strain gamma, double t0, double t1, int steps) {
+    double tau = 0;
+    for (int i = 1; i <= steps; ++i) {
+      const double dt = (t1 - t0) / steps, t = t0 + i * dt;
+      tau = stress(gamma(t), dt);
+      move_history(solid, shear(gamma(t)), dt, history);
+    }
+    return tau;
+  }
+  void SetUp() override { solid.start(history); }
+};
+
+TEST_F(Prony, Relaxation) {
+  // A step: history sees the strain at once (dt = 0), then holds it.
+  const auto hold = [](double) { return 0.01; };
+  stress(0.01, 0);
+  move_history(solid, shear(0.01), 0, history);
+  EXPECT_NEAR(run(hold, 0, 1e-4, 1), 3.27271686e5, 3.27e5 * 1e-8);
+  EXPECT_NEAR(run(hold, 1e-4, 1e-3, 3), 2.36792484e5, 2.36e5 * 1e-8);
+}
+
+TEST_F(Prony, ConstantRateIsExactForAnyStep) {
+  const auto ramp = [](double t) { return 100 * t; };
+  EXPECT_NEAR(run(ramp, 0, 1e-4, 1), 3.58374638e5, 3.58e5 * 1e-8);
+  EXPECT_NEAR(run(ramp, 1e-4, 1e-3, 7), 2.73211602e6, 2.73e6 * 1e-8);
+}
+
+TEST_F(Prony, HarmonicResponse) {
+  // Complex modulus from the tenth cycle at 2.5 kHz; piecewise-linear strain is exact to O(dt^2), so
+  // Richardson's extrapolation of 1000 and 2000 steps per cycle reaches 1e-8.
+  const double f = 2500, w = 2 * M_PI * f;
+  const auto modulus = [&](int per_cycle) {
+    solid.start(history);
+    const auto gamma = [&](double t) { return 0.01 * std::sin(w * t); };
+    const int cycles = 40;  // e^(-40 cycles / tau2) = 1e-7 of the transient, and it is not in phase
+    run(gamma, 0, cycles / f, cycles * per_cycle);
+    double in = 0, out = 0;
+    const double dt = 1 / f / per_cycle;
+    for (int i = 1; i <= per_cycle; ++i) {
+      const double t = cycles / f + i * dt;
+      const double tau = stress(gamma(t), dt);
+      move_history(solid, shear(gamma(t)), dt, history);
+      in += tau * std::sin(w * t) * 2 / per_cycle / 0.01;
+      out += tau * std::cos(w * t) * 2 / per_cycle / 0.01;
+    }
+    return Eigen::Vector2d(in, out);
+  };
+  const Eigen::Vector2d coarse = modulus(500), fine = modulus(1000);
+  const Eigen::Vector2d best = (4 * fine - coarse) / 3;
+  EXPECT_NEAR(best[0], 3.70756307e7, 3.7e7 * 1e-7);
+  EXPECT_NEAR(best[1], 5.16423357e6, 5.1e6 * 1e-6);
+}
+
+TEST(Solid, DissipationIsNeverNegative) {
+  std::mt19937 g(7);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (const auto& [name, solid] : materials()) {
+    if (solid.branches.empty()) continue;
+    for (int path = 0; path < 1000; ++path) {
+      std::vector<double> history(static_cast<std::size_t>(solid.history_size()));
+      solid.start(history);
+      const double size = 0.3 * u(g);
+      for (int step = 0; step < 8; ++step) {
+        const double dt = std::pow(10, -7 + 5 * u(g));
+        ASSERT_GE(move_history(solid, random_gradient(g, size), dt, history), 0) << name;
+      }
+    }
+  }
+}
+
+/// Work of the stress = stored + dissipated over a strain path, to second order in the step.
+TEST(Solid, EnergyBalanceClosesAtSecondOrder) {
+  const Solid solid = materials()[5].solid;
+  const auto gap = [&](int steps) {
+    std::vector<double> history(static_cast<std::size_t>(solid.history_size()));
+    solid.start(history);
+    const auto gradient = [](double t) {
+      Mat3 F = Mat3::Identity();
+      F(0, 1) = 0.4 * std::sin(7e3 * t);
+      F(1, 1) = 1 - 0.2 * std::sin(5e3 * t);
+      return F;
+    };
+    const double dt = 4e-4 / steps;
+    double work = 0, dissipated = 0;
+    PointResponse before, after;
+    respond(solid, gradient(0), Mat3::Identity(), 0, history, false, before);
+    for (int i = 1; i <= steps; ++i) {
+      const Mat3 F0 = gradient((i - 1) * dt), F1 = gradient(i * dt);
+      respond(solid, F1, Mat3::Identity(), dt, history, false, after);
+      work += 0.5 * (before.stress + after.stress).cwiseProduct(F1 - F0).sum();
+      dissipated += move_history(solid, F1, dt, history);
+      before = after;
+    }
+    return std::abs(work - dissipated - after.energy) / work;
+  };
+  for (int n : {50,100,200,400,800,1600}) std::printf("%d %g\n", n, gap(n));
+  EXPECT_LT(gap(800), 1e-5);
+  EXPECT_NEAR(std::log2(gap(400) / gap(800)), 2, 0.3);
+}
+
+}  // namespace
+}  // namespace hosel::fem
