@@ -14,8 +14,9 @@ namespace hosel::fem {
 /// Form of the branch: J.C. Simo, Comput. Methods Appl. Mech. Eng. 60 (1987); S. Reese, S. Govindjee,
 /// Int. J. Solids Struct. 35 (1998), with a flow rule in the reference configuration.
 ///
-/// One step: X' = (C' - X)/tau from B_n, solved exactly for C' linear in time, and B = X / det(X)^(1/3):
-/// the flow's direction along B itself only scales B. Exact for small strains linear in time.
+/// One step: X' = (C' - c X)/tau from B_n, solved exactly for C' linear in time, with c = C':B^-1 / 3 at
+/// the step's start, and B = X / det(X)^(1/3): the flow along B itself only scales B. Second order;
+/// exact for small strains linear in time.
 struct MaxwellBranch {
   double modulus = 0;  ///< mu [Pa]
   double time = 0;     ///< tau [s]
@@ -23,12 +24,13 @@ struct MaxwellBranch {
   /// B after a step of dt from (B0, C0') at its start to C1' at its end; also dX/dC1' (a number).
   Sym flow(const Sym& B0, const Sym& C0, const Sym& C1, double dt, double* gain = nullptr,
            double* scale = nullptr) const {
-    const double h = dt / time;
+    const double c = contract(C0, inverse(B0, 1.0)) / 3;
+    const double h = c * dt / time;
     const double decay = std::exp(-h);
     const double mean = h < 1e-6 ? 1 - h / 2 : -std::expm1(-h) / h;  // (1 - e^-h) / h
-    const Sym X = decay * B0 + (mean - decay) * C0 + (1 - mean) * C1;
+    const Sym X = decay * B0 + ((mean - decay) / c) * C0 + ((1 - mean) / c) * C1;
     const double s = 1 / std::cbrt(determinant(X));
-    if (gain) *gain = 1 - mean;
+    if (gain) *gain = (1 - mean) / c;
     if (scale) *scale = s;
     return s * X;
   }

@@ -208,7 +208,6 @@ TEST(Solid, EnergyBalanceClosesAtSecondOrder) {
     }
     return std::abs(work - dissipated - after.energy) / work;
   };
-  for (int n : {50,100,200,400,800,1600}) std::printf("%d %g\n", n, gap(n));
   EXPECT_LT(gap(800), 1e-5);
   EXPECT_NEAR(std::log2(gap(400) / gap(800)), 2, 0.3);
 }
