@@ -53,6 +53,7 @@ class Term {
   /// At the accepted state (cumulative figures as of the last accept()).
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.
+  /// The initial state of a run is accepted first.
   virtual void accept(const State& accepted) { (void)accepted; }
   /// The history as numbers, appended for a restart; restore() takes them back from the front.
   virtual void save(std::vector<double>& history) const { (void)history; }

@@ -71,7 +71,7 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
   auxiliary_ = state_.a;
   evaluate(state_, inertia_, trial_force_);
   residual_ = inertia_ + trial_force_;
-  ledger_.time = state_.time;
+  for (const auto& term : system_.terms) term->accept(state_);
   take_stock();
   ledger_.initial = ledger_.kinetic + ledger_.strain_total() + ledger_.contact;
   friction_before_ = ledger_.friction;
@@ -120,6 +120,7 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
           [&] {
             tangent_.assemble(system_, trial_, {1, to_v, to_a}, increment_);
             tangent_step_ = h;
+            return tangent_.round_off(system_, trial_);
           },
       .advance =
           [&](const Vector& dx) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "solvers/errors.hpp"
@@ -146,6 +148,17 @@ Vector SparseTangent::multiply(const Vector& x) const {
     for (int k = starts_[c]; k < starts_[c + 1]; ++k)
       y[rows_[static_cast<std::size_t>(k)]] += values_[static_cast<std::size_t>(k)] * x[static_cast<Index>(c)];
   return y;
+}
+
+double SparseTangent::round_off(const fem::System& system, const fem::State& state) const {
+  Vector size = Vector::Ones(system.layout.size());
+  for (const auto& b : system.layout.blocks())
+    if (!b.rotation) size.segment(b.v, b.size) = state.q.segment(b.q, b.size).cwiseAbs();
+  Vector y = Vector::Zero(this->size());
+  for (std::size_t c = 0; c < free_.size(); ++c)
+    for (int k = starts_[c]; k < starts_[c + 1]; ++k)
+      y[rows_[static_cast<std::size_t>(k)]] += std::abs(values_[static_cast<std::size_t>(k)]) * size[free_[c]];
+  return 2 * std::numeric_limits<double>::epsilon() * y.norm();
 }
 
 Eigen::MatrixXd SparseTangent::dense() const {

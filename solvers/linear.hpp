@@ -37,6 +37,9 @@ class SparseTangent final : public fem::TangentSink {
            const Eigen::Ref<const Eigen::MatrixXd>& block) override;
 
   Vector multiply(const Vector& reduced) const;
+  /// Norm of the residual that round-off alone may leave: eps | |A| |x| |, with x the configuration's
+  /// numbers (1 for rotations).
+  double round_off(const fem::System& system, const fem::State& state) const;
   Eigen::MatrixXd dense() const;
   std::span<const int> column_starts() const { return starts_; }
   std::span<const int> row_indices() const { return rows_; }

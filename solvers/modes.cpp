@@ -23,17 +23,23 @@ Modes modes(const fem::System& system, const fem::State& state, int count) {
   const Vector scale = M.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd Ks = scale.asDiagonal() * K * scale.asDiagonal();
   const Eigen::MatrixXd Ms = scale.asDiagonal() * M * scale.asDiagonal();
-  // Inverted problem M phi = mu K phi would lose free bodies; the direct one keeps them.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Ks, Ms);
+  // Inverted, so that the lowest modes come out best: M phi = mu (K + shift M) phi. The shift keeps free
+  // bodies; it lies far below the stiffest mode and costs no digits that matter.
+  const double shift = 1e-12 * Ks.diagonal().maxCoeff();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Ms, Ks + shift * Ms);
   if (solver.info() != Eigen::Success)
     throw NonConvergence("the eigenvalue problem was not solved: is the mass matrix positive definite?");
   const Index n = std::min<Index>(count, K.rows());
   Modes out;
   out.shapes = Eigen::MatrixXd::Zero(system.layout.size(), n);
   for (Index i = 0; i < n; ++i) {
-    out.omega.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[i])));
+    const Index at = K.rows() - 1 - i;
+    const Vector phi = solver.eigenvectors().col(at);  // phi' (K + shift M) phi = 1, phi' M phi = mu
+    const double mu = solver.eigenvalues()[at];
+    if (!(mu > 0)) throw NonConvergence("the mass matrix is not positive definite: modes need inertia everywhere");
+    out.omega.push_back(std::sqrt(std::max(0.0, 1 / mu - shift)));
     Vector full = Vector::Zero(system.layout.size());
-    tangent.scatter(scale.cwiseProduct(solver.eigenvectors().col(i)), full);
+    tangent.scatter(scale.cwiseProduct(phi) / std::sqrt(mu), full);
     out.shapes.col(i) = full;
   }
   return out;

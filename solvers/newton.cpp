@@ -49,7 +49,7 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
         report.reason = "the residual is not finite";
         break;
       }
-      const double tolerance = options_.residual_relative * report.scale + options_.residual_absolute;
+      const double tolerance = options_.residual_relative * report.scale + options_.residual_absolute + round_off_;
       if (report.residual <= tolerance && increment <= 1) {
         report.converged = true;
         return report;
@@ -66,7 +66,7 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
       const bool slow = report.residual > options_.renew_above * before && report.residual > tolerance;
       fresh = !factors_.ready() || slow;
       if (fresh) {
-        problem.assemble();
+        round_off_ = problem.assemble();
         factors_.factorise(tangent_);
         ++report.factorisations;
       }

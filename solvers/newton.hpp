@@ -34,7 +34,8 @@ struct NewtonReport {
 struct NewtonProblem {
   /// The residual at the present iterate; writes the scale that it is small against.
   std::function<Vector(double& scale)> residual;
-  std::function<void()> assemble;               ///< the tangent at the present iterate
+  /// The tangent at the present iterate; returns the residual that round-off alone may leave.
+  std::function<double()> assemble;
   std::function<void(const Vector&)> advance;   ///< moves the iterate by an increment
 };
 
@@ -53,6 +54,7 @@ class Newton {
   SparseTangent& tangent_;
   NewtonOptions options_;
   Factorisation factors_;
+  double round_off_ = 0;        // as of the last assembly; no residual can be smaller
   std::vector<bool> rotation_;  // of each free equation
 };
 

@@ -45,7 +45,11 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
               scale = std::max(scale, scale0);
               return r;
             },
-        .assemble = [&] { tangent.assemble(system, trial, {1, 0, 0}); },
+        .assemble =
+            [&] {
+              tangent.assemble(system, trial, {1, 0, 0});
+              return tangent.round_off(system, trial);
+            },
         .advance =
             [&](const Vector& dx) {
               tangent.scatter(dx, full);

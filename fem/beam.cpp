@@ -1,0 +1,420 @@
+#include "fem/beam.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+#include "fem/rotation_forms.hpp"
+
+namespace hosel::fem {
+namespace {
+
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+using Mat12x18 = Eigen::Matrix<double, 12, 18>;
+using Mat18 = Eigen::Matrix<double, 18, 18>;
+using Vec12 = Eigen::Matrix<double, 12, 1>;
+using Vec18 = Eigen::Matrix<double, 18, 1>;
+
+Vec3 shape(double x) { return {0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)}; }
+Vec3 shape_derivative(double x) { return {x - 0.5, -2 * x, x + 0.5}; }
+
+// Gauss points and weights on [-1, 1]; four integrate mass times two shape functions of a cubic taper.
+constexpr std::array kGauss2 = {-0.57735026918962576451, 0.57735026918962576451};
+constexpr std::array kGauss4 = {-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480,
+                                0.86113631159405257522};
+constexpr std::array kWeight4 = {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263,
+                                 0.34785484513745385737};
+
+/// Shear that does not yield: stiff against the bending of one element, so that the frequencies move by
+/// less than 1e-5 of what the mesh does, and the tangent stays well conditioned.
+constexpr double kHeldShear = 1e5;
+
+void check(const Section& s, double at) {
+  const bool good = s.axial > 0 && s.shear_y > 0 && s.shear_z > 0 && s.torsion > 0 && s.bending_y > 0 &&
+                    s.bending_z > 0 && s.mass >= 0 && s.rotary.minCoeff() >= 0;
+  if (!good)
+    throw std::invalid_argument("the beam's section at " + std::to_string(at) +
+                                " m has a stiffness that is not positive or a negative mass");
+}
+
+Mat3 exp_matrix(const Vec3& w) { return rotation_exp(w).toRotationMatrix(); }
+
+}  // namespace
+
+std::vector<Index> equations(const Node& node) {
+  std::vector<Index> out;
+  for (Index i = 0; i < 3; ++i) out.push_back(node.translation.v + i);
+  for (Index i = 0; i < 3; ++i) out.push_back(node.rotation.v + i);
+  return out;
+}
+
+/// An element relative to its middle node: p = (y1, psi1, y3, psi3).
+struct Beam::Kinematics {
+  Mat3 R2;                       // of the middle node
+  std::array<Vec3, 2> y, psi;    // nodes 1 and 3: R2^T (x - x2), log(R2^T R)
+  std::array<Mat3, 2> relative;  // R2^T R
+  std::array<RotationForm, 2> log_form;
+  std::array<Mat3, 2> log_tangent;  // T(psi)^-1
+
+  /// Derivative of p by the nodes' increments (translations global, rotations body frame).
+  Mat12x18 jacobian() const {
+    Mat12x18 J = Mat12x18::Zero();
+    for (int k = 0; k < 2; ++k) {
+      const int row = 6 * k, column = 12 * k;
+      J.block<3, 3>(row, column) = R2.transpose();
+      J.block<3, 3>(row, 6) = -R2.transpose();
+      J.block<3, 3>(row, 9) = skew(y[k]);
+      J.block<3, 3>(row + 3, column + 3) = log_tangent[k];
+      J.block<3, 3>(row + 3, 9) = -log_tangent[k] * relative[k].transpose();
+    }
+    return J;
+  }
+};
+
+namespace {
+
+/// One Gauss point: strains and their derivative B by p.
+struct PointStrain {
+  Vec3 psi, dpsi, dy, gamma, kappa;
+  RotationForm turn, curve;
+  Mat3 Vc, Vt, Dc, Dt;
+};
+
+template <class Kinematics, class Point>
+PointStrain point_strain(const Kinematics& k, const Point& g) {
+  PointStrain s;
+  s.psi = g.N[0] * k.psi[0] + g.N[2] * k.psi[1];
+  s.dpsi = g.dN[0] * k.psi[0] + g.dN[2] * k.psi[1];
+  s.dy = g.dN[0] * k.y[0] + g.dN[2] * k.y[1];
+  const double z = s.psi.squaredNorm();
+  s.turn = exp_transposed(z);
+  s.curve = exp_tangent(z);
+  s.Vc = s.turn.matrix(s.psi);
+  s.Vt = s.curve.matrix(s.psi);
+  s.Dc = s.turn.derivative(s.psi, s.dy);
+  s.Dt = s.curve.derivative(s.psi, s.dpsi);
+  s.gamma = s.Vc * s.dy - g.tangent;
+  s.kappa = s.Vt * s.dpsi;
+  return s;
+}
+
+template <class Point>
+Eigen::Matrix<double, 6, 12> strain_matrix(const PointStrain& s, const Point& g) {
+  Eigen::Matrix<double, 6, 12> B = Eigen::Matrix<double, 6, 12>::Zero();
+  for (int k = 0; k < 2; ++k) {
+    const double N = g.N[2 * k], dN = g.dN[2 * k];
+    B.block<3, 3>(0, 6 * k) = dN * s.Vc;
+    B.block<3, 3>(0, 6 * k + 3) = N * s.Dc;
+    B.block<3, 3>(3, 6 * k + 3) = N * s.Dt + dN * s.Vt;
+  }
+  return B;
+}
+
+}  // namespace
+
+Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options)
+    : options_(std::move(options)), line_(line) {
+  if (line.size() < 3 || line.size() % 2 == 0) throw std::invalid_argument("a beam needs 2 n + 1 nodes for n elements");
+  if (!(options_.damping_time >= 0)) throw std::invalid_argument("the damping time of a beam is not negative");
+  for (std::size_t i = 0; i < line.size(); ++i)
+    nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
+  rotary_.assign(line.size(), Mat3::Zero());
+  weight_.assign(line.size(), 0);
+
+  for (std::size_t first = 0; first + 2 < line.size(); first += 2) {
+    Element e;
+    for (std::size_t i = first; i < first + 3; ++i)
+      for (Index q : equations(nodes_[i])) e.equations.push_back(q);
+    const Vec3 arc(line[first].arc_length, line[first + 1].arc_length, line[first + 2].arc_length);
+    const double length = arc[2] - arc[0];
+    const Eigen::Quaterniond q2(line[first + 1].frame);
+    const Vec3 w1 = rotation_log(q2.conjugate() * Eigen::Quaterniond(line[first].frame));
+    const Vec3 w3 = rotation_log(q2.conjugate() * Eigen::Quaterniond(line[first + 2].frame));
+    const auto frame_at = [&](const Vec3& N) { return Mat3(line[first + 1].frame * exp_matrix(N[0] * w1 + N[2] * w3)); };
+
+    for (std::size_t i = 0; i < 2; ++i) {
+      Point& g = e.points[i];
+      const double x = kGauss2[i];
+      g.N = shape(x);
+      const double ds = shape_derivative(x).dot(arc);
+      g.dN = shape_derivative(x) / ds;
+      g.weight = ds;
+      g.arc_length = g.N.dot(arc);
+      g.frame = frame_at(g.N);
+      g.tangent.setZero();
+      for (int n = 0; n < 3; ++n) g.tangent += g.dN[n] * line[first + static_cast<std::size_t>(n)].position;
+      const Section s = sections(g.arc_length);
+      check(s, g.arc_length);
+      const double held = kHeldShear / (length * length);
+      const Vec3 force(s.axial, std::isinf(s.shear_y) ? held * s.bending_z : s.shear_y,
+                       std::isinf(s.shear_z) ? held * s.bending_y : s.shear_z);
+      g.force = g.frame * force.asDiagonal() * g.frame.transpose();
+      g.moment = g.frame * Vec3(s.torsion, s.bending_y, s.bending_z).asDiagonal() * g.frame.transpose();
+    }
+    e.mass.setZero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3 N = shape(kGauss4[i]);
+      const double weight = kWeight4[i] * shape_derivative(kGauss4[i]).dot(arc), at = N.dot(arc);
+      const Section s = sections(at);
+      check(s, at);
+      e.mass += weight * s.mass * N * N.transpose();
+      const Mat3 frame = frame_at(N);
+      const Mat3 J = frame * s.rotary.asDiagonal() * frame.transpose();
+      for (int n = 0; n < 3; ++n) {
+        rotary_[first + static_cast<std::size_t>(n)] += weight * N[n] * J;
+        weight_[first + static_cast<std::size_t>(n)] += weight * N[n] * s.mass;
+      }
+    }
+    elements_.push_back(std::move(e));
+  }
+}
+
+void Beam::place(State& s) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    s.q.segment<3>(nodes_[i].translation.q) = line_[i].position;
+    set_rotation(s, nodes_[i].rotation, Eigen::Quaterniond::Identity());
+  }
+}
+
+void Beam::pattern(std::vector<std::vector<Index>>& blocks) const {
+  for (const Element& e : elements_) blocks.push_back(e.equations);
+}
+
+Beam::Kinematics Beam::kinematics(const State& s, const Element& e) const {
+  const std::size_t first = 2 * static_cast<std::size_t>(&e - elements_.data());
+  const Node& middle = nodes_[first + 1];
+  const Eigen::Quaterniond q2 = rotation(s, middle.rotation);
+  Kinematics k;
+  k.R2 = q2.toRotationMatrix();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Node& node = nodes_[first + 2 * i];
+    k.y[i] = k.R2.transpose() *
+             (s.q.segment<3>(node.translation.q) - s.q.segment<3>(middle.translation.q));
+    const Eigen::Quaterniond relative = q2.conjugate() * rotation(s, node.rotation);
+    k.psi[i] = rotation_log(relative);
+    k.relative[i] = relative.toRotationMatrix();
+    k.log_form[i] = exp_tangent_inverse(k.psi[i].squaredNorm());
+    k.log_tangent[i] = k.log_form[i].matrix(k.psi[i]);
+  }
+  return k;
+}
+
+namespace {
+
+Vec18 velocities(const State& s, const std::vector<Index>& equations) {
+  Vec18 v;
+  for (int i = 0; i < 18; ++i) v[i] = s.v[equations[static_cast<std::size_t>(i)]];
+  return v;
+}
+
+}  // namespace
+
+void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
+  const double tau = options_.damping_time;
+  for (const Element& e : elements_) {
+    const Kinematics k = kinematics(s, e);
+    Vec12 rate = Vec12::Zero();
+    if (tau > 0) rate = k.jacobian() * velocities(s, e.equations);
+    std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
+    for (const Point& g : e.points) {
+      const PointStrain p = point_strain(k, g);
+      Vec3 gamma = p.gamma, kappa = p.kappa;
+      if (tau > 0) {
+        const Eigen::Matrix<double, 6, 1> strain_rate = strain_matrix(p, g) * rate;
+        gamma += tau * strain_rate.head<3>();
+        kappa += tau * strain_rate.tail<3>();
+      }
+      const Vec3 n = g.force * gamma, m = g.moment * kappa;
+      const Vec3 along = p.Vc.transpose() * n, curve = p.Vt.transpose() * m;
+      const Vec3 turn = p.Dc.transpose() * n + p.Dt.transpose() * m;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const auto node = static_cast<Index>(2 * i);
+        gy[i] += g.weight * g.dN[node] * along;
+        gpsi[i] += g.weight * (g.N[node] * turn + g.dN[node] * curve);
+      }
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::size_t at = 12 * i;
+      const Vec3 f = k.R2 * gy[i], m = k.log_tangent[i].transpose() * gpsi[i];
+      const Vec3 m2 = gy[i].cross(k.y[i]) - k.relative[i] * m;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto d = static_cast<Index>(c);
+        force[e.equations[at + c]] += f[d];
+        force[e.equations[6 + c]] -= f[d];
+        force[e.equations[at + 3 + c]] += m[d];
+        force[e.equations[9 + c]] += m2[d];
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        inertia.segment<3>(e.equations[6 * i]) +=
+            e.mass(static_cast<Index>(i), static_cast<Index>(j)) * s.a.segment<3>(e.equations[6 * j]);
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Index r = nodes_[i].rotation.v;
+    const Vec3 w = s.v.segment<3>(r);
+    inertia.segment<3>(r) += rotary_[i] * s.a.segment<3>(r) + w.cross(rotary_[i] * w);
+    force.segment<3>(nodes_[i].translation.v) -= weight_[i] * options_.gravity;
+  }
+}
+
+void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
+  const double tau = options_.damping_time;
+  const double material = weights.stiffness + tau * weights.damping;
+  for (const Element& e : elements_) {
+    Mat18 K = Mat18::Zero();
+    const std::size_t first = 2 * static_cast<std::size_t>(&e - elements_.data());
+    if (material != 0) {
+      const Kinematics k = kinematics(s, e);
+      const Mat12x18 J = k.jacobian();
+      Vec12 rate = Vec12::Zero();
+      if (tau > 0) rate = J * velocities(s, e.equations);
+      Mat12 H = Mat12::Zero();
+      std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
+      for (const Point& g : e.points) {
+        const PointStrain p = point_strain(k, g);
+        const Eigen::Matrix<double, 6, 12> B = strain_matrix(p, g);
+        Vec3 gamma = p.gamma, kappa = p.kappa;
+        if (tau > 0) {
+          const Eigen::Matrix<double, 6, 1> strain_rate = B * rate;
+          gamma += tau * strain_rate.head<3>();
+          kappa += tau * strain_rate.tail<3>();
+        }
+        const Vec3 n = g.force * gamma, m = g.moment * kappa;
+        H.noalias() += (g.weight * material) * B.topRows<3>().transpose() * (g.force * B.topRows<3>());
+        H.noalias() += (g.weight * material) * B.bottomRows<3>().transpose() * (g.moment * B.bottomRows<3>());
+        if (weights.stiffness == 0) continue;
+        const double w = g.weight * weights.stiffness;
+        const Mat3 turn = p.turn.hessian(p.psi, n, p.dy) + p.curve.hessian(p.psi, m, p.dpsi);
+        const Mat3 stretch = p.turn.dual_derivative(p.psi, n), curve = p.curve.dual_derivative(p.psi, m);
+        const Vec3 along = p.Vc.transpose() * n, bend = p.Vt.transpose() * m;
+        const Vec3 moment = p.Dc.transpose() * n + p.Dt.transpose() * m;
+        for (int a = 0; a < 2; ++a) {
+          const double Na = g.N[2 * a], dNa = g.dN[2 * a];
+          gy[static_cast<std::size_t>(a)] += w * dNa * along;
+          gpsi[static_cast<std::size_t>(a)] += w * (Na * moment + dNa * bend);
+          for (int b = 0; b < 2; ++b) {
+            const double Nb = g.N[2 * b], dNb = g.dN[2 * b];
+            H.block<3, 3>(6 * a + 3, 6 * b + 3) +=
+                w * (Na * Nb * turn + dNa * Nb * curve + Na * dNb * curve.transpose());
+            H.block<3, 3>(6 * a, 6 * b + 3) += w * dNa * Nb * stretch;
+            H.block<3, 3>(6 * a + 3, 6 * b) += w * Na * dNb * stretch.transpose();
+          }
+        }
+      }
+      const Mat12x18 HJ = H * J;
+      K.noalias() = J.transpose() * HJ;
+      if (weights.stiffness != 0)
+        for (int a = 0; a < 2; ++a) {
+          // What the residual changes because J does; gy and gpsi carry the weight already.
+          const auto i = static_cast<std::size_t>(a);
+          const int at = 12 * a;
+          const Mat3 f = k.R2 * skew(gy[i]);
+          K.block<3, 3>(at, 9) -= f;
+          K.block<3, 3>(6, 9) += f;
+          K.middleRows<3>(9).noalias() += skew(gy[i]) * J.middleRows<3>(6 * a);
+          const Mat3 bend = k.log_form[i].dual_derivative(k.psi[i], gpsi[i]);
+          const Vec3 m = k.log_tangent[i].transpose() * gpsi[i];
+          const Eigen::Matrix<double, 3, 18> change = bend * J.middleRows<3>(6 * a + 3);
+          K.middleRows<3>(at + 3) += change;
+          K.middleRows<3>(9).noalias() -= k.relative[i] * change;
+          const Mat3 turned = k.relative[i] * skew(m);
+          K.block<3, 3>(9, at + 3) += turned;
+          K.block<3, 3>(9, 9) -= turned * k.relative[i].transpose();
+        }
+    }
+    if (weights.mass != 0)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) K.block<3, 3>(6 * i, 6 * j).diagonal().array() += weights.mass * e.mass(i, j);
+    for (std::size_t i = 0; i < 3; ++i) {
+      // A node's rotary inertia goes with the element before it, the first node's with the first.
+      if (i == 0 && first > 0) continue;
+      const Mat3& J = rotary_[first + i];
+      const Vec3 w = s.v.segment<3>(nodes_[first + i].rotation.v);
+      const auto at = static_cast<Index>(6 * i + 3);
+      K.block<3, 3>(at, at) += weights.mass * J + weights.damping * (skew(w) * J - skew(J * w));
+    }
+    sink.add(e.equations, e.equations, K);
+  }
+}
+
+Energies Beam::energies(const State& s) const {
+  Energies out;
+  for (const Element& e : elements_) {
+    const Kinematics k = kinematics(s, e);
+    for (const Point& g : e.points) {
+      const PointStrain p = point_strain(k, g);
+      out.strain += 0.5 * g.weight * (p.gamma.dot(g.force * p.gamma) + p.kappa.dot(g.moment * p.kappa));
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        out.kinetic += 0.5 * e.mass(static_cast<Index>(i), static_cast<Index>(j)) *
+                       s.v.segment<3>(e.equations[6 * i]).dot(s.v.segment<3>(e.equations[6 * j]));
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Vec3 w = s.v.segment<3>(nodes_[i].rotation.v);
+    out.kinetic += 0.5 * w.dot(rotary_[i] * w);
+  }
+  out.viscous = viscous_;
+  out.external = fall_;
+  return out;
+}
+
+void Beam::accept(const State& s) {
+  double height = 0, power = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    height += weight_[i] * options_.gravity.dot(s.q.segment<3>(nodes_[i].translation.q));
+  if (options_.damping_time > 0)
+    for (const Element& e : elements_) {
+      const Kinematics k = kinematics(s, e);
+      const Vec12 rate = k.jacobian() * velocities(s, e.equations);
+      for (const Point& g : e.points) {
+        const Eigen::Matrix<double, 6, 1> r = strain_matrix(point_strain(k, g), g) * rate;
+        power += options_.damping_time * g.weight *
+                 (r.head<3>().dot(g.force * r.head<3>()) + r.tail<3>().dot(g.moment * r.tail<3>()));
+      }
+    }
+  if (started_) {
+    viscous_ += 0.5 * (power_ + power) * (s.time - time_);
+    fall_ += height - height_;
+  }
+  power_ = power;
+  height_ = height;
+  time_ = s.time;
+  started_ = true;
+}
+
+void Beam::save(std::vector<double>& history) const {
+  history.insert(history.end(), {viscous_, power_, time_, height_, fall_, started_ ? 1.0 : 0.0});
+}
+
+void Beam::restore(std::span<const double>& history) {
+  if (history.size() < 6) throw std::invalid_argument("the checkpoint is of another system");
+  viscous_ = history[0];
+  power_ = history[1];
+  time_ = history[2];
+  height_ = history[3];
+  fall_ = history[4];
+  started_ = history[5] != 0;
+  history = history.subspan(6);
+}
+
+std::vector<Beam::Strain> Beam::strains(const State& s) const {
+  std::vector<Strain> out;
+  for (const Element& e : elements_) {
+    const Kinematics k = kinematics(s, e);
+    for (const Point& g : e.points) {
+      const PointStrain p = point_strain(k, g);
+      out.push_back({g.arc_length, g.frame.transpose() * p.gamma, g.frame.transpose() * p.kappa});
+    }
+  }
+  return out;
+}
+
+double Beam::mass() const {
+  double sum = 0;
+  for (double w : weight_) sum += w;
+  return sum;
+}
+
+}  // namespace hosel::fem

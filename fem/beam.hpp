@@ -1,0 +1,94 @@
+/// A slender body with large displacements and rotations: geometrically exact three-node elements.
+///
+/// Strains of E. Reissner and J. C. Simo, Comput. Methods Appl. Mech. Eng. 49 (1985) 55-70. With R the
+/// rotation from the reference placement, in reference axes:
+///   gamma = R^T x' - X',   kappa = axial vector of R^T R'
+/// (initial curvature drops out). Between nodes rotations follow the vector relative to the middle node,
+/// M. A. Crisfield, G. Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147: R = R_2 exp(sum N_i log(R_2^T R_i)),
+/// which is objective and depends on no path. Strain energy is integrated at two Gauss points, where the
+/// section's properties are evaluated; the residual is its exact derivative.
+/// Mass is consistent for translations; rotary inertia sits at the nodes (Lobatto weights), each node
+/// a small rigid body, so that momenta are those of a system of bodies.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fem/section.hpp"
+#include "fem/term.hpp"
+#include "mesh/line.hpp"
+
+namespace hosel::fem {
+
+/// A point with a triad: global position and rotation from the reference placement.
+struct Node {
+  Layout::Block translation, rotation;
+};
+/// The six equations of a node: forces (global), then moments (body frame).
+std::vector<Index> equations(const Node& node);
+
+struct BeamOptions {
+  std::string body = "shaft";
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  /// Stress = stiffness (strain + damping_time * strain rate): damping ratio omega damping_time / 2
+  /// of a mode with circular frequency omega [s].
+  double damping_time = 0;
+};
+
+class Beam final : public Term {
+ public:
+  /// Adds nodes along the line to the layout. Sections are functions of the line's arc length. Throws
+  /// std::invalid_argument where a stiffness or mass is not positive.
+  Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options);
+
+  /// Writes the reference placement (positions, no rotation) into a state.
+  void place(State& s) const;
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<mesh::LineNode>& line() const { return line_; }
+
+  std::string body() const override { return options_.body; }
+  void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  void residual(const State& trial, Vector& inertia, Vector& force) const override;
+  void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  Energies energies(const State& accepted) const override;
+  void accept(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
+
+  /// Strains at a Gauss point (two per element) in the section's axes.
+  struct Strain {
+    double arc_length;
+    Vec3 gamma, kappa;
+  };
+  std::vector<Strain> strains(const State& s) const;
+  double mass() const;
+
+ private:
+  struct Point {  // Gauss point of the stiffness
+    double weight, arc_length;
+    Vec3 N, dN;          // shape functions and their derivatives by arc length
+    Vec3 tangent;        // X'
+    Mat3 force, moment;  // section stiffness in reference axes
+    Mat3 frame;
+  };
+  struct Element {
+    std::vector<Index> equations;  // 18
+    std::array<Point, 2> points;
+    Mat3 mass;  // consistent, per direction
+  };
+  struct Kinematics;
+  Kinematics kinematics(const State& s, const Element& e) const;
+
+  BeamOptions options_;
+  std::vector<mesh::LineNode> line_;
+  std::vector<Node> nodes_;
+  std::vector<Element> elements_;
+  std::vector<Mat3> rotary_;    // of each node, reference axes
+  std::vector<double> weight_;  // integral of mass times shape function, for gravity
+  // History: dissipated and external work so far, and what the next step adds to.
+  double viscous_ = 0, power_ = 0, time_ = 0, height_ = 0, fall_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace hosel::fem

@@ -1,0 +1,73 @@
+/// What holds or loads a single node: clamps, imposed motions, wrenches, springs and dampers.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "fem/beam.hpp"
+
+namespace hosel::fem {
+
+/// Position and attitude of a frame with its first two derivatives.
+struct Pose {
+  Vec3 position = Vec3::Zero();                                     ///< global [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();     ///< from the reference placement
+  Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();        ///< global [m/s], [m/s^2]
+  Vec3 angular_velocity = Vec3::Zero();                             ///< body frame [rad/s]
+  Vec3 angular_acceleration = Vec3::Zero();                         ///< body frame [rad/s^2]
+};
+using Motion = std::function<Pose(double time)>;
+
+/// A pose held still.
+Motion at_rest(const Vec3& position, const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
+
+/// A node that follows a motion; the residual on its equations is what drives it.
+class ImposedMotion final : public Prescribed {
+ public:
+  ImposedMotion(const Node& node, Motion motion);
+  const std::vector<Index>& equations() const override { return equations_; }
+  void impose(State& state) const override;
+
+ private:
+  Node node_;
+  Motion motion_;
+  std::vector<Index> equations_;
+};
+
+/// Force (global) and moment at a node.
+struct Wrench {
+  Vec3 force = Vec3::Zero();   ///< global [N]
+  Vec3 moment = Vec3::Zero();  ///< [N m]
+};
+
+/// A wrench given over time, whose moment is dead (global axes) or follows the node (body frame).
+class NodeLoad final : public Term {
+ public:
+  enum class Moment { global, body };
+  NodeLoad(std::string body, const Node& node, std::function<Wrench(double)> wrench, Moment moment = Moment::global);
+
+  std::string body() const override { return body_; }
+  void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  void residual(const State& trial, Vector& inertia, Vector& force) const override;
+  void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  Energies energies(const State& accepted) const override;
+  void accept(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
+
+ private:
+  Vec3 body_moment(const State& s, const Wrench& w) const;
+
+  std::string body_;
+  Node node_;
+  std::function<Wrench(double)> wrench_;
+  Moment kind_;
+  std::vector<Index> equations_;
+  double work_ = 0;
+  bool started_ = false;
+  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero(), moment_ = Vec3::Zero();
+  Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
+};
+
+}  // namespace hosel::fem

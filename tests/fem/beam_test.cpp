@@ -1,0 +1,81 @@
+// The beam term: derivatives, rigid motion.
+#include "fem/beam.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "tests/support/term_checks.hpp"
+
+namespace hosel::fem {
+namespace {
+
+Section thick() {
+  return {.axial = 3e3, .shear_y = 1.1e3, .shear_z = 0.9e3, .torsion = 40, .bending_y = 50, .bending_z = 70,
+          .mass = 400, .rotary = Vec3(30, 10, 20)};
+}
+
+/// A two-element beam far from its reference, with rotations of up to about a radian between nodes.
+struct Scrambled {
+  explicit Scrambled(double damping_time) {
+    const Mat3 frame = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    beam.emplace(layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
+                 [](double s) { Section q = thick(); q.bending_y *= 1 + s; return q; },
+                 BeamOptions{.gravity = Vec3(1, 2, -9), .damping_time = damping_time});
+    state = layout.rest();
+    beam->place(state);
+    state.q = layout.advanced(state.q, test::random_vector(layout.size(), 11, 0.4));
+    state.v = test::random_vector(layout.size(), 12, 3);
+    state.a = test::random_vector(layout.size(), 13, 30);
+  }
+  Layout layout;
+  std::optional<Beam> beam;
+  State state;
+};
+
+TEST(Beam, ResidualIsTheGradientOfTheEnergyAndTheTangentItsDerivative) {
+  Scrambled s(0);
+  test::check_tangent(*s.beam, s.layout, s.state, 1e-5, 1e-8);
+  // Gravity is in the force but not in the stored energy.
+  Layout layout;
+  const Beam weightless(layout, s.beam->line(), [](double a) { Section q = thick(); q.bending_y *= 1 + a; return q; }, {});
+  test::check_gradient(weightless, layout, s.state, 1e-5, 1e-8);
+}
+
+TEST(Beam, DampingForceIsPowerOfTheStrainRates) {
+  // Stress = C (strain + tau rate): d(force)/dtau . v is the dissipated power, so never negative.
+  Scrambled undamped(0), damped(1e-3);
+  const Vector f = test::total_residual(*damped.beam, damped.state) - test::total_residual(*undamped.beam, undamped.state);
+  const double power = f.dot(damped.state.v);
+  EXPECT_GT(power, 0);
+  State later = damped.state;
+  damped.beam->accept(damped.state);
+  later.time += 2e-3;  // the same rates over 2 ms
+  damped.beam->accept(later);
+  EXPECT_NEAR(damped.beam->energies(later).viscous, 2e-3 * power, 1e-12 * power);
+}
+
+TEST(Beam, RigidMotionStrainsNothing) {
+  Layout layout;
+  const Beam beam(layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), Mat3::Identity()),
+                  [](double) { return thick(); }, {});
+  State s = layout.rest();
+  beam.place(s);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(2.9, Vec3(1, -2, 0.5).normalized()));
+  for (const Node& n : beam.nodes()) {
+    s.q.segment<3>(n.translation.q) = turn * Vec3(s.q.segment<3>(n.translation.q)) + Vec3(10, 20, 30);
+    set_rotation(s, n.rotation, turn);
+  }
+  for (const auto& strain : beam.strains(s)) EXPECT_LT(strain.gamma.norm() + strain.kappa.norm(), 1e-12);
+}
+
+TEST(Beam, RefusesNegativeStiffness) {
+  Layout layout;
+  Section bad = thick();
+  bad.bending_z = -1;
+  EXPECT_THROW(Beam(layout, mesh::straight({0, 1}, Vec3::Zero(), Mat3::Identity()), [&](double) { return bad; }, {}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hosel::fem
