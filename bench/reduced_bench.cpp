@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include "golf/units.hpp"
+#include "models/hertz_maw.hpp"
+#include "models/stick_slip.hpp"
 #include "models/volumetric.hpp"
 
 namespace {
@@ -34,6 +36,21 @@ void VolumetricCvode(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
 }
 BENCHMARK(VolumetricCvode)->Unit(benchmark::kMicrosecond);
+
+void StickSlip(benchmark::State& state) {
+  Blow b = blow(0.014);
+  b.contact.friction = 0.4;
+  const models::StickSlip model;
+  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+}
+BENCHMARK(StickSlip)->Unit(benchmark::kMicrosecond);
+
+void HertzMaw(benchmark::State& state) {
+  const Blow b = blow(0.014);
+  const models::HertzMaw model;
+  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+}
+BENCHMARK(HertzMaw)->Unit(benchmark::kMicrosecond);
 
 /// Efficiency = time of one thread / (2 x time of two).
 void TenThousand(benchmark::State& state) {

@@ -2,6 +2,7 @@
 /// not say it: one struct for all, each model reads its own.
 #pragma once
 
+#include "models/hertz_maw.hpp"
 #include "models/volumetric.hpp"
 
 namespace hosel::models {
@@ -9,6 +10,8 @@ namespace hosel::models {
 struct Options {
   VolumetricLaw volumetric;
   VolumetricOptions volumetric_solution;
+  HertzMawLaw hertz_maw;
+  HertzMawOptions hertz_maw_solution;
 };
 
 }  // namespace hosel::models

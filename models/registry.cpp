@@ -5,6 +5,7 @@
 
 #include "models/rigid_eccentric.hpp"
 #include "models/rigid_planar.hpp"
+#include "models/stick_slip.hpp"
 #include "models/volumetric.hpp"
 
 namespace hosel::models {
@@ -19,10 +20,16 @@ std::unique_ptr<ImpactModel> volumetric(const Options& o) {
   return std::make_unique<Volumetric>(o.volumetric, o.volumetric_solution);
 }
 
+std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
+  return std::make_unique<HertzMaw>(o.hertz_maw, o.hertz_maw_solution);
+}
+
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
     ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", plain<RigidEccentric>},
     ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover", volumetric},
+    ModelEntry{"stick-slip", "sliding then rolling along the impulse's path, with tangential restitution", plain<StickSlip>},
+    ModelEntry{"hertz-maw", "elastic ball whose contact patch sticks and slips piecewise", hertz_maw},
 };
 
 }  // namespace
