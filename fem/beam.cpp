@@ -117,7 +117,12 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
   if (line.size() < 3 || line.size() % 2 == 0) throw std::invalid_argument("a beam needs 2 n + 1 nodes for n elements");
   if (!(options_.damping_time >= 0)) throw std::invalid_argument("the damping time of a beam is not negative");
   for (std::size_t i = 0; i < line.size(); ++i)
-    nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
+    if (i == 0 && options_.first)
+      nodes_.push_back(*options_.first);
+    else if (i + 1 == line.size() && options_.last)
+      nodes_.push_back(*options_.last);
+    else
+      nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
   rotary_.assign(line.size(), Mat3::Zero());
   weight_.assign(line.size(), 0);
 

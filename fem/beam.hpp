@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct BeamOptions {
   /// Stress = stiffness (strain + damping_time * strain rate): damping ratio omega damping_time / 2
   /// of a mode with circular frequency omega [s].
   double damping_time = 0;
+  /// Existing nodes that the line begins and ends at, for bodies that share them.
+  std::optional<Node> first = {}, last = {};
 };
 
 class Beam final : public Term {
