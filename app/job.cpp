@@ -2,13 +2,17 @@
 
 #include <array>
 
+#include "app/kinds/face_map.hpp"
 #include "app/kinds/impact.hpp"
+#include "app/kinds/sweep.hpp"
 
 namespace hosel::app {
 namespace {
 
 constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
+    Kind{"face-map", "the launch over the face for several clubs, and what they differ by", read_face_map},
+    Kind{"sweep", "any case over a grid or a Latin hypercube of its keys", read_sweep},
 };
 
 }  // namespace

@@ -365,6 +365,28 @@ std::vector<std::string> Table::texts(std::string_view key, std::optional<std::v
   return out;
 }
 
+std::vector<std::string> Table::scalars(std::string_view key) {
+  Access access{*document_, as_table(node_)};
+  const toml::node* node = access.find(key);
+  if (!node) fail("", fmt::format("'{}' is missing", key));
+  const toml::array* list = node->as_array();
+  if (!list || list->empty()) fail(key, "expected a list of values");
+  std::vector<std::string> out;
+  for (const toml::node& item : *list) {
+    if (const auto* f = item.as_floating_point()) {
+      out.push_back(fmt::format("{}", f->get()));
+    } else if (item.is_integer() || item.is_string() || item.is_boolean()) {
+      std::ostringstream text;
+      text << toml::node_view<const toml::node>(item);
+      out.push_back(text.str());
+    } else {
+      fail(key, "expected numbers, texts or flags");
+    }
+  }
+  access.echo(key, toml::array(*list));
+  return out;
+}
+
 fs::path Table::file(std::string_view key) {
   const fs::path path = document_->directory / text(key);
   if (!fs::is_regular_file(path)) fail(key, fmt::format("no file '{}'", path.string()));

@@ -69,6 +69,8 @@ class Table {
   std::string choice(std::string_view key, const std::vector<std::string>& allowed,
                      std::optional<std::string> standard = {});
   std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> standard = {});
+  /// A list of numbers, texts or flags as TOML text, to be handed on to another case.
+  std::vector<std::string> scalars(std::string_view key);
   /// A file named relative to the case directory; must exist.
   std::filesystem::path file(std::string_view key);
   /// A large measured file: in the case directory, else in the folder that HOSEL_DATA names (default

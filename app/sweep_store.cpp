@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include "app/reader.hpp"
 
@@ -33,6 +32,12 @@ std::string content(const fs::path& file) {
 
 std::string digest(const std::string& text) {
   return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::oid())(text));
+}
+
+std::string digest_of_files(const std::vector<fs::path>& files) {
+  std::string all;
+  for (const fs::path& file : files) all += file.filename().string() + '\n' + (fs::is_regular_file(file) ? digest(content(file)) : "none") + '\n';
+  return digest(all);
 }
 
 std::string program_version() {

@@ -7,11 +7,14 @@
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 namespace hosel::app {
 
 /// Name-based UUID (SHA-1) of a text.
 std::string digest(const std::string& text);
+/// Of the contents of files; a missing one counts as such.
+std::string digest_of_files(const std::vector<std::filesystem::path>& files);
 /// The project's version and a digest of the running program.
 std::string program_version();
 

@@ -26,6 +26,8 @@ struct Panel {
   std::vector<double> map_x = {}, map_y = {};  ///< grid lines of the map
   std::vector<double> map = {};      ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
   std::string map_label = {};        ///< of the colour bar, with unit
+  bool map_symmetric = false;        ///< colours diverge from zero, as far to either side: for differences
+  bool map_equal_axes = false;       ///< one unit is as long in x as in y
 };
 
 struct Figure {

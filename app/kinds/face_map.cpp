@@ -1,0 +1,296 @@
+#include "app/kinds/face_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/sweep.hpp"
+#include "app/sweep_store.hpp"
+#include "models/registry.hpp"
+#include "post/face_map.hpp"
+#include "post/launch_table.hpp"
+#include "post/shaft_effect.hpp"
+#include "post/vtk_series.hpp"
+
+namespace hosel::app {
+namespace {
+
+using nlohmann::json;
+
+json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 vector(const json& j) { return Vec3(j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()); }
+
+json stored(const Launch& l) {
+  json out = {{"velocity", list(l.velocity)}, {"spin", list(l.spin)}, {"head_velocity", list(l.head_velocity)},
+              {"head_spin", list(l.head_spin)}};
+  if (l.contact_time) out["contact_time"] = *l.contact_time;
+  if (l.peak_force) out["peak_force"] = *l.peak_force;
+  if (l.peak_compression) out["peak_compression"] = *l.peak_compression;
+  return out;
+}
+
+std::optional<Launch> launch_from(const json& j) {
+  if (j.contains("error")) return {};
+  Launch l;
+  l.velocity = vector(j.at("velocity"));
+  l.spin = vector(j.at("spin"));
+  l.head_velocity = vector(j.at("head_velocity"));
+  l.head_spin = vector(j.at("head_spin"));
+  if (j.contains("contact_time")) l.contact_time = j["contact_time"].get<double>();
+  if (j.contains("peak_force")) l.peak_force = j["peak_force"].get<double>();
+  if (j.contains("peak_compression")) l.peak_compression = j["peak_compression"].get<double>();
+  return l;
+}
+
+/// One map: a model asked about one club, at every point of the grid or at the nine coarse ones.
+struct Layer {
+  std::string title;
+  std::unique_ptr<models::ImpactModel> model;
+  Blow blow;
+  bool refined = false;
+};
+
+struct Variant {
+  std::string title, model;
+  std::vector<std::string> set;
+};
+
+class FaceMapJob final : public PointJob {
+ public:
+  explicit FaceMapJob(CaseFile& file) {
+    Settings s = read(file.root());
+    grid_ = s.grid;
+    reference_ = s.reference;
+    extra_ = s.extra_mass;
+    // The maps themselves, then the reference with a heavier head, then each again with finer numerics.
+    for (const Variant& v : s.variants) add(file, v, false);
+    maps_ = layers_.size();
+    if (extra_ > 0) {
+      add(file, s.variants[reference_], false);
+      layers_.back().title += fmt::format(", head {:+.6g} g", 1e3 * extra_);
+      layers_.back().blow.club.head.mass += extra_;
+    }
+    bases_ = layers_.size();
+    if (!s.refinement.empty())
+      for (std::size_t m = 0; m < bases_; ++m) {
+        Variant v = s.variants[m < maps_ ? m : reference_];
+        v.set.insert(v.set.end(), s.refinement.begin(), s.refinement.end());
+        add(file, v, true);
+        if (m >= maps_) layers_.back().blow.club.head.mass += extra_;
+      }
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer)
+      if (layers_[layer].refined)
+        for (const std::size_t p : post::coarse_points(grid_)) work_.push_back({layer, p});
+      else
+        for (std::size_t p = 0; p < grid_.size(); ++p) work_.push_back({layer, p});
+    identity_ += digest_of_files(file.named_files());
+  }
+
+  std::size_t size() const override { return work_.size(); }
+  std::string identity() const override { return identity_; }
+
+  json compute(std::size_t point, const std::filesystem::path&) const override {
+    const auto& [layer, place] = work_[point];
+    Blow blow = layers_[layer].blow;
+    blow.delivery.impact_toe = grid_.toe_at(place);
+    blow.delivery.impact_high = grid_.high_at(place);
+    return stored(layers_[layer].model->launch(blow));
+  }
+
+  void report(Output& out, const std::vector<json>& points) const override {
+    std::vector<post::FaceMap> all;
+    for (const Layer& layer : layers_) all.push_back({layer.title, {}});
+    for (std::size_t i = 0; i < points.size(); ++i) all[work_[i].layer].launches.push_back(launch_from(points[i]));
+    const std::vector<post::FaceMap> maps(all.begin(), all.begin() + long(maps_));
+    const post::FaceMap& reference = maps[reference_];
+
+    out.write("face_map.csv", post::face_map_csv(grid_, maps));
+    if (maps_ > 1) out.write("differences.csv", post::difference_csv(grid_, maps, reference));
+    post::VtkSeries(out.directory() / "vtk", "face", post::VtkSeries::Form::surface)
+        .write(0, post::face_map_mesh(layers_[reference_].blow.club.head.face, grid_, maps, reference));
+
+    json summary;
+    summary["grid"] = {{"width_mm", 1e3 * grid_.width}, {"height_mm", 1e3 * grid_.height},
+                       {"columns", grid_.columns}, {"rows", grid_.rows}};
+    summary["reference"] = reference.title;
+    for (const post::FaceMap& map : maps) {
+      json& m = summary["models"][map.title];
+      const bool whole = std::ranges::all_of(map.launches, [](const auto& l) { return l.has_value(); });
+      m["points_without_a_launch"] = std::ranges::count_if(map.launches, [](const auto& l) { return !l; });
+      if (whole) m["mirror_error"] = post::mirror_error(grid_, map);
+      const auto& centre = map.launches[post::coarse_points(grid_)[4]];
+      if (centre) m["centre"] = post::to_json(*centre);
+      draw(out, map);
+      if (&map == &maps[reference_]) continue;
+      draw(out, map, &reference);
+      if (whole && std::ranges::all_of(reference.launches, [](const auto& l) { return l.has_value(); }))
+        summary["effect"][map.title] = effect(out, all, std::size_t(&map - maps.data()));
+    }
+    out.write_summary(summary);
+  }
+
+ private:
+  struct Settings {
+    Blow blow;
+    post::FaceGrid grid;
+    std::vector<Variant> variants;
+    std::size_t reference = 0;
+    double extra_mass = 0;
+    std::vector<std::string> refinement;
+  };
+
+  /// Every key that a face map knows.
+  static Settings read(Table root) {
+    Settings s;
+    for (const std::string& m : read_models(root)) s.variants.push_back({m, m, {}});
+    for (Table v : root.tables("variants")) {
+      const std::string name = v.text("name"), model = v.text("model");
+      if (!models::find(model)) v.fail("model", fmt::format("no model '{}'; `hosel list` shows them", model));
+      s.variants.push_back({name, model, v.texts("set")});
+    }
+    std::vector<std::string> names;
+    for (const Variant& v : s.variants) {
+      if (std::ranges::find(names, v.title) != names.end()) root.fail("models", fmt::format("'{}' is there twice", v.title));
+      names.push_back(v.title);
+    }
+    const std::string reference = root.choice("reference", names, names.front());
+    s.reference = std::size_t(std::ranges::find(names, reference) - names.begin());
+    if (auto grid = root.optional_table("grid")) {
+      s.grid.width = grid->quantity("width", "mm", {1e-3, 0.2}, s.grid.width);
+      s.grid.height = grid->quantity("height", "mm", {1e-3, 0.2}, s.grid.height);
+      s.grid.columns = int(grid->integer("columns", 3, 1001, s.grid.columns));
+      s.grid.rows = int(grid->integer("rows", 3, 1001, s.grid.rows));
+    }
+    if (auto e = root.optional_table("equivalent_mass")) s.extra_mass = e->quantity("extra", "g", {1e-5, 0.1}, 5e-3);
+    if (auto r = root.optional_table("refinement")) s.refinement = r->texts("set");
+    std::vector<std::string> asked;
+    for (const Variant& v : s.variants) asked.push_back(v.model);
+    s.blow = read_blow(root, asked);
+    if (s.blow.delivery.impact_toe != 0 || s.blow.delivery.impact_high != 0)
+      root.fail("delivery", "the grid says where the ball meets the face: impact_toe and impact_high stay out");
+    return s;
+  }
+
+  void add(const CaseFile& file, const Variant& variant, bool refined) {
+    std::vector<std::string> overrides = file.overrides();
+    overrides.insert(overrides.end(), variant.set.begin(), variant.set.end());
+    CaseFile again(file.file(), overrides);
+    Table root = again.root();
+    root.text("kind", "face-map");
+    root.text("title", "");
+    Layer layer{variant.title, models::find(variant.model)->make(models::Options{}), read(root).blow, refined};
+    again.finish();
+    identity_ += variant.title + '\n' + variant.model + '\n' + again.resolved();
+    layers_.push_back(std::move(layer));
+  }
+
+  /// Every quantity of a map, or of its difference to another.
+  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference = nullptr) const {
+    const std::string what = reference ? fmt::format("{} minus {}", map.title, reference->title) : map.title;
+    post::Figure figure{.title = what + "; " + post::kFaceView, .columns = 3, .panel_width = 640, .panel_height = 330};
+    for (const post::MapQuantity& q : post::map_quantities()) {
+      const auto v = reference ? post::differences(map, *reference, q) : post::values(map, q);
+      if (v.empty()) continue;
+      const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
+      figure.panels.push_back(post::face_panel(grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", q.name, unit),
+                                               fmt::format("[{}]", unit), reference != nullptr));
+    }
+    picture(out, figure, fmt::format("figures/{}{}", reference ? "difference-" : "map-", file_name(map.title)));
+  }
+
+  static void picture(Output& out, const post::Figure& figure, const std::string& stem) {
+    if (const std::string why = post::draw(figure, out.path(stem)); !why.empty()) out.say(why);
+  }
+
+  static std::string file_name(std::string title) {
+    for (char& c : title)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    return title;
+  }
+
+  json effect(Output& out, const std::vector<post::FaceMap>& all, std::size_t m) const {
+    const post::FaceMap &map = all[m], &reference = all[reference_];
+    auto figures = post::shaft_effect(grid_, map, reference);
+    std::vector<double> mass;
+    const auto with_mass = [&](post::ShaftEffect& e, const std::vector<double>& grams, std::size_t centre) {
+      double sum = 0;
+      for (const double g : grams) sum += g;
+      e.figures.push_back({"equivalent_head_mass_centre_g", 1e3 * grams[centre]});
+      e.figures.push_back({"equivalent_head_mass_mean_g", 1e3 * sum / double(grams.size())});
+      e.figures.push_back({"equivalent_head_mass_min_g", 1e3 * std::ranges::min(grams)});
+      e.figures.push_back({"equivalent_head_mass_max_g", 1e3 * std::ranges::max(grams)});
+    };
+    const double head = layers_[reference_].blow.club.head.mass;
+    if (extra_ > 0) {
+      mass = post::equivalent_mass(map, reference, all[maps_], head, extra_);
+      with_mass(figures, mass, post::coarse_points(grid_)[4]);
+      std::vector<double> grams;
+      for (const double x : mass) grams.push_back(1e3 * x);
+      const std::string label = "equivalent extra head mass [g]";
+      picture(out,
+              {.title = fmt::format("head mass by which {} plays as {}; {}", reference.title, map.title, post::kFaceView),
+               .panels = {post::face_panel(grid_, grams, label, label, false)},
+               .panel_width = 1100, .panel_height = 620},
+              "figures/equivalent-mass-" + file_name(map.title));
+    }
+    // The same figures from the nine coarse points, as computed and with finer numerics: their
+    // difference is the numerical uncertainty.
+    std::optional<post::ShaftEffect> as_computed, finer;
+    if (layers_.size() > bases_) {
+      const auto complete = [](const post::FaceMap& x) {
+        return std::ranges::all_of(x.launches, [](const auto& l) { return l.has_value(); });
+      };
+      if (std::ranges::all_of(all.begin() + long(bases_), all.end(), complete)) {
+        const post::FaceGrid nine = post::coarse(grid_);
+        const auto base = [&](std::size_t i) { return post::coarse(grid_, all[i]); };
+        as_computed = post::shaft_effect(nine, base(m), base(reference_));
+        finer = post::shaft_effect(nine, all[bases_ + m], all[bases_ + reference_]);
+        if (extra_ > 0) {
+          with_mass(*as_computed, post::equivalent_mass(base(m), base(reference_), base(maps_), head, extra_), 4);
+          with_mass(*finer,
+                    post::equivalent_mass(all[bases_ + m], all[bases_ + reference_], all[bases_ + maps_], head, extra_), 4);
+        }
+      }
+    }
+    json j;
+    out.say(fmt::format("\n{} minus {}", map.title, reference.title));
+    for (std::size_t i = 0; i < figures.figures.size(); ++i) {
+      const auto& [name, value] = figures.figures[i];
+      json& figure = j["figures"][name];
+      figure["value"] = value;
+      if (finer) {
+        const double error = std::abs(finer->figures[i].value - as_computed->figures[i].value);
+        figure["uncertainty"] = error;
+        out.say(fmt::format("  {:<48} {:>12.5g} +- {:.2g}", name, value, error));
+      } else {
+        out.say(fmt::format("  {:<48} {:>12.5g}", name, value));
+      }
+    }
+    j["uncertainty_source"] = finer ? "finer numerics at the nine corner, edge and centre points"
+                                    : "none: no [refinement] declared, or a point of it failed";
+    for (const auto& [text, holds] : figures.statements) {
+      j["statements"].push_back({{"text", text}, {"holds", holds}});
+      out.say(fmt::format("  {}  {}", holds ? "yes" : "NO ", text));
+    }
+    return j;
+  }
+
+  struct Work {
+    std::size_t layer, place;
+  };
+  post::FaceGrid grid_;
+  std::size_t reference_ = 0, maps_ = 0, bases_ = 0;  // layers: maps, heavier head, refined
+  double extra_ = 0;
+  std::vector<Layer> layers_;
+  std::vector<Work> work_;
+  std::string identity_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_face_map(CaseFile& file) { return std::make_unique<FaceMapJob>(file); }
+
+}  // namespace hosel::app

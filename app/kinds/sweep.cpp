@@ -1,0 +1,214 @@
+#include "app/kinds/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "app/cases.hpp"
+#include "app/sweep.hpp"
+#include "app/sweep_store.hpp"
+#include "post/figure.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+struct Parameter {
+  std::string key;                  ///< dotted, of the other case
+  std::vector<std::string> values;  ///< TOML text, one a level (grid) or one a point (sample)
+};
+
+/// One value in each of n equal strata of [low, high], in random order. The generator's own bits are
+/// used, since the standard distributions differ between libraries. McKay, Beckman and Conover (1979).
+std::vector<double> latin_column(double low, double high, std::size_t n, std::mt19937_64& random) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  std::vector<double> out;
+  for (const std::size_t stratum : order) {
+    const double within = double(random() >> 11) * 0x1.0p-53;
+    out.push_back(low + (high - low) * (double(stratum) + within) / double(n));
+  }
+  return out;
+}
+
+/// Every number of a summary by its dotted name.
+void flatten(const json& j, const std::string& name, json& out) {
+  if (j.is_object()) {
+    for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
+  } else if (j.is_array()) {
+    for (std::size_t i = 0; i < j.size(); ++i) flatten(j[i], fmt::format("{}.{}", name, i), out);
+  } else if (j.is_number()) {
+    out[name] = j;
+  }
+}
+
+class SweepJob final : public PointJob {
+ public:
+  explicit SweepJob(CaseFile& file) {
+    Table root = file.root();
+    const std::string named = root.text("case");
+    const fs::path beside = file.directory() / named;
+    case_ = fs::exists(beside) ? beside : find_case(named);
+    set_ = root.texts("set", std::vector<std::string>{});
+    record_ = root.texts("record", std::vector<std::string>{});
+    keep_outputs_ = root.flag("keep_outputs", false);
+    auto sample = root.optional_table("sample");
+    const auto points = sample ? std::size_t(sample->integer("points", 1, 10'000'000)) : 0;
+    std::mt19937_64 random(sample ? std::uint64_t(sample->integer("seed", 0, 1L << 62)) : 0);
+    auto tables = root.tables("parameters");
+    if (tables.empty()) root.fail("parameters", "name at least one [[parameters]] with its key");
+    size_ = sample ? points : 1;
+    for (Table t : tables) {
+      Parameter p{t.text("key"), {}};
+      if (sample) {
+        const auto range = t.numbers("range", 2);
+        for (const double x : latin_column(range[0], range[1], points, random)) p.values.push_back(fmt::format("{}", x));
+      } else {
+        p.values = t.scalars("values");
+        size_ *= p.values.size();
+      }
+      parameters_.push_back(std::move(p));
+    }
+    sampled_ = sample.has_value();
+    // Every point is read now: a value that the case refuses is an error before anything is computed.
+    for (std::size_t point = 0; point < size_; ++point) {
+      CaseFile one(case_, overrides(point));
+      read_job(one);
+      identity_ += digest(one.resolved()) + digest_of_files(one.named_files());
+    }
+  }
+
+  std::size_t size() const override { return size_; }
+  std::string identity() const override { return identity_; }
+
+  json compute(std::size_t point, const fs::path& scratch) const override {
+    // A summary is the last thing a run writes: one that lies here was finished by a killed process.
+    if (!fs::exists(scratch / "summary.json")) {
+      CaseFile file(case_, overrides(point));
+      const auto job = read_job(file);
+      Output out({.directory = scratch, .quiet = true}, file.resolved());
+      job->run(out);
+    }
+    std::ifstream in(scratch / "summary.json");
+    json result = json::object();
+    flatten(json::parse(in), "", result);
+    in.close();
+    if (!keep_outputs_) fs::remove_all(scratch);
+    return result;
+  }
+
+  void report(Output& out, const std::vector<json>& points) const override {
+    std::vector<std::string> columns = record_;
+    if (columns.empty()) {
+      json all = json::object();
+      for (const json& p : points)
+        if (!p.contains("error")) all.update(p);
+      for (const auto& [name, value] : all.items()) columns.push_back(name);
+    }
+    std::string csv = "point";
+    for (const Parameter& p : parameters_) csv += "," + p.key;
+    for (const std::string& c : columns) csv += "," + c;
+    csv += ",error\n";
+    json summary = {{"points", size_}, {"failed", 0}};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      csv += std::to_string(i);
+      for (std::size_t p = 0; p < parameters_.size(); ++p) csv += "," + plain(value(p, i));
+      const bool failed = points[i].contains("error");
+      for (const std::string& c : columns) {
+        csv += ",";
+        if (failed) continue;
+        if (!points[i].contains(c)) throw InputError(fmt::format("record: point {} has no number '{}' in its summary", i, c));
+        csv += points[i][c].dump();
+      }
+      std::string why = failed ? points[i]["error"].get<std::string>() : "";
+      std::ranges::replace(why, ',', ';');
+      csv += "," + why + "\n";
+      if (failed) summary["failed"] = summary["failed"].get<int>() + 1;
+    }
+    out.write("sweep.csv", csv);
+    for (const std::string& c : columns) {
+      double low = INFINITY, high = -INFINITY;
+      for (const json& p : points)
+        if (p.contains(c)) low = std::min(low, p[c].get<double>()), high = std::max(high, p[c].get<double>());
+      if (low <= high) summary["range"][c] = {low, high};
+    }
+    if (!record_.empty()) draw(out, points);
+    out.write_summary(summary);
+    out.say(fmt::format("{} points, {} without an answer; the table is {}", size_, summary["failed"].get<int>(),
+                        (out.directory() / "sweep.csv").string()));
+  }
+
+ private:
+  /// The first parameter changes slowest.
+  const std::string& value(std::size_t parameter, std::size_t point) const {
+    const auto& values = parameters_[parameter].values;
+    if (sampled_) return values[point];
+    std::size_t block = 1;
+    for (std::size_t p = parameter + 1; p < parameters_.size(); ++p) block *= parameters_[p].values.size();
+    return values[point / block % values.size()];
+  }
+
+  std::vector<std::string> overrides(std::size_t point) const {
+    std::vector<std::string> out = set_;
+    for (std::size_t p = 0; p < parameters_.size(); ++p) out.push_back(parameters_[p].key + "=" + value(p, point));
+    return out;
+  }
+
+  /// A TOML text without its quotes.
+  static std::string plain(const std::string& toml) {
+    const bool quoted = toml.size() > 1 && toml.front() == toml.back() && (toml.front() == '"' || toml.front() == '\'');
+    return quoted ? toml.substr(1, toml.size() - 2) : toml;
+  }
+
+  /// The parameter's value at every point, empty where one is not a number.
+  std::vector<double> numbers(std::size_t parameter) const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < size_; ++i) {
+      char* end = nullptr;
+      out.push_back(std::strtod(value(parameter, i).c_str(), &end));
+      if (*end) return {};
+    }
+    return out;
+  }
+
+  /// Each recorded number against the first parameter that is a number.
+  void draw(Output& out, const std::vector<json>& points) const {
+    std::size_t across = 0;
+    while (across < parameters_.size() && numbers(across).empty()) ++across;
+    if (across == parameters_.size()) return;
+    const std::vector<double> x = numbers(across);
+    post::Figure figure{.title = case_.filename().string(), .columns = 2};
+    for (const std::string& c : record_) {
+      post::Series series{.style = sampled_ || parameters_.size() > 1 ? "points" : "linespoints"};
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (points[i].contains(c)) {
+          series.x.push_back(x[i]);
+          series.y.push_back(points[i][c].get<double>());
+        }
+      const std::size_t dot = c.rfind(".value");
+      figure.panels.push_back({.title = c.substr(0, dot), .x_label = parameters_[across].key, .y_label = "", .series = {series}});
+    }
+    if (const std::string why = post::draw(figure, out.path("figures/sweep")); !why.empty()) out.say(why);
+  }
+
+  fs::path case_;
+  std::vector<std::string> set_, record_;
+  bool keep_outputs_ = false, sampled_ = false;
+  std::vector<Parameter> parameters_;
+  std::size_t size_ = 0;
+  std::string identity_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_sweep(CaseFile& file) { return std::make_unique<SweepJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,134 @@
+#include "post/face_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "golf/units.hpp"
+#include "post/launch_table.hpp"
+
+namespace hosel::post {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<MapQuantity> make_quantities() {
+  std::vector<MapQuantity> all;
+  for (const Channel& c : channels())
+    all.push_back({std::string(c.name), std::string(c.unit), c.si,
+                   [value = c.value](const Launch& l) -> std::optional<double> { return (l.*value)(); }});
+  all.push_back({"head_speed", "mps", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_velocity.norm(); }});
+  all.push_back({"head_rotation", "rad_per_s", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_spin.norm(); }});
+  for (int axis = 0; axis < 3; ++axis)
+    all.push_back({fmt::format("head_spin_{}", "xyz"[axis]), "rad_per_s", 1.0,
+                   [axis](const Launch& l) -> std::optional<double> { return l.head_spin[axis]; }});
+  all.push_back({"contact_time", "ms", 1e-3, [](const Launch& l) { return l.contact_time; }});
+  all.push_back({"peak_force", "N", 1.0, [](const Launch& l) { return l.peak_force; }});
+  all.push_back({"peak_compression", "mm", 1e-3, [](const Launch& l) { return l.peak_compression; }});
+  return all;
+}
+
+bool nowhere(const std::vector<double>& v) {
+  return std::ranges::none_of(v, [](double x) { return std::isfinite(x); });
+}
+
+using Column = std::function<std::vector<double>(const FaceMap&, const MapQuantity&)>;
+
+std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, const Column& column) {
+  std::string out = "model,impact_toe_mm,impact_high_mm";
+  for (const MapQuantity& q : map_quantities()) out += fmt::format(",{}_{}", q.name, q.unit);
+  out += '\n';
+  for (const FaceMap* map : maps) {
+    std::vector<std::vector<double>> columns;
+    for (const MapQuantity& q : map_quantities()) columns.push_back(column(*map, q));
+    for (std::size_t p = 0; p < grid.size(); ++p) {
+      out += fmt::format("{},{:.6g},{:.6g}", map->title, 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
+      for (const auto& c : columns)
+        out += c.empty() || !std::isfinite(c[p]) ? std::string(",") : fmt::format(",{:.9g}", c[p]);
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::span<const MapQuantity> map_quantities() {
+  static const std::vector<MapQuantity> all = make_quantities();
+  return all;
+}
+
+std::vector<double> values(const FaceMap& map, const MapQuantity& q) {
+  std::vector<double> out;
+  out.reserve(map.launches.size());
+  for (const auto& launch : map.launches) {
+    const auto x = launch ? q.value(*launch) : std::nullopt;
+    out.push_back(x ? *x / q.si : kNone);
+  }
+  if (nowhere(out)) out.clear();
+  return out;
+}
+
+std::vector<double> differences(const FaceMap& map, const FaceMap& reference, const MapQuantity& q) {
+  std::vector<double> a = values(map, q);
+  const std::vector<double> b = values(reference, q);
+  if (a.empty() || b.empty()) return {};
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
+std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps) {
+  std::vector<const FaceMap*> all;
+  for (const FaceMap& m : maps) all.push_back(&m);
+  return csv(grid, all, [](const FaceMap& m, const MapQuantity& q) { return values(m, q); });
+}
+
+std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference) {
+  std::vector<const FaceMap*> others;
+  for (const FaceMap& m : maps)
+    if (m.title != reference.title) others.push_back(&m);
+  return csv(grid, others, [&](const FaceMap& m, const MapQuantity& q) { return differences(m, reference, q); });
+}
+
+Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string title, std::string label, bool symmetric) {
+  Panel p;
+  p.title = std::move(title);
+  p.x_label = "heel  <-  impact toe [mm]  ->  toe";
+  p.y_label = "impact high [mm]";
+  p.map_label = std::move(label);
+  p.map_symmetric = symmetric;
+  p.map_equal_axes = true;
+  for (int i = 0; i < grid.columns; ++i) p.map_x.push_back(1e3 * grid.toe(i));
+  for (int j = 0; j < grid.rows; ++j) p.map_y.push_back(1e3 * grid.high(j));
+  p.map = v;
+  Series circle{.style = "lines dt 2"};
+  for (int k = 0; k <= 72; ++k) {
+    circle.x.push_back(12 * std::cos(k * kPi / 36));
+    circle.y.push_back(12 * std::sin(k * kPi / 36));
+  }
+  p.series.push_back(std::move(circle));
+  return p;
+}
+
+VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference) {
+  VtkMesh mesh;
+  for (std::size_t p = 0; p < grid.size(); ++p) mesh.points.push_back(face.point(-grid.toe_at(p), grid.high_at(p)));
+  for (int j = 0; j + 1 < grid.rows; ++j)
+    for (int i = 0; i + 1 < grid.columns; ++i) {
+      const std::int64_t a = std::int64_t(j) * grid.columns + i, b = a + grid.columns;
+      mesh.cells.push_back({CellShape::quad, {a, b, b + 1, a + 1}});  // normal out of the face
+    }
+  for (const FaceMap& m : maps)
+    for (const MapQuantity& q : map_quantities()) {
+      if (auto v = values(m, q); !v.empty())
+        mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), q.unit, 1, std::move(v)});
+      if (m.title == reference.title) continue;
+      if (auto v = differences(m, reference, q); !v.empty())
+        mesh.point_fields.push_back({fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), q.unit, 1, std::move(v)});
+    }
+  return mesh;
+}
+
+}  // namespace hosel::post

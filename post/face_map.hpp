@@ -1,0 +1,66 @@
+/// Launch over the face: one impact at every point of a grid, for one or several models.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "golf/face.hpp"
+#include "golf/launch.hpp"
+#include "post/figure.hpp"
+#include "post/vtk_series.hpp"
+
+namespace hosel::post {
+
+/// Points over width x height around the face centre, in rows from low to high, each from heel to toe.
+struct FaceGrid {
+  double width = 0.075, height = 0.0375;  ///< [m]
+  int columns = 15, rows = 9;             ///< at least 2 each
+
+  std::size_t size() const { return std::size_t(columns) * std::size_t(rows); }
+  double toe(int column) const { return width * (double(column) / (columns - 1) - 0.5); }  ///< [m], toe positive
+  double high(int row) const { return height * (double(row) / (rows - 1) - 0.5); }         ///< [m], up positive
+  double toe_at(std::size_t point) const { return toe(int(point) % columns); }
+  double high_at(std::size_t point) const { return high(int(point) / columns); }
+};
+
+/// One model's launches, one a grid point; absent where the model found no answer.
+struct FaceMap {
+  std::string title;
+  std::vector<std::optional<Launch>> launches;
+};
+
+/// What a map shows: the launch channels, and head and contact after the blow.
+struct MapQuantity {
+  std::string name, unit;  ///< unit as a suffix
+  double si;               ///< one of the unit in SI
+  std::function<std::optional<double>(const Launch&)> value;  ///< SI; absent where the model has none
+};
+std::span<const MapQuantity> map_quantities();
+
+/// The quantity over the grid in its unit, NaN where there is none; empty if it is nowhere.
+std::vector<double> values(const FaceMap& map, const MapQuantity& quantity);
+/// The same as `map` minus `reference`.
+std::vector<double> differences(const FaceMap& map, const FaceMap& reference, const MapQuantity& quantity);
+
+/// One row a point and model: model, impact_toe_mm, impact_high_mm, then a column a quantity.
+std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps);
+/// The same for each map minus `reference`.
+std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference);
+
+/// A contour map as a panel: millimetres from the face centre, toe on the right, the 12 mm circle.
+/// `symmetric` centres the colours on zero.
+Panel face_panel(const FaceGrid& grid, const std::vector<double>& values, std::string title, std::string label,
+                 bool symmetric);
+/// Under every figure of maps.
+inline constexpr const char* kFaceView =
+    "seen from the golfer's side of the head, towards the target (right-handed): heel left, toe right; dashed: 12 mm from the face centre";
+
+/// The face's surface through the grid points (face frame) with every quantity of every map, and its
+/// differences to the reference, as point arrays `<model>.<quantity>` and `<model>-minus-<reference>.<quantity>`.
+VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference);
+
+}  // namespace hosel::post

@@ -1,0 +1,51 @@
+/// What one club changes against another over the face, as figures: the statements of McNally,
+/// McPhee and Henrikson, "The Golf Shaft's Influence on Clubhead-Ball Impact Dynamics" (2018), whose
+/// contour plots carry no numbers in print.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "post/face_map.hpp"
+
+namespace hosel::post {
+
+/// A named figure in the unit of its name.
+struct EffectFigure {
+  std::string name;
+  double value;
+};
+
+/// One statement and whether the figures bear it out.
+struct Statement {
+  std::string text;
+  bool holds;
+};
+
+struct ShaftEffect {
+  std::vector<EffectFigure> figures;
+  std::vector<Statement> statements;
+};
+
+/// `club` against `free` over the whole grid. Differences are club minus free; positions are those of
+/// a parabola through the best grid point and its neighbours; slopes are least-squares planes over the
+/// grid, per mm towards toe and up. Throws std::invalid_argument where a point has no launch.
+ShaftEffect shaft_effect(const FaceGrid& grid, const FaceMap& club, const FaceMap& free);
+
+/// Extra head mass [kg] that gives the free head the club's ball speed, at every point. `heavier` is
+/// the free head's map with `extra` more mass at its centre of gravity, `mass` the head's own. 1/v is
+/// taken linear in 1/M, which is exact for one impulse with a fixed restitution.
+std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, const FaceMap& heavier, double mass,
+                                    double extra);
+
+/// How far a map is from its own mirror image heel to toe: the largest difference of a quantity that a
+/// mirror keeps (ball speed, launch angle, backspin) or turns round (azimuth, sidespin), relative to
+/// the largest value of its kind in the map. Zero for a symmetric head struck squarely.
+double mirror_error(const FaceGrid& grid, const FaceMap& map);
+
+/// The map at its corners, edge middles and centre, as a 3 x 3 grid of the same size.
+FaceMap coarse(const FaceGrid& grid, const FaceMap& map);
+std::vector<std::size_t> coarse_points(const FaceGrid& grid);
+FaceGrid coarse(const FaceGrid& grid);
+
+}  // namespace hosel::post

@@ -1,0 +1,284 @@
+// Sweeps: the table has the same bytes whatever was killed, resumed or divided; nothing is computed
+// twice, nothing mixed, nothing unconverged passed off as a result.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "command.hpp"
+
+extern char** environ;
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel::test;
+
+const std::string kBlow = R"(kind = "impact"
+models = ["rigid-eccentric"]
+[delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 10.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 0.0]
+inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
+)";
+
+const std::string kSample = R"(kind = "sweep"
+case = "../blow"
+[sample]
+points = 400
+seed = 7
+[[parameters]]
+key = "delivery.club_speed_mps"
+range = [30.0, 50.0]
+[[parameters]]
+key = "delivery.impact_toe_mm"
+range = [-20.0, 20.0]
+)";
+
+/// A sweep with the blow beside it; returns the sweep's directory.
+fs::path sweep_case(const std::string& name, const std::string& text) {
+  const fs::path dir = fresh_directory(name);
+  write(dir / "blow" / "case.toml", kBlow);
+  write(dir / "sweep" / "case.toml", text);
+  return dir;
+}
+
+/// Point numbers in the order they were written, from every shard.
+std::vector<int> recorded(const fs::path& out) {
+  std::vector<int> points;
+  for (const auto& entry : fs::recursive_directory_iterator(out / "shards"))
+    if (entry.path().filename() == "points.jsonl") {
+      std::ifstream in(entry.path());
+      std::string line;
+      std::getline(in, line);
+      while (std::getline(in, line))
+        if (in.eof()) break;  // cut short
+        else points.push_back(nlohmann::json::parse(line).at("point"));
+    }
+  return points;
+}
+
+std::size_t lines(const fs::path& file) {
+  const std::string text = content(file);
+  return std::size_t(std::ranges::count(text, '\n'));
+}
+
+TEST(Sweep, KilledTenTimesGivesTheSameTable) {
+  const fs::path dir = sweep_case("sweep_killed", kSample);
+  const std::string sweep = (dir / "sweep").string(), whole = (dir / "whole").string(), killed = (dir / "killed").string();
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + whole).status, 0);
+
+  std::mt19937 random(20181);
+  const fs::path points = dir / "killed" / "shards" / "1-of-1" / "points.jsonl";
+  for (int kill_number = 0; kill_number < 10; ++kill_number) {
+    const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % 25;
+    std::string program = HOSEL_COMMAND, run = "run", quiet = "--quiet", option = "--out";
+    std::string where = sweep, out = killed;
+    char* argv[] = {program.data(), run.data(), where.data(), quiet.data(), option.data(), out.data(), nullptr};
+    pid_t child = 0;
+    ASSERT_EQ(posix_spawn(&child, program.c_str(), nullptr, nullptr, argv, environ), 0);
+    while (!fs::exists(points) || lines(points) < until) {
+      int status = 0;
+      ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "ended before the kill";
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    kill(child, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));  // the kill came while it was at work
+    ASSERT_FALSE(fs::exists(dir / "killed" / "sweep.csv"));
+  }
+  const std::size_t before = recorded(dir / "killed").size();
+  ASSERT_LT(before, 400u);
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + killed).status, 0);
+  EXPECT_EQ(content(dir / "killed" / "sweep.csv"), content(dir / "whole" / "sweep.csv"));
+  EXPECT_EQ(content(dir / "killed" / "summary.json"), content(dir / "whole" / "summary.json"));
+  std::vector<int> done = recorded(dir / "killed");
+  ASSERT_EQ(done.size(), 400u);  // none lost, none computed again once it was on disk
+  std::ranges::sort(done);
+  for (int i = 0; i < 400; ++i) EXPECT_EQ(done[std::size_t(i)], i);
+}
+
+TEST(Sweep, ALineCutShortIsComputedAgain) {
+  const fs::path dir = sweep_case("sweep_torn", kSample);
+  const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + out).status, 0);
+  const std::string table = content(dir / "out" / "sweep.csv");
+  const fs::path points = dir / "out" / "shards" / "1-of-1" / "points.jsonl";
+  fs::resize_file(points, fs::file_size(points) - 30);
+  fs::remove(dir / "out" / "summary.json");
+  fs::remove(dir / "out" / "sweep.csv");
+  ASSERT_EQ(recorded(dir / "out").size(), 399u);
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + out).status, 0);
+  EXPECT_EQ(content(dir / "out" / "sweep.csv"), table);
+  EXPECT_EQ(recorded(dir / "out").size(), 400u);
+}
+
+TEST(Sweep, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
+  const fs::path dir = sweep_case("sweep_shards", kSample);
+  const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "one").string()).status, 0);
+  ASSERT_EQ(command("sweep plan " + sweep + " --out " + out).status, 0);
+  const Outcome early = command("sweep merge " + out);
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.text.find("0 of 400 points are finished"), std::string::npos) << early.text;
+  Outcome first, second;
+  std::thread other([&] { first = command("sweep run " + out + " --quiet --shard 1/2"); });
+  second = command("sweep run " + out + " --quiet --shard 2/2");
+  other.join();
+  ASSERT_EQ(first.status, 0) << first.text;
+  ASSERT_EQ(second.status, 0) << second.text;
+  EXPECT_EQ(recorded(dir / "out").size(), 400u);
+  EXPECT_NE(command("sweep status " + out).text.find("400 of 400 points finished"), std::string::npos);
+  ASSERT_EQ(command("sweep merge " + out).status, 0);
+  EXPECT_EQ(content(dir / "out" / "sweep.csv"), content(dir / "one" / "sweep.csv"));
+  EXPECT_EQ(content(dir / "out" / "summary.json"), content(dir / "one" / "summary.json"));
+  // Another division of the work finds everything done.
+  ASSERT_EQ(command("sweep run " + out + " --quiet --shard 3/5").status, 0);
+  EXPECT_EQ(recorded(dir / "out").size(), 400u);
+}
+
+TEST(Sweep, MixedCasesAndVersionsAreRefused) {
+  const fs::path dir = sweep_case("sweep_mixed", kSample);
+  const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
+  ASSERT_EQ(command("sweep plan " + sweep + " --out " + out).status, 0);
+  ASSERT_EQ(command("sweep run " + out + " --quiet").status, 0);
+
+  const fs::path points = dir / "out" / "shards" / "1-of-1" / "points.jsonl";
+  const std::string good = content(points);
+  std::string other = good;  // as written by another build
+  const std::size_t at = other.find("fingerprint\":\"") + 14;
+  other[at] = other[at] == '0' ? '1' : '0';
+  write(points, other);
+  Outcome o = command("sweep merge " + out);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("another version"), std::string::npos) << o.text;
+  write(points, good);
+
+  std::string blow = kBlow;  // the case that is swept changes
+  blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
+  write(dir / "blow" / "case.toml", blow);
+  o = command("sweep merge " + out);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("has changed"), std::string::npos) << o.text;
+  o = command("run " + sweep + " --quiet --out " + out);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_FALSE(fs::exists(dir / "out" / "sweep.csv"));
+  write(dir / "blow" / "case.toml", kBlow);
+  EXPECT_EQ(command("sweep merge " + out).status, 0);
+}
+
+TEST(Sweep, LatinHypercubeFillsEveryStratumOnce) {
+  const fs::path dir = sweep_case("sweep_latin", kSample);
+  ASSERT_EQ(command("run " + (dir / "sweep").string() + " --quiet --out " + (dir / "out").string()).status, 0);
+  std::ifstream in(dir / "out" / "sweep.csv");
+  std::string line;
+  std::getline(in, line);
+  ASSERT_TRUE(line.starts_with("point,delivery.club_speed_mps,delivery.impact_toe_mm,")) << line;
+  std::vector<int> speed(400), toe(400);
+  double sum = 0;
+  int rows = 0;
+  for (; std::getline(in, line); ++rows) {
+    std::stringstream cells(line);
+    std::string number, a, b;
+    std::getline(cells, number, ',');
+    std::getline(cells, a, ',');
+    std::getline(cells, b, ',');
+    ++speed.at(std::size_t((std::stod(a) - 30) / 20 * 400));
+    ++toe.at(std::size_t((std::stod(b) + 20) / 40 * 400));
+    sum += (std::stod(a) - 40) * std::stod(b);
+  }
+  ASSERT_EQ(rows, 400);
+  for (int i = 0; i < 400; ++i) {
+    EXPECT_EQ(speed[std::size_t(i)], 1);
+    EXPECT_EQ(toe[std::size_t(i)], 1);
+  }
+  // The columns are independent: correlation within four standard errors (1/20 each).
+  EXPECT_LT(std::abs(sum / 400 / (20 / std::sqrt(12.0) * 40 / std::sqrt(12.0))), 0.2);
+}
+
+TEST(Sweep, GridTakesNumbersAndWords) {
+  const fs::path dir = sweep_case("sweep_grid", R"(kind = "sweep"
+case = "../blow"
+record = ["models.rigid-planar.ball_speed_mps"]
+keep_outputs = true
+[[parameters]]
+key = "models"
+values = ["rigid-planar"]
+[[parameters]]
+key = "delivery.club_speed_mph"
+values = [90, 100.5]
+[[parameters]]
+key = "delivery.dynamic_loft_deg"
+values = [0.0, 20.0, 40.0]
+)");
+  write(dir / "blow" / "case.toml", std::string(kBlow).replace(kBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
+  // `models` is a list, and a word is not: the error is the case's own.
+  const Outcome refused = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.text.find("expected a list of texts"), std::string::npos) << refused.text;
+  EXPECT_FALSE(fs::exists(dir / "out"));
+
+  std::string text = content(dir / "sweep" / "case.toml");
+  text.replace(text.find("key = \"models\""), 14, "key = \"title\"");
+  write(dir / "sweep" / "case.toml", text);
+  const Outcome done = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(done.status, 0) << done.text;
+  EXPECT_EQ(lines(dir / "out" / "sweep.csv"), 7u);
+  EXPECT_NE(content(dir / "out" / "sweep.csv").find("\n3,rigid-planar,100.5,0,"), std::string::npos)
+      << content(dir / "out" / "sweep.csv");
+  EXPECT_TRUE(fs::exists(dir / "out" / "shards" / "1-of-1" / "point-000003" / "summary.json"));
+  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "sweep.png"));
+}
+
+TEST(Sweep, APointWithoutAnAnswerIsSaid) {
+  const fs::path dir = sweep_case("sweep_failed", R"(kind = "sweep"
+case = "../blow"
+[[parameters]]
+key = "delivery.club_path_deg"
+values = [0.0, 89.0]
+[[parameters]]
+key = "delivery.face_angle_deg"
+values = [0.0, -60.0]
+)");
+  const Outcome o = command("run " + (dir / "sweep").string() + " --quiet --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 3);
+  EXPECT_NE(o.text.find("1 of 4 points have no answer; the first is point 3"), std::string::npos) << o.text;
+  EXPECT_EQ(nlohmann::json::parse(content(dir / "out" / "summary.json")).at("failed"), 1);
+  EXPECT_NE(content(dir / "out" / "sweep.csv").find("the head moves away from the ball"), std::string::npos);
+}
+
+TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
+  const std::map<std::string, std::string> wrong = {
+      {"key = \"delivery.club_sped_mps\"\nvalues = [1.0]", "did you mean 'club_speed_mps'"},
+      {"key = \"delivery.club_speed_mps\"\nvalues = [45.0, -1.0]", "out of range"},
+      {"key = \"delivery.club_speed_mps\"\nvalues = []", "expected a list of values"},
+      {"key = \"delivery.club_speed_mps\"\nvalue = [1.0]", "unknown key"},
+  };
+  for (const auto& [parameter, hint] : wrong) {
+    const fs::path dir = sweep_case("sweep_wrong", "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\n" + parameter + "\n");
+    const Outcome o = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
+    EXPECT_EQ(o.status, 2) << parameter;
+    EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
+    EXPECT_TRUE(o.text.find(hint) != std::string::npos || o.text.find("'values' is missing") != std::string::npos) << o.text;
+    EXPECT_FALSE(fs::exists(dir / "out"));
+  }
+  EXPECT_EQ(command("sweep run " + fresh_directory("no_plan").string()).status, 2);
+  const fs::path dir = sweep_case("sweep_shard_text", kSample);
+  ASSERT_EQ(command("sweep plan " + (dir / "sweep").string() + " --out " + (dir / "out").string()).status, 0);
+  for (const char* shard : {"0/2", "3/2", "1", "a/b", "1/2x"})
+    EXPECT_EQ(command("sweep run " + (dir / "out").string() + " --shard " + shard).status, 2) << shard;
+}
+
+}  // namespace
