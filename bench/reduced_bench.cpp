@@ -6,6 +6,7 @@
 
 #include "golf/units.hpp"
 #include "models/hertz_maw.hpp"
+#include "models/shaft_coupled.hpp"
 #include "models/stick_slip.hpp"
 #include "models/volumetric.hpp"
 
@@ -51,6 +52,22 @@ void HertzMaw(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
 }
 BENCHMARK(HertzMaw)->Unit(benchmark::kMicrosecond);
+
+void ShaftCoupled(benchmark::State& state) {
+  Blow b = blow(0.014);
+  Shaft shaft;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 0.05 * i, bending = 70 - 50 * x;
+    shaft.stations.push_back({.arc_length = x, .bending_stiffness_y = bending, .bending_stiffness_z = bending,
+                              .torsional_stiffness = 17.5, .axial_stiffness = 3e6, .shear_stiffness = 3e5,
+                              .mass_per_length = 0.06, .rotary_inertia_y = 8e-7, .rotary_inertia_z = 8e-7,
+                              .outer_radius = 0.005});
+  }
+  b.club.shaft = shaft;
+  const models::ShaftCoupled model;
+  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+}
+BENCHMARK(ShaftCoupled)->Unit(benchmark::kMicrosecond);
 
 /// Efficiency = time of one thread / (2 x time of two).
 void TenThousand(benchmark::State& state) {

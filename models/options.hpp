@@ -10,6 +10,7 @@ namespace hosel::models {
 struct Options {
   VolumetricLaw volumetric;
   VolumetricOptions volumetric_solution;
+  ShaftImpedanceOptions shaft_beam;
   HertzMawLaw hertz_maw;
   HertzMawOptions hertz_maw_solution;
 };

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "models/hinged_head.hpp"
+#include "models/pendulum_club.hpp"
 #include "models/rigid_eccentric.hpp"
 #include "models/rigid_planar.hpp"
+#include "models/shaft_coupled.hpp"
 #include "models/stick_slip.hpp"
 #include "models/volumetric.hpp"
 
@@ -24,12 +27,19 @@ std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
   return std::make_unique<HertzMaw>(o.hertz_maw, o.hertz_maw_solution);
 }
 
+std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
+  return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam);
+}
+
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
     ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", plain<RigidEccentric>},
     ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover", volumetric},
     ModelEntry{"stick-slip", "sliding then rolling along the impulse's path, with tangential restitution", plain<StickSlip>},
     ModelEntry{"hertz-maw", "elastic ball whose contact patch sticks and slips piecewise", hertz_maw},
+    ModelEntry{"shaft-coupled", "volumetric ball, head with the shaft as a condensed beam at the hosel", shaft_coupled},
+    ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", plain<PendulumClub>},
+    ModelEntry{"hinged-head", "the pendulum with a hinge at the hosel", plain<HingedHead>},
 };
 
 }  // namespace
