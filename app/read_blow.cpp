@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/read_shaft.hpp"
 #include "models/registry.hpp"
 
 namespace hosel::app {
@@ -87,6 +88,8 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   const bool whole = std::ranges::any_of(models, [](const std::string& m) { return m != "rigid-planar"; });
   blow.club.head = read_head(root.table("head"), whole);
   blow.delivery = read_delivery(root.table("delivery"));
+  if (auto shaft = root.optional_table("shaft")) blow.club.shaft = read_shaft(*shaft);
+  if (auto hosel = root.optional_table("hosel")) blow.club.geometry = read_club_geometry(*hosel);
   if (auto contact = root.optional_table("contact")) blow.contact = read_contact_law(*contact);
   return blow;
 }

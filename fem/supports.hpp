@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "fem/beam.hpp"
@@ -68,6 +69,48 @@ class NodeLoad final : public Term {
   bool started_ = false;
   Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero(), moment_ = Vec3::Zero();
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
+};
+
+/// Springs and dampers of a joint, along and about the axes of its frame.
+struct JointStiffness {
+  Vec3 translation = Vec3::Zero();          ///< [N/m]
+  Vec3 rotation = Vec3::Zero();             ///< [N m/rad]
+  Vec3 translation_damping = Vec3::Zero();  ///< [N s/m]
+  Vec3 rotation_damping = Vec3::Zero();     ///< [N m s/rad]
+  Mat3 frame = Mat3::Identity();            ///< columns: the axes, in the reference placement
+};
+
+/// Two nodes that coincide in the reference placement, tied by springs and dampers in the first node's
+/// frame; or one node tied to a given motion (the hands). With d the second's position from the first, in
+/// the first's axes, and r the rotation vector of the second from the first:
+///   energy = (d' Kt d + r' Kr r) / 2.
+class SpringJoint final : public Term {
+ public:
+  SpringJoint(std::string body, const Node& first, const Node& second, const JointStiffness& stiffness);
+  SpringJoint(std::string body, Motion first, const Node& second, const JointStiffness& stiffness);
+
+  std::string body() const override { return body_; }
+  void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  void residual(const State& trial, Vector& inertia, Vector& force) const override;
+  void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  Energies energies(const State& accepted) const override;
+  void accept(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
+
+ private:
+  struct Strain;
+  Strain strain(const State& s) const;
+  Pose first(const State& s) const;
+
+  std::string body_;
+  std::optional<Node> first_;
+  Motion motion_;
+  Node second_;
+  Mat3 Kt_, Kr_, Ct_, Cr_;
+  std::vector<Index> equations_;
+  double viscous_ = 0, work_ = 0, power_ = 0, drive_ = 0, time_ = 0;
+  bool started_ = false;
 };
 
 }  // namespace hosel::fem
