@@ -135,6 +135,7 @@ class FaceMapJob final : public PointJob {
  private:
   struct Settings {
     Blow blow;
+    models::Options options;
     post::FaceGrid grid;
     std::vector<Variant> variants;
     std::size_t reference = 0;
@@ -169,6 +170,7 @@ class FaceMapJob final : public PointJob {
     std::vector<std::string> asked;
     for (const Variant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
+    s.options = read_options(root);
     if (s.blow.delivery.impact_toe != 0 || s.blow.delivery.impact_high != 0)
       root.fail("delivery", "the grid says where the ball meets the face: impact_toe and impact_high stay out");
     return s;
@@ -181,7 +183,8 @@ class FaceMapJob final : public PointJob {
     Table root = again.root();
     root.text("kind", "face-map");
     root.text("title", "");
-    Layer layer{variant.title, models::find(variant.model)->make(models::Options{}), read(root).blow, refined};
+    const Settings own = read(root);
+    Layer layer{variant.title, models::find(variant.model)->make(own.options), own.blow, refined};
     again.finish();
     identity_ += variant.title + '\n' + variant.model + '\n' + again.resolved();
     layers_.push_back(std::move(layer));

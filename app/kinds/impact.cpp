@@ -17,6 +17,7 @@ class ImpactJob final : public Job {
     Table root = file.root();
     models_ = read_models(root);
     blow_ = read_blow(root, models_);
+    options_ = read_options(root);
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
         const SplitName split = split_unit(key);
@@ -30,7 +31,7 @@ class ImpactJob final : public Job {
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     for (const std::string& name : models_) {
-      const auto model = models::find(name)->make(models::Options{});
+      const auto model = models::find(name)->make(options_);
       const Launch launch = model->launch(blow_);
       columns.push_back({name, launch});
       summary["models"][name] = post::to_json(launch);
@@ -44,6 +45,7 @@ class ImpactJob final : public Job {
  private:
   std::vector<std::string> models_;
   Blow blow_;
+  models::Options options_;
   post::Measured measured_;
 };
 
