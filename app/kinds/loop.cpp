@@ -1,0 +1,162 @@
+#include "app/kinds/loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "loop/report.hpp"
+#include "loop/run.hpp"
+#include "models/registry.hpp"
+
+namespace hosel::app {
+namespace {
+
+std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, loop::Role role, std::string_view what) {
+  std::map<std::string, double> noise;
+  for (const std::string& key : table.keys()) {
+    const loop::Column* column = shots.find(key);
+    if (!column || column->role != role) {
+      std::vector<std::string> known;
+      for (const auto& c : shots.columns)
+        if (c.role == role) known.push_back(c.name);
+      const std::string near = nearest(key, known);
+      table.fail(key, fmt::format("no {} column of this name{}", what, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    }
+    noise[key] = table.number(key, Range::non_negative());
+  }
+  return noise;
+}
+
+class LoopJob final : public Job {
+ public:
+  explicit LoopJob(CaseFile& file) {
+    Table root = file.root();
+    Table model = root.table("model");
+    std::vector<std::string> names;
+    for (const auto& m : models::registry()) names.emplace_back(m.name);
+    case_.title = root.text("title", "");
+    case_.base = model.choice("base", names);
+    model_ = models::find(case_.base)->make(models::Options{});
+    case_.model = model_.get();
+    case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
+    case_.head_turns = case_.base != "rigid-planar";
+    case_.effects = model.texts("effects", std::vector<std::string>{});
+    std::vector<std::string> known;
+    for (const auto& e : loop::effects()) known.emplace_back(e.name);
+    for (const std::string& e : case_.effects)
+      if (!loop::find_effect(e)) {
+        const std::string near = nearest(e, known);
+        model.fail("effects", fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+      }
+
+    case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
+    std::vector<std::pair<std::string, Table>> tables;
+    Head& head = case_.blow.club.head;
+    if (auto table = root.optional_table("head")) {
+      case_.head_mass_declared = table->has_quantity("mass");
+      head = read_loop_head(*table, case_.head_turns);
+    } else if (case_.head_turns) {
+      root.fail("", "a table [head] with mass, cg_mm and inertia_kg_m2 is needed for this base");
+    } else {
+      head.inertia = std::numeric_limits<double>::infinity() * Mat3::Identity();
+    }
+    case_.inertia_declared = head.inertia.allFinite();
+
+    Table data = root.table("data");
+    const auto path = data.data_file("shots");
+    if (!std::filesystem::exists(path)) {
+      skipped_ = path.string();
+    }
+    if (skipped_.empty()) {
+      try {
+        case_.shots = loop::read_shots(loop::read_csv(path));
+        if (auto joined = data.optional_table("join")) {
+          const auto other = joined->data_file("file");
+          const std::string by = joined->text("by");
+          loop::join(case_.shots, loop::read_csv(other), by);
+        }
+      } catch (const loop::DataError& e) {
+        throw InputError(e.what());
+      }
+      if (auto noise = data.optional_table("noise")) case_.noise = read_noise(*noise, case_.shots, loop::Role::output, "output");
+      if (auto noise = data.optional_table("input_noise")) case_.input_noise = read_noise(*noise, case_.shots, loop::Role::input, "input");
+    } else {
+      if (auto joined = data.optional_table("join")) {
+        joined->data_file("file");
+        joined->text("by");
+      }
+      for (const char* key : {"noise", "input_noise"})
+        if (auto noise = data.optional_table(key))
+          for (const std::string& header : noise->keys()) noise->number(header, Range::non_negative());
+    }
+
+    if (auto split = root.optional_table("split")) {
+      case_.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
+      case_.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
+      case_.split.by = split->text("by", "");
+      case_.split.leave_one_out = split->choice("mode", {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
+      if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
+      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
+        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
+    }
+  }
+
+  void run(Output& out) override {
+    if (!skipped_.empty()) {
+      out.say(fmt::format("SKIPPED: {} is not there; name the folder of the measured files in HOSEL_DATA", skipped_));
+      out.write_summary({{"skipped", skipped_}});
+      return;
+    }
+    loop::LoopResult result;
+    try {
+      result = loop::run(case_);
+    } catch (const loop::DataError& e) {
+      throw InputError(e.what());
+    }
+    const nlohmann::json report = loop::to_json(result);
+    out.write_json("report.json", report);
+    out.write("residuals.csv", loop::residuals_csv(result));
+    out.write("report.html", loop::page(result, case_.shots));
+    out.say(loop::sentence(result));
+    for (const auto& c : result.channels)
+      out.say(fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})", c.name,
+                          c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise, c.noise_source));
+    if (!result.flagged.empty()) out.say(fmt::format("  {} rows flagged", result.flagged.size()));
+    out.write_summary({{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+  }
+
+ private:
+  /// `[head]` of a loop: the mass may stand in the shots instead; cg and inertia are needed where the head turns.
+  Head read_loop_head(Table table, bool turns) {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    Head head;
+    head.mass = case_.head_mass_declared ? table.quantity("mass", "kg", Range::positive()) : 0.2;
+    head.face.bulge = table.quantity("bulge", "mm", {0.01, inf}, inf);
+    head.face.roll = table.quantity("roll", "mm", {0.01, inf}, inf);
+    if (!turns && !table.has_quantity("inertia")) {
+      head.cg = table.vector("cg", "mm", Vec3::Zero());
+      head.inertia = inf * Mat3::Identity();
+      return head;
+    }
+    head.cg = table.vector("cg", "mm");
+    head.inertia = table.matrix("inertia", "kg_m2");
+    if (const auto faults = head.faults(); !faults.empty())
+      for (const std::string& key : table.keys())
+        if (key.starts_with("inertia")) table.fail(key, faults.front());
+    return head;
+  }
+
+  loop::LoopCase case_;
+  std::unique_ptr<models::ImpactModel> model_;
+  std::string skipped_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_loop(CaseFile& file) { return std::make_unique<LoopJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,22 @@
+// The centre of gravity is not where it is declared.
+#include "loop/effects/all.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Form> cg_shift(const Setting& setting) {
+  if (!setting.inertia_declared) return {};
+  const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}; };
+  const auto along = [&](std::vector<int> axes, const char* what) {
+    static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
+    Form f{.effect = "cg-shift", .what = what};
+    for (const int a : axes) f.parameters.push_back(component(names[a]));
+    f.before = [axes](std::span<const double> p, Trial& t) {
+      for (std::size_t k = 0; k < axes.size(); ++k) t.blow.club.head.cg[axes[k]] += p[k];
+    };
+    return f;
+  };
+  return {along({1}, "towards the heel"), along({2}, "up"), along({0}, "out of the face"),
+          along({1, 2}, "in the face plane"), along({0, 1, 2}, "in three directions")};
+}
+
+}  // namespace hosel::loop::forms

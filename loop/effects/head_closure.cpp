@@ -1,0 +1,48 @@
+// The head has an angular velocity at impact: the contact point moves differently from the centre of gravity.
+#include <cmath>
+
+#include "loop/effects/all.hpp"
+#include "models/rigid_eccentric.hpp"
+
+namespace hosel::loop::forms {
+namespace {
+
+/// For a base without rotation of the head: the difference that the angular velocity makes on a head of
+/// endless inertia, which is the extra velocity of the contact point.
+void add_moving_point(const Vec3& spin, const Trial& t, Launch& launch) {
+  static const models::RigidEccentric model;
+  Blow still = t.blow;
+  still.club.head.inertia = 1e3 * Mat3::Identity();
+  Blow turning = still;
+  turning.delivery.head_angular_velocity += spin;
+  const Launch with = model.launch(turning), without = model.launch(still);
+  launch.velocity += with.velocity - without.velocity;
+  launch.spin += with.spin - without.spin;
+}
+
+}  // namespace
+
+std::vector<Form> head_closure(const Setting& setting) {
+  const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}; };
+  const auto about = [&](std::vector<int> axes, const char* what) {
+    static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
+    Form f{.effect = "head-closure", .what = what};
+    for (const int a : axes) f.parameters.push_back(rate(names[a]));
+    const auto vector = [axes](std::span<const double> p) {
+      Vec3 w = Vec3::Zero();
+      for (std::size_t k = 0; k < axes.size(); ++k) w[axes[k]] = p[k];
+      return w;
+    };
+    if (setting.head_turns)
+      f.before = [vector](std::span<const double> p, Trial& t) { t.blow.delivery.head_angular_velocity += vector(p); };
+    else
+      f.after = [vector](std::span<const double> p, const Trial& t, Launch& launch) {
+        if (const Vec3 w = vector(p); !w.isZero(0)) add_moving_point(w, t, launch);
+      };
+    return f;
+  };
+  return {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
+          about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+}
+
+}  // namespace hosel::loop::forms

@@ -1,0 +1,31 @@
+// The launch monitor's axes are turned against the target frame: it reports the same vectors in its own axes.
+#include "loop/effects/all.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Form> monitor_misalignment(const Setting&) {
+  const auto angle = [](const char* name) { return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}; };
+  // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
+  const auto about = [&](std::vector<int> axes, const char* what) {
+    static constexpr const char* names[] = {"roll", "pitch", "yaw"};
+    Form f{.effect = "monitor-misalignment", .what = what};
+    for (const int a : axes) f.parameters.push_back(angle(names[a]));
+    f.after = [axes](std::span<const double> p, const Trial&, Launch& launch) {
+      Mat3 turn = Mat3::Identity();
+      bool turned = false;
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        if (p[k] == 0) continue;
+        turn = Eigen::AngleAxisd(axes[k] == 0 ? p[k] : -p[k], Vec3::Unit(axes[k])).toRotationMatrix() * turn;
+        turned = true;
+      }
+      if (!turned) return;
+      launch.velocity = turn * launch.velocity;
+      launch.spin = turn * launch.spin;
+    };
+    return f;
+  };
+  return {about({2}, "yaw"), about({1}, "pitch"), about({0}, "roll"), about({2, 1}, "yaw and pitch"),
+          about({2, 1, 0}, "yaw, pitch and roll")};
+}
+
+}  // namespace hosel::loop::forms

@@ -1,0 +1,39 @@
+// The club behind the head: during the contact the shaft's tip acts as a small mass at the hosel that also
+// resists rotation. The augmented rigid head has the mass, the centre and the inertia of both.
+#include <cmath>
+
+#include "loop/effects/all.hpp"
+
+namespace hosel::loop::forms {
+namespace {
+
+Mat3 steiner(double mass, const Vec3& arm) { return -mass * skew(arm) * skew(arm); }
+
+/// The delivery's velocity stays that of the head's own centre of gravity.
+void attach(Blow& blow, double mass, double inertia) {
+  Head& head = blow.club.head;
+  const Vec3 hosel = blow.club.geometry.hosel;
+  const Vec3 cg = (head.mass * head.cg + mass * hosel) / (head.mass + mass);
+  head.inertia += steiner(head.mass, head.cg - cg) + steiner(mass, hosel - cg) + inertia * Mat3::Identity();
+  head.cg = cg;
+  head.mass += mass;
+}
+
+}  // namespace
+
+std::vector<Form> shaft_coupling(const Setting& setting) {
+  const Parameter mass{"added_mass_at_hosel", "g", 1e-3, 0, 0.04, 3e-3};
+  const Parameter stiffening{"added_inertia", "kg m^2", 1, 0, 4e-4, 3e-5};
+  Form point{.effect = "shaft-coupling", .what = "added mass at the hosel", .parameters = {mass}};
+  point.before = [](std::span<const double> p, Trial& t) {
+    if (p[0] != 0) attach(t.blow, p[0], 0);
+  };
+  if (!setting.head_turns) return {};
+  Form both{.effect = "shaft-coupling", .what = "added mass and rotational inertia at the hosel", .parameters = {mass, stiffening}};
+  both.before = [](std::span<const double> p, Trial& t) {
+    if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
+  };
+  return {point, both};
+}
+
+}  // namespace hosel::loop::forms

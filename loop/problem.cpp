@@ -1,0 +1,180 @@
+#include "loop/problem.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+
+#include "models/rigid_eccentric.hpp"
+
+namespace hosel::loop {
+namespace {
+
+const models::RigidEccentric& companion() {
+  static const models::RigidEccentric model;
+  return model;
+}
+
+Launch plus(Launch a, const Launch& b, double sign) {
+  a.velocity += sign * b.velocity;
+  a.spin += sign * b.spin;
+  a.head_velocity += sign * b.head_velocity;
+  a.head_spin += sign * b.head_spin;
+  return a;
+}
+
+/// Angles are compared on the circle.
+bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
+
+}  // namespace
+
+int Model::size() const {
+  int n = 0;
+  for (const Form* f : forms) n += int(f->parameters.size());
+  return n;
+}
+
+std::vector<const Parameter*> Model::parameters() const {
+  std::vector<const Parameter*> all;
+  for (const Form* f : forms)
+    for (const Parameter& p : f->parameters) all.push_back(&p);
+  return all;
+}
+
+Problem::Problem(const models::ImpactModel& base, bool direct, std::vector<Trial> trials, std::vector<Channel> channels,
+                 Eigen::MatrixXd measured)
+    : base_(base), direct_(direct), trials_(std::move(trials)), channels_(std::move(channels)), measured_(std::move(measured)) {
+  if (!direct_) {
+    offset_.reserve(trials_.size());
+    for (Trial& t : trials_) {
+      offset_.push_back(plus(base_.launch(t.blow), companion().launch(t.blow), -1));
+      t.blow.club.shaft.reset();  // the companion needs none, and copies stay cheap
+    }
+  }
+}
+
+Launch Problem::answer(const Trial& trial, int shot) const {
+  if (direct_) return base_.launch(trial.blow);
+  const Launch l = companion().launch(trial.blow);
+  return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
+}
+
+bool Problem::predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const {
+  try {
+    Trial t = trial;
+    const double* p = parameters;
+    for (const Form* f : model.forms) {
+      if (f->before) f->before({p, f->parameters.size()}, t);
+      p += f->parameters.size();
+    }
+    Launch l = answer(t, shot);
+    p = parameters;
+    for (const Form* f : model.forms) {
+      if (f->after) f->after({p, f->parameters.size()}, t, l);
+      p += f->parameters.size();
+    }
+    bool good = true;
+    for (int c = 0; c < width(); ++c) {
+      const Channel& channel = channels_[std::size_t(c)];
+      double value = get(l, channel.output);
+      p = parameters;
+      for (const Form* f : model.forms) {
+        if (f->reading) value = f->reading({p, f->parameters.size()}, t, channel.output, value);
+        p += f->parameters.size();
+      }
+      if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
+        value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
+      out[c] = value / channel.si;
+      good = good && std::isfinite(out[c]);
+    }
+    return good;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+bool Problem::launch(Trial t, const Model& model, const double* parameters, Launch& out) const {
+  try {
+    const double* p = parameters;
+    for (const Form* f : model.forms) {
+      if (f->before) f->before({p, f->parameters.size()}, t);
+      p += f->parameters.size();
+    }
+    out = answer(t, -1);
+    p = parameters;
+    for (const Form* f : model.forms) {
+      if (f->after) f->after({p, f->parameters.size()}, t, out);
+      p += f->parameters.size();
+    }
+    return out.velocity.allFinite() && out.spin.allFinite();
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+Eigen::MatrixXd Problem::input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const {
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(width(), kInputs);
+  Eigen::VectorXd up(width()), down(width());
+  // Steps far below any noise and far above round-off.
+  constexpr double step[kInputs] = {1e-2, 1e-4, 1e-4, 1e-4, 1e-4, 1e-5, 1e-5, 1e-5};
+  for (int k = 0; k < kInputs; ++k) {
+    if (!(mask >> k & 1U)) continue;
+    Trial t = trial(shot);
+    const double x = get(t.blow, Input(k)), h = step[k];
+    set(t.blow, Input(k), x + h);
+    const bool a = predict(t, shot, model, parameters, up.data());
+    set(t.blow, Input(k), x - h);
+    const bool b = predict(t, shot, model, parameters, down.data());
+    if (a && b) J.col(k) = (up - down) / (2 * h);
+  }
+  return J;
+}
+
+void Problem::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model, const double* parameters) {
+  const int m = width();
+  whiten_.assign(std::size_t(shots()) * std::size_t(m) * std::size_t(m), 0.0);
+  sigma_.resize(shots(), m);
+  for (int i = 0; i < shots(); ++i) {
+    Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
+    for (int c = 0; c < m; ++c) {
+      const Channel& ch = channels_[std::size_t(c)];
+      cov(c, c) = ch.noise * ch.noise;
+    }
+    if (!inputs.empty()) {
+      const Eigen::MatrixXd& sx = inputs[std::size_t(i)];
+      unsigned mask = 0;
+      for (int k = 0; k < kInputs; ++k) mask |= unsigned(sx(k, k) > 0) << k;
+      if (mask) {
+        const Eigen::MatrixXd J = input_jacobian(i, model, parameters, mask);
+        cov += J * sx * J.transpose();
+      }
+    }
+    sigma_.row(i) = cov.diagonal().cwiseSqrt().transpose();
+    std::vector<int> seen;
+    for (int c = 0; c < m; ++c)
+      if (observed(i, c)) seen.push_back(c);
+    const int k = int(seen.size());
+    if (!k) continue;
+    Eigen::MatrixXd part(k, k);
+    for (int a = 0; a < k; ++a)
+      for (int b = 0; b < k; ++b) part(a, b) = cov(seen[std::size_t(a)], seen[std::size_t(b)]);
+    const Eigen::LLT<Eigen::MatrixXd> llt(part);
+    const Eigen::MatrixXd W = llt.matrixL().solve(Eigen::MatrixXd::Identity(k, k));
+    double* out = whiten_.data() + std::ptrdiff_t(i) * m * m;
+    for (int a = 0; a < k; ++a)
+      for (int b = 0; b <= a; ++b) out[seen[std::size_t(a)] * m + seen[std::size_t(b)]] = W(a, b);
+  }
+}
+
+Eigen::MatrixXd Problem::residuals(const Model& model, const double* parameters) const {
+  Eigen::MatrixXd r(shots(), width());
+  Eigen::VectorXd out(width());
+  for (int i = 0; i < shots(); ++i) {
+    if (predict(i, model, parameters, out.data()))
+      r.row(i) = out.transpose() - measured_.row(i);
+    else
+      r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return r;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,160 @@
+#include "loop/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace hosel::loop {
+namespace {
+
+using nlohmann::json;
+
+/// Numbers that are none (a column without holdout rows) are null in JSON. Nine digits: what is beyond them is
+/// round-off, and files stay the same on any number of threads.
+json value(double x) {
+  if (!std::isfinite(x)) return nullptr;
+  return std::stod(fmt::format("{:.9g}", x));
+}
+
+json errors(const Errors& e) {
+  return {{"train_rmse", value(e.train_rmse)}, {"holdout_rmse", value(e.holdout_rmse)}, {"holdout_bias", value(e.holdout_bias)}};
+}
+
+}  // namespace
+
+json to_json(const LoopResult& r) {
+  json out;
+  out["title"] = r.title;
+  out["base"] = r.base;
+  out["rows"] = {{"read", r.read}, {"used", r.used}, {"train", r.train}, {"holdout", r.holdout}};
+  out["unused_rows"] = r.unused;
+  out["seed"] = r.seed;
+  out["flagged_rows"] = json::array();
+  for (const auto& f : r.flagged) {
+    json id = f.shot;
+    // A shot number is a number, whatever the file calls a shot else is text.
+    if (!f.shot.empty() && f.shot.size() < 10 && f.shot.find_first_not_of("0123456789") == std::string::npos) id = std::stoi(f.shot);
+    out["flagged_rows"].push_back({{"shot", id}, {"column", f.column}, {"reason", f.reason}, {"finding", f.finding}});
+  }
+  out["derived_columns"] = json::array();
+  for (const DerivedColumn& d : r.derived)
+    out["derived_columns"].push_back({{"column", d.column},
+                                      {"from", d.from},
+                                      {"formula", d.formula},
+                                      {"residual_sd", value(d.residual_sd)},
+                                      {"recording_resolution", value(d.recording_resolution)},
+                                      {"rows", d.rows}});
+  out["channels"] = json::array();
+  for (const ChannelResult& c : r.channels)
+    out["channels"].push_back({{"name", c.name},
+                               {"noise_sd", value(c.noise)},
+                               {"noise_source", c.noise_source},
+                               {"scatter_over_noise", value(c.scatter)},
+                               {"before", errors(c.before)},
+                               {"after", errors(c.after)}});
+  out["structure"] = json::array();
+  const Selection& s = r.selection;
+  int shown = 0;
+  for (const Finding& f : s.before.findings) {
+    if (shown >= 20 || f.channel < 0) continue;
+    if (f.p_adjusted > 0.05 && std::abs(f.signal) < 4.5) continue;
+    json e;
+    e["channel"] = r.channel_names[std::size_t(f.channel)];
+    if (f.regressor >= 0) {
+      const Regressor& g = s.regressors[std::size_t(f.regressor)];
+      e["regressor"] = g.column;
+      e["statistic"] = fmt::format("{}{}{}: {:+.2f} noise units", g.kind, g.detail.empty() ? "" : " ", g.detail, f.signal);
+    } else {
+      e["regressor"] = "shot";
+      e["statistic"] = fmt::format("neighbours alike: {:+.2f}", f.statistic);
+    }
+    e["p_adjusted"] = value(f.p_adjusted);
+    out["structure"].push_back(e);
+    ++shown;
+  }
+  out["remaining"] = {{"p", value(s.after.p)}, {"largest", s.after.findings.empty() ? json(nullptr) : value(s.after.findings.front().signal)}};
+  out["base_holdout_score"] = value(r.base_score);
+  out["candidates"] = json::array();
+  int rank = 0;
+  for (const ScoredCandidate& c : r.candidates) {
+    json e;
+    e["effects"] = c.candidate.effects;
+    e["parameters"] = json::array();
+    const auto parameters = c.candidate.fit.model.parameters();
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      e["parameters"].push_back({{"name", parameters[k]->name},
+                                 {"value", value(c.candidate.fit.p[std::ptrdiff_t(k)] / parameters[k]->si)},
+                                 {"sd", value(c.sd[k] / parameters[k]->si)},
+                                 {"unit", parameters[k]->unit}});
+    std::vector<std::string> forms;
+    for (const Form* f : c.candidate.fit.model.forms) forms.push_back(f->effect + ": " + f->what);
+    e["forms"] = forms;
+    e["deviance_fall"] = value(s.base.deviance - c.candidate.fit.deviance);
+    e["at_bound"] = c.candidate.fit.at_bound;
+    e["holdout_score"] = value(c.holdout_score);
+    e["rank"] = ++rank;
+    out["candidates"].push_back(e);
+  }
+  out["adopted"] = r.adopted;
+  out["ties"] = r.ties;
+  out["verdict"] = std::string(name(r.verdict));
+  out["sentence"] = sentence(r);
+  out["minimum_detectable"] = json::array();
+  for (const Detectable& d : r.minimum_detectable)
+    out["minimum_detectable"].push_back({{"effect", d.effect}, {"parameter", d.parameter}, {"value", value(d.value)}, {"unit", d.unit}});
+  out["unexplained"] = json::array();
+  for (const Location& l : r.unexplained)
+    out["unexplained"].push_back({{"channel", l.channel}, {"regressor", l.regressor}, {"detail", l.detail}});
+  json shots = json::array();
+  for (const DesignedShot& d : r.next.shots) {
+    json e;
+    for (const auto& [header, x] : d.inputs) e[header] = value(std::stod(fmt::format("{:.4g}", x)));
+    shots.push_back(e);
+  }
+  out["next_experiment"] = {{"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json(nullptr)}};
+  out["without_doubted_inputs"] = json::array();
+  for (const auto& [column, adopted] : r.without) out["without_doubted_inputs"].push_back({{"column", column}, {"adopted", adopted}});
+  out["notes"] = r.notes;
+  return out;
+}
+
+std::string residuals_csv(const LoopResult& r) {
+  std::string out = "shot,set";
+  for (const ChannelResult& c : r.channels) out += fmt::format(",{0}__measured,{0}__before,{0}__after", c.name);
+  out += '\n';
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
+  for (const UsedShot& u : r.shots) {
+    out += u.id + (u.holdout ? ",holdout" : ",train");
+    for (std::size_t c = 0; c < r.channels.size(); ++c) out += cell(u.measured[c]) + cell(u.before[c]) + cell(u.after[c]);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string sentence(const LoopResult& r) {
+  const auto list = [](const std::vector<std::string>& v) { return fmt::format("{}", fmt::join(v, ", ")); };
+  switch (r.verdict) {
+    case Verdict::no_residual: return "Nothing beyond the noise: the base model explains these shots.";
+    case Verdict::explained: return fmt::format("The model lacked: {}. With it the residual is the noise again.", list(r.adopted));
+    case Verdict::ambiguous: {
+      std::string t;
+      for (const auto& tie : r.ties) t += (t.empty() ? "" : "; and ") + fmt::format("{}", fmt::join(tie, " or "));
+      return fmt::format("{}The data cannot separate {}.", r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), t);
+    }
+    case Verdict::unexplained:
+      return r.unexplained.empty()
+                 ? std::string("Structure remains that no candidate explains.")
+                 : fmt::format("Structure remains that no candidate explains: {} against {}.", r.unexplained.front().channel, r.unexplained.front().regressor);
+    case Verdict::insufficient: return "Too little to name anything: minimum_detectable says what these shots could have shown.";
+    case Verdict::noise_contradicted: {
+      std::string which;
+      for (const std::string& n : r.notes)
+        if (n.find("declared noise") != std::string::npos) which += (which.empty() ? "" : "; ") + n;
+      return "The declared noise is contradicted by the data's own scatter: " + which + ".";
+    }
+  }
+  return "";
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,18 @@
+/// The loop's findings as files: report.json (the contract), residuals.csv, report.html.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "loop/run.hpp"
+
+namespace hosel::loop {
+
+nlohmann::json to_json(const LoopResult& result);
+std::string residuals_csv(const LoopResult& result);
+/// The verdict in a sentence.
+std::string sentence(const LoopResult& result);
+/// A self-contained page with the figures inline.
+std::string page(const LoopResult& result, const Shots& shots);
+
+}  // namespace hosel::loop

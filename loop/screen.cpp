@@ -1,0 +1,235 @@
+#include "loop/screen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace hosel::loop {
+namespace {
+
+struct Slip {
+  std::string column, reason, key;
+  double distance = 0;
+  double cost = 0;  ///< rarer slips need a better fit
+};
+
+struct Factor {
+  double value;
+  const char* what;
+};
+
+std::vector<Factor> factors(const Column& c) {
+  const auto split = split_unit(c.name);
+  std::vector<Factor> all;
+  if (split.unit) switch (split.unit->dimension) {
+      case Dimension::speed:
+        all = {{1 / kMpsPerMph, "m/s and mph"}, {3.6, "m/s and km/h"}, {1.609344, "mph and km/h"}};
+        break;
+      case Dimension::angle: all = {{180 / kPi, "degrees and radians"}}; break;
+      case Dimension::angular_velocity: all = {{30 / kPi, "rpm and rad/s"}, {60, "rpm and revolutions per second"}}; break;
+      case Dimension::length: all = {{25.4, "mm and inches"}, {100, "metres and centimetres"}, {1000, "metres and millimetres"}}; break;
+      case Dimension::mass: all = {{1000, "kg and g"}, {2.20462262, "kg and pounds"}}; break;
+      default: break;
+    }
+  all.push_back({10, "a decimal place"});
+  all.push_back({100, "two decimal places"});
+  return all;
+}
+
+/// The value as recorded, with each pair of neighbouring digits swapped.
+std::vector<double> transpositions(double native, double step) {
+  const int digits = std::clamp(int(std::lround(-std::log10(step > 0 ? step : 1))), 0, 9);
+  const std::string text = fmt::format("{:.{}f}", native, digits);
+  std::vector<double> all;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    std::size_t j = i + 1;
+    if (text[j] == '.') ++j;
+    if (j >= text.size() || !std::isdigit(text[i]) || !std::isdigit(text[j]) || text[i] == text[j]) continue;
+    std::string other = text;
+    std::swap(other[i], other[j]);
+    all.push_back(std::stod(other));
+  }
+  return all;
+}
+
+class Row {
+ public:
+  Row(const Problem& problem, const Fit& fit, int shot) : problem_(problem), fit_(fit), shot_(shot) {
+    measured_ = problem.measured().row(shot).transpose();
+    prediction_.resize(problem.width());
+    trial_ = problem.trial(shot);
+    predicted_ = problem.predict(trial_, shot, fit.model, fit.p.data(), prediction_.data());
+  }
+  /// Squared distance with some inputs [SI] and some channels [header's units] replaced.
+  double distance(const std::vector<std::pair<int, double>>& inputs, const std::vector<std::pair<int, double>>& channels) const {
+    Eigen::VectorXd r = prediction_;
+    bool good = predicted_;
+    if (!inputs.empty()) {
+      Trial t = trial_;
+      for (const auto& [k, x] : inputs) set(t.blow, Input(k), x);
+      good = problem_.predict(t, shot_, fit_.model, fit_.p.data(), r.data());
+    }
+    if (!good) return 1e4 * problem_.width();
+    Eigen::VectorXd y = measured_;
+    for (const auto& [c, x] : channels) y[c] = x;
+    for (int c = 0; c < problem_.width(); ++c) r[c] = problem_.observed(shot_, c) ? r[c] - y[c] : 0.0;
+    return (problem_.whitening(shot_) * r).squaredNorm();
+  }
+
+ private:
+  const Problem& problem_;
+  const Fit& fit_;
+  int shot_;
+  Eigen::VectorXd measured_, prediction_;
+  Trial trial_;
+  bool predicted_ = false;
+};
+
+}  // namespace
+
+std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
+                            const Fit& fit) {
+  const int n = problem.shots();
+  std::vector<RowFlag> flags;
+  std::map<int, std::string> key_of;
+  // Against the bulk: where the fit misses everything by some factor, that is the fit's fault, not the rows'.
+  std::vector<double> relative;
+  for (int i = 0; i < n; ++i) {
+    int seen = 0;
+    for (int c = 0; c < problem.width(); ++c) seen += problem.observed(i, c);
+    if (seen) relative.push_back(Row(problem, fit, i).distance({}, {}) / quantile(boost::math::chi_squared(seen), 0.5));
+  }
+  if (relative.empty()) return flags;
+  std::ranges::nth_element(relative, relative.begin() + std::ptrdiff_t(relative.size() / 2));
+  const double bulk = std::max(1.0, relative[relative.size() / 2]);
+  for (int i = 0; i < n; ++i) {
+    const Row row(problem, fit, i);
+    int seen = 0;
+    for (int c = 0; c < problem.width(); ++c) seen += problem.observed(i, c);
+    if (!seen) continue;
+    const boost::math::chi_squared law(seen);
+    const double distance = row.distance({}, {});
+    const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))), perhaps = bulk * quantile(complement(law, 2e-4));
+    if (distance < perhaps) continue;
+
+    const std::size_t file_row = std::size_t(row_of[std::size_t(i)]);
+    std::vector<Slip> slips;
+    const auto try_one = [&](const ColumnUse& u, double si, std::string reason, std::string key, double cost) {
+      const double d = u.input >= 0 ? row.distance({{u.input, si}}, {}) : row.distance({}, {{u.channel, si / u.column->si}});
+      slips.push_back({u.column->name, std::move(reason), std::move(key), d, cost});
+    };
+    std::vector<const ColumnUse*> present;
+    for (const ColumnUse& u : uses)
+      if (std::isfinite(u.column->value[file_row])) present.push_back(&u);
+    for (const ColumnUse* u : present) {
+      const double x = u->column->value[file_row], native = x / u->column->si;
+      for (const Factor& f : factors(*u->column)) {
+        const double cost = std::string_view(f.what).find("decimal") == std::string_view::npos ? 0 : 3;
+        try_one(*u, x * f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native * f.value, f.what), std::string("x") + f.what, cost);
+        try_one(*u, x / f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native / f.value, f.what), std::string("/") + f.what, cost);
+      }
+      if (x != 0) try_one(*u, -x, fmt::format("{:g} fits with the other sign", native), "sign", 3);
+      for (const double t : transpositions(native, u->column->resolution / u->column->si))
+        try_one(*u, t * u->column->si, fmt::format("{:g} fits as {:g}: digits transposed", native, t), "digits", 3);
+    }
+    for (std::size_t a = 0; a < present.size(); ++a)
+      for (std::size_t b = a + 1; b < present.size(); ++b) {
+        const ColumnUse &u = *present[a], &v = *present[b];
+        const double x = v.column->native(file_row) * u.column->si, y = u.column->native(file_row) * v.column->si;
+        std::vector<std::pair<int, double>> inputs, channels;
+        (u.input >= 0 ? inputs : channels).emplace_back(u.input >= 0 ? u.input : u.channel, u.input >= 0 ? x : x / u.column->si);
+        (v.input >= 0 ? inputs : channels).emplace_back(v.input >= 0 ? v.input : v.channel, v.input >= 0 ? y : y / v.column->si);
+        slips.push_back({u.column->name, fmt::format("fits with {} and {} swapped", u.column->name, v.column->name),
+                         "swap " + v.column->name, row.distance(inputs, channels), 2});
+      }
+    // Another quantity copied over this one: leaving a single channel or input out would do.
+    const double fits = bulk * (quantile(law, 0.95) + 2), half = 0.25 * distance;
+    const Slip* best = nullptr;
+    for (const Slip& s : slips)
+      if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost)) best = &s;
+    if (best) {
+      flags.push_back({i, best->column, best->reason, 0, distance});
+      key_of[i] = best->column + "|" + best->key;
+      continue;
+    }
+    if (distance < surely) continue;
+    // No slip found: name the channel that, left out, helps most, unless one input can be anything.
+    std::string column = "";
+    double least = distance;
+    for (const ColumnUse* u : present) {
+      double d = distance;
+      if (u->channel >= 0) {
+        // The best value of this channel: minimise over it by a parabola through three points.
+        const double y0 = problem.measured()(i, u->channel), h = problem.sigma(i, u->channel);
+        const double d0 = row.distance({}, {{u->channel, y0}}), d1 = row.distance({}, {{u->channel, y0 + h}}), d2 = row.distance({}, {{u->channel, y0 - h}});
+        const double curve = d1 + d2 - 2 * d0, slope = (d1 - d2) / 2;
+        if (curve > 0) d = d0 - slope * slope / (2 * curve);
+      } else {
+        const double x = u->column->value[file_row];
+        double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+        for (const double v : u->column->value)
+          if (std::isfinite(v)) {
+            lo = std::min(lo, v);
+            hi = std::max(hi, v);
+          }
+        for (int k = 0; k <= 40; ++k) d = std::min(d, row.distance({{u->input, lo + (hi - lo) * k / 40.0}}, {}));
+        (void)x;
+      }
+      if (d < least) {
+        least = d;
+        column = u->column->name;
+      }
+    }
+    flags.push_back({i, column, fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked", std::sqrt(distance)), 0, distance});
+    key_of[i] = "|" + std::to_string(i);
+  }
+
+  // One cause, one finding: a cluster most of whose rows are flagged.
+  int finding = 0;
+  std::map<int, RowFlag*> by_shot;
+  for (RowFlag& f : flags) by_shot[f.shot] = &f;
+  std::vector<RowFlag> added;
+  for (const Column& c : shots.columns) {
+    if (c.numeric) continue;
+    const Groups g = groups(c);
+    if (g.name.size() < 2) continue;
+    for (std::size_t k = 0; k < g.name.size(); ++k) {
+      std::vector<int> members, bad;
+      for (int i = 0; i < n; ++i)
+        if (g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k)) {
+          members.push_back(i);
+          if (by_shot.contains(i) && by_shot[i]->finding == 0) bad.push_back(i);
+        }
+      if (members.size() < 3 || bad.size() * 2 <= members.size()) continue;
+      std::map<std::string, int> votes;
+      for (const int i : bad) ++votes[by_shot[i]->column];
+      const auto top = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; });
+      ++finding;
+      std::string reason;
+      for (const int i : bad)
+        if (by_shot[i]->column == top->first && reason.empty()) reason = by_shot[i]->reason;
+      for (const int i : members) {
+        const std::string said = fmt::format("all of {} '{}' recorded wrongly in {}: {}", c.name, g.name[k], top->first, reason);
+        if (by_shot.contains(i)) {
+          by_shot[i]->finding = finding;
+          by_shot[i]->column = top->first;
+          by_shot[i]->reason = said;
+        } else {
+          added.push_back({i, top->first, said, finding, Row(problem, fit, i).distance({}, {})});
+        }
+      }
+    }
+  }
+  // The same slip in the same column is the same cause only where most of a cluster shows it; else each row is its own.
+  for (RowFlag& f : flags)
+    if (f.finding == 0) f.finding = ++finding;
+  flags.insert(flags.end(), added.begin(), added.end());
+  std::ranges::stable_sort(flags, {}, &RowFlag::shot);
+  return flags;
+}
+
+}  // namespace hosel::loop

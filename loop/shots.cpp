@@ -1,0 +1,256 @@
+#include "loop/shots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<std::string_view, kInputs> kInputStems = {"club_speed",   "attack_angle", "club_path",   "face_angle",
+                                                               "dynamic_loft", "impact_toe",   "impact_high", "head_mass"};
+constexpr std::array<Dimension, kInputs> kInputDimensions = {Dimension::speed,  Dimension::angle,  Dimension::angle,
+                                                             Dimension::angle,  Dimension::angle,  Dimension::length,
+                                                             Dimension::length, Dimension::mass};
+constexpr std::array<std::string_view, 7> kOutputStems = {"ball_speed", "launch_angle", "azimuth",  "backspin",
+                                                          "sidespin",   "spin_rate",    "spin_axis"};
+constexpr std::array<Dimension, 7> kOutputDimensions = {
+    Dimension::speed,            Dimension::angle,            Dimension::angle, Dimension::angular_velocity,
+    Dimension::angular_velocity, Dimension::angular_velocity, Dimension::angle};
+constexpr std::array<std::string_view, 5> kBookkeeping = {"shot", "club", "ball", "player", "session"};
+
+/// A whole cell as a number; nullopt for text. "nan" and "inf" are numbers here (and broken ones).
+std::optional<double> number(const std::string& cell) {
+  const char* begin = cell.data();
+  if (*begin == '+') ++begin;
+  double x = 0;
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
+  if (end != cell.data() + cell.size() || begin == end) return {};
+  if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+  return error == std::errc() ? std::optional(x) : std::nullopt;
+}
+
+/// Digits after the decimal point ("-1.3e2" counts as 0: the exponent moves the point).
+int decimals(const std::string& cell) {
+  const auto e = cell.find_first_of("eE");
+  const int exponent = e == std::string::npos ? 0 : std::atoi(cell.c_str() + e + 1);
+  const auto point = cell.find('.');
+  const int after = point == std::string::npos ? 0 : int((e == std::string::npos ? cell.size() : e) - point - 1);
+  return after - exponent;
+}
+
+/// The step of the recording: 10^-d for the most digits that at least 2 % of the cells carry; a coarser
+/// step that all values share (100 rpm recorded without decimals) is found from the values.
+double resolution(const std::vector<std::string>& cells, const std::vector<double>& native) {
+  std::map<int, std::size_t> count;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (std::isfinite(native[i])) {
+      ++count[decimals(cells[i])];
+      ++n;
+    }
+  if (!n) return 0;
+  int digits = count.begin()->first;
+  for (const auto& [d, k] : count)
+    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
+  const double step = std::pow(10.0, -digits);
+  std::set<double> different;
+  for (const double x : native)
+    if (std::isfinite(x) && different.size() < 20) different.insert(x);
+  if (different.size() < 8) return step;
+  for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
+    const auto off = [&](double x) {
+      const double q = x / (step * factor);
+      return std::isfinite(x) && std::abs(q - std::round(q)) > 1e-6;
+    };
+    if (std::ranges::none_of(native, off)) return step * factor;
+  }
+  return step;
+}
+
+Column make_column(const std::string& header, const std::vector<std::string>& cells, const Sheet& sheet) {
+  Column c;
+  c.name = header;
+  const auto input_of = [](std::string_view s) { return std::ranges::find(kInputStems, s) - kInputStems.begin(); };
+  const auto output_of = [](std::string_view s) { return std::ranges::find(kOutputStems, s) - kOutputStems.begin(); };
+  const SplitName split = split_unit(header);
+  c.stem = split.stem;
+  if (split.unit && split.unit->dimension != Dimension::percent) c.si = split.unit->si;
+  std::optional<Dimension> wanted;
+  if (std::ranges::count(kBookkeeping, header)) {
+    c.role = Role::bookkeeping;
+    c.stem = header;
+    c.si = 1;
+  } else if (const auto i = input_of(c.stem); i < kInputs) {
+    c.role = Role::input;
+    wanted = kInputDimensions[std::size_t(i)];
+  } else if (const auto o = output_of(c.stem); std::size_t(o) < kOutputStems.size()) {
+    c.role = Role::output;
+    wanted = kOutputDimensions[std::size_t(o)];
+  }
+  if (wanted && (!split.unit || split.unit->dimension != *wanted))
+    throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
+
+  c.value.assign(cells.size(), kNaN);
+  c.numeric = true;
+  for (std::size_t i = 0; i < cells.size() && c.numeric; ++i) {
+    if (cells[i].empty()) continue;
+    if (const auto x = number(cells[i])) {
+      if (std::isfinite(*x))
+        c.value[i] = *x;
+      else
+        c.broken.push_back(i);
+    } else if (wanted) {
+      throw DataError(fmt::format("{}:{}: column '{}': '{}' is not a number", sheet.file, sheet.lines[i], header, cells[i]));
+    } else {
+      c.numeric = false;
+    }
+  }
+  // Names of clubs and sessions are labels even where they are written as numbers.
+  if (c.role == Role::bookkeeping && header != "shot") c.numeric = false;
+  if (c.numeric) {
+    c.resolution = resolution(cells, c.value) * c.si;
+    for (double& x : c.value) x *= c.si;
+  } else {
+    c.value.clear();
+    c.broken.clear();
+    c.text = cells;
+  }
+  return c;
+}
+
+}  // namespace
+
+std::string_view stem(Input input) { return kInputStems[std::size_t(input)]; }
+std::string_view stem(Output output) { return kOutputStems[std::size_t(output)]; }
+
+double get(const Blow& b, Input input) {
+  switch (input) {
+    case Input::club_speed: return b.delivery.club_speed;
+    case Input::attack_angle: return b.delivery.attack_angle;
+    case Input::club_path: return b.delivery.club_path;
+    case Input::face_angle: return b.delivery.face_angle;
+    case Input::dynamic_loft: return b.delivery.dynamic_loft;
+    case Input::impact_toe: return b.delivery.impact_toe;
+    case Input::impact_high: return b.delivery.impact_high;
+    case Input::head_mass: return b.club.head.mass;
+  }
+  return 0;
+}
+
+void set(Blow& b, Input input, double x) {
+  switch (input) {
+    case Input::club_speed: b.delivery.club_speed = x; break;
+    case Input::attack_angle: b.delivery.attack_angle = x; break;
+    case Input::club_path: b.delivery.club_path = x; break;
+    case Input::face_angle: b.delivery.face_angle = x; break;
+    case Input::dynamic_loft: b.delivery.dynamic_loft = x; break;
+    case Input::impact_toe: b.delivery.impact_toe = x; break;
+    case Input::impact_high: b.delivery.impact_high = x; break;
+    case Input::head_mass: b.club.head.mass = x; break;
+  }
+}
+
+double get(const Launch& l, Output output) {
+  switch (output) {
+    case Output::ball_speed: return l.ball_speed();
+    case Output::launch_angle: return l.launch_angle();
+    case Output::azimuth: return l.azimuth();
+    case Output::backspin: return l.backspin();
+    case Output::sidespin: return l.sidespin();
+    case Output::spin_rate: return l.spin_rate();
+    case Output::spin_axis: return l.spin_axis();
+  }
+  return 0;
+}
+
+const Column* Shots::find(std::string_view wanted) const {
+  const auto it = std::ranges::find(columns, wanted, &Column::name);
+  return it == columns.end() ? nullptr : &*it;
+}
+
+const Column* Shots::find_stem(std::string_view wanted) const {
+  const auto it = std::ranges::find(columns, wanted, &Column::stem);
+  return it == columns.end() ? nullptr : &*it;
+}
+
+Shots read_shots(const Sheet& sheet) {
+  Shots shots;
+  shots.file = sheet.file;
+  shots.line = sheet.lines;
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    Column column = make_column(sheet.names[c], sheet.columns[c], sheet);
+    if (column.role == Role::input || column.role == Role::output)
+      if (const Column* other = shots.find_stem(column.stem))
+        throw DataError(fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
+    shots.columns.push_back(std::move(column));
+  }
+  const Column* shot = shots.find("shot");
+  shots.has_shot_column = shot != nullptr;
+  const auto shot_at = shot ? std::size_t(shot - shots.columns.data()) : 0;
+  for (std::size_t i = 0; i < sheet.rows(); ++i) {
+    const std::string& cell = shot ? sheet.columns[shot_at][i] : std::string();
+    shots.id.push_back(cell.empty() ? std::to_string(i + 1) : cell);
+  }
+  return shots;
+}
+
+void join(Shots& shots, const Sheet& sheet, const std::string& by) {
+  const Column* key = shots.find(by);
+  if (!key) throw DataError(fmt::format("{}:1: no column '{}' to join by", shots.file, by));
+  const auto at = std::ranges::find(sheet.names, by);
+  if (at == sheet.names.end()) throw DataError(fmt::format("{}:1: no column '{}' to join by", sheet.file, by));
+  const auto& keys = sheet.columns[std::size_t(at - sheet.names.begin())];
+  std::map<std::string, std::size_t> row_of;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (!row_of.emplace(keys[i], i).second)
+      throw DataError(fmt::format("{}:{}: '{}' stands twice", sheet.file, sheet.lines[i], keys[i]));
+  const Groups group = groups(*key);
+  for (const std::string& g : group.name)
+    if (!row_of.contains(g)) throw DataError(fmt::format("{}:1: no row for {} '{}'", sheet.file, by, g));
+
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    const std::string& header = sheet.names[c];
+    if (header == by || header.starts_with("mean_") || header.starts_with("half_range_")) continue;
+    const Column source = make_column(header, sheet.columns[c], sheet);
+    if (source.role != Role::input) continue;
+    const auto existing = std::ranges::find(shots.columns, source.stem, &Column::stem);
+    Column* target = existing == shots.columns.end() ? nullptr : &*existing;
+    if (!target) {
+      shots.columns.push_back(source);
+      target = &shots.columns.back();
+      target->value.assign(shots.rows(), kNaN);
+      target->broken.clear();
+    }
+    for (std::size_t i = 0; i < shots.rows(); ++i)
+      if (std::isnan(target->value[i]) && group.of_row[i] >= 0)
+        target->value[i] = source.value[row_of.at(group.name[std::size_t(group.of_row[i])])];
+  }
+}
+
+Groups groups(const Column& column) {
+  Groups g;
+  const std::size_t n = column.numeric ? column.value.size() : column.text.size();
+  g.of_row.assign(n, -1);
+  std::map<std::string, int> number_of;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::string label;
+    if (column.numeric) {
+      if (!std::isnan(column.value[i])) label = fmt::format("{:g}", column.native(i));
+    } else {
+      label = column.text[i];
+    }
+    if (label.empty()) continue;
+    const auto [it, fresh] = number_of.emplace(label, int(g.name.size()));
+    if (fresh) g.name.push_back(label);
+    g.of_row[i] = it->second;
+  }
+  return g;
+}
+
+}  // namespace hosel::loop
