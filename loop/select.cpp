@@ -351,14 +351,16 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   };
   const auto jacobian = [&](const Fit& f) { return whitened_jacobian(problem, rows, f.model, f.p); };
 
-  s.before = structure(problem, rows, search.z0, weights(search.z0), jacobian(search.base_fit), regressors, search.directions(), {},
+  const Fit& near = search.singles.empty() ? search.base_fit : search.singles.front().fit;
+  const Eigen::VectorXd scatter = whitened(problem, rows, near.model, near.p);
+  s.before = structure(problem, rows, search.z0, scatter, weights(scatter), jacobian(search.base_fit), regressors, search.directions(), {},
                        rules.flips, rules.seed);
   const double strongest = s.before.findings.empty() ? 0 : std::abs(s.before.findings.front().signal);
   s.structured = s.before.p < rules.gate || (noise_declared && strongest > rules.remaining_signal);
 
   const auto check = [&](const Fit& f) {
     const Eigen::VectorXd z = whitened(problem, rows, f.model, f.p);
-    s.after = structure(problem, rows, z, weights(z), jacobian(f), regressors, Eigen::MatrixXd(z.size(), 0), {}, rules.flips, rules.seed);
+    s.after = structure(problem, rows, z, z, weights(z), jacobian(f), regressors, Eigen::MatrixXd(z.size(), 0), {}, rules.flips, rules.seed);
     const double most = s.after.findings.empty() ? 0 : std::abs(s.after.findings.front().signal);
     return !(s.after.p < rules.remaining || (noise_declared && most > rules.remaining_signal));
   };

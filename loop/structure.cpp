@@ -164,8 +164,8 @@ Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<in
   return A;
 }
 
-StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& weights,
-                       const Eigen::MatrixXd& nuisance, const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
+StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& noise,
+                       const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance, const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
                        const std::vector<int>& cluster, int flips, unsigned long seed) {
   const int n = int(rows.size()), m = problem.width();
   const Eigen::MatrixXd Q = orthonormal(nuisance);
@@ -180,11 +180,15 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
     const double after = a.norm();
     if (after < 0.05 * before) return;  // what was fitted absorbs this regressor
     Eigen::VectorXd u(n);
-    for (int i = 0; i < n; ++i)
-      u[i] = weights[i] * a.segment(std::ptrdiff_t(i) * m, m).dot(z.segment(std::ptrdiff_t(i) * m, m));
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+      const auto ai = a.segment(std::ptrdiff_t(i) * m, m);
+      sum += weights[i] * ai.dot(z.segment(std::ptrdiff_t(i) * m, m));
+      u[i] = weights[i] * ai.dot(noise.segment(std::ptrdiff_t(i) * m, m));
+    }
     const double norm = u.norm();
     if (!(norm > 0)) return;
-    map.findings.push_back({channel, regressor, u.sum() / norm, u.sum() / after, 1});
+    map.findings.push_back({channel, regressor, sum / norm, sum / after, 1});
     scores.push_back((u / norm).cast<float>());
   };
   for (std::size_t r = 0; r < regressors.size(); ++r)
@@ -213,7 +217,7 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
     double square = 0;
     for (int k = 0; k + 1 < n; ++k) {
       const int i = by_order[std::size_t(k)], j = by_order[std::size_t(k) + 1];
-      const double x = weights[i] * z[std::ptrdiff_t(i) * m + c], y = weights[j] * z[std::ptrdiff_t(j) * m + c];
+      const double x = weights[i] * noise[std::ptrdiff_t(i) * m + c], y = weights[j] * noise[std::ptrdiff_t(j) * m + c];
       u[k] = x * y;
       square += x * x;
     }

@@ -39,7 +39,10 @@ struct StructureMap {
 /// `z` whitened residuals of the rows, `weights` per row, `nuisance` whitened Jacobian of what was fitted (its
 /// span is projected out of every regressor), `directions` whitened candidate directions, each a regressor of its
 /// own (channel -1, regressor index after the others). `cluster` gives whole clusters one sign where not empty.
-StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& weights,
+/// `noise` are the whitened residuals whose signs are flipped: those of the best model, so that a strong effect
+/// does not hide in its own scatter; for a test of what remains the same as `z`.
+StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& noise,
+                       const Eigen::VectorXd& weights,
                        const Eigen::MatrixXd& nuisance, const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
                        const std::vector<int>& cluster, int flips, unsigned long seed);
 
