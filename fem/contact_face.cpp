@@ -41,8 +41,8 @@ std::vector<std::string> ContactLawAtPoint::faults() const {
 }
 
 ContactFace::ContactFace(const HarmonicSolid& solid, const Face& face, FaceCarrier carrier, ContactLawAtPoint law,
-                         const AngularRule& angles, bool symmetric, int edge_points)
-    : solid_(solid), face_(face), carrier_(std::move(carrier)), law_(law), symmetric_(symmetric) {
+                         const AngularRule& angles, Symmetry symmetry, int edge_points)
+    : solid_(solid), face_(face), carrier_(std::move(carrier)), law_(law), symmetry_(symmetry) {
   if (const auto faults = law.faults(); !faults.empty()) throw std::invalid_argument(faults.front());
   if (carrier_.translation.has_value() != carrier_.rotation.has_value())
     throw std::invalid_argument("contact: a moving face needs a position and a rotation");
@@ -239,14 +239,8 @@ void ContactFace::residual(const State& s, Vector&, Vector& force) const {
     moment += k.arm.cross(f);
   });
   if (!carrier_.translation) return;
-  Vec3 push = R * total;
-  if (symmetric_) {
-    const Vec3 m = solid_.placement().axes.col(2), b = R.transpose() * m;
-    push -= m.dot(push) * m;
-    moment = b.dot(moment) * b;
-  }
-  force.segment<3>(carrier_.translation->v) += push;
-  force.segment<3>(carrier_.rotation->v) += moment;
+  force.segment<3>(carrier_.translation->v) += free_translation() * R * total;
+  force.segment<3>(carrier_.rotation->v) += free_rotation(R) * moment;
 }
 
 void ContactFace::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
@@ -269,14 +263,9 @@ void ContactFace::tangent(const State& s, const Weights& weights, TangentSink& s
         const int at = edge.places[static_cast<std::size_t>(i)];
         B.col(i) = point.shape[at / K] * local_functions.col(at % K);
       }
-      Mat3 keep = Mat3::Identity(), turn = Mat3::Identity();  // what the carrier may do, body frame
+      const Mat3 turn = free_rotation(pose.R);
       if (moving) {
-        if (symmetric_) {
-          const Vec3 m = solid_.placement().axes.col(2), b = pose.R.transpose() * m;
-          keep -= m * m.transpose();
-          turn = b * b.transpose();
-        }
-        B.middleCols<3>(own) = -pose.R.transpose() * keep;
+        B.middleCols<3>(own) = -pose.R.transpose() * free_translation();
         B.rightCols<3>() = skew(k.arm) * turn;
       }
       Mat3 D = weights.stiffness * local.stiffness + weights.damping * local.damping;
@@ -404,12 +393,9 @@ ContactReport ContactFace::report(const State& s) const {
     weight += area * local.pressure;
     ++out.points;
   });
-  if (symmetric_) {
-    const Vec3 m = solid_.placement().axes.col(2);
-    out.force -= m.dot(out.force) * m;
-    if (weight > 0) centre -= m.dot(centre / weight - solid_.placement().origin) * weight * m;
-  }
-  if (weight > 0) out.point = centre / weight;
+  out.force = (free_translation() * out.force).eval();
+  const Vec3& origin = solid_.placement().origin;
+  if (weight > 0) out.point = origin + free_translation() * (centre / weight - origin);
   out.penetration = penetration_;
   out.stick_slip_error = creep_;
   return out;
@@ -427,10 +413,25 @@ std::vector<ContactPoint> ContactFace::points(const State& s) const {
   return out;
 }
 
-double ContactFace::smallest_gap(const State& s) const {
-  double gap = INFINITY;
-  visit(s, [&](std::size_t, const Pose&, const Kinematics& k) { gap = std::min(gap, gap_at(k.place)); });
-  return gap;
+double ContactFace::centre_gap(const State& s) const {
+  const Pose pose = this->pose(s);
+  return gap_at(pose.R.transpose() * (solid_.motion(s).centre - pose.node) - carrier_.face_centre);
+}
+
+Mat3 ContactFace::free_translation() const {
+  const Mat3& axes = solid_.placement().axes;
+  switch (symmetry_) {
+    case Symmetry::plane: return Mat3::Identity() - axes.col(2) * axes.col(2).transpose();
+    case Symmetry::axis: return axes.col(0) * axes.col(0).transpose();
+    default: return Mat3::Identity();
+  }
+}
+
+Mat3 ContactFace::free_rotation(const Mat3& R) const {
+  if (symmetry_ == Symmetry::none) return Mat3::Identity();
+  if (symmetry_ == Symmetry::axis) return Mat3::Zero();
+  const Vec3 b = R.transpose() * solid_.placement().axes.col(2);
+  return b * b.transpose();
 }
 
 }  // namespace hosel::fem

@@ -32,6 +32,13 @@ struct FaceCarrier {
   Mat3 attitude = Mat3::Identity();            ///< of a fixed face, body to global
 };
 
+/// Which half of the motion the angles leave to symmetry. The carrier feels the mirror images as well.
+enum class Symmetry {
+  none,   ///< angles over the full circle
+  plane,  ///< half circle; mirror symmetry about the plane of the solid's axes 1 and 2
+  axis,   ///< one angle; everything is symmetric about the solid's axis 1
+};
+
 /// One quadrature point of the patch at the last accepted state.
 struct ContactPoint {
   Vec3 reference;        ///< material point, global, before the motion [m]
@@ -63,11 +70,9 @@ struct ContactReport {
 /// Mechanics (2006), ch. 5.
 class ContactFace final : public Term {
  public:
-  /// `angles`: the rule over theta; `edge_points`: Gauss points along an edge (1..5). With `symmetric` the
-  /// angles cover the half circle of a motion that is symmetric about the plane of the solid's axes 1
-  /// and 2, and the carrier feels the mirror image of every force as well.
+  /// `angles`: the rule over theta that suits `symmetry`; `edge_points`: Gauss points along an edge (1..5).
   ContactFace(const HarmonicSolid& solid, const Face& face, FaceCarrier carrier, ContactLawAtPoint law,
-              const AngularRule& angles, bool symmetric, int edge_points = 4);
+              const AngularRule& angles, Symmetry symmetry, int edge_points = 4);
 
   /// Takes the state that the motion starts from; to be called once, before anything else.
   void start(const State& initial);
@@ -83,8 +88,8 @@ class ContactFace final : public Term {
 
   ContactReport report(const State& accepted) const;
   std::vector<ContactPoint> points(const State& accepted) const;
-  /// Smallest gap of all points [m].
-  double smallest_gap(const State& s) const;
+  /// Distance of the solid's centre of mass from the face [m].
+  double centre_gap(const State& s) const;
 
  private:
   struct Edge {
@@ -124,6 +129,9 @@ class ContactFace final : public Term {
   };
 
   Pose pose(const State& s) const;
+  /// What symmetry leaves of the carrier's translation (global) and rotation (body frame).
+  Mat3 free_translation() const;
+  Mat3 free_rotation(const Mat3& R) const;
   double gap_at(const Vec3& place) const;
   Local law(const Past& past, const Kinematics& k, bool derivatives) const;
   template <class Visit>
@@ -135,7 +143,7 @@ class ContactFace final : public Term {
   ContactLawAtPoint law_;
   std::vector<Edge> edges_;
   std::vector<Point> points_;
-  bool symmetric_;
+  Symmetry symmetry_;
   std::vector<Eigen::MatrixXd> functions_;  // 3 x K at each angle, global
   std::vector<Past> past_;
   bool started_ = false;

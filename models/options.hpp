@@ -3,6 +3,7 @@
 #pragma once
 
 #include "models/hertz_maw.hpp"
+#include "models/fe_impact.hpp"
 #include "models/volumetric.hpp"
 
 namespace hosel::models {
@@ -13,6 +14,7 @@ struct Options {
   ShaftImpedanceOptions shaft_beam;
   HertzMawLaw hertz_maw;
   HertzMawOptions hertz_maw_solution;
+  FeImpactOptions fe;
 };
 
 }  // namespace hosel::models

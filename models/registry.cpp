@@ -5,6 +5,7 @@
 
 #include "models/hinged_head.hpp"
 #include "models/pendulum_club.hpp"
+#include "models/fe_impact.hpp"
 #include "models/rigid_eccentric.hpp"
 #include "models/rigid_planar.hpp"
 #include "models/shaft_coupled.hpp"
@@ -30,6 +31,7 @@ std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
 std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
   return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam);
 }
+std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<FeFreeBody>(o.fe); }
 
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
@@ -40,6 +42,7 @@ constexpr std::array kModels = {
     ModelEntry{"shaft-coupled", "volumetric ball, head with the shaft as a condensed beam at the hosel", shaft_coupled},
     ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", plain<PendulumClub>},
     ModelEntry{"hinged-head", "the pendulum with a hinge at the hosel", plain<HingedHead>},
+    ModelEntry{"fe-free-body", "finite-element viscoelastic ball, frictional patch, free rigid head", fe_free_body},
 };
 
 }  // namespace

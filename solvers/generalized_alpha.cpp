@@ -99,6 +99,10 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   trial_ = state_;
   trial_.time = state_.time + h;
   Vector a1 = (state_.a - am_ * a0) / (1 - am_);  // vdot_{n+1} = vdot_n to begin with
+  if (!options_.predict_acceleration) {
+    a1 = (1 - 0.5 / beta_) * a0;  // increment h v_n
+    trial_.a = ((1 - am_) * a1 + am_ * a0 - af_ * state_.a) / (1 - af_);
+  }
   increment_ = h * state_.v + h * h * ((0.5 - beta_) * a0 + beta_ * a1);
   trial_.v = state_.v + h * ((1 - gamma_) * a0 + gamma_ * a1);
   trial_.q = system_.layout.advanced(state_.q, increment_);

@@ -24,6 +24,9 @@ struct GeneralizedAlphaOptions {
   double step_max = 0;       ///< the fixed step where no error tolerance is set [s]
   double step_min = 0;       ///< below this a failing step gives up [s]
   double step_first = 0;     ///< 0: step_max [s]
+  /// First guess of a step: the last acceleration goes on, or (false) none does: the better guess where
+  /// contact makes accelerations jump.
+  bool predict_acceleration = true;
   double error_vector = 0;   ///< error allowed per step of a plain number [m]; inf: fixed steps
   double error_rotation = 0; ///< of a rotation [rad]; inf: fixed steps
 

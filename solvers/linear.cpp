@@ -10,6 +10,10 @@
 
 #include "solvers/errors.hpp"
 
+// Fronts are small and runs go in parallel: threads of the BLAS cost more than they bring. Absent
+// where the BLAS is not OpenBLAS.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
 namespace hosel::solvers {
 
 SparseTangent::SparseTangent(const fem::System& system) {
@@ -183,6 +187,7 @@ struct Factorisation::State {
 
 Factorisation::Factorisation() : state_(std::make_unique<State>()) {
   umfpack_di_defaults(state_->control.data());
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
 }
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;

@@ -1,5 +1,6 @@
 #include "solvers/newton.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -40,17 +41,20 @@ double Newton::increment_measure(const Vector& increment) const {
 NewtonReport Newton::solve(const NewtonProblem& problem) {
   NewtonReport report;
   double increment = INFINITY, before = INFINITY;
-  bool fresh = false;  // factors made at the previous iterate of this very solve
+  Vector r, last;
+  const auto evaluate = [&] {
+    r = problem.residual(report.scale);
+    report.residual = r.norm();
+  };
+  const auto tolerance = [&] { return options_.residual_relative * report.scale + options_.residual_absolute; };
   try {
+    evaluate();
     for (;; ++report.iterations) {
-      const Vector r = problem.residual(report.scale);
-      report.residual = r.norm();
       if (!std::isfinite(report.residual)) {
         report.reason = "the residual is not finite";
         break;
       }
-      const double tolerance = options_.residual_relative * report.scale + options_.residual_absolute + round_off_;
-      if (report.residual <= tolerance && increment <= 1) {
+      if (report.residual <= tolerance() && increment <= 1) {
         report.converged = true;
         return report;
       }
@@ -58,22 +62,35 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
         report.reason = "Newton's method did not converge in the iterations allowed";
         break;
       }
-      if (fresh && report.iterations > 4 && report.residual > 1e4 * before) {
-        report.reason = "Newton's method diverges";
-        break;
-      }
       // A small residual needs no better factor: only the increment is still to be confirmed.
-      const bool slow = report.residual > options_.renew_above * before && report.residual > tolerance;
-      fresh = !factors_.ready() || slow;
-      if (fresh) {
-        round_off_ = problem.assemble();
-        factors_.factorise(tangent_);
-        ++report.factorisations;
-      }
-      const Vector step = -factors_.solve(r);
-      increment = increment_measure(step);
+      const bool slow = report.residual > options_.renew_above * before && report.residual > tolerance();
+      bool fresh = !factors_.ready() || slow;
+      const Vector start = r;
       before = report.residual;
-      problem.advance(step);
+      for (;;) {
+        if (fresh) {
+          problem.assemble();
+          factors_.factorise(tangent_);
+          ++report.factorisations;
+        }
+        last = -factors_.solve(start);
+        increment = increment_measure(last);
+        problem.advance(last);
+        evaluate();
+        if (fresh || report.residual <= std::max(before, tolerance())) break;
+        // A kept factor that leads away is not worth following.
+        problem.advance(-last);
+        evaluate();
+        fresh = true;
+      }
+      // Kinks of contact make a full step overshoot: halve it while that brings the residual down.
+      for (int halvings = 0; halvings < 8 && !(report.residual <= std::max(before, tolerance())); ++halvings) {
+        const double full = report.residual;
+        last *= 0.5;
+        problem.advance(-last);
+        evaluate();
+        if (std::isfinite(full) && std::isfinite(report.residual) && report.residual > 0.9 * full) break;
+      }
     }
   } catch (const NonConvergence& e) {
     report.reason = e.what();

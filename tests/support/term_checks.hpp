@@ -39,7 +39,7 @@ inline fem::Vector total_residual(const fem::Term& term, const fem::State& s) {
 
 /// Directional derivatives of the residual along random directions of q, v and a against the tangent.
 inline void check_tangent(const fem::Term& term, const fem::Layout& layout, const fem::State& s, double step,
-                          double tolerance) {
+                          double tolerance, double rate_step = 1) {
   const Eigen::Index n = layout.size();
   for (int what = 0; what < 3; ++what) {
     const fem::Weights weights{what == 0 ? 1.0 : 0.0, what == 1 ? 1.0 : 0.0, what == 2 ? 1.0 : 0.0};
@@ -47,8 +47,8 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
     term.tangent(s, weights, sink);
     for (unsigned seed = 1; seed <= 2; ++seed) {
       const Eigen::VectorXd d = random_vector(n, seed);
-      // Residuals are at most quadratic in v and linear in a: a large step is exact there.
-      const double h0 = what == 0 ? step : 1;
+      // Most residuals are at most quadratic in v and linear in a: a large step is exact there.
+      const double h0 = what == 0 ? step : rate_step;
       const auto at = [&](double h) {
         fem::State t = s;
         if (what == 0) t.q = layout.advanced(s.q, h * d);

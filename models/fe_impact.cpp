@@ -1,0 +1,271 @@
+#include "models/fe_impact.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "solvers/errors.hpp"
+
+namespace hosel::models {
+namespace {
+
+/// Contact time of an elastic sphere of mass m on a rigid plane after Hertz [s].
+double hertz_time(double mass, double radius, double young, double speed) {
+  const double e = young / (1 - 0.25);  // plane-strain modulus of an incompressible ball
+  return 2.868 * std::pow(mass * mass / (radius * e * e * speed), 0.2);
+}
+
+}  // namespace
+
+std::vector<std::string> FeImpactOptions::faults() const {
+  std::vector<std::string> out = ball.faults();
+  for (const auto& fault : mesh.faults()) out.push_back(fault);
+  if (harmonics < 0) out.emplace_back("harmonics must be at least 0");
+  if (antisymmetric < 1) out.emplace_back("antisymmetric harmonics must be at least 1: less cannot turn");
+  if (angles < 0 || (angles > 0 && angles < 2 * harmonics + 1))
+    out.emplace_back("angles must be at least 2 N + 1 (0 chooses)");
+  if (contact_angles < 0) out.emplace_back("contact_angles must not be negative");
+  if (!(friction >= 0) || !std::isfinite(friction)) out.emplace_back("friction must be at least zero and finite");
+  if (!(penalty > 0)) out.emplace_back("penalty must be positive");
+  if (!(tangential_penalty > 0)) out.emplace_back("tangential_penalty must be positive");
+  if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf must lie in [0, 1]");
+  if (steps_per_contact < 10) out.emplace_back("steps_per_contact must be at least 10");
+  if (!(newton_relative > 0)) out.emplace_back("newton_relative must be positive");
+  if (!(after >= 0)) out.emplace_back("after must not be negative");
+  return out;
+}
+
+Encounter encounter(const Blow& blow) {
+  const Delivery& d = blow.delivery;
+  const Head& head = blow.club.head;
+  Encounter e;
+  e.face_axes = d.face_to_global();
+  const double yc = -d.impact_toe, zc = d.impact_high;
+  e.normal = e.face_axes * head.face.normal(yc, zc);
+  e.point = -blow.ball.radius * e.normal;
+  e.face_centre = e.point - e.face_axes * head.face.point(yc, zc);
+  const Vec3 arm = e.point - (e.face_centre + e.face_axes * head.cg);
+  e.approach = d.velocity() + d.head_angular_velocity.cross(arm);
+  e.normal_speed = e.approach.dot(e.normal);
+  if (!(e.normal_speed > 0)) throw std::invalid_argument("the head moves away from the ball");
+
+  const Vec3 slip = e.approach - e.normal_speed * e.normal;
+  const bool sliding = slip.norm() > 1e-12 * e.approach.norm();
+  const bool wall = std::isinf(head.mass);
+  Vec3 across = arm - arm.dot(e.normal) * e.normal;  // of the head's centre: the other direction that matters
+  const bool central = wall || across.norm() <= 1e-9 * (arm.norm() + blow.ball.radius);
+  const bool curved = std::isfinite(head.face.bulge) || std::isfinite(head.face.roll);
+  const double tolerance = 1e-9;
+
+  Vec3 direction = sliding ? Vec3(slip) : !central ? across : Vec3(e.face_axes.col(2));
+  direction = (direction - direction.dot(e.normal) * e.normal).normalized();
+  e.ball_axes.col(0) = -e.normal;
+  e.ball_axes.col(1) = direction;
+  e.ball_axes.col(2) = e.ball_axes.col(0).cross(direction);
+  const Vec3 m = e.ball_axes.col(2);
+
+  // Symmetric about the plane of normal and slip: velocities, arm, inertia and curved face all are.
+  const Mat3 inertia = wall ? Mat3(Mat3::Identity()) : Mat3(e.face_axes * head.inertia * e.face_axes.transpose());
+  const Vec3 coupling = inertia * m - m.dot(inertia * m) * m;
+  const Vec3& w = d.head_angular_velocity;
+  e.planar = (wall || std::abs(arm.dot(m)) <= tolerance) && (w - w.dot(m) * m).norm() <= tolerance &&
+             (wall || coupling.norm() <= 1e-6 * inertia.trace() || std::isinf(inertia.trace())) &&
+             std::abs(d.velocity().dot(m)) <= tolerance * (1 + d.club_speed);
+  if (curved) {
+    // The plane must hold a principal direction of the face at its centre, and pass through that centre.
+    const Vec3 local = e.face_axes.transpose() * m;
+    const bool aligned = std::abs(local.y()) < tolerance || std::abs(local.z()) < tolerance;
+    e.planar = e.planar && aligned && std::abs((e.point - e.face_centre).dot(m)) <= tolerance;
+  }
+  e.axial = !sliding && central && !curved && w.norm() == 0 &&
+            (wall || head.inertia.allFinite() || std::isinf(head.inertia.trace()));
+  return e;
+}
+
+BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& o, const fem::FaceCarrier& carrier,
+                    bool free) {
+  if (const auto faults = o.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
+  const Encounter e = encounter(blow);
+  const double R = blow.ball.radius;
+  std::vector<double> radii;
+  std::vector<fem::Solid> materials;
+  for (const BallLayer& layer : o.ball.layers) {
+    radii.push_back(layer.radius * R);
+    materials.push_back(layer.material);
+  }
+  const mesh::Meridian meridian = mesh::sphere_meridian(radii, o.mesh);
+
+  const bool axial = o.harmonics == 0;
+  const bool planar = !axial && e.planar && !free;
+  const fem::Family family = axial    ? fem::axisymmetric_family()
+                             : planar ? fem::cartesian_family(o.harmonics)
+                                      : fem::cartesian_family(o.harmonics, std::min(o.antisymmetric, o.harmonics));
+  const int angles = o.angles > 0 ? o.angles : 2 * o.harmonics + 4;
+  const int patch = o.contact_angles > 0 ? o.contact_angles : 3 * o.harmonics + 8;
+  const auto rule = [&](int half) {
+    return axial ? fem::single_angle() : planar ? fem::half_circle(half) : fem::full_circle(2 * half);
+  };
+  fem::Placement placement{Vec3::Zero(), e.ball_axes};
+  placement.axes = Eigen::AngleAxisd(o.tilt, e.ball_axes.col(2)).toRotationMatrix() * e.ball_axes;
+
+  // The mesh weighs what the ball weighs, layer by layer in proportion to the densities given.
+  const auto mass_of = [&](const std::vector<fem::Solid>& m) {
+    fem::Layout layout;
+    return fem::HarmonicSolid(layout, meridian, fem::axisymmetric_family(), {fem::single_angle(), 2}, m, placement).mass();
+  };
+  const double scale = blow.ball.mass / mass_of(materials);
+  for (fem::Solid& m : materials) m.density *= scale;
+
+  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian, family, fem::SolidQuadrature{rule(angles), 2},
+                                                   materials, placement);
+  fem::ContactLawAtPoint law;
+  law.normal_stiffness = o.penalty * o.ball.instant_young() / R;
+  law.tangential_stiffness = o.tangential_penalty * law.normal_stiffness;
+  law.friction = axial ? 0 : o.friction;
+  law.transition_speed = o.transition_speed;
+  auto contact = std::make_unique<fem::ContactFace>(
+      *ball, blow.club.head.face, carrier, law, rule(patch),
+      axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none, o.edge_points);
+  BallOnFace parts{ball.get(), contact.get()};
+  system.terms.push_back(std::move(ball));
+  system.terms.push_back(std::move(contact));
+  return parts;
+}
+
+FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial, const FeImpactOptions& o,
+                          double approach_speed, const ImpactObserver& observer) {
+  parts.contact->start(initial);
+  const double mass = parts.ball->mass(), radius = parts.ball->mesh().radius;
+  const double expected = hertz_time(mass, radius, o.ball.instant_young(), approach_speed);
+  const double step = expected / o.steps_per_contact;
+
+  solvers::GeneralizedAlphaOptions options;
+  options.rho_inf = o.rho_inf;
+  options.newton.residual_relative = o.newton_relative;
+  options.newton.residual_absolute = 1e-3 * o.newton_relative * mass * approach_speed / expected;
+  options.newton.increment_vector = 1e-4 * approach_speed * step;
+  options.newton.increment_rotation = 1e-4 * approach_speed * step / radius;
+  options.step_max = step;
+  options.step_first = step / 16;  // the first touch is the roughest part
+  options.step_min = step / 1024;
+  options.predict_acceleration = false;
+  options.error_vector = options.error_rotation = INFINITY;
+
+  const Mat3 inertia = parts.ball->motion(system.layout.rest()).inertia;
+  const double gap0 = parts.contact->centre_gap(initial);
+  solvers::GeneralizedAlpha solver(system, options, std::move(initial));
+  FeImpactResult out;
+  const auto observe = [&](const fem::ContactReport& report) {
+    if (observer) observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger()});
+  };
+  observe(parts.contact->report(solver.state()));
+
+  bool touched = false;
+  double last_touch = 0;
+  for (;;) {
+    const double before = solver.time();
+    solver.advance(before + step);
+    const fem::ContactReport report = parts.contact->report(solver.state());
+    observe(report);
+    const double now = solver.time();
+    if (report.points > 0) {
+      touched = true;
+      last_touch = now;
+      if (report.normal_force > out.peak_force) {
+        out.peak_force = report.normal_force;
+        out.peak_time = now;
+      }
+    }
+    out.compression = std::max(out.compression, gap0 - parts.contact->centre_gap(solver.state()));
+    out.penetration = report.penetration;
+    out.creep = report.stick_slip_error;
+    if (touched && report.points == 0 && now >= last_touch * (1 + o.after)) break;
+    if (now > 20 * expected) {
+      std::ostringstream text;
+      text << "ball and face " << (touched ? "are still in contact" : "have not met") << " after " << now
+           << " s, twenty times the time that Hertz's theory expects: is the ball far too soft or viscous?";
+      throw solvers::NonConvergence(text.str());
+    }
+  }
+  const fem::MeanMotion motion = parts.ball->motion(solver.state());
+  out.ball_velocity = motion.velocity;
+  out.ball_spin = inertia.inverse() * motion.angular_momentum;
+  out.contact_time = last_touch;
+  out.dissipated = parts.ball->dissipated();
+  out.ledger = solver.ledger();
+  out.counts = solver.counts();
+  return out;
+}
+
+FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options) {
+  FreeBodyImpact out;
+  out.encounter = encounter(blow);
+  const Encounter& e = out.encounter;
+  const Head& head = blow.club.head;
+  const bool wall = std::isinf(head.mass);
+  if (options.harmonics == 0 && !e.axial && !wall)
+    throw std::invalid_argument(
+        "fe impact: harmonics = 0 is the axisymmetric ball: a blow with loft, offset or curved face needs harmonics of 2 or more");
+  if (options.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
+    throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
+  fem::FaceCarrier carrier;
+  fem::Layout::Block x, r;
+  if (wall) {
+    // In the wall's frame: it stands, the ball comes.
+    carrier.position = e.face_centre;
+    carrier.attitude = e.face_axes;
+  } else {
+    if (const auto faults = head.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
+    x = out.system.layout.add_vector(3);
+    r = out.system.layout.add_rotation();
+    carrier.translation = x;
+    carrier.rotation = r;
+    carrier.face_centre = -head.cg;
+    auto body = std::make_unique<fem::RigidBody>("head", x, r, fem::RigidBodyProperties{head.mass, head.inertia, Vec3::Zero()});
+    out.head = body.get();
+    out.system.terms.push_back(std::move(body));
+  }
+  out.parts = add_ball(out.system, blow, options, carrier, false);
+  out.initial = out.system.layout.rest();
+  if (wall) {
+    out.parts.ball->set_velocity(out.initial, -blow.delivery.velocity(), Vec3::Zero());
+  } else {
+    out.initial.q.segment<3>(x.q) = e.face_centre + e.face_axes * head.cg;
+    fem::set_rotation(out.initial, r, Eigen::Quaterniond(e.face_axes));
+    out.initial.v.segment<3>(x.v) = blow.delivery.velocity();
+    out.initial.v.segment<3>(r.v) = e.face_axes.transpose() * blow.delivery.head_angular_velocity;
+  }
+  return out;
+}
+
+FreeBodyOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer) {
+  FreeBodyImpact impact = assemble_free_body(blow, options);
+  FreeBodyOutcome out;
+  fem::State last;
+  out.result = run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed,
+                          [&](const ImpactView& view) {
+                            if (impact.head) last = view.state;
+                            if (observer) observer(view);
+                          });
+  out.launch.velocity = out.result.ball_velocity;
+  out.launch.spin = out.result.ball_spin;
+  if (impact.head) {
+    out.launch.head_velocity = impact.head->velocity(last);
+    out.launch.head_spin = impact.head->angular_velocity(last);
+  } else {
+    out.launch.velocity += blow.delivery.velocity();
+    out.launch.head_velocity = blow.delivery.velocity();
+  }
+  return out;
+}
+
+FeFreeBody::FeFreeBody(FeImpactOptions options) : options_(std::move(options)) {
+  if (const auto faults = options_.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
+}
+
+Launch FeFreeBody::launch(const Blow& blow) const { return solve_free_body(blow, options_).launch; }
+
+}  // namespace hosel::models

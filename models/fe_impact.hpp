@@ -1,0 +1,129 @@
+/// The finite-element impact: a deformable ball meets the face of a rigid head.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/contact_face.hpp"
+#include "fem/rigid_body.hpp"
+#include "golf/blow.hpp"
+#include "mesh/meridian.hpp"
+#include "models/fe_ball.hpp"
+#include "models/impact_model.hpp"
+#include "solvers/generalized_alpha.hpp"
+
+namespace hosel::models {
+
+/// How the impact is solved.
+struct FeImpactOptions {
+  FeBall ball = range_ball();
+  double friction = 0.4;                   ///< Coulomb's coefficient between ball and face [-]
+  std::optional<double> transition_speed;  ///< where set, friction is regularised by velocity [m/s]
+
+  mesh::MeridianOptions mesh;
+  int harmonics = 4;      ///< N; 0 is the axisymmetric ball
+  int antisymmetric = 2;  ///< harmonics across the plane of the slip, where the blow has no plane of symmetry
+  int angles = 0;         ///< of the volume over the half circle; 0: 2 N + 4
+  int contact_angles = 0; ///< of the patch over the half circle; 0: 3 N + 8
+  int edge_points = 4;    ///< Gauss points of the patch along an edge
+  double tilt = 0;        ///< of the mesh's axis against the expected turn of the ball [rad]
+
+  double penalty = 1000;            ///< contact pressure stiffness times radius over Young's modulus [-]
+  double tangential_penalty = 0.5;  ///< tangential stiffness over normal stiffness [-]
+
+  double rho_inf = 0.8;          ///< of generalized-alpha
+  int steps_per_contact = 120;   ///< of the contact time of Hertz's theory
+  double newton_relative = 1e-6; ///< residual over the size of the forces
+  double after = 0.05;           ///< time computed after contact, as a fraction of the contact time
+
+  /// Sentences naming what cannot be; empty if all is well.
+  std::vector<std::string> faults() const;
+};
+
+/// The ball and its contact inside a system; owned by it.
+struct BallOnFace {
+  fem::HarmonicSolid* ball = nullptr;
+  fem::ContactFace* contact = nullptr;
+};
+
+/// What a blow looks like at first contact, ball centre at the global origin.
+struct Encounter {
+  Mat3 face_axes;         ///< columns: face frame in the global one
+  Vec3 face_centre;       ///< global [m]
+  Vec3 point, normal;     ///< of first contact; out of the face
+  Vec3 approach;          ///< velocity of the face there [m/s]
+  double normal_speed = 0;  ///< approach along the normal [m/s]
+  bool axial = false;     ///< nothing but a normal blow through the centres
+  bool planar = false;    ///< a plane of symmetry exists
+  Mat3 ball_axes;         ///< contact pole, direction of slip, across both
+};
+Encounter encounter(const Blow& blow);
+
+/// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a
+/// shaft. `free` says that the carrier may move out of the blow's plane of symmetry.
+BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,
+                    const fem::FaceCarrier& carrier, bool free);
+
+/// What an observer sees after every accepted step, and once at the start.
+struct ImpactView {
+  const fem::System& system;
+  const fem::State& state;
+  const fem::HarmonicSolid& ball;
+  const fem::ContactFace& contact;
+  const fem::ContactReport& report;
+  const solvers::Ledger& ledger;
+};
+using ImpactObserver = std::function<void(const ImpactView&)>;
+
+/// What the impact was.
+struct FeImpactResult {
+  Vec3 ball_velocity = Vec3::Zero();  ///< of the centre of mass: momentum over mass, global [m/s]
+  /// Angular momentum over the undeformed mesh's own inertia: the spin that the ball keeps once its
+  /// vibration has died away, global [rad/s].
+  Vec3 ball_spin = Vec3::Zero();
+  double contact_time = 0;            ///< from first to last touch [s]
+  double peak_force = 0;              ///< largest normal force [N]
+  double peak_time = 0;               ///< when [s]
+  double compression = 0;             ///< largest approach of ball centre and face along the normal [m]
+  double penetration = 0;             ///< largest of the patch [m]
+  double creep = 0;                   ///< largest elastic slip of a sticking point [m]
+  std::vector<double> dissipated;     ///< by layer [J]
+  solvers::Ledger ledger;
+  solvers::GeneralizedAlpha::Counts counts;
+};
+
+/// Runs a system with a ball until contact has ended. `initial` holds the velocities at first contact.
+/// Throws solvers::NonConvergence.
+FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial,
+                          const FeImpactOptions& options, double approach_speed,
+                          const ImpactObserver& observer = {});
+
+/// A free head (a wall where its mass is infinite) and the ball.
+struct FreeBodyImpact {
+  fem::System system;
+  BallOnFace parts;
+  const fem::RigidBody* head = nullptr;  ///< absent for a wall
+  fem::State initial;
+  Encounter encounter;
+};
+FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options);
+
+struct FreeBodyOutcome {
+  FeImpactResult result;
+  Launch launch;
+};
+FreeBodyOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {});
+
+/// `fe-free-body` behind the common interface.
+class FeFreeBody final : public ImpactModel {
+ public:
+  explicit FeFreeBody(FeImpactOptions options);
+  Launch launch(const Blow& blow) const override;
+
+ private:
+  FeImpactOptions options_;
+};
+
+}  // namespace hosel::models

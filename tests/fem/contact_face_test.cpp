@@ -1,0 +1,112 @@
+#include "fem/contact_face.hpp"
+
+#include <gtest/gtest.h>
+
+#include "golf/units.hpp"
+#include "tests/support/term_checks.hpp"
+
+namespace hosel::fem {
+namespace {
+
+constexpr double kRadius = 0.021335;
+
+/// A ball pressed some way into a curved face that moves across it, with a frictional patch that partly
+/// sticks and partly slides.
+struct Scene {
+  System system;
+  HarmonicSolid* ball = nullptr;
+  Layout::Block x, r;
+  std::unique_ptr<ContactFace> contact;
+  State s;
+
+  explicit Scene(bool symmetric, ContactLawAtPoint law) {
+    const Family family = symmetric ? cartesian_family(2) : cartesian_family(2, 1);
+    const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
+    const Mat3 R = symmetric ? Mat3(Mat3::Identity())
+                             : Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix();
+    // The face's normal is the body's x; the ball's contact pole points against it.
+    Mat3 axes;
+    axes.col(0) = -R.col(0);
+    axes.col(1) = R.col(2);
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    ball = new HarmonicSolid(system.layout,
+                             mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
+                             family, {symmetric ? half_circle(6) : full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
+    system.terms.emplace_back(ball);
+    x = system.layout.add_vector(3);
+    r = system.layout.add_rotation();
+    const Face face{.bulge = 0.3, .roll = 0.25};
+    const Vec3 centre(0.01, symmetric ? 0 : 0.004, 0.02);
+    contact = std::make_unique<ContactFace>(*ball, face, FaceCarrier{x, r, centre}, law,
+                                            symmetric ? half_circle(8) : full_circle(14),
+                                            symmetric ? Symmetry::plane : Symmetry::none, 3);
+    s = system.layout.rest();
+    set_rotation(s, r, Eigen::Quaterniond(R));
+    const Vec3 spot = face.point(symmetric ? 0 : 0.01, symmetric ? 0 : -0.015);
+    s.q.segment<3>(x.q) = R * (Vec3(-kRadius, 0, 0) - centre - spot);
+    contact->start(s);
+    // Small steps into the face and along it.
+    for (int i = 1; i <= 4; ++i) {
+      s.q.segment<3>(x.q) += R * Vec3(2e-4, symmetric ? 0 : 3e-6, -4e-6 * i);
+      s.time += 1e-5;
+      if (i < 4) contact->accept(s);
+    }
+    s.v = test::random_vector(system.layout.size(), 8, 3);
+    if (symmetric) s.v.segment<3>(x.v).y() = 0, s.v.segment<3>(r.v) = Vec3(0, 1, 0);
+  }
+};
+
+TEST(ContactFace, Tangent) {
+  const ContactLawAtPoint frictionless{.normal_stiffness = 1e11, .friction = 0},
+      coulomb{.normal_stiffness = 1e11, .tangential_stiffness = 5e10, .friction = 0.01},
+      regularised{.normal_stiffness = 1e11, .friction = 0.3, .transition_speed = 1.0};
+  for (const auto& law : {frictionless, coulomb, regularised}) {
+    Scene scene(false, law);
+    const ContactReport report = scene.contact->report(scene.s);
+    ASSERT_GT(report.points, 20);
+    ASSERT_GT(report.normal_force, 10);
+    // The curvature of the gap function is taken to first order: relative size gap / face radius.
+    test::check_tangent(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3, 1e-5);
+  }
+}
+
+/// What pushes the ball pushes the head back along the same line: no net force, no net moment.
+TEST(ContactFace, ForcesBalance) {
+  for (bool symmetric : {false, true}) {
+    Scene scene(symmetric, {.normal_stiffness = 1e11, .tangential_stiffness = 5e10, .friction = 0.01});
+    Vector inertia = Vector::Zero(scene.system.layout.size()), force = inertia;
+    scene.contact->residual(scene.s, inertia, force);
+    const auto& layout = scene.system.layout;
+    // A rigid motion of everything does no work: translation, and rotation about the origin.
+    for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+      if (symmetric && axis.y() != 0) continue;
+      State rigid = layout.rest();
+      scene.ball->set_velocity(rigid, axis, Vec3::Zero());
+      rigid.v.segment<3>(scene.x.v) = axis;
+      const double push = force.segment<3>(scene.x.v).norm();
+      ASSERT_GT(push, 10);
+      EXPECT_LT(std::abs(force.dot(rigid.v)), 1e-10 * push);
+    }
+    // The ball has not been deformed, so rotating it about its centre is exact too.
+    const Vec3 axis = symmetric ? Vec3(0, 1, 0) : Vec3(0.3, -0.5, 0.8);
+    State rigid = layout.rest();
+    scene.ball->set_velocity(rigid, Vec3::Zero(), axis);
+    rigid.v.segment<3>(scene.x.v) = axis.cross(Vec3(scene.s.q.segment<3>(scene.x.q)));
+    rigid.v.segment<3>(scene.r.v) = rotation(scene.s, scene.r).conjugate() * axis;
+    EXPECT_LT(std::abs(force.dot(rigid.v)), 1e-10 * force.segment<3>(scene.x.v).norm() * kRadius);
+    // The friction cone is exact at every point.
+    int sliding = 0, sticking = 0;
+    scene.contact->accept(scene.s);
+    for (const auto& p : scene.contact->points(scene.s)) {
+      if (p.pressure == 0) continue;
+      const double tangential = std::sqrt(std::max(0.0, p.traction.squaredNorm() - p.pressure * p.pressure));
+      EXPECT_LE(tangential, 0.01 * p.pressure * (1 + 1e-3));
+      ++(p.sliding ? sliding : sticking);
+    }
+    EXPECT_GT(sliding, 0);
+    EXPECT_GT(sticking, 0);
+  }
+}
+
+}  // namespace
+}  // namespace hosel::fem
