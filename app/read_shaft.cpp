@@ -77,6 +77,12 @@ Shaft read_shaft(Table table) {
   }
   shaft = scaled(std::move(shaft), table.number("bending_scale", Range::positive(), 1.0),
                  table.number("torsion_scale", Range::positive(), 1.0));
+  const double mass_scale = table.number("mass_scale", Range::positive(), 1.0);
+  for (ShaftStation& s : shaft.stations) {
+    s.mass_per_length *= mass_scale;
+    s.rotary_inertia_y *= mass_scale;
+    s.rotary_inertia_z *= mass_scale;
+  }
   // Stiffness-proportional: the damping ratio holds at one frequency and grows in proportion to it.
   const double ratio = table.number("damping_ratio", {0, 1}, 0.0);
   if (ratio > 0)

@@ -9,7 +9,7 @@ namespace {
 
 /// Everything a condensed shaft depends on, as numbers.
 std::vector<double> signature(const Club& club, const ShaftImpedanceOptions& o) {
-  std::vector<double> s = {double(o.functions), o.highest, club.shaft ? club.shaft->damping_time : -1};
+  std::vector<double> s = {double(o.functions), o.highest, double(o.feels_translation), double(o.feels_rotation), club.shaft ? club.shaft->damping_time : -1};
   for (const Vec3& v : {club.geometry.hosel, club.geometry.shaft_axis, club.head.cg}) s.insert(s.end(), v.data(), v.data() + 3);
   if (club.shaft)
     for (const ShaftStation& t : club.shaft->stations)

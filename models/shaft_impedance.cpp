@@ -138,6 +138,8 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
   to_tip.topLeftCorner<3, 3>() = axes.transpose();
   to_tip.topRightCorner<3, 3>() = -axes.transpose() * skew(club.geometry.hosel - club.head.cg);
   to_tip.bottomRightCorner<3, 3>() = axes.transpose();
+  if (!options.feels_translation) to_tip.leftCols<3>().setZero();
+  if (!options.feels_rotation) to_tip.rightCols<3>().setZero();
 
   ShaftImpedance out;
   out.damping_time = shaft.damping_time;

@@ -25,6 +25,9 @@ struct ShaftImpedance {
 struct ShaftImpedanceOptions {
   int functions = 24;          ///< Legendre polynomials per field
   double highest = 15e3;       ///< modes of the held tip above this frequency are left out [Hz]
+  /// Which part of the head's motion carries the shaft's tip along: without the head's rotation about
+  /// its cg the shaft is added mass alone, without the translation added rotational inertia alone.
+  bool feels_translation = true, feels_rotation = true;
 };
 
 /// The shaft clamped at its butt, straight and linear: bending in two planes (Timoshenko), torsion and

@@ -193,8 +193,9 @@ class SweepJob final : public PointJob {
           series.x.push_back(x[i]);
           series.y.push_back(points[i][c].get<double>());
         }
-      const std::size_t dot = c.rfind(".value");
-      figure.panels.push_back({.title = c.substr(0, dot), .x_label = parameters_[across].key, .y_label = "", .series = {series}});
+      std::string shown = c.ends_with(".value") ? c.substr(0, c.size() - 6) : c;
+      shown.erase(0, shown.rfind('.') + 1);
+      figure.panels.push_back({.title = shown, .x_label = parameters_[across].key, .y_label = "", .series = {series}});
     }
     if (const std::string why = post::draw(figure, out.path("figures/sweep")); !why.empty()) out.say(why);
   }
