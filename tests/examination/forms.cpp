@@ -12,9 +12,9 @@ std::vector<Form> make_natural() {
   std::vector<Form> f;
   f.push_back({"ball-tangential-compliance", "constant", {{"tangential restitution", "", 0.1, 0.02, 0.45}},
                [](Truth& t, P p) { t.nature.rebound += p[0]; }, true, true});
-  f.push_back({"friction-limit", "coulomb", {{"inverse friction coefficient", "", 1.0, 1.5, 14.0}},
+  f.push_back({"friction-limit", "coulomb", {{"inverse friction coefficient", "", 1.0, 1.5, 8.0}},
                [](Truth& t, P p) { t.nature.slip = std::max(0.0, p[0]); }, true, true,
-               {2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0}});
+               {2.0, 2.7, 3.4, 4.2, 5.0, 6.0, 7.5}});
   f.push_back({"restitution-law", "linear",
                {{"restitution at 40 m/s", "", 0.02, -0.09, 0.09}, {"slope", "s/m", 0.001, -0.006, 0.006}},
                [](Truth& t, P p) {
@@ -69,12 +69,12 @@ std::vector<Form> make_other() {
                [](Truth& t, P p) { t.nature.rebound_per_speed += p[0]; }, true, true});
   f.push_back({"ball-tangential-compliance", "growing with obliquity", {{"at tan 0.4", "", 0.1, 0.02, 0.45}},
                [](Truth& t, P p) { t.nature.rebound_oblique += p[0]; }, true, true});
-  f.push_back({"friction-limit", "stribeck", {{"inverse friction coefficient", "", 1.0, 1.5, 14.0}},
+  f.push_back({"friction-limit", "stribeck", {{"inverse friction coefficient", "", 1.0, 1.5, 8.0}},
                [](Truth& t, P p) {
                  t.nature.slip = std::max(0.0, p[0]);
                  t.nature.stribeck = 0.35;
                },
-               true, true, {2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0}});
+               true, true, {2.0, 2.7, 3.4, 4.2, 5.0, 6.0, 7.5}});
   f.push_back({"restitution-law", "quadratic", {{"curvature", "s2/m2", 2e-4, -2e-3, 2e-3}},
                [](Truth& t, P p) { t.nature.curvature += p[0]; }, true, true});
   f.push_back({"restitution-law", "power", {{"exponent", "", 0.05, -0.4, 0.4}},

@@ -87,21 +87,15 @@ std::map<std::string, std::vector<std::string>> read_csv(const fs::path& path) {
   return table;
 }
 
-/// Held-out error after adoption over the oracle's: the true forms refitted on the same training rows.
-double oracle_ratio(const Set& set, const fs::path& residuals) {
+/// Held-out error after adoption over the oracle's: the true forms refitted on the same training rows. Root mean
+/// square over all channels, each in units of its noise.
+double oracle_ratio(const Set& set, const Json& report, const fs::path& residuals) {
   const auto table = read_csv(residuals);
   const auto& shot = table.at("shot");
   const auto& part = table.at("set");
-  std::vector<int> train, held;
-  std::vector<std::size_t> held_line;
-  for (std::size_t k = 0; k < shot.size(); ++k) {
-    const int row = std::stoi(shot[k]) - 1;
-    if (part[k] == "train") train.push_back(row);
-    else {
-      held.push_back(row);
-      held_line.push_back(k);
-    }
-  }
+  std::vector<int> train;
+  for (std::size_t k = 0; k < shot.size(); ++k)
+    if (part[k] == "train") train.push_back(std::stoi(shot[k]) - 1);
   const Session& s = set.session;
   const auto swings = recorded_swings(s);
   const auto w = whitening(s, swings);
@@ -111,14 +105,17 @@ double oracle_ratio(const Set& set, const fs::path& residuals) {
   double loop = 0, best = 0;
   for (std::size_t c = 0; c < s.channels.size(); ++c) {
     const Channel& ch = s.channels[c];
-    const auto& measured = table.at(ch.header + "__measured");
-    const auto& after = table.at(ch.header + "__after");
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      if (measured[held_line[k]].empty() || after[held_line[k]].empty()) continue;
-      const double y = std::stod(measured[held_line[k]]);
-      loop += std::pow((std::stod(after[held_line[k]]) - y) / ch.noise_sd, 2);
-      best += std::pow((oracle.outputs(held[k], static_cast<int>(c)) - y) / ch.noise_sd, 2);
+    int n = 0;
+    for (std::size_t k = 0; k < shot.size(); ++k) {
+      if (part[k] == "train") continue;
+      const int row = std::stoi(shot[k]) - 1;
+      const double d = oracle.outputs(row, static_cast<int>(c)) - s.recorded_outputs(row, static_cast<int>(c));
+      if (!std::isfinite(d)) continue;
+      best += std::pow(d / ch.noise_sd, 2);
+      ++n;
     }
+    for (const auto& reported : report.at("channels"))
+      if (reported.at("name") == ch.header) loop += n * std::pow(reported.at("after").at("holdout_rmse").get<double>() / ch.noise_sd, 2);
   }
   return std::sqrt(loop / best);
 }
@@ -177,6 +174,54 @@ std::optional<Design> design_worth(const Set& set, const std::string& rival, con
     added += batch;
   }
   return Design{ordinary, std::numeric_limits<double>::infinity()};
+}
+
+/// The true value of a reported parameter, where the report's form is the true one: by effect, name and unit.
+std::optional<double> true_value(const Set& set, const std::string& name, const std::string& unit) {
+  const std::string& effect = set.hidden[0].effect;
+  const auto& x = set.value[0];
+  const Session& s = set.session;
+  constexpr double deg = M_PI / 180;
+  const std::string id = effect + "/" + name + "/" + unit;
+  if (id == "ball-tangential-compliance/tangential_restitution/1") return x[0];
+  if (id == "friction-limit/friction_coefficient/1") return 1 / x[0];
+  if (id == "restitution-law/level/1") return x[0];
+  if (id == "restitution-law/slope/s/m") return x[1];
+  if (id == "restitution-falloff/falloff/1/m^2") return x[0] / (0.02 * 0.02);
+  if (id == "head-mass/added_mass/g" && !s.mass_column) return 1e3 * x[0] * s.head.mass_kg;
+  if (id == "head-inertia/log_factor/1") return std::log1p(x[0]);
+  if (id == "cg-shift/shift_up/mm") return 1e3 * x[1];
+  if (id == "cg-shift/shift_heel/mm") return 1e3 * x[0];
+  if (id == "head-closure/rate_z/rad/s") return x[0];
+  if (id == "ball-inertia/change_of_inertia_factor/1") return s.ball.inertia_factor * x[0];
+  if (id == "loft-bias/offset/deg") return x[0] / deg;
+  if (id == "monitor-misalignment/pitch/deg") return x[0] / deg;
+  if (id == "monitor-misalignment/yaw/deg") return x[1] / deg;
+  if (effect == "session-drift")
+    for (const Channel& c : s.channels)
+      if (name == c.header.substr(0, c.header.rfind('_')) + "_per_session" && unit == c.header.substr(c.header.rfind('_') + 1))
+        return x[static_cast<std::size_t>(c.slot)] * c.noise_sd;
+  return std::nullopt;
+}
+
+/// Reported parameters of the adopted effect that can be compared, and how many of their 95 % intervals hold
+/// the truth; nothing where a true parameter that is not zero has no counterpart.
+std::optional<std::pair<int, int>> coverage(const Set& set, const Json& report) {
+  if (set.hidden.size() != 1) return std::nullopt;
+  for (const auto& candidate : report.at("candidates")) {
+    if (names_of(candidate["effects"]) != names_of(report["adopted"])) continue;
+    int compared = 0, held = 0;
+    for (const auto& p : candidate["parameters"]) {
+      const auto truth = true_value(set, p.at("name"), p.at("unit"));
+      if (!truth) return std::nullopt;
+      ++compared;
+      held += std::abs(p.at("value").get<double>() - *truth) <= 1.959964 * p.at("sd").get<double>();
+    }
+    const auto active = std::count_if(set.value[0].begin(), set.value[0].end(), [](double v) { return v != 0; });
+    if (compared < active) return std::nullopt;
+    return std::pair{compared, held};
+  }
+  return std::nullopt;
 }
 
 double percentile(std::vector<double> v, double p) {
@@ -337,7 +382,7 @@ Json score_sets(const fs::path& dir) {
 
   // Held-out error against the oracle, and the listing of what went wrong.
   std::vector<double> ratios;
-  int designs = 0, good_designs = 0;
+  int designs = 0, good_designs = 0, compared = 0, held = 0;
   Json sets = Json::array();
   std::vector<double> seconds;
   for (const Outcome& o : outcomes) {
@@ -355,11 +400,22 @@ Json score_sets(const fs::path& dir) {
     if (o.ran && !o.truth.empty() && !o.adopted.empty() && o.key["shots"] >= 100) {
       try {
         const Set set = make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]);
-        const double ratio = oracle_ratio(set, dir / "out" / name / "residuals.csv");
+        const double ratio = oracle_ratio(set, o.report, dir / "out" / name / "residuals.csv");
         entry["oracle_ratio"] = ratio;
         ratios.push_back(ratio);
       } catch (const std::exception& e) {
         entry["oracle_trouble"] = e.what();
+      }
+    }
+    if (o.ran && stratum == "one-effect" && o.adopted == o.truth) {
+      try {
+        if (const auto c = coverage(make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]), o.report)) {
+          compared += c->first;
+          held += c->second;
+          entry["coverage"] = {{"parameters", c->first}, {"held", c->second}};
+        }
+      } catch (const std::exception& e) {
+        entry["coverage_trouble"] = e.what();
       }
     }
     if (o.ran && stratum == "confounded" && o.report.contains("next_experiment")) {
@@ -387,6 +443,7 @@ Json score_sets(const fs::path& dir) {
     }
     sets.push_back(entry);
   }
+  if (compared) lines.push_back({"one-effect", "95 % interval holds the truth", held, compared, 0.92, false});
   if (designs) lines.push_back({"confounded", "design worth 3 ordinary shots", good_designs, designs, 0.8, false});
 
   fmt::print("{:<20} {:<34} {:>11} {:>8}  {:<16} {}\n", "stratum", "what", "sets", "share", "95 % interval", "goal");

@@ -33,27 +33,33 @@ Session draw_session(const SessionOptions& options, Random& random) {
   Session s;
   s.base = options.base;
   const bool planar = s.base == "rigid-planar";
-  const bool iron = planar || random.chance(0.25);
+  const bool iron = planar || options.wedge || random.chance(0.25);
+  const bool wedge = options.wedge || (iron && random.chance(0.15));
   const int n = options.shots;
 
+  // Drawn until it is a body's: no principal moment beyond the sum of the others.
   Matrix3d inertia;
-  if (iron) {
-    s.head.mass_kg = random.uniform(0.24, 0.275);
-    s.head.cg_m = Vector3d(random.uniform(-0.006, -0.001), random.uniform(-0.002, 0.004), random.uniform(-0.005, 0.003));
-    inertia = Vector3d(2.75e-4, 0.58e-4, 2.9e-4).asDiagonal();
-    s.head.bulge_m = s.head.roll_m = std::numeric_limits<double>::infinity();
-  } else {
-    s.head.mass_kg = random.uniform(0.19, 0.21);
-    s.head.cg_m = Vector3d(random.uniform(-0.043, -0.028), random.uniform(-0.003, 0.003), random.uniform(-0.002, 0.005));
-    inertia = Vector3d(random.uniform(2.1e-4, 3.6e-4), random.uniform(2.8e-4, 4.2e-4), random.uniform(4.3e-4, 5.8e-4)).asDiagonal();
-    s.head.bulge_m = random.uniform(0.25, 0.4);
-    s.head.roll_m = random.uniform(0.25, 0.4);
-  }
-  inertia *= random.uniform(0.92, 1.08);
-  if (random.chance(0.5)) {
-    const double p = 0.08 * std::sqrt(inertia(0, 0) * inertia(1, 1));
-    for (const auto& [i, j] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
-      inertia(i, j) = inertia(j, i) = p * random.uniform(-1, 1);
+  for (bool body = false; !body;) {
+    if (iron) {
+      s.head.mass_kg = wedge ? random.uniform(0.28, 0.30) : random.uniform(0.24, 0.275);
+      s.head.cg_m = Vector3d(random.uniform(-0.006, -0.001), random.uniform(-0.002, 0.004), random.uniform(-0.005, 0.003));
+      inertia = Vector3d(2.75e-4, 0.58e-4, 2.9e-4).asDiagonal();
+      s.head.bulge_m = s.head.roll_m = std::numeric_limits<double>::infinity();
+    } else {
+      s.head.mass_kg = random.uniform(0.19, 0.21);
+      s.head.cg_m = Vector3d(random.uniform(-0.043, -0.028), random.uniform(-0.003, 0.003), random.uniform(-0.002, 0.005));
+      inertia = Vector3d(random.uniform(2.1e-4, 3.6e-4), random.uniform(2.8e-4, 4.2e-4), random.uniform(4.3e-4, 5.8e-4)).asDiagonal();
+      s.head.bulge_m = random.uniform(0.25, 0.4);
+      s.head.roll_m = random.uniform(0.25, 0.4);
+    }
+    inertia *= random.uniform(0.92, 1.08);
+    if (random.chance(0.5)) {
+      const double p = 0.08 * std::sqrt(inertia(0, 0) * inertia(1, 1));
+      for (const auto& [i, j] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
+        inertia(i, j) = inertia(j, i) = p * random.uniform(-1, 1);
+    }
+    const Vector3d principal = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia).eigenvalues();
+    body = principal[0] > 0 && principal[2] < 0.98 * (principal[0] + principal[1]);
   }
   // The case is written with five significant digits; what it says is what is.
   const auto tidy = [](double v) { return v == 0 || !std::isfinite(v) ? v : std::stod([&] { char b[32]; std::snprintf(b, sizeof b, "%.4e", v); return std::string(b); }()); };
@@ -74,10 +80,10 @@ Session draw_session(const SessionOptions& options, Random& random) {
                                 : s.cluster_column == "session" ? "2026-0" + std::to_string(1 + c) + "-1" + std::to_string(c)
                                                                 : std::string(1, static_cast<char>('A' + c)));
   }
-  const double speed0 = iron ? random.uniform(34, 40) : random.uniform(39, 49);
-  const double loft0 = iron ? random.uniform(15, 26) : random.uniform(10, 14.5);
+  const double speed0 = wedge ? random.uniform(27, 34) : iron ? random.uniform(34, 40) : random.uniform(39, 49);
+  const double loft0 = wedge ? random.uniform(38, 50) : iron ? random.uniform(15, 26) : random.uniform(10, 14.5);
   const double attack0 = iron ? random.uniform(-5, -2) : random.uniform(-1, 3);
-  const double speed_sd = random.uniform(1.5, 3.5), loft_sd = iron ? random.uniform(1.5, 4) : random.uniform(1.3, 2.5);
+  const double speed_sd = random.uniform(1.5, 3.5), loft_sd = wedge ? random.uniform(3, 6) : iron ? random.uniform(1.5, 4) : random.uniform(1.3, 2.5);
   const double attack_sd = random.uniform(0.8, 1.8), path_sd = random.uniform(1.5, 3.5), face_sd = random.uniform(1.2, 2.8);
   const double toe_sd = (iron ? random.uniform(5, 9) : random.uniform(7, 12)) * options.impact_spread;
   const double high_sd = (iron ? random.uniform(3, 6) : random.uniform(4, 8)) * options.impact_spread;

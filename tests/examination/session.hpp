@@ -59,6 +59,7 @@ struct SessionOptions {
   int shots;
   bool input_noise = false;
   bool clusters = false;
+  bool wedge = false;  ///< an iron of high loft, where a real ball slides
   double impact_spread = 1;  ///< factor on the spread of the impact point
 };
 

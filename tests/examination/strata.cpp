@@ -491,6 +491,16 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
   if (chosen && !(o.base == "rigid-planar" ? chosen->planar : chosen->eccentric))
     o.base = chosen->planar ? "rigid-planar" : "rigid-eccentric";
   if (chosen && chosen->effect == "head-rotation") o.impact_spread = random.uniform(0.05, 0.4) * std::sqrt(100.0 / shots);
+  // Two names at random; friction wants the lofts where a ball slides.
+  const Form *first = nullptr, *second = nullptr;
+  if (stratum == "two-effects") {
+    const auto forms = applicable(o.base, natural_forms());
+    first = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
+    second = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
+    if (first == second || first->effect == "head-rotation" || second->effect == "head-rotation") throw Redraw{};
+  }
+  for (const Form* f : {chosen, first, second})
+    if (f && f->effect == "friction-limit") o.wedge = true;
   const int kind = index % 4;  // of the bad-row sets: every fourth has a whole club
   if (stratum == "null-club-effects" || (stratum == "bad-rows" && kind == 3)) o.clusters = true;
 
@@ -553,12 +563,8 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     key["rival"] = rival.effect;
   } else if (stratum == "two-effects") {
     const Geometry g(s);
-    const auto forms = applicable(s.base, natural_forms());
-    const Form* a = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
-    const Form* b = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
-    if (a == b || a->effect == "head-rotation" || b->effect == "head-rotation") throw Redraw{};
+    const Form *a = first, *b = second;
     std::vector<std::vector<double>> x;
-    std::vector<double> own_signal;
     for (const Form* f : {a, b}) {
       const auto found = scaled(g, *f, 8, absorbed(f->effect), random);
       if (!found) throw Redraw{};
