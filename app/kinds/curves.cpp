@@ -1,0 +1,169 @@
+#include "app/kinds/curves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_parameter.hpp"
+#include "models/hertz_maw.hpp"
+#include "models/registry.hpp"
+#include "models/stick_slip.hpp"
+#include "post/figure.hpp"
+#include "post/launch_table.hpp"
+
+namespace hosel::app {
+namespace {
+
+class CurvesJob final : public Job {
+ public:
+  explicit CurvesJob(CaseFile& file) {
+    Table root = file.root();
+    models_ = read_models(root);
+    blow_ = read_blow(root, models_);
+    options_ = read_options(root);
+    family_ = read_axis(root.table("family"));
+    history_ = root.flag("history", false);
+    if (history_) {
+      for (const std::string& m : models_)
+        if (m != "volumetric" && m != "hertz-maw") root.fail("models", "force histories come from volumetric and hertz-maw");
+      return;
+    }
+    x_ = read_axis(root.table("x"));
+    for (const std::string& name : root.texts("channels")) {
+      const post::Channel* c = post::find_channel(name);
+      if (!c) root.fail("channels", fmt::format("no launch quantity '{}' (known: {})", name, post::channel_names()));
+      channels_.push_back(c);
+    }
+    if (channels_.empty()) root.fail("channels", "name at least one launch quantity");
+  }
+
+  void run(Output& out) override { history_ ? histories(out) : curves(out); }
+
+ private:
+  std::string member(double value) const {
+    std::string name(family_.parameter->name);
+    std::ranges::replace(name, '_', ' ');
+    return fmt::format("{} {:g}{}{}", name, value / family_.si, family_.parameter->unit.empty() ? "" : " ", family_.parameter->unit);
+  }
+
+  void curves(Output& out) const {
+    std::string csv = fmt::format("model,{},{}", column(*family_.parameter), column(*x_.parameter));
+    for (const post::Channel* c : channels_) csv += fmt::format(",{}_{}", c->name, c->unit);
+    csv += '\n';
+    post::Figure figure{.columns = 2};
+    for (const post::Channel* c : channels_)
+      for (const std::string& m : models_) {
+        std::string name(c->name);
+        std::ranges::replace(name, '_', ' ');
+        figure.panels.push_back({.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c->unit), .key = "top left"});
+      }
+    nlohmann::json failed = nlohmann::json::array();
+    for (std::size_t m = 0; m < models_.size(); ++m)
+      for (const double f : family_.values) {
+        std::vector<post::Series> lines(channels_.size(), post::Series{.label = member(f)});
+        for (const double x : x_.values) {
+          models::Options options = options_;
+          Blow blow = blow_;
+          family_.parameter->set(options, blow, f);
+          x_.parameter->set(options, blow, x);
+          Launch launch;
+          try {
+            launch = models::find(models_[m])->make(options)->launch(blow);
+          } catch (const std::exception& e) {
+            failed.push_back(fmt::format("{}, {} {:g}, {} {:g}: {}", models_[m], column(*family_.parameter), f / family_.si,
+                                         column(*x_.parameter), x / x_.si, e.what()));
+            continue;
+          }
+          csv += fmt::format("{},{:.8g},{:.8g}", models_[m], f / family_.si, x / x_.si);
+          for (std::size_t c = 0; c < channels_.size(); ++c) {
+            const double value = (launch.*channels_[c]->value)() / channels_[c]->si;
+            csv += fmt::format(",{:.8g}", value);
+            lines[c].x.push_back(x / x_.si);
+            lines[c].y.push_back(value);
+          }
+          csv += '\n';
+        }
+        for (std::size_t c = 0; c < channels_.size(); ++c) figure.panels[c * models_.size() + m].series.push_back(lines[c]);
+      }
+    finish(out, csv, figure, failed);
+  }
+
+  void histories(Output& out) const {
+    std::string csv = fmt::format("model,{},time_ms,normal_force_N,tangential_force_N\n", column(*family_.parameter));
+    post::Figure figure{.columns = 2};
+    nlohmann::json summary = nlohmann::json::array();
+    for (const std::string& m : models_) {
+      post::Panel tangential{.title = m, .x_label = "time [ms]", .y_label = "tangential force [kN]"},
+          ratio{.title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]", .key = "bottom left"};
+      for (const double f : family_.values) {
+        models::Options options = options_;
+        Blow blow = blow_;
+        family_.parameter->set(options, blow, f);
+        const Vec3 along = models::impulse_problem(blow).slip().normalized();
+        post::Series line{.label = member(f)}, share = line;
+        double least = 0, most = 0;
+        const auto add = [&](double t, double normal, const Vec3& force) {
+          const double value = force.dot(along);
+          line.x.push_back(t * 1e3);
+          line.y.push_back(value * 1e-3);
+          if (normal > 1) {
+            share.x.push_back(t * 1e3);
+            share.y.push_back(value / normal);
+          }
+          least = std::min(least, value);
+          most = std::max(most, value);
+          csv += fmt::format("{},{:.8g},{:.8g},{:.8g},{:.8g}\n", m, f / family_.si, t * 1e3, normal, value);
+        };
+        Launch launch;
+        if (m == "volumetric") {
+          models::VolumetricOptions fine = options.volumetric_solution;
+          fine.tolerance = std::min(fine.tolerance, 1e-6);
+          launch = volumetric_impact(blow, options.volumetric, fine, nullptr, [&](const models::ContactSample& s) {
+            add(s.time, s.normal_force, s.tangential_force);
+          }).launch;
+        } else {
+          launch = hertz_maw_impact(blow, options.hertz_maw, options.hertz_maw_solution, [&](const models::HertzMawSample& s) {
+            add(s.time, s.normal_force, s.tangential_force);
+          }).launch;
+        }
+        Blow rolling = blow;
+        rolling.contact = {};
+        const double spin = models::StickSlip().launch(rolling).spin_rate();
+        summary.push_back({{"model", m}, {column(*family_.parameter), f / family_.si}, {"largest_tangential_N", most},
+                           {"reversed_tangential_N", least}, {"spin_over_rolling", launch.spin_rate() / spin},
+                           {"contact_ms", *launch.contact_time * 1e3}});
+        out.say(fmt::format("{:<11} {:<34} force {:7.0f} to {:7.0f} N   spin / rolling {:.3f}", m, member(f), least, most, launch.spin_rate() / spin));
+        tangential.series.push_back(line);
+        ratio.series.push_back(share);
+      }
+      figure.panels.push_back(tangential);
+      figure.panels.push_back(ratio);
+    }
+    finish(out, csv, figure, summary);
+  }
+
+  void finish(Output& out, const std::string& csv, const post::Figure& figure, const nlohmann::json& notes) const {
+    out.write("curves.csv", csv);
+    if (const std::string missing = post::draw(figure, out.path("curves")); !missing.empty()) out.say(missing);
+    if (!history_)
+      for (const auto& n : notes) out.say(n.get<std::string>());
+    out.say("wrote curves.csv and curves.png");
+    out.write_summary({{history_ ? "histories" : "failed", notes}});
+  }
+
+  std::vector<std::string> models_;
+  Blow blow_;
+  models::Options options_;
+  Axis family_, x_;
+  bool history_ = false;
+  std::vector<const post::Channel*> channels_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_curves(CaseFile& file) { return std::make_unique<CurvesJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,53 @@
+#include "app/read_parameter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hosel::app {
+
+const models::NamedParameter& read_parameter(Table& table, std::string_view key) {
+  std::vector<std::string> names;
+  for (const auto& p : models::parameters()) names.emplace_back(p.name);
+  return *models::find_parameter(table.choice(key, names));
+}
+
+double unit_of(const models::NamedParameter& p) {
+  if (p.unit.empty()) return 1;
+  const auto all = units();
+  return std::ranges::find(all, p.unit, &Unit::suffix)->si;
+}
+
+std::string label(const models::NamedParameter& p) {
+  std::string text(p.name);
+  std::ranges::replace(text, '_', ' ');
+  return fmt::format("{} [{}]", text, p.unit.empty() ? "-" : p.unit);
+}
+
+std::string column(const models::NamedParameter& p) {
+  return p.unit.empty() ? std::string(p.name) : fmt::format("{}_{}", p.name, p.unit);
+}
+
+Axis read_axis(Table table) {
+  Axis axis;
+  axis.parameter = &read_parameter(table, "name");
+  const models::NamedParameter& p = *axis.parameter;
+  axis.si = unit_of(p);
+  axis.label = label(p);
+  const Range range{p.low, p.high};
+  const std::string unit(p.unit);
+  const auto one = [&](std::string_view stem) {
+    return unit.empty() ? table.number(stem, range) : table.quantity(stem, unit, range);
+  };
+  if (table.has("values") || table.has_quantity("values")) {
+    axis.values = unit.empty() ? table.numbers("values", 0, range) : table.quantities("values", unit, 0, range);
+    if (axis.values.empty()) table.fail("values", "name at least one value");
+  } else {
+    const double from = one("from"), to = one("to");
+    const long count = table.integer("count", 2, 100000);
+    for (long i = 0; i < count; ++i) axis.values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+  return axis;
+}
+
+}  // namespace hosel::app
