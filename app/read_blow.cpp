@@ -111,6 +111,15 @@ models::Options read_options(Table root) {
     law.cover_thickness = t->quantity("cover_thickness", "mm", positive, law.cover_thickness);
     options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }
+  if (auto t = root.optional_table("hertz_maw")) {
+    models::HertzMawLaw& law = options.hertz_maw;
+    law.modulus = t->quantity("modulus", "MPa", Range::positive(), law.modulus);
+    law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
+    law.friction = t->number("friction", Range::non_negative(), law.friction);
+    law.damping = t->quantity("damping", "s_per_m", Range::non_negative(), law.damping);
+    options.hertz_maw_solution.springs = static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
+    options.hertz_maw_solution.steps = static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
+  }
   return options;
 }
 
