@@ -6,6 +6,7 @@
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/impact.hpp"
 #include "app/kinds/sweep.hpp"
+#include "app/kinds/tune.hpp"
 #include "app/kinds/loop.hpp"
 
 namespace hosel::app {
@@ -15,6 +16,7 @@ constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by", read_face_map},
     Kind{"curves", "launch against a parameter, or force histories, for a family of another", read_curves},
+    Kind{"tune", "parameters of a model against measured shots", read_tune},
     Kind{"sweep", "any case over a grid or a Latin hypercube of its keys", read_sweep},
     Kind{"loop", "measured shots against a model: which effect does the model lack?", read_loop},
 };

@@ -1,0 +1,382 @@
+#include "app/kinds/tune.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "app/read_blow.hpp"
+#include "app/read_parameter.hpp"
+#include "loop/shots.hpp"
+#include "models/registry.hpp"
+#include "post/figure.hpp"
+#include "post/launch_table.hpp"
+#include "solvers/least_squares.hpp"
+
+namespace hosel::app {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A fitted launch quantity: its column, or made of spin rate and axis where the file has those.
+struct TuneChannel {
+  std::string name;  ///< with unit
+  const post::Channel* channel;
+  double si, noise;  ///< noise in the unit of the name
+};
+
+struct Free {
+  const models::NamedParameter* parameter;
+  double start;
+  solvers::Bounds bounds;
+};
+
+struct Keep {
+  std::string column, equals;
+  double min, max;
+};
+
+/// Errors of one channel over one set of rows, model minus measured, in the channel's unit.
+struct Errors {
+  double mean = 0, sd = 0, absolute = 0;
+  std::size_t count = 0;
+};
+
+Errors errors(const std::vector<double>& values) {
+  Errors e;
+  e.count = values.size();
+  if (values.empty()) return {kNaN, kNaN, kNaN, 0};
+  for (const double v : values) e.mean += v, e.absolute += std::abs(v);
+  e.mean /= static_cast<double>(e.count);
+  e.absolute /= static_cast<double>(e.count);
+  for (const double v : values) e.sd += (v - e.mean) * (v - e.mean);
+  e.sd = e.count > 1 ? std::sqrt(e.sd / static_cast<double>(e.count - 1)) : kNaN;
+  return e;
+}
+
+class TuneJob final : public Job {
+ public:
+  explicit TuneJob(CaseFile& file) {
+    Table root = file.root();
+    std::vector<std::string> names;
+    for (const auto& m : models::registry()) names.emplace_back(m.name);
+    model_ = root.choice("model", names);
+    blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
+    if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    options_ = read_options(root);
+
+    Table data = root.table("data");
+    shots_file_ = data.data_file("shots");
+    if (auto join = data.optional_table("join")) {
+      join_file_ = join->data_file("file");
+      join_by_ = join->text("by");
+    }
+    Table noise = data.table("noise");
+    for (const std::string& key : noise.keys()) {
+      const SplitName split = split_unit(key);
+      const post::Channel* c = post::find_channel(split.stem);
+      if (!c || !split.unit) noise.fail(key, fmt::format("no launch quantity with a unit (known: {})", post::channel_names()));
+      channels_.push_back({key, c, split.unit->si, noise.number(key, Range::positive())});
+    }
+    if (channels_.empty()) data.fail("noise", "name at least one launch quantity and its noise");
+    for (Table t : data.tables("keep")) {
+      Keep k{t.text("column"), t.text("equals", ""), t.number("min", {}, -INFINITY), t.number("max", {}, INFINITY)};
+      keep_.push_back(k);
+    }
+    rows_ = data.integer("rows", 0, 100000000, 0);
+
+    std::optional<Table> split = root.optional_table("split");
+    train_fraction_ = split ? split->number("train_fraction", {0.05, 1}, 0.6667) : 0.6667;
+    seed_ = static_cast<unsigned>(split ? split->integer("seed", 0, 1L << 31, 1) : 1);
+
+    for (Table t : root.tables("parameters")) {
+      Free f{&read_parameter(t, "name"), 0, {}};
+      const Range range{f.parameter->low, f.parameter->high};
+      const std::string unit(f.parameter->unit);
+      const double standard = f.parameter->get(options_, blow_);
+      const auto read = [&](std::string_view stem, double otherwise) {
+        return unit.empty() ? t.number(stem, range, otherwise) : t.quantity(stem, unit, range, otherwise);
+      };
+      f.bounds = {read("min", range.min), read("max", range.max)};
+      if (!(f.bounds.low < f.bounds.high)) t.fail("", "min must lie below max");
+      f.start = read("start", std::clamp(standard, f.bounds.low, f.bounds.high));
+      free_.push_back(f);
+    }
+    if (free_.empty()) root.fail("parameters", "name at least one [[parameters]]");
+
+    std::optional<Table> search = root.optional_table("search");
+    search_.starts = static_cast<int>(search ? search->integer("starts", 1, 1000, 4) : 4);
+    search_.iterations = static_cast<int>(search ? search->integer("iterations", 1, 10000, 60) : 60);
+    search_.huber = search ? search->number("huber", Range::non_negative(), 0) : 0;
+    search_.seed = seed_;
+  }
+
+  void run(Output& out) override {
+    if (!std::filesystem::exists(shots_file_)) {
+      out.say(fmt::format("SKIPPED: the measured shots {} are not there (HOSEL_DATA names their folder)", shots_file_.string()));
+      out.write_summary({{"skipped", shots_file_.string()}});
+      return;
+    }
+    read_data(out);
+    const auto residuals = [this](const Eigen::VectorXd& p, Eigen::VectorXd& r) { return whitened(train_, p, r); };
+    const int width = static_cast<int>(channels_.size());
+    const int count = static_cast<int>(train_.size()) * width;
+    if (count <= static_cast<int>(free_.size()))
+      throw InputError(fmt::format("{}: {} training rows cannot settle {} parameters", shots_file_.string(), train_.size(), free_.size()));
+    Eigen::VectorXd start(free_.size());
+    std::vector<solvers::Bounds> bounds;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      start[static_cast<Eigen::Index>(i)] = free_[i].start;
+      bounds.push_back(free_[i].bounds);
+    }
+    out.say(fmt::format("tuning {} parameters of {} on {} shots ({} kept for the test), {} starts", free_.size(), model_,
+                        train_.size(), test_.size(), search_.starts));
+    const solvers::LeastSquaresFit fit = solvers::least_squares(residuals, count, start, bounds, search_);
+    const solvers::Identifiability known = solvers::identifiability(fit.jacobian, bounds);
+    report(out, start, fit, known);
+  }
+
+ private:
+
+  void read_data(Output& out) {
+    loop::Shots shots;
+    try {
+      shots = loop::read_shots(loop::read_csv(shots_file_));
+      if (!join_by_.empty()) loop::join(shots, loop::read_csv(join_file_), join_by_);
+    } catch (const loop::DataError& e) {
+      throw InputError(e.what());
+    }
+    std::vector<std::pair<loop::Input, const loop::Column*>> inputs;
+    for (int i = 0; i < loop::kInputs; ++i) {
+      const auto input = static_cast<loop::Input>(i);
+      if (const loop::Column* c = shots.find_stem(loop::stem(input)))
+        if (input != loop::Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
+    }
+    const auto measured = [&](const TuneChannel& c, std::size_t row) {
+      if (const loop::Column* column = shots.find_stem(c.channel->name)) return column->value[row];
+      const loop::Column *rate = shots.find_stem("spin_rate"), *axis = shots.find_stem("spin_axis");
+      if (rate && axis && c.channel->name == "backspin") return rate->value[row] * std::cos(axis->value[row]);
+      if (rate && axis && c.channel->name == "sidespin") return rate->value[row] * std::sin(axis->value[row]);
+      throw InputError(fmt::format("{}: no column for {}", shots_file_.string(), c.name));
+    };
+    std::map<std::string, int> left_out;
+    for (std::size_t row = 0; row < shots.rows(); ++row) {
+      std::string why;
+      for (const Keep& k : keep_) {
+        const loop::Column* c = shots.find(k.column);
+        if (!c) throw InputError(fmt::format("{}: no column '{}'", shots_file_.string(), k.column));
+        if (c->numeric ? !(c->native(row) >= k.min && c->native(row) <= k.max) : c->text[row] != k.equals)
+          why = fmt::format("{} outside what the case keeps", k.column);
+      }
+      Blow blow = blow_;
+      for (const auto& [input, c] : inputs) {
+        if (why.empty() && !std::isfinite(c->value[row])) why = fmt::format("no {}", c->name);
+        loop::set(blow, input, c->value[row]);
+      }
+      std::vector<double> values;
+      for (const TuneChannel& c : channels_) {
+        values.push_back(measured(c, row));
+        if (why.empty() && !std::isfinite(values.back())) why = fmt::format("no {}", c.name);
+      }
+      if (!why.empty()) {
+        ++left_out[why];
+        continue;
+      }
+      blows_.push_back(blow);
+      measured_.push_back(values);
+      id_.push_back(shots.id[row]);
+    }
+    std::vector<std::size_t> order(blows_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937_64 random(seed_);
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+    if (rows_ > 0 && static_cast<std::size_t>(rows_) < order.size()) {
+      left_out["beyond the number of rows asked for"] = static_cast<int>(order.size()) - static_cast<int>(rows_);
+      order.resize(static_cast<std::size_t>(rows_));
+    }
+    const auto cut = static_cast<std::size_t>(std::lround(train_fraction_ * static_cast<double>(order.size())));
+    train_.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(cut));
+    test_.assign(order.begin() + static_cast<std::ptrdiff_t>(cut), order.end());
+    left_out_ = left_out;
+    for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
+  }
+
+  bool tuned(std::string_view name) const {
+    return std::ranges::any_of(free_, [&](const Free& f) { return f.parameter->name == name; });
+  }
+
+  /// Channel values of the model [SI], NaN where the blow cannot happen.
+  std::vector<double> predict(std::size_t row, const Eigen::VectorXd& p) const {
+    models::Options options = options_;
+    Blow blow = blows_[row];
+    for (std::size_t i = 0; i < free_.size(); ++i) free_[i].parameter->set(options, blow, p[static_cast<Eigen::Index>(i)]);
+    std::vector<double> out(channels_.size(), kNaN);
+    if (!blow.club.head.faults().empty() && model_ != "rigid-planar") return out;
+    try {
+      const Launch l = models::find(model_)->make(options)->launch(blow);
+      for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = (l.*channels_[c].channel->value)();
+    } catch (const std::exception&) {
+    }
+    return out;
+  }
+
+  double error(std::size_t row, std::size_t c, const std::vector<double>& model) const {  // channel's unit
+    return (model[c] - measured_[row][c]) / channels_[c].si;
+  }
+
+  bool whitened(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
+    std::atomic<bool> good = true;
+    const std::size_t width = channels_.size();
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+      const std::vector<double> model = predict(rows[i], p);
+      for (std::size_t c = 0; c < width; ++c) {
+        const double e = error(rows[i], c, model) / channels_[c].noise;
+        if (!std::isfinite(e)) good = false;
+        r[static_cast<Eigen::Index>(i * width + c)] = e;
+      }
+    });
+    return good;
+  }
+
+  void report(Output& out, const Eigen::VectorXd& start, const solvers::LeastSquaresFit& fit,
+              const solvers::Identifiability& known) const {
+    nlohmann::json summary;
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    // The scatter left over, in units of the declared noise: the parameters' spread grows by it.
+    Eigen::VectorXd r(static_cast<Eigen::Index>(train_.size() * channels_.size()));
+    whitened(train_, fit.parameters, r);
+    const double scatter = std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - n)));
+    summary["scatter_over_declared_noise"] = scatter;
+    summary["costs_of_the_starts"] = fit.costs;
+    out.say(fmt::format("\n{:<28} {:>14} {:>14} {:>12} {:>12}", "parameter", "start", "tuned", "sd (noise)", "sd (scatter)"));
+    std::string csv = "parameter,unit,start,tuned,sd_by_noise,sd_by_scatter,min,max\n";
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Free& f = free_[static_cast<std::size_t>(i)];
+      const double si = unit_of(*f.parameter), value = fit.parameters[i] / si, sd = known.sd[i] / si;
+      const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
+      const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
+      out.say(fmt::format("{:<28} {:>14.6g} {:>14.6g} {:>12.3g} {:>12.3g}{}", column(*f.parameter), start[i] / si, value, sd,
+                          sd * std::max(1.0, scatter), edge ? "  at its bound" : ""));
+      csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit, start[i] / si,
+                         value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
+      summary["parameters"].push_back({{"name", column(*f.parameter)}, {"start", start[i] / si}, {"value", value}, {"sd", sd},
+                                       {"sd_by_scatter", sd * std::max(1.0, scatter)}, {"at_bound", edge}});
+    }
+    out.write("parameters.csv", csv);
+
+    csv = "parameter";
+    for (const Free& f : free_) csv += fmt::format(",{}", f.parameter->name);
+    csv += '\n';
+    std::vector<std::string> tied;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      csv += free_[static_cast<std::size_t>(i)].parameter->name;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        csv += fmt::format(",{:.4f}", known.correlation(i, j));
+        if (j > i && std::abs(known.correlation(i, j)) > 0.95)
+          tied.push_back(fmt::format("{} and {} (correlation {:.3f})", free_[static_cast<std::size_t>(i)].parameter->name,
+                                     free_[static_cast<std::size_t>(j)].parameter->name, known.correlation(i, j)));
+      }
+      csv += '\n';
+    }
+    out.write("correlation.csv", csv);
+    summary["condition"] = known.condition;
+    summary["inseparable"] = tied;
+    summary["blind"] = nlohmann::json::array();
+    out.say(fmt::format("\ncondition number of the whitened, column-scaled Jacobian {:.3g}; scatter {:.2f} times the declared noise",
+                        known.condition, scatter));
+    for (const std::string& t : tied) out.say("the data cannot separate " + t);
+    for (const Eigen::VectorXd& v : known.blind) {
+      std::string text;
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (std::abs(v[i]) > 0.2) text += fmt::format("{}{:+.2f} {}", text.empty() ? "" : ", ", v[i], free_[static_cast<std::size_t>(i)].parameter->name);
+      out.say("the data leave free inside the bounds: " + text + " (shares of the bounds' distance)");
+      summary["blind"].push_back(text);
+    }
+    if (tied.empty() && known.blind.empty()) out.say("every parameter is separable (no correlation above 0.95, none left free)");
+
+    // Errors before and after, on both sets.
+    post::Figure figure{.title = fmt::format("{} tuned: model minus measured", model_), .columns = 3};
+    std::string rows_csv = "shot,set";
+    for (const TuneChannel& c : channels_) rows_csv += fmt::format(",{}__measured,{}__before,{}__after", c.name, c.name, c.name);
+    rows_csv += '\n';
+    csv = "set,channel,rows,before_mean,before_sd,before_mae,after_mean,after_sd,after_mae\n";
+    out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows", "before: mean +- sd",
+                        "after: mean +- sd", "MAE before", "MAE after"));
+    for (const TuneChannel& c : channels_)
+      figure.panels.push_back({.x_label = "measured " + c.name, .y_label = "model - measured"});
+    for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
+      std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
+      std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
+      tbb::parallel_for(std::size_t{0}, rows->size(), [&](std::size_t i) {
+        model_before[i] = predict((*rows)[i], start);
+        model_after[i] = predict((*rows)[i], fit.parameters);
+      });
+      int lost = 0;
+      for (std::size_t i = 0; i < rows->size(); ++i) {
+        const std::size_t row = (*rows)[i];
+        rows_csv += fmt::format("{},{}", id_[row], set);
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+          const double b = error(row, c, model_before[i]), a = error(row, c, model_after[i]);
+          if (std::isfinite(a) && std::isfinite(b)) before[c].push_back(b), after[c].push_back(a);
+          else if (c == 0) ++lost;
+          rows_csv += fmt::format(",{:.8g},{:.8g},{:.8g}", measured_[row][c] / channels_[c].si, model_before[i][c] / channels_[c].si,
+                                  model_after[i][c] / channels_[c].si);
+        }
+        rows_csv += '\n';
+      }
+      if (lost) out.say(fmt::format("{} {} rows have no answer from the model and are not counted below", lost, set));
+      for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const Errors b = errors(before[c]), a = errors(after[c]);
+        out.say(fmt::format("{:<6} {:<18} {:>5} {:>12.4g} +- {:<8.4g} {:>12.4g} +- {:<8.4g} {:>10.4g} {:>10.4g}", set, channels_[c].name,
+                            a.count, b.mean, b.sd, a.mean, a.sd, b.absolute, a.absolute));
+        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", set, channels_[c].name, a.count, b.mean, b.sd, b.absolute,
+                           a.mean, a.sd, a.absolute);
+        summary["errors"].push_back({{"set", set}, {"channel", channels_[c].name}, {"rows", a.count}, {"before", {{"mean", b.mean}, {"sd", b.sd}, {"mae", b.absolute}}},
+                                     {"after", {{"mean", a.mean}, {"sd", a.sd}, {"mae", a.absolute}}}});
+        post::Series cloud{.label = fmt::format("{} {:.3g} +- {:.3g}", set, a.mean, a.sd), .style = "points"};
+        for (std::size_t i = 0; i < rows->size(); ++i) {
+          cloud.x.push_back(measured_[(*rows)[i]][c] / channels_[c].si);
+          cloud.y.push_back(error((*rows)[i], c, model_after[i]));
+        }
+        figure.panels[c].series.push_back(cloud);
+      }
+    }
+    out.write("errors.csv", csv);
+    out.write("residuals.csv", rows_csv);
+    if (const std::string missing = post::draw(figure, out.path("errors")); !missing.empty()) out.say(missing);
+    for (const auto& [why, k] : left_out_) summary["left_out"][why] = k;
+    summary["rows"] = {{"train", train_.size()}, {"test", test_.size()}};
+    summary["seed"] = seed_;
+    out.write_summary(summary);
+  }
+
+  std::string model_, join_by_;
+  Blow blow_;
+  models::Options options_;
+  std::filesystem::path shots_file_, join_file_;
+  std::vector<TuneChannel> channels_;
+  std::vector<Keep> keep_;
+  std::vector<Free> free_;
+  solvers::LeastSquaresOptions search_;
+  double train_fraction_ = 0;
+  unsigned seed_ = 1;
+  long rows_ = 0;
+
+  std::vector<Blow> blows_;
+  std::vector<std::vector<double>> measured_;  // SI
+  std::vector<std::string> id_;
+  std::vector<std::size_t> train_, test_;
+  std::map<std::string, int> left_out_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_tune(CaseFile& file) { return std::make_unique<TuneJob>(file); }
+
+}  // namespace hosel::app
