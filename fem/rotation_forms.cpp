@@ -6,19 +6,28 @@
 namespace hosel::fem {
 namespace {
 
-/// S_m(z) = sum_k (-z)^k / (2k + m)!, and two derivatives: S_1 = sin x / x, S_2 = (1 - cos x)/x^2,
-/// S_3 = (x - sin x)/x^3 with x^2 = z. Eleven terms: full precision up to |w| = pi.
-std::array<double, 3> series(int m, double z) {
-  constexpr int terms = 15;
-  std::array<double, terms> c{};
+constexpr int kTerms = 15;
+
+/// (-1)^k / (2k + m)!
+template <int m>
+constexpr std::array<double, kTerms> coefficients() {
+  std::array<double, kTerms> c{};
   double factorial = 1;
   for (int i = 2; i <= m; ++i) factorial *= i;
-  for (int k = 0; k < terms; ++k) {
+  for (int k = 0; k < kTerms; ++k) {
     c[static_cast<std::size_t>(k)] = (k % 2 ? -1 : 1) / factorial;
     factorial *= (2 * k + m + 1) * (2 * k + m + 2);
   }
+  return c;
+}
+
+/// S_m(z) = sum_k (-z)^k / (2k + m)!, and two derivatives: S_1 = sin x / x, S_2 = (1 - cos x)/x^2,
+/// S_3 = (x - sin x)/x^3 with x^2 = z. Full precision up to |w| = pi.
+template <int m>
+std::array<double, 3> series(double z) {
+  static constexpr auto c = coefficients<m>();
   std::array<double, 3> s{};
-  const int last = z < 0.05 ? 6 : terms - 1;
+  const int last = z < 1e-3 ? 5 : z < 0.05 ? 7 : kTerms - 1;
   for (int k = last; k >= 0; --k) {
     s[2] = s[2] * z + 2 * s[1];
     s[1] = s[1] * z + s[0];
@@ -62,12 +71,12 @@ Mat3 RotationForm::hessian(const Vec3& w, const Vec3& p, const Vec3& q) const {
 }
 
 RotationForm exp_transposed(double z) {
-  const auto f = series(1, z), g = series(2, z);
+  const auto f = series<1>(z), g = series<2>(z);
   return {f[0], f[1], f[2], g[0], g[1], g[2]};
 }
 
 RotationForm exp_tangent(double z) {
-  const auto f = series(2, z), g = series(3, z);
+  const auto f = series<2>(z), g = series<3>(z);
   return {f[0], f[1], f[2], g[0], g[1], g[2]};
 }
 

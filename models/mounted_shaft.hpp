@@ -16,10 +16,10 @@ enum class Grip {
 struct ShaftMount {
   Grip grip = Grip::clamped;
   fem::JointStiffness hands;  ///< for Grip::hands
-  int elements = 24;
+  int elements = 16;
   /// Each element is this many times as long as the one before, butt to tip: the blow is felt first
   /// and shortest at the tip.
-  double growth = 0.93;
+  double growth = 0.9;
   bool shear = true;  ///< Timoshenko; false: Rayleigh
 };
 

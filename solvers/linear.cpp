@@ -188,6 +188,8 @@ struct Factorisation::State {
 Factorisation::Factorisation() : state_(std::make_unique<State>()) {
   umfpack_di_defaults(state_->control.data());
   if (openblas_set_num_threads) openblas_set_num_threads(1);
+  state_->control[UMFPACK_IRSTEP] = 0;  // Newton refines anyway
+  state_->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
 }
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;

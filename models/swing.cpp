@@ -1,0 +1,236 @@
+#include "models/swing.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "golf/shaft_library.hpp"
+#include "solvers/statics.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// A hinge lets one axis go and holds the rest as a weld would: stiff against the shaft's own tip, soft enough
+/// for the tangent's conditioning.
+fem::JointStiffness joint_of(const SwingOptions& o, const Shaft& shaft) {
+  if (o.joint == HeadJoint::spring) return o.joint_stiffness;
+  fem::JointStiffness k;
+  const double bend = 1e4 * shaft.stations.back().bending_stiffness_y / shaft.length();
+  const Vec3 axis = o.hinge_axis.normalized();
+  const Vec3 towards = std::abs(axis.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  k.frame.col(0) = axis;
+  k.frame.col(1) = axis.cross(towards).normalized();
+  k.frame.col(2) = axis.cross(k.frame.col(1));
+  k.translation = Vec3::Constant(1e4 * bend / (shaft.length() * shaft.length()));
+  k.rotation = {0, bend, bend};
+  return k;
+}
+
+}  // namespace
+
+std::vector<std::string> SwingOptions::faults() const {
+  std::vector<std::string> out;
+  if (elements < 1) out.emplace_back("a shaft needs at least one element");
+  if (!(growth > 0)) out.emplace_back("the growth of the elements is above zero");
+  if (!(step > 0)) out.emplace_back("the step is above zero");
+  if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf lies in [0, 1]");
+  if (!(grip_point >= 0)) out.emplace_back("the grip point lies on the shaft");
+  return out;
+}
+
+Mat3 face_to_grip(const ClubGeometry& geometry) {
+  Mat3 grip;  // grip axes in the face frame
+  grip.col(2) = geometry.shaft_axis.normalized();
+  grip.col(1) = grip.col(2).cross(Vec3::UnitX()).normalized();
+  grip.col(0) = grip.col(1).cross(grip.col(2));
+  return grip.transpose();
+}
+
+Delivery delivery_of(const fem::Pose& head) {
+  const Vec3& v = head.velocity;
+  const Vec3 n = head.rotation * Vec3::UnitX();
+  Delivery d;
+  d.club_speed = v.norm();
+  d.attack_angle = std::asin(v.z() / v.norm());
+  d.club_path = std::atan2(-v.y(), v.x());
+  d.dynamic_loft = std::asin(n.z());
+  d.face_angle = std::atan2(-n.y(), n.x());
+  d.head_angular_velocity = head.rotation * head.angular_velocity;
+  return d;
+}
+
+Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
+    : club_(club), options_(options), drive_(std::move(drive)), face_to_grip_(face_to_grip(club.geometry)) {
+  if (!club.shaft) throw std::invalid_argument("a swing needs a shaft");
+  if (const auto wrong = faults(*club.shaft); !wrong.empty()) throw std::invalid_argument(wrong.front());
+  if (const auto wrong = options.faults(); !wrong.empty()) throw std::invalid_argument("swing: " + wrong.front());
+  const Shaft& shaft = *club.shaft;
+  length_ = shaft.length() - options.grip_point;
+  if (!(length_ > 0)) throw std::invalid_argument("swing: the grip point lies beyond the shaft's tip");
+
+  const auto line = mesh::straight(mesh::graded(length_, options.elements, options.growth), Vec3::Zero(),
+                                   mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
+  const fem::SectionLaw sections = [law = fem::shaft_sections(shaft, options.shear), from = options.grip_point](double s) {
+    return law(s + from);
+  };
+  auto beam = std::make_unique<fem::Beam>(system_.layout, line, sections,
+                                          fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
+  shaft_ = beam.get();
+  system_.terms.push_back(std::move(beam));
+  head_node_ = shaft_->nodes().back();
+
+  if (options.joint != HeadJoint::none) {
+    if (options.joint != HeadJoint::rigid) {
+      head_node_ = {system_.layout.add_vector(3), system_.layout.add_rotation()};
+      fem::JointStiffness k = joint_of(options, shaft);
+      k.frame = (face_to_grip_ * k.frame).eval();
+      system_.terms.push_back(std::make_unique<fem::SpringJoint>("joint", shaft_->nodes().back(), head_node_, k));
+    }
+    const Head& head = club.head;
+    auto body = std::make_unique<fem::RigidBody>(
+        "head", head_node_.translation, head_node_.rotation,
+        fem::RigidBodyProperties{head.mass, face_to_grip_ * head.inertia * face_to_grip_.transpose(),
+                                 face_to_grip_ * (head.cg - club.geometry.hosel)},
+        options.gravity);
+    head_ = body.get();
+    system_.terms.push_back(std::move(body));
+  }
+
+  const fem::Node& grip = shaft_->nodes().front();
+  const fem::Motion motion = [this](double t) {
+    if (!held_) return drive_.motion(t);
+    const fem::Pose p = drive_.motion(*held_);
+    return fem::Pose{.position = p.position, .rotation = p.rotation};
+  };
+  using Kind = GripDrive::Kind;
+  if (drive_.kind == Kind::prescribed)
+    system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(grip, motion));
+  else if (drive_.kind == Kind::hands)
+    system_.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, grip, drive_.hands));
+  else if (drive_.kind == Kind::forced)
+    system_.terms.push_back(std::make_unique<fem::NodeLoad>("hands", grip, drive_.wrench, fem::NodeLoad::Moment::body));
+}
+
+double Swing::mass() const { return shaft_->mass() + (head_ ? head_->properties().mass : 0); }
+
+solvers::NewtonOptions Swing::newton() const {
+  // Displacements to a micrometre, forces to a millionth of what acts.
+  return {.residual_relative = 1e-6, .residual_absolute = 1e-6, .increment_vector = 1e-7, .increment_rotation = 1e-7};
+}
+
+fem::State Swing::equilibrium(double time, bool kinsol) {
+  if (drive_.kind != GripDrive::Kind::prescribed && drive_.kind != GripDrive::Kind::hands)
+    throw std::invalid_argument("a club that nothing holds has no equilibrium");
+  held_ = time;
+  fem::State s = start(time, [&] {
+    fem::State straight = system_.layout.rest();
+    shaft_->place(straight);
+    if (head_node_.translation.v != shaft_->nodes().back().translation.v)
+      straight.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
+    straight.time = time;
+    return straight;
+  }());
+  s.v.setZero();
+  s = kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6).state
+             : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1}).state;
+  held_.reset();
+  return s;
+}
+
+fem::State Swing::start(double time, const fem::State& deflected) const {
+  // The deflected shape is turned and moved with the grip from where its first node is.
+  const fem::Pose grip = held_ ? [&] {
+    fem::Pose p = drive_.motion(*held_);
+    return fem::Pose{.position = p.position, .rotation = p.rotation};
+  }() : drive_.motion(time);
+  const fem::Node& root = shaft_->nodes().front();
+  const Vec3 x0 = deflected.q.segment<3>(root.translation.q);
+  const Eigen::Quaterniond turn = grip.rotation * fem::rotation(deflected, root.rotation).conjugate();
+  const Vec3 w = grip.rotation * grip.angular_velocity;
+  fem::State s = deflected;
+  s.time = time;
+  const auto move = [&](const fem::Node& n) {
+    const Vec3 arm = turn * (Vec3(deflected.q.segment<3>(n.translation.q)) - x0);
+    const Eigen::Quaterniond R = turn * fem::rotation(deflected, n.rotation);
+    s.q.segment<3>(n.translation.q) = grip.position + arm;
+    fem::set_rotation(s, n.rotation, R);
+    s.v.segment<3>(n.translation.v) = grip.velocity + w.cross(arm);
+    s.v.segment<3>(n.rotation.v) = R.conjugate() * w;
+  };
+  for (const fem::Node& n : shaft_->nodes()) move(n);
+  if (head_node_.translation.v != shaft_->nodes().back().translation.v) move(head_node_);
+  s.a.setZero();
+  return s;
+}
+
+fem::State Swing::hold(double time, double seconds) {
+  held_ = time;
+  fem::State s = system_.layout.rest();
+  shaft_->place(s);
+  if (head_node_.translation.v != shaft_->nodes().back().translation.v)
+    s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
+  s = start(time, s);
+  s.time = time - seconds;
+  solvers::GeneralizedAlpha scheme(system_, {.rho_inf = options_.rho_inf, .newton = newton(), .step_max = options_.step,
+                                             .step_min = options_.step / 1024, .error_vector = kInf, .error_rotation = kInf}, s);
+  while (scheme.time() < time - 1e-9 * seconds) scheme.advance(time);
+  held_.reset();
+  s = scheme.state();
+  s.time = time;
+  return s;
+}
+
+SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) const {
+  SwingSample out;
+  out.time = s.time;
+  const fem::Node &root = shaft_->nodes().front(), &tip = shaft_->nodes().back();
+  const auto pose = [&](const fem::Node& n) {
+    return fem::Pose{.position = s.q.segment<3>(n.translation.q),
+                     .rotation = fem::rotation(s, n.rotation),
+                     .velocity = s.v.segment<3>(n.translation.v),
+                     .acceleration = s.a.segment<3>(n.translation.v),
+                     .angular_velocity = s.v.segment<3>(n.rotation.v),
+                     .angular_acceleration = s.a.segment<3>(n.rotation.v)};
+  };
+  out.grip = pose(root);
+  const fem::Pose hosel = pose(tip);
+  const Vec3 d = out.grip.rotation.conjugate() * (hosel.position - out.grip.position) + Vec3(0, 0, length_);
+  out.lead = d.x();
+  out.droop = d.y();
+  out.twist = fem::rotation_log(out.grip.rotation.conjugate() * hosel.rotation);
+  if (head_) {
+    const Eigen::Quaterniond to_face(face_to_grip_);
+    const fem::Pose body = pose(head_node_);
+    out.head.position = head_->position(s);
+    out.head.velocity = head_->velocity(s);
+    out.head.rotation = body.rotation * to_face;
+    out.head.angular_velocity = to_face.conjugate() * body.angular_velocity;
+  } else {
+    out.head = hosel;
+  }
+  if (drive_.kind == GripDrive::Kind::prescribed) {
+    out.force = reactions.segment<3>(root.translation.v);
+    out.moment = reactions.segment<3>(root.rotation.v);
+  } else if (drive_.kind == GripDrive::Kind::forced) {
+    const fem::Wrench w = drive_.wrench(s.time);
+    out.force = w.force;
+    out.moment = w.moment;
+  }
+  return out;
+}
+
+fem::State Swing::run(const fem::State& from, double end, const Observer& observer) {
+  solvers::GeneralizedAlpha scheme(system_, {.rho_inf = options_.rho_inf, .newton = newton(), .step_max = options_.step,
+                                             .step_min = options_.step / 1024, .error_vector = kInf, .error_rotation = kInf}, from);
+  if (observer) observer(sample(scheme.state(), scheme.reactions()));
+  while (scheme.time() < end - 1e-9 * options_.step) {
+    scheme.advance(end);
+    if (observer) observer(sample(scheme.state(), scheme.reactions()));
+  }
+  ledger_ = scheme.ledger();
+  counts_ = scheme.counts();
+  return scheme.state();
+}
+
+}  // namespace hosel::models
