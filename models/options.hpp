@@ -4,6 +4,7 @@
 
 #include "models/hertz_maw.hpp"
 #include "models/fe_impact.hpp"
+#include "models/mounted_shaft.hpp"
 #include "models/volumetric.hpp"
 
 namespace hosel::models {
@@ -15,6 +16,7 @@ struct Options {
   HertzMawLaw hertz_maw;
   HertzMawOptions hertz_maw_solution;
   FeImpactOptions fe;
+  ShaftMount shaft_mount;
 };
 
 }  // namespace hosel::models

@@ -5,6 +5,7 @@
 
 #include "models/hinged_head.hpp"
 #include "models/pendulum_club.hpp"
+#include "models/fe_full_club.hpp"
 #include "models/fe_impact.hpp"
 #include "models/rigid_eccentric.hpp"
 #include "models/rigid_planar.hpp"
@@ -32,6 +33,9 @@ std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
   return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam);
 }
 std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<FeFreeBody>(o.fe); }
+std::unique_ptr<ImpactModel> fe_full_club(const Options& o) {
+  return std::make_unique<FeFullClub>(FeFullClubOptions{o.fe, o.shaft_mount});
+}
 
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
@@ -43,6 +47,7 @@ constexpr std::array kModels = {
     ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", plain<PendulumClub>},
     ModelEntry{"hinged-head", "the pendulum with a hinge at the hosel", plain<HingedHead>},
     ModelEntry{"fe-free-body", "finite-element viscoelastic ball, frictional patch, free rigid head", fe_free_body},
+    ModelEntry{"fe-full-club", "the same with the flexible shaft and its grip in one system", fe_full_club},
 };
 
 }  // namespace

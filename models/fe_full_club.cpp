@@ -1,0 +1,63 @@
+#include "models/fe_full_club.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hosel::models {
+
+FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& options) {
+  const Head& head = blow.club.head;
+  if (std::isinf(head.mass)) throw std::invalid_argument("fe full club: a head of infinite mass feels no shaft; use fe-free-body");
+  if (const auto faults = head.faults(); !faults.empty()) throw std::invalid_argument("fe full club: " + faults.front());
+  if (options.impact.harmonics == 0)
+    throw std::invalid_argument("fe full club: the shaft turns the head, which the axisymmetric ball cannot follow: use harmonics of 2 or more");
+  FullClubImpact out;
+  out.encounter = encounter(blow);
+  const Encounter& e = out.encounter;
+
+  // The node that head and shaft share is at the hosel, its frame the face frame.
+  const Vec3& hosel = blow.club.geometry.hosel;
+  out.hosel = {out.system.layout.add_vector(3), out.system.layout.add_rotation()};
+  auto body = std::make_unique<fem::RigidBody>("head", out.hosel.translation, out.hosel.rotation,
+                                               fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel});
+  out.head = body.get();
+  out.system.terms.push_back(std::move(body));
+
+  fem::FaceCarrier carrier;
+  carrier.translation = out.hosel.translation;
+  carrier.rotation = out.hosel.rotation;
+  carrier.face_centre = -hosel;
+  out.parts = add_ball(out.system, blow, options.impact, carrier, true);
+
+  out.initial = out.system.layout.rest();
+  const Vec3& w = blow.delivery.head_angular_velocity;
+  out.initial.q.segment<3>(out.hosel.translation.q) = e.face_centre + e.face_axes * hosel;
+  fem::set_rotation(out.initial, out.hosel.rotation, Eigen::Quaterniond(e.face_axes));
+  out.initial.v.segment<3>(out.hosel.translation.v) = blow.delivery.velocity() + w.cross(e.face_axes * (hosel - head.cg));
+  out.initial.v.segment<3>(out.hosel.rotation.v) = e.face_axes.transpose() * w;
+  out.shaft = &mount_shaft(out.system, out.initial, out.hosel, blow.club, options.mount);
+  return out;
+}
+
+FreeBodyOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer) {
+  FullClubImpact impact = assemble_full_club(blow, options);
+  FreeBodyOutcome out;
+  fem::State last;
+  out.result = run_impact(impact.system, impact.parts, impact.initial, options.impact, impact.encounter.normal_speed,
+                          [&](const ImpactView& view) {
+                            last = view.state;
+                            if (observer) observer(view);
+                          });
+  out.launch.velocity = out.result.ball_velocity;
+  out.launch.spin = out.result.ball_spin;
+  out.launch.head_velocity = impact.head->velocity(last);
+  out.launch.head_spin = impact.head->angular_velocity(last);
+  return out;
+}
+
+FeFullClub::FeFullClub(FeFullClubOptions options) : options_(std::move(options)) {}
+
+Launch FeFullClub::launch(const Blow& blow) const { return solve_full_club(blow, options_).launch; }
+
+}  // namespace hosel::models

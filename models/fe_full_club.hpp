@@ -1,0 +1,39 @@
+/// The finite-element impact with the whole club: ball, contact, head and flexible shaft in one system.
+#pragma once
+
+#include "models/fe_impact.hpp"
+#include "models/mounted_shaft.hpp"
+
+namespace hosel::models {
+
+struct FeFullClubOptions {
+  FeImpactOptions impact;
+  ShaftMount mount;
+};
+
+/// The club and the ball at first contact; the shaft is unloaded and moves with the head as one rigid body.
+struct FullClubImpact {
+  fem::System system;
+  BallOnFace parts;
+  const fem::RigidBody* head = nullptr;
+  const fem::Beam* shaft = nullptr;
+  fem::Node hosel;  ///< the shaft's tip: head and shaft share this node
+  fem::State initial;
+  Encounter encounter;
+};
+/// Throws std::invalid_argument on a club without shaft or with a head of infinite mass.
+FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& options);
+
+FreeBodyOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer = {});
+
+/// `fe-full-club` behind the common interface.
+class FeFullClub final : public ImpactModel {
+ public:
+  explicit FeFullClub(FeFullClubOptions options);
+  Launch launch(const Blow& blow) const override;
+
+ private:
+  FeFullClubOptions options_;
+};
+
+}  // namespace hosel::models
