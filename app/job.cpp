@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "app/kinds/clubs.hpp"
+#include "app/kinds/cross_check.hpp"
 #include "app/kinds/curves.hpp"
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/impact.hpp"
@@ -16,6 +18,8 @@ constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by", read_face_map},
     Kind{"curves", "launch against a parameter, or force histories, for a family of another", read_curves},
+    Kind{"cross-check", "several models over a grid of blows, each against a reference", read_cross_check},
+    Kind{"clubs", "a rolling model against the means of several clubs, with straight-line fits", read_clubs},
     Kind{"tune", "parameters of a model against measured shots", read_tune},
     Kind{"sweep", "any case over a grid or a Latin hypercube of its keys", read_sweep},
     Kind{"loop", "measured shots against a model: which effect does the model lack?", read_loop},

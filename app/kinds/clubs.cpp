@@ -1,0 +1,268 @@
+#include "app/kinds/clubs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "app/read_blow.hpp"
+#include "golf/units.hpp"
+#include "loop/shots.hpp"
+#include "models/registry.hpp"
+#include "post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// Half of the last digit that a printed mean shows [deg, rpm, deg, mph], with a margin for round-off.
+constexpr std::array<double, 4> resolution = {0.0251, 1.01, 0.0151, 0.0501};
+
+/// The quantities of the tables, in the files' units.
+constexpr std::array<const char*, 4> kColumns = {"dynamic_loft_deg", "spin_rate_rpm", "launch_angle_deg", "ball_speed_mph"};
+
+struct Line {
+  double slope = 0, intercept = 0, r2 = 0;
+};
+
+Line straight_line(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  const double mx = std::accumulate(x.begin(), x.end(), 0.0) / n, my = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mx) * (x[i] - mx);
+    xy += (x[i] - mx) * (y[i] - my);
+    yy += (y[i] - my) * (y[i] - my);
+  }
+  return {xy / xx, my - xy / xx * mx, xy * xy / (xx * yy)};
+}
+
+struct ClubRow {
+  std::string name;
+  std::array<double, 4> mean{}, half_range{}, printed{}, printed_bar{};
+  bool loft_replaced = false;
+  Blow blow;
+  std::vector<std::array<double, 4>> shots;
+  double spin = 0, launch = 0, speed = 0;  // model: rpm, deg, mph
+};
+
+class ClubsJob final : public Job {
+ public:
+  explicit ClubsJob(CaseFile& file) {
+    Table root = file.root();
+    std::vector<std::string> names;
+    for (const auto& m : models::registry()) names.emplace_back(m.name);
+    model_ = root.choice("model", names, "rigid-planar");
+    blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    if (auto head = root.optional_table("head")) blow_.club.head = read_head(*head, model_ != "rigid-planar");
+    Table data = root.table("data");
+    shots_file_ = data.data_file("shots");
+    clubs_file_ = data.data_file("clubs");
+    Table theory = root.table("theory");
+    theory_mass_ = theory.quantity("head_mass", "kg", Range::positive());
+    theory_speed_ = theory.quantity("club_speed", "mps", Range::positive());
+    other_ball_.mass = theory.quantity("other_ball_mass", "kg", Range::positive(), blow_.ball.mass);
+    other_ball_.radius = theory.quantity("other_ball_radius", "mm", Range::positive(), blow_.ball.radius);
+  }
+
+  void run(Output& out) override {
+    for (const auto& f : {shots_file_, clubs_file_})
+      if (!std::filesystem::exists(f)) {
+        out.say(fmt::format("SKIPPED: {} is not there (HOSEL_DATA names the folder of measured data)", f.string()));
+        out.write_summary({{"skipped", f.string()}});
+        return;
+      }
+    const auto model = models::find(model_)->make({});
+    std::vector<ClubRow> clubs = read_rows(out);
+    nlohmann::json summary;
+
+    // The theoretical curves: loft alone varies.
+    Blow blow = blow_;
+    blow.club.head.mass = theory_mass_;
+    blow.delivery.club_speed = theory_speed_;
+    post::Series spin{.label = model_}, launch = spin, speed = spin;
+    double peak = 0, peak_at = 0;
+    std::string csv = "dynamic_loft_deg,spin_rate_rpm,launch_angle_deg,ball_speed_mps\n";
+    for (int i = 1; i < 900; ++i) {
+      const double loft = 0.1 * i;
+      blow.delivery.dynamic_loft = radians(loft);
+      const Launch l = model->launch(blow);
+      if (degrees(l.launch_angle()) > peak) peak = degrees(l.launch_angle()), peak_at = loft;
+      if (i % 10) continue;
+      spin.x.push_back(loft), launch.x.push_back(loft), speed.x.push_back(loft);
+      spin.y.push_back(rpm(l.spin_rate())), launch.y.push_back(degrees(l.launch_angle())), speed.y.push_back(l.ball_speed());
+      csv += fmt::format("{:g},{:.8g},{:.8g},{:.8g}\n", loft, spin.y.back(), launch.y.back(), speed.y.back());
+    }
+    out.write("theory.csv", csv);
+    const auto coefficient = [&](const Ball& ball) {
+      Blow b = blow;
+      b.ball = ball;
+      b.delivery.dynamic_loft = radians(30);
+      return rpm(model->launch(b).spin_rate()) / std::sin(radians(30));
+    };
+    const double own = coefficient(blow_.ball), other = coefficient(other_ball_);
+    out.say(fmt::format("spin = {:.4f} sin(loft) rpm for the stated ball (printed: 11120); {:.2f} with m = {:g} kg and r = {:g} mm", own,
+                        other, other_ball_.mass, other_ball_.radius * 1e3));
+    out.say(fmt::format("launch angle peaks at {:.3f} deg for a loft of {:.1f} deg", peak, peak_at));
+    summary["theory"] = {{"spin_coefficient_rpm", own}, {"spin_coefficient_other_ball_rpm", other}, {"launch_peak_deg", peak}, {"launch_peak_at_deg", peak_at}};
+
+    // Club by club.
+    out.say(fmt::format("\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8}", "club", "loft", "spin", "measured", "", "launch",
+                        "measured", "", "speed", "measured", ""));
+    csv = "club,dynamic_loft_deg,model_spin_rpm,measured_spin_rpm,model_launch_deg,measured_launch_deg,model_ball_speed_mph,measured_ball_speed_mph\n";
+    std::array<int, 3> inside{};
+    std::array<double, 3> bias{}, square{};
+    double ratio = 0;
+    std::array<post::Series, 3> measured, predicted;
+    std::array<std::vector<double>, 4> means, prints, singles;
+    for (ClubRow& c : clubs) {
+      const Launch l = model->launch(c.blow);
+      c.spin = rpm(l.spin_rate());
+      c.launch = degrees(l.launch_angle());
+      c.speed = l.ball_speed() / kMpsPerMph;
+      const std::array<double, 3> m = {c.spin, c.launch, c.speed};
+      out.say(fmt::format("{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}%", c.name, c.mean[0], m[0],
+                          c.mean[1], 100 * (m[0] / c.mean[1] - 1), m[1], c.mean[2], m[1] - c.mean[2], m[2], c.mean[3], 100 * (m[2] / c.mean[3] - 1)));
+      csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", c.name, c.mean[0], m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
+      ratio += m[0] / c.mean[1] / static_cast<double>(clubs.size());
+      for (int k = 0; k < 3; ++k) {
+        const double d = m[k] - c.mean[k + 1];
+        bias[k] += d / static_cast<double>(clubs.size());
+        square[k] += d * d / static_cast<double>(clubs.size());
+        inside[k] += std::abs(d) <= c.printed_bar[k + 1];
+        measured[k].x.push_back(c.mean[0]);
+        measured[k].y.push_back(c.mean[k + 1]);
+        measured[k].error.push_back(c.printed_bar[k + 1]);
+        predicted[k].x.push_back(c.mean[0]);
+        predicted[k].y.push_back(m[k]);
+      }
+      for (int k = 0; k < 4; ++k) {
+        means[k].push_back(c.mean[k]);
+        prints[k].push_back(c.printed[k]);
+        if (!c.loft_replaced)
+          for (const auto& s : c.shots) singles[k].push_back(s[k]);
+      }
+    }
+    out.write("clubs.csv", csv);
+    out.say(fmt::format("\nmodel / measured spin {:.4f}; bias {:+.0f} rpm, {:+.3f} deg, {:+.3f} mph; rms {:.0f} rpm, {:.3f} deg, {:.3f} mph", ratio,
+                        bias[0], bias[1], bias[2], std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])));
+    out.say(fmt::format("inside the printed error bars: spin {} of {}, launch {}, ball speed {}", inside[0], clubs.size(), inside[1], inside[2]));
+    summary["comparison"] = {{"spin_ratio", ratio}, {"bias", bias}, {"rms", {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])}}, {"inside_error_bars", inside}};
+
+    out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope", "intercept", "R2", "launch", "intercept", "R2"));
+    out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", "printed", 269.24, 668.67, .9979, .705, .5098, .9987));
+    for (const auto& [name, set] : {std::pair{"table of means as printed", &prints}, std::pair{"means recomputed from the shots", &means},
+                                    std::pair{"single shots with a recorded loft", &singles}}) {
+      const Line s = straight_line((*set)[0], (*set)[1]), l = straight_line((*set)[0], (*set)[2]);
+      out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", name, s.slope, s.intercept, s.r2, l.slope, l.intercept, l.r2));
+      summary["fits"].push_back({{"data", name}, {"spin", {s.slope, s.intercept, s.r2}}, {"launch", {l.slope, l.intercept, l.r2}}});
+    }
+    double top = 0, bottom = 0;
+    for (std::size_t i = 0; i < means[0].size(); ++i) {
+      top += means[1][i] * std::sin(radians(means[0][i]));
+      bottom += std::pow(std::sin(radians(means[0][i])), 2);
+    }
+    out.say(fmt::format("measured spin = {:.1f} sin(loft) through the origin: the model's coefficient is {:.3f} of it", top / bottom, own / (top / bottom)));
+    summary["sine_through_origin_rpm"] = top / bottom;
+
+    post::Figure figure{.title = "loft against spin, launch angle and ball speed: theory (above), seven clubs (below)", .columns = 3, .panel_width = 520};
+    const Line spin_fit = straight_line(means[0], means[1]), launch_fit = straight_line(means[0], means[2]);
+    figure.panels = {{.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}, .key = "bottom right"},
+                     {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}, .key = "bottom right"},
+                     {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}, .key = "bottom left"}};
+    const std::array<const char*, 3> labels = {"spin rate [rpm]", "launch angle [deg]", "ball speed [mph]"};
+    for (int k = 0; k < 3; ++k) {
+      measured[k].label = "measured (printed bars)";
+      predicted[k].label = model_;
+      predicted[k].style = "linespoints";
+      post::Panel p{.x_label = "dynamic loft [deg]", .y_label = labels[k], .series = {measured[k], predicted[k]}, .key = k == 2 ? "bottom left" : "top left"};
+      if (k < 2) {
+        const Line& f = k == 0 ? spin_fit : launch_fit;
+        p.series.push_back({.label = fmt::format("{:.4g} loft + {:.4g}", f.slope, f.intercept), .x = {12, 33}, .y = {f.slope * 12 + f.intercept, f.slope * 33 + f.intercept}});
+      }
+      figure.panels.push_back(p);
+    }
+    if (const std::string missing = post::draw(figure, out.path("clubs")); !missing.empty()) out.say(missing);
+    out.write_summary(summary);
+  }
+
+ private:
+  std::vector<ClubRow> read_rows(Output& out) const {
+    try {
+      const loop::Shots shots = loop::read_shots(loop::read_csv(shots_file_));
+      const loop::Sheet sheet = loop::read_csv(clubs_file_);
+      const auto cell = [&](std::string_view name, std::size_t row) {
+        const auto it = std::ranges::find(sheet.names, name);
+        if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", clubs_file_.string(), name));
+        return sheet.columns[static_cast<std::size_t>(it - sheet.names.begin())][row];
+      };
+      const loop::Column* club = shots.find("club");
+      if (!club || club->numeric) throw InputError(fmt::format("{}: no text column 'club'", shots_file_.string()));
+      std::vector<ClubRow> rows;
+      for (std::size_t k = 0; k < sheet.rows(); ++k) {
+        ClubRow c;
+        c.name = cell("club", k);
+        c.blow = blow_;
+        c.blow.club.head.mass = std::stod(cell("head_mass_kg", k));
+        c.blow.delivery.club_speed = std::stod(cell("club_speed_mph", k)) * kMpsPerMph;
+        c.blow.delivery.attack_angle = radians(std::stod(cell("attack_angle_deg", k)));
+        std::array<double, 4> low, high;
+        low.fill(INFINITY), high.fill(-INFINITY);
+        for (std::size_t row = 0; row < shots.rows(); ++row) {
+          if (club->text[row] != c.name) continue;
+          std::array<double, 4> s{};
+          for (int i = 0; i < 4; ++i) {
+            const loop::Column* column = shots.find(kColumns[static_cast<std::size_t>(i)]);
+            if (!column) throw InputError(fmt::format("{}: no column '{}'", shots_file_.string(), kColumns[static_cast<std::size_t>(i)]));
+            s[i] = column->native(row);
+            low[i] = std::min(low[i], s[i]);
+            high[i] = std::max(high[i], s[i]);
+            c.mean[i] += s[i];
+          }
+          c.shots.push_back(s);
+        }
+        if (c.shots.empty()) throw InputError(fmt::format("{}: no shot of club '{}'", shots_file_.string(), c.name));
+        for (int i = 0; i < 4; ++i) {
+          c.mean[i] /= static_cast<double>(c.shots.size());
+          c.half_range[i] = (high[i] - low[i]) / 2;
+          c.printed[i] = std::stod(cell(fmt::format("mean_{}", kColumns[static_cast<std::size_t>(i)]), k));
+          c.printed_bar[i] = std::stod(cell(fmt::format("half_range_{}", kColumns[static_cast<std::size_t>(i)]), k));
+        }
+        for (int i = 0; i < 4; ++i) {
+          const double off = c.mean[i] - c.printed[i];
+          if (i == 0 && std::abs(off) > 10) {
+            out.say(fmt::format("{}: the shots' loft column has the mean {:.3f}, no loft (club speed {:g} mph); the table's {:g} is taken", c.name, c.mean[0],
+                                std::stod(cell("club_speed_mph", k)), c.printed[0]));
+            c.mean[0] = c.printed[0];
+            c.loft_replaced = true;
+          } else if (std::abs(off) > resolution[static_cast<std::size_t>(i)]) {
+            out.say(fmt::format("{}: printed mean of {} {:g}, recomputed {:.5g}", c.name, kColumns[static_cast<std::size_t>(i)], c.printed[i], c.mean[i]));
+          }
+        }
+        c.blow.delivery.dynamic_loft = radians(c.mean[0]);
+        rows.push_back(c);
+      }
+      return rows;
+    } catch (const loop::DataError& e) {
+      throw InputError(e.what());
+    } catch (const std::invalid_argument&) {
+      throw InputError(fmt::format("{}: a cell is not a number", clubs_file_.string()));
+    }
+  }
+
+  std::string model_;
+  Blow blow_;
+  std::filesystem::path shots_file_, clubs_file_;
+  double theory_mass_ = 0, theory_speed_ = 0;
+  Ball other_ball_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_clubs(CaseFile& file) { return std::make_unique<ClubsJob>(file); }
+
+}  // namespace hosel::app
