@@ -142,7 +142,7 @@ class CrossCheckJob final : public Job {
           const double share = 100 * (mine - theirs) / theirs;
           csv += std::isfinite(share) ? fmt::format(",{:.4g}", share) : std::string(",");
           if (std::isfinite(share)) quantities[kQuantities[q].name] = share;
-          if (std::isfinite(share) && std::abs(share) > std::abs(most)) {
+          if (std::isfinite(share) && std::abs(share) > std::abs(most) && std::abs(largest) > 1e-9) {
             most = share;
             cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g} {})", kQuantities[q].name, share, mine / kQuantities[q].si,
                                 theirs / kQuantities[q].si, kQuantities[q].unit);
