@@ -82,38 +82,40 @@ class Audit {
   }
 
   std::vector<DerivedColumn> run() {
-    // What an instrument is likely to compute comes first: unknown columns, spin rate and axis, inputs, the rest.
-    std::vector<int> order(sources_.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto rank = [&](int k) {
-      const Column& c = *sources_[std::size_t(k)].column;
-      if (c.role == Role::other) return 0;
-      if (c.stem == "spin_rate" || c.stem == "spin_axis") return 1;
-      if (c.role == Role::input) return c.stem == "dynamic_loft" ? 2 : 3;
-      return 4;
-    };
-    std::ranges::stable_sort(order, {}, rank);
     std::vector<DerivedColumn> found;
     std::set<int> gone;
-    for (const int target : order) {
-      const Source& y = sources_[std::size_t(target)];
-      // Coarse columns cannot show a formula.
-      if (y.spread < 12 * std::max(y.resolution, 1e-12)) continue;
-      std::vector<int> use;
-      for (int k = 0; k < int(sources_.size()); ++k)
-        if (k != target && !gone.contains(k)) use.push_back(k);
-      Formula best;
-      if (!identity(target, use, best) && !search(target, use, best)) continue;
-      DerivedColumn d;
-      d.column = y.column->name;
-      for (const int k : best.from) d.from.push_back(sources_[std::size_t(k)].column->name);
-      d.formula = best.text;
-      d.residual_sd = best.residual;
-      d.recording_resolution = y.resolution;
-      d.rows = best.rows;
-      d.input = y.column->role == Role::input;
-      found.push_back(d);
-      gone.insert(target);
+    // Formulas of the field first; then, among columns tied by an unknown formula, what an instrument is likely
+    // to compute: unknown columns, inputs (the loft before the others), spin, the rest.
+    for (const bool known : {true, false}) {
+      std::vector<int> order(sources_.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::ranges::stable_sort(order, {}, [&](int k) {
+        const Column& c = *sources_[std::size_t(k)].column;
+        if (c.role == Role::other) return 0;
+        if (known && (c.stem == "spin_rate" || c.stem == "spin_axis")) return 0;  // magnitudes before components
+        if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
+        return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
+      });
+      for (const int target : order) {
+        const Source& y = sources_[std::size_t(target)];
+        // Coarse columns cannot show a formula.
+        if (gone.contains(target) || y.spread < 12 * std::max(y.resolution, 1e-12)) continue;
+        std::vector<int> use;
+        for (int k = 0; k < int(sources_.size()); ++k)
+          if (k != target && !gone.contains(k)) use.push_back(k);
+        Formula best;
+        if (!(known ? identity(target, use, best) : search(target, use, best))) continue;
+        DerivedColumn d;
+        d.column = y.column->name;
+        for (const int k : best.from) d.from.push_back(sources_[std::size_t(k)].column->name);
+        d.formula = best.text;
+        d.residual_sd = best.residual;
+        d.recording_resolution = y.resolution;
+        d.rows = best.rows;
+        d.input = y.column->role == Role::input;
+        found.push_back(d);
+        gone.insert(target);
+      }
     }
     return found;
   }

@@ -234,8 +234,10 @@ namespace {
 /// One pass over the loop with the outputs given: everything but the audit's second look and leave-one-out.
 class Loop {
  public:
-  Loop(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows = {})
-      : case_(c), held_rows_(std::move(held_rows)) {
+  /// `held_rows`: the holdout, where it is not split here. `doubted`: an input whose record counts for nothing.
+  Loop(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows = {},
+       std::optional<Input> doubted = {})
+      : case_(c), held_rows_(std::move(held_rows)), doubted_(doubted) {
     result.title = c.title;
     result.base = c.base;
     result.seed = c.split.seed;
@@ -253,6 +255,7 @@ class Loop {
  private:
   const LoopCase& case_;
   std::optional<std::set<int>> held_rows_;
+  std::optional<Input> doubted_;
   Inputs inputs_;
   std::unique_ptr<Problem> problem_;
   std::vector<const Form*> base_forms_, candidate_forms_;
@@ -277,6 +280,7 @@ class Loop {
     inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise);
     result.unused = inputs_.unused;
     result.notes = inputs_.notes;
+    if (doubted_) distrust(*doubted_);
 
     // Cells that are no numbers, and values no blow has: flagged before anything is fitted.
     int finding = 0;
@@ -363,6 +367,17 @@ class Loop {
     const boost::math::chi_squared law(problem_->width());
     loss_.knee = quantile(law, 0.999);
     loss_.cap = 12 * loss_.knee;
+  }
+
+  /// Every shot's value of this input may be anything: its direction is projected out of the shot's channels.
+  void distrust(Input input) {
+    if (inputs_.covariance.empty()) inputs_.covariance.assign(inputs_.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const Trial& t : inputs_.trials) {
+      lo = std::min(lo, get(t.blow, input));
+      hi = std::max(hi, get(t.blow, input));
+    }
+    for (Eigen::MatrixXd& cov : inputs_.covariance) cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
   }
 
   std::vector<int> all_rows(const Rows& r) const {
@@ -609,10 +624,92 @@ class Loop {
 
 }  // namespace
 
+namespace {
+
+/// Rows flagged for what stands in this column: no evidence for or against a formula.
+Shots without_flagged(const Shots& shots, const LoopResult& r) {
+  Shots clean = shots;
+  for (Column& c : clean.columns)
+    for (const auto& f : r.flagged)
+      if (c.numeric && std::size_t(f.row) < c.value.size()) c.value[std::size_t(f.row)] = kNaN;
+  return clean;
+}
+
+/// Every cluster is the holdout once; errors and residuals are pooled over the clusters.
+void leave_one_out(const LoopCase& c, const std::vector<DerivedColumn>& derived, LoopResult& whole) {
+  const Groups g = groups(*c.shots.find(c.split.by));
+  std::vector<UsedShot> pooled;
+  std::vector<double> score_sum(whole.candidates.size(), 0.0);
+  for (std::size_t k = 0; k < g.name.size(); ++k) {
+    std::set<int> held;
+    for (std::size_t i = 0; i < g.of_row.size(); ++i)
+      if (g.of_row[i] == int(k)) held.insert(int(i));
+    const Loop fold(c, derived, held);
+    for (const UsedShot& u : fold.result.shots)
+      if (u.holdout) pooled.push_back(u);
+    if (fold.result.holdout > 0)
+      whole.notes.push_back(fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
+                                        fold.result.adopted.empty() ? "nothing" : fmt::format("{}", fmt::join(fold.result.adopted, ", ")),
+                                        fold.result.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.result.ties.front(), " or "))));
+  }
+  std::ranges::stable_sort(pooled, {}, &UsedShot::row);
+  for (std::size_t ch = 0; ch < whole.channels.size(); ++ch) {
+    const auto pool = [&](Errors& e, auto&& value) {
+      double square = 0, sum = 0, n = 0;
+      for (const UsedShot& u : pooled)
+        if (ch < u.before.size() && std::isfinite(value(u))) {
+          square += value(u) * value(u);
+          sum += value(u);
+          ++n;
+        }
+      e.holdout = int(n);
+      e.holdout_rmse = n ? std::sqrt(square / n) : kNaN;
+      e.holdout_bias = n ? sum / n : kNaN;
+    };
+    pool(whole.channels[ch].before, [&](const UsedShot& u) { return u.before[ch]; });
+    pool(whole.channels[ch].after, [&](const UsedShot& u) { return u.after[ch]; });
+  }
+  whole.shots = pooled;
+  whole.holdout = int(pooled.size());
+}
+
+}  // namespace
+
 LoopResult run(const LoopCase& c) {
-  const std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
-  Loop loop(c, derived);
-  return std::move(loop.result);
+  std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
+  const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
+  auto loop = std::make_unique<Loop>(c, derived, held);
+  if (!loop->result.flagged.empty()) {
+    // Bad rows can hide a formula: once they are known, look again.
+    const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, loop->result), c.blow.ball);
+    const auto outputs = [](const std::vector<DerivedColumn>& d) {
+      std::set<std::string> names;
+      for (const DerivedColumn& x : d)
+        if (!x.input) names.insert(x.column);
+      return names;
+    };
+    const bool refit = outputs(again) != outputs(derived);
+    derived = again;
+    if (refit) loop = std::make_unique<Loop>(c, derived, held);
+    loop->result.derived = derived;
+  }
+  LoopResult result = std::move(loop->result);
+  if (c.split.leave_one_out && !result.channels.empty()) leave_one_out(c, derived, result);
+  for (const DerivedColumn& d : derived) {
+    if (!d.input) continue;
+    for (int k = 0; k < kInputs; ++k) {
+      const Column* column = c.shots.find_stem(stem(Input(k)));
+      if (!column || column->name != d.column) continue;
+      const Loop without(c, derived, held, Input(k));
+      std::vector<std::string> names = without.result.adopted;
+      for (const auto& tie : without.result.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
+      result.without.emplace_back(d.column, names);
+      result.notes.push_back(fmt::format("{} is computed from {} and is no independent evidence; without it the verdict is {}{}", d.column,
+                                         fmt::join(d.from, ", "), name(without.result.verdict),
+                                         names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
+    }
+  }
+  return result;
 }
 
 }  // namespace hosel::loop
