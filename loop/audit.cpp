@@ -124,6 +124,16 @@ class Audit {
   const Ball ball_;
   std::vector<Source> sources_;
 
+  /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
+  bool divides(int k) const {
+    std::vector<double> v;
+    for (const double x : sources_[std::size_t(k)].x)
+      if (std::isfinite(x)) v.push_back(x);
+    std::ranges::sort(v);
+    const double low = v[v.size() / 20], high = v[v.size() - 1 - v.size() / 20];
+    return low * high > 0 && std::max(std::abs(low), std::abs(high)) < 8 * std::min(std::abs(low), std::abs(high));
+  }
+
   int of(std::string_view stem, const std::vector<int>& use) const {
     for (const int k : use)
       if (sources_[std::size_t(k)].column->stem == stem) return k;
@@ -135,7 +145,7 @@ class Audit {
   bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f, Formula& out) const {
     const Source& y = sources_[std::size_t(target)];
     std::vector<double> residual;
-    double tolerance = 0, wobble_max = 0;
+    std::vector<double> wobbles;
     std::vector<double> x(sources_.size());
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
@@ -150,12 +160,13 @@ class Audit {
         wobble += (up - f(x)) * (up - f(x)) / 12;
         x[std::size_t(k)] = at;
       }
-      tolerance += wobble;
-      wobble_max = std::max(wobble_max, wobble);
+      wobbles.push_back(wobble);
     }
     if (rows.empty()) return false;
     out.residual = trimmed_rms(residual);
-    out.tolerance = std::sqrt(tolerance / double(rows.size()));
+    // The typical row: a few rows next to a singularity of f must not excuse the others.
+    std::ranges::nth_element(wobbles, wobbles.begin() + std::ptrdiff_t(wobbles.size() / 2));
+    out.tolerance = std::sqrt(wobbles[wobbles.size() / 2]);
     out.parameters = parameters;
     out.from = from;
     // Within rounding, and rounding itself far below how the column varies.
@@ -309,27 +320,31 @@ class Audit {
     for (std::size_t i = 0; i < use.size(); ++i)
       for (std::size_t j = 0; j < use.size(); ++j) {
         if (i == j) continue;
-        const double lo = sources_[std::size_t(use[j])].x.array().isFinite().select(sources_[std::size_t(use[j])].x.array().abs(), 1e300).minCoeff();
-        if (lo > 1e-6 * sources_[std::size_t(use[j])].spread) all.push_back({use[i], use[j], '/'});
+        if (divides(use[j])) all.push_back({use[i], use[j], '/'});
         if (i < j) all.push_back({use[i], use[j], '*'});
       }
     // Fewest terms first: a formula found is not improved by more columns.
     for (const Feature& f : all) consider({f}, false);
-    for (const Feature& f : raw) consider({f}, true);
+    std::vector<Feature> logs;  // columns that have a logarithm
+    for (const Feature& f : raw)
+      if (divides(f.a)) logs.push_back(f);
+    if (!divides(target)) logs.clear();
+    for (const Feature& f : logs) consider({f}, true);
     if (found) return true;
     for (const auto& [f, g] : promising(target, all)) consider({f, g}, false);
     for (std::size_t i = 0; i < raw.size(); ++i)
       for (std::size_t j = i + 1; j < raw.size(); ++j) {
         consider({raw[i], raw[j]}, false);
-        consider({raw[i], raw[j]}, true);
       }
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      for (std::size_t j = i + 1; j < logs.size(); ++j) consider({logs[i], logs[j]}, true);
     if (found) return true;
     for (std::size_t i = 0; i < raw.size(); ++i)
       for (std::size_t j = i + 1; j < raw.size(); ++j)
-        for (std::size_t k = j + 1; k < raw.size(); ++k) {
-          consider({raw[i], raw[j], raw[k]}, false);
-          consider({raw[i], raw[j], raw[k]}, true);
-        }
+        for (std::size_t k = j + 1; k < raw.size(); ++k) consider({raw[i], raw[j], raw[k]}, false);
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      for (std::size_t j = i + 1; j < logs.size(); ++j)
+        for (std::size_t k = j + 1; k < logs.size(); ++k) consider({logs[i], logs[j], logs[k]}, true);
     return found;
   }
 

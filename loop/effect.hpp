@@ -33,6 +33,8 @@ struct Form {
   std::string effect;  ///< name of the contract
   std::string what;    ///< what this form varies, in words
   std::vector<Parameter> parameters;
+  /// How much better than the effect's usual forms an unusual one must fit [units of deviance].
+  double rarity = 0;
   /// Further starting points [SI]; needed where the gradient at zero vanishes (thresholds).
   std::vector<std::vector<double>> starts;
   /// Changes the blow before the model answers.

@@ -126,7 +126,7 @@ std::string residuals_csv(const LoopResult& r) {
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
   for (const UsedShot& u : r.shots) {
     out += u.id + (u.holdout ? ",holdout" : ",train");
-    for (std::size_t c = 0; c < r.channels.size(); ++c) out += cell(u.measured[c]) + cell(u.before[c]) + cell(u.after[c]);
+    for (std::size_t c = 0; c < r.channels.size(); ++c) out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
     out += '\n';
   }
   return out;

@@ -9,6 +9,7 @@
 namespace hosel::loop {
 
 nlohmann::json to_json(const LoopResult& result);
+/// One row per used shot: for every channel the measured value and what the model said before and after.
 std::string residuals_csv(const LoopResult& result);
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);

@@ -112,8 +112,32 @@ Rows split_rows(const LoopCase& c, const std::vector<int>& row_of, const std::ve
       if (x < 0) x = missing++;
     count = missing;
   } else {
-    std::iota(group.begin(), group.end(), 0);
-    count = int(usable.size());
+    // Single rows: of every three (at one third) neighbours in spin loft one is held out, so that both sets reach
+    // over the whole range, where thresholds show.
+    std::vector<std::size_t> order(usable.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto obliquity = [&](std::size_t i) {
+      const Column* loft = c.shots.find_stem("dynamic_loft");
+      const Column* attack = c.shots.find_stem("attack_angle");
+      const auto row = std::size_t(row_of[std::size_t(usable[i])]);
+      const double a = attack ? attack->value[row] : 0;
+      return loft->value[row] - (std::isfinite(a) ? a : 0);
+    };
+    std::ranges::stable_sort(order, std::ranges::greater{}, obliquity);
+    std::mt19937_64 random(c.split.seed);
+    const double fraction = c.split.holdout_fraction;
+    std::vector<char> out(usable.size(), 0);
+    const std::size_t block = fraction > 0 ? std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction))) : 0;
+    for (std::size_t k = 0; block && k < order.size(); k += block) {
+      const std::size_t size = std::min(block, order.size() - k);
+      if (size < block && double(random() >> 11) * 0x1p-53 > double(size) * fraction) continue;
+      // One of the block, or as many as the fraction asks for.
+      const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
+      for (std::size_t t = 0; t < take; ++t) out[order[k + (random() % size)]] = 1;
+    }
+    Rows rows;
+    for (std::size_t i = 0; i < usable.size(); ++i) (out[i] ? rows.holdout : rows.train).push_back(usable[i]);
+    return rows;
   }
   std::vector<int> members(std::size_t(count), 0);
   for (const int g : group) ++members[std::size_t(g)];
@@ -279,7 +303,8 @@ class Loop {
       if (const Column* c = shots.find(header)) input_noise[header] = value * c->si;
     inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise);
     result.unused = inputs_.unused;
-    result.notes = inputs_.notes;
+    result.notes = case_.notes;
+    result.notes.insert(result.notes.end(), inputs_.notes.begin(), inputs_.notes.end());
     if (doubted_) distrust(*doubted_);
 
     // Cells that are no numbers, and values no blow has: flagged before anything is fitted.
@@ -309,6 +334,11 @@ class Loop {
       }
       channels.push_back(ch);
       columns.push_back(c);
+    }
+    if (channels.empty() && std::ranges::any_of(shots.columns, [](const Column& k) { return k.role == Role::output; })) {
+      result.verdict = Verdict::insufficient;
+      result.notes.push_back("no launch quantity has a value");
+      return;
     }
     if (channels.empty()) throw DataError(fmt::format("{}:1: no measured launch quantity (ball_speed_*, launch_angle_*, ...)", shots.file));
 

@@ -34,6 +34,7 @@ struct LoopCase {
   std::map<std::string, double> input_noise;  ///< the same for inputs
   Split split;
   Rules rules;
+  std::vector<std::string> notes;             ///< about the case itself
 };
 
 enum class Verdict { no_residual, explained, ambiguous, unexplained, insufficient, noise_contradicted };
@@ -82,7 +83,7 @@ struct UsedShot {
   int row;         ///< of the file
   std::string id;
   bool holdout;
-  std::vector<double> measured, before, after;  ///< per channel, header's unit
+  std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
 };
 
 struct LoopResult {

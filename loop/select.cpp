@@ -124,7 +124,7 @@ class Search {
         Eigen::MatrixXd A = columns_.middleCols(l.first, l.count);
         A -= Q * (Q.transpose() * A);
         const Eigen::MatrixXd basis = orthonormal(A);
-        ranked.emplace_back(-(basis.transpose() * zw).squaredNorm() + rules_.parameter_cost * double(l.count), l.form);
+        ranked.emplace_back(-(basis.transpose() * zw).squaredNorm() + rules_.parameter_cost * double(l.count) + l.form->rarity, l.form);
       }
       std::ranges::stable_sort(ranked, {}, [](const auto& r) { return r.first; });
       for (std::size_t j = 0; j < std::min<std::size_t>(ranked.size(), 6); ++j) {
@@ -213,6 +213,7 @@ class Search {
     Candidate c;
     c.fit = fit(problem_, rows_, m, from, loss_);
     c.criterion = c.fit.deviance + rules_.parameter_cost * m.size();
+    for (const Form* f : m.forms) c.criterion += f->rarity;
     for (std::size_t k = base_.size(); k < m.forms.size(); ++k) c.effects.push_back(m.forms[k]->effect);
     std::ranges::stable_sort(c.effects, {}, order_of);
     return c;
@@ -296,7 +297,9 @@ class Search {
         q[k] = p[k] / par.scale;
         ++k;
       }
-    return q.dot(G * q) - 2 * q.dot(b) + rules_.parameter_cost * double(n);
+    double rarity = 0;
+    for (const std::size_t w : which) rarity += linear_[w].form->rarity;
+    return q.dot(G * q) - 2 * q.dot(b) + rules_.parameter_cost * double(n) + rarity;
   }
 };
 

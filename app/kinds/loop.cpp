@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -144,9 +146,15 @@ class LoopJob final : public Job {
     }
     head.cg = table.vector("cg", "mm");
     head.inertia = table.matrix("inertia", "kg_m2");
-    if (const auto faults = head.faults(); !faults.empty())
+    // A tensor that no body quite can have still gives an answer, and effects may be asked about it: said, not refused.
+    const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
+    const auto faults = head.faults();
+    if (!faults.empty())
       for (const std::string& key : table.keys())
-        if (key.starts_with("inertia")) table.fail(key, faults.front());
+        if (key.starts_with("inertia")) {
+          if (!(principal[0] > 0) || !head.inertia.isApprox(head.inertia.transpose(), 1e-6)) table.fail(key, faults.front());
+          case_.notes.push_back(fmt::format("{}: {}", key, faults.front()));
+        }
     return head;
   }
 

@@ -35,15 +35,19 @@ std::vector<Form> session_drift(const Setting& setting) {
     }
     Form speed{.effect = effect, .what = "of the club speed, " + from, .parameters = {{"relative_club_speed_per_session", "1", 1, -0.2, 0.2, 0.01}}};
     speed.before = [zero](std::span<const double> q, Trial& t) { t.blow.delivery.club_speed *= 1 + q[0] * (t.order - zero); };
+    speed.rarity = 3;
     forms.push_back(speed);
     Form loft{.effect = effect, .what = "of the loft, " + from, .parameters = {{"loft_per_session", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}}};
     loft.before = [zero](std::span<const double> q, Trial& t) { t.blow.delivery.dynamic_loft += q[0] * (t.order - zero); };
+    loft.rarity = 3;
     forms.push_back(loft);
     Form restitution{.effect = effect, .what = "of the restitution, " + from, .parameters = {{"restitution_per_session", "1", 1, -0.2, 0.2, 0.02}}};
     restitution.before = [zero](std::span<const double> q, Trial& t) { t.blow.contact.restitution += q[0] * (t.order - zero); };
+    restitution.rarity = 5;
     forms.push_back(restitution);
     Form spin{.effect = effect, .what = "of the tangential restitution, " + from, .parameters = {{"tangential_restitution_per_session", "1", 1, -0.6, 0.6, 0.1}}};
     spin.before = [zero](std::span<const double> q, Trial& t) { t.blow.contact.tangential_restitution += q[0] * (t.order - zero); };
+    spin.rarity = 5;
     forms.push_back(spin);
   }
   return forms;

@@ -1,5 +1,6 @@
 // The club behind the head: during the contact the shaft's tip acts as a small mass at the hosel that also
-// resists rotation. The augmented rigid head has the mass, the centre and the inertia of both.
+// resists being turned across its axis (about its axis it twists easily). The augmented rigid head has the mass,
+// the centre and the inertia of both.
 #include <cmath>
 
 #include "loop/effects/all.hpp"
@@ -12,9 +13,9 @@ Mat3 steiner(double mass, const Vec3& arm) { return -mass * skew(arm) * skew(arm
 /// The delivery's velocity stays that of the head's own centre of gravity.
 void attach(Blow& blow, double mass, double inertia) {
   Head& head = blow.club.head;
-  const Vec3 hosel = blow.club.geometry.hosel;
+  const Vec3 hosel = blow.club.geometry.hosel, axis = blow.club.geometry.shaft_axis;
   const Vec3 cg = (head.mass * head.cg + mass * hosel) / (head.mass + mass);
-  head.inertia += steiner(head.mass, head.cg - cg) + steiner(mass, hosel - cg) + inertia * Mat3::Identity();
+  head.inertia += steiner(head.mass, head.cg - cg) + steiner(mass, hosel - cg) + inertia * (Mat3::Identity() - axis * axis.transpose());
   head.cg = cg;
   head.mass += mass;
 }
@@ -33,7 +34,11 @@ std::vector<Form> shaft_coupling(const Setting& setting) {
   both.before = [](std::span<const double> p, Trial& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
   };
-  return {point, both};
+  Form stiff{.effect = "shaft-coupling", .what = "added rotational inertia across the shaft", .parameters = {stiffening}};
+  stiff.before = [](std::span<const double> p, Trial& t) {
+    if (p[0] != 0) attach(t.blow, 0, p[0]);
+  };
+  return {point, stiff, both};
 }
 
 }  // namespace hosel::loop::forms

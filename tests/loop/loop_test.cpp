@@ -1,0 +1,153 @@
+// The whole loop on small sets made here with the closed form, and on broken input.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "loop/report.hpp"
+#include "models/registry.hpp"
+
+namespace hosel::loop {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct World {
+  int shots = 90;
+  double tangential = 0;   ///< hidden tangential restitution
+  double humidity = 0;     ///< hidden: ball speed per per cent [m/s]
+  int swapped = -1;        ///< row whose ball speed is written in mph
+  bool rate = false;       ///< a column spin_rate computed from the other two
+  unsigned seed = 1;
+};
+
+std::string csv(const World& w) {
+  std::mt19937 random(w.seed);
+  std::normal_distribution<double> gauss;
+  const auto model = models::find("rigid-eccentric")->make({});
+  std::string text = "shot,club_speed_mps,attack_angle_deg,club_path_deg,face_angle_deg,dynamic_loft_deg,impact_toe_mm,impact_high_mm,humidity_pct,"
+                     "ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm";
+  text += w.rate ? ",spin_rate_rpm\n" : "\n";
+  for (int i = 0; i < w.shots; ++i) {
+    Blow b;
+    b.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    Delivery& d = b.delivery;
+    d = {.club_speed = 45 + 3 * gauss(random), .attack_angle = radians(2 * gauss(random)), .club_path = radians(2 * gauss(random)),
+         .dynamic_loft = radians(14 + 3 * gauss(random)), .face_angle = radians(2 * gauss(random)), .impact_toe = 0.009 * gauss(random),
+         .impact_high = 0.006 * gauss(random)};
+    b.contact.tangential_restitution = w.tangential;
+    const double humidity = 55 + 12 * gauss(random);
+    const Launch l = model->launch(b);
+    double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
+    if (i == w.swapped) speed /= kMpsPerMph;
+    const double back = std::round(rpm(l.backspin()) + 60 * gauss(random)), side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
+    char line[512];
+    std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1, d.club_speed, degrees(d.attack_angle), degrees(d.club_path),
+                  degrees(d.face_angle), degrees(d.dynamic_loft), 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed, degrees(l.launch_angle()) + 0.2 * gauss(random),
+                  degrees(l.azimuth()) + 0.25 * gauss(random), back, side);
+    text += line;
+    if (w.rate) text += "," + std::to_string(std::lround(std::hypot(back, side)));
+    text += "\n";
+  }
+  return text;
+}
+
+class Loop : public testing::Test {
+ protected:
+  Loop() : model(models::find("rigid-eccentric")->make({})) {}
+  Shots shots(const std::string& text) {
+    const fs::path file = fs::path(testing::TempDir()) / "hosel_loop_test.csv";
+    std::ofstream(file, std::ios::binary) << text;
+    return read_shots(read_csv(file));
+  }
+  LoopCase case_of(const std::string& text) {
+    LoopCase c;
+    c.base = "rigid-eccentric";
+    c.model = model.get();
+    c.head_mass_declared = c.inertia_declared = true;
+    c.blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    c.shots = shots(text);
+    c.noise = {{"ball_speed_mps", 0.25}, {"launch_angle_deg", 0.2}, {"azimuth_deg", 0.25}, {"backspin_rpm", 60}, {"sidespin_rpm", 60}};
+    return c;
+  }
+  std::unique_ptr<models::ImpactModel> model;
+};
+
+TEST_F(Loop, NothingHiddenNothingAdopted) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const LoopResult r = run(case_of(csv({.seed = seed})));
+    EXPECT_EQ(r.used, 90);
+    EXPECT_TRUE(r.adopted.empty());
+    EXPECT_TRUE(r.flagged.empty());
+    EXPECT_TRUE(r.derived.empty());
+  }
+}
+
+TEST_F(Loop, TangentialComplianceIsNamedAndMeasured) {
+  const LoopResult r = run(case_of(csv({.tangential = 0.25})));
+  ASSERT_EQ(name(r.verdict), "explained");
+  ASSERT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"});
+  const Candidate& best = r.candidates.front().candidate;
+  EXPECT_NEAR(r.selection.chosen.p[0], 0.25, 0.04);  // three standard deviations of the estimate
+  EXPECT_FALSE(best.fit.at_bound);
+  for (const ChannelResult& c : r.channels) EXPECT_LT(c.after.holdout_rmse, 1.5 * c.noise) << c.name;
+}
+
+TEST_F(Loop, AnUnknownColumnIsUnexplainedAndLocated) {
+  const LoopResult r = run(case_of(csv({.humidity = 0.05})));
+  ASSERT_EQ(name(r.verdict), "unexplained");
+  EXPECT_TRUE(r.adopted.empty());
+  ASSERT_FALSE(r.unexplained.empty());
+  EXPECT_EQ(r.unexplained[0].channel, "ball_speed_mps");
+  EXPECT_EQ(r.unexplained[0].regressor, "humidity_pct");
+}
+
+TEST_F(Loop, AUnitSlipIsFlaggedWithItsReason) {
+  const LoopResult r = run(case_of(csv({.swapped = 40})));
+  ASSERT_EQ(r.flagged.size(), 1U);
+  EXPECT_EQ(r.flagged[0].shot, "41");
+  EXPECT_EQ(r.flagged[0].column, "ball_speed_mps");
+  EXPECT_NE(r.flagged[0].reason.find("mph"), std::string::npos) << r.flagged[0].reason;
+  EXPECT_TRUE(r.adopted.empty());
+}
+
+TEST_F(Loop, AComputedColumnIsFound) {
+  const LoopResult r = run(case_of(csv({.rate = true})));
+  ASSERT_EQ(r.derived.size(), 1U);
+  EXPECT_EQ(r.derived[0].column, "spin_rate_rpm");
+  EXPECT_EQ(r.channels.size(), 5U);
+}
+
+TEST_F(Loop, TheSameReportTwice) {
+  const LoopCase c = case_of(csv({.tangential = 0.25}));
+  const LoopResult a = run(c), b = run(c);
+  EXPECT_EQ(to_json(a).dump(), to_json(b).dump());
+  EXPECT_EQ(residuals_csv(a), residuals_csv(b));
+}
+
+TEST_F(Loop, BrokenInputEndsInAReportOrOneLine) {
+  EXPECT_THROW(shots(""), DataError);
+  EXPECT_THROW(shots("a,b\n1\n"), DataError);
+  EXPECT_THROW(shots("ball_speed_mps\nfast\n"), DataError);
+  EXPECT_THROW(shots("ball_speed_deg\n1\n"), DataError);
+  const std::string header = "club_speed_mps,dynamic_loft_deg,ball_speed_mps,backspin_rpm\n";
+  const auto with_noise = [&](const std::string& text) {
+    LoopCase c = case_of(text);
+    c.noise = {{"ball_speed_mps", 0.25}};
+    return c;
+  };
+  EXPECT_EQ(name(run(with_noise(header)).verdict), "insufficient");
+  EXPECT_EQ(name(run(with_noise(header + "45,12,65,2500\n")).verdict), "insufficient");
+  EXPECT_EQ(name(run(with_noise(header + ",,,\n,,,\n")).verdict), "insufficient");
+  std::string constant = header, wild = header;
+  for (int i = 0; i < 20; ++i) constant += "45,12,65,2500\n", wild += i % 5 ? "45,12,62.1,2900\n" : "45,12,inf,-2e10\n";
+  EXPECT_NO_THROW(run(with_noise(constant)));
+  const LoopResult r = run(with_noise(wild));
+  EXPECT_GE(r.flagged.size(), 4U);
+  EXPECT_THROW(run(with_noise("ball_speed_mps\n60\n")), DataError);  // no club speed at all
+}
+
+}  // namespace
+}  // namespace hosel::loop
