@@ -94,33 +94,4 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   return blow;
 }
 
-models::Options read_options(Table root) {
-  models::Options options;
-  if (auto t = root.optional_table("volumetric")) {
-    const Range positive = Range::positive(), some = Range::non_negative();
-    const bool iron = t->choice("published", {"driver", "iron7"}, "driver") == "iron7";
-    models::VolumetricLaw& law = options.volumetric;
-    law = iron ? models::VolumetricLaw::published_iron7() : models::VolumetricLaw::published_driver();
-    law.stiffness = t->quantity("stiffness", "N_per_m3", positive, law.stiffness);
-    law.damping = t->quantity("damping", "s_per_m", some, law.damping);
-    law.friction = t->number("friction", some, law.friction);
-    law.static_friction = t->number("static_friction", some, law.friction);
-    law.transition_speed = t->quantity("transition_speed", "mps", positive, law.transition_speed);
-    law.joint_stiffness = t->quantity("joint_stiffness", "N_m_per_rad", some, law.joint_stiffness);
-    law.joint_damping = t->quantity("joint_damping", "N_m_s_per_rad", some, law.joint_damping);
-    law.cover_thickness = t->quantity("cover_thickness", "mm", positive, law.cover_thickness);
-    options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
-  }
-  if (auto t = root.optional_table("hertz_maw")) {
-    models::HertzMawLaw& law = options.hertz_maw;
-    law.modulus = t->quantity("modulus", "MPa", Range::positive(), law.modulus);
-    law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
-    law.friction = t->number("friction", Range::non_negative(), law.friction);
-    law.damping = t->quantity("damping", "s_per_m", Range::non_negative(), law.damping);
-    options.hertz_maw_solution.springs = static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
-    options.hertz_maw_solution.steps = static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
-  }
-  return options;
-}
-
 }  // namespace hosel::app

@@ -6,7 +6,6 @@
 
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
-#include "models/options.hpp"
 
 namespace hosel::app {
 
@@ -20,7 +19,5 @@ ContactLaw read_contact_law(Table table);
 std::vector<std::string> read_models(Table root);
 /// Everything that the models of a case are asked about, from its tables.
 Blow read_blow(Table root, const std::vector<std::string>& models);
-/// How the models are solved, and what their ball and contact are made of: `[volumetric]`, `[hertz_maw]`.
-models::Options read_options(Table root);
 
 }  // namespace hosel::app

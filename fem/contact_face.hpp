@@ -86,6 +86,7 @@ class ContactFace final : public Term {
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
+  const FaceCarrier& carrier() const { return carrier_; }
   ContactReport report(const State& accepted) const;
   std::vector<ContactPoint> points(const State& accepted) const;
   /// Distance of the solid's centre of mass from the face [m].

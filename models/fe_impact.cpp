@@ -135,6 +135,23 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   return parts;
 }
 
+namespace {
+FacePose face_pose(const fem::ContactFace& contact, const fem::State& s) {
+  const fem::FaceCarrier& carrier = contact.carrier();
+  FacePose f{carrier.position, carrier.attitude, Vec3::Zero(), Vec3::Zero()};
+  if (carrier.translation) {
+    f.axes = fem::rotation(s, *carrier.rotation).toRotationMatrix();
+    f.spin = f.axes * s.v.segment<3>(carrier.rotation->v);
+    f.centre = s.q.segment<3>(carrier.translation->q);
+    f.velocity = s.v.segment<3>(carrier.translation->v);
+  }
+  const Vec3 arm = f.axes * carrier.face_centre;
+  f.centre += arm;
+  f.velocity += f.spin.cross(arm);
+  return f;
+}
+}  // namespace
+
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial, const FeImpactOptions& o,
                           double approach_speed, const ImpactObserver& observer) {
   parts.contact->start(initial);
@@ -159,7 +176,8 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   solvers::GeneralizedAlpha solver(system, options, std::move(initial));
   FeImpactResult out;
   const auto observe = [&](const fem::ContactReport& report) {
-    if (observer) observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger()});
+    if (observer) observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
+                            face_pose(*parts.contact, solver.state()), expected, parts.shaft});
   };
   observe(parts.contact->report(solver.state()));
 
@@ -241,9 +259,9 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
   return out;
 }
 
-FreeBodyOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer) {
+FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer) {
   FreeBodyImpact impact = assemble_free_body(blow, options);
-  FreeBodyOutcome out;
+  FeOutcome out;
   fem::State last;
   out.result = run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed,
                           [&](const ImpactView& view) {
@@ -266,6 +284,8 @@ FeFreeBody::FeFreeBody(FeImpactOptions options) : options_(std::move(options)) {
   if (const auto faults = options_.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
 }
 
-Launch FeFreeBody::launch(const Blow& blow) const { return solve_free_body(blow, options_).launch; }
+FeOutcome FeFreeBody::solve(const Blow& blow, const ImpactObserver& observer) const {
+  return solve_free_body(blow, options_, observer);
+}
 
 }  // namespace hosel::models

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/beam.hpp"
 #include "fem/contact_face.hpp"
 #include "fem/rigid_body.hpp"
 #include "golf/blow.hpp"
@@ -46,6 +47,7 @@ struct FeImpactOptions {
 struct BallOnFace {
   fem::HarmonicSolid* ball = nullptr;
   fem::ContactFace* contact = nullptr;
+  const fem::Beam* shaft = nullptr;  ///< of a full club, for observers
 };
 
 /// What a blow looks like at first contact, ball centre at the global origin.
@@ -66,6 +68,14 @@ Encounter encounter(const Blow& blow);
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,
                     const fem::FaceCarrier& carrier, bool free);
 
+/// Where the face stands and how it moves.
+struct FacePose {
+  Vec3 centre = Vec3::Zero();      ///< of the face, global [m]
+  Mat3 axes = Mat3::Identity();    ///< columns: face frame in the global one
+  Vec3 velocity = Vec3::Zero();    ///< of the face centre, global [m/s]
+  Vec3 spin = Vec3::Zero();        ///< global [rad/s]
+};
+
 /// What an observer sees after every accepted step, and once at the start.
 struct ImpactView {
   const fem::System& system;
@@ -74,6 +84,9 @@ struct ImpactView {
   const fem::ContactFace& contact;
   const fem::ContactReport& report;
   const solvers::Ledger& ledger;
+  FacePose face;
+  double expected_end = 0;            ///< when Hertz's theory would have contact end [s]
+  const fem::Beam* shaft = nullptr;   ///< of a full club
 };
 using ImpactObserver = std::function<void(const ImpactView&)>;
 
@@ -94,6 +107,18 @@ struct FeImpactResult {
   solvers::GeneralizedAlpha::Counts counts;
 };
 
+struct FeOutcome {
+  FeImpactResult result;
+  Launch launch;
+};
+
+/// A model whose impact can be watched step by step.
+class FeModel : public ImpactModel {
+ public:
+  virtual FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const = 0;
+  Launch launch(const Blow& blow) const final { return solve(blow).launch; }
+};
+
 /// Runs a system with a ball until contact has ended. `initial` holds the velocities at first contact.
 /// Throws solvers::NonConvergence.
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial,
@@ -110,17 +135,13 @@ struct FreeBodyImpact {
 };
 FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options);
 
-struct FreeBodyOutcome {
-  FeImpactResult result;
-  Launch launch;
-};
-FreeBodyOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {});
+FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {});
 
 /// `fe-free-body` behind the common interface.
-class FeFreeBody final : public ImpactModel {
+class FeFreeBody final : public FeModel {
  public:
   explicit FeFreeBody(FeImpactOptions options);
-  Launch launch(const Blow& blow) const override;
+  FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const override;
 
  private:
   FeImpactOptions options_;

@@ -64,4 +64,20 @@ VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& vel
   return mesh;
 }
 
+VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& state) {
+  VtkMesh m;
+  std::vector<Vec3> displacement, velocity;
+  VtkField radius{"radius", "m", 1, {}};
+  for (std::size_t i = 0; i < beam.nodes().size(); ++i) {
+    const fem::Layout::Block& block = beam.nodes()[i].translation;
+    m.points.push_back(beam.line()[i].position);
+    displacement.push_back(Vec3(state.q.segment<3>(block.q)) - m.points.back());
+    velocity.emplace_back(state.v.segment<3>(block.v));
+    radius.values.push_back(shaft.at(beam.line()[i].arc_length).outer_radius);
+    if (i > 0) m.cells.push_back({CellShape::line, {std::int64_t(i) - 1, std::int64_t(i)}});
+  }
+  m.point_fields = {vector_field("displacement", "m", displacement), vector_field("velocity", "m/s", velocity), radius};
+  return m;
+}
+
 }  // namespace hosel::post

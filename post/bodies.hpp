@@ -1,7 +1,9 @@
 /// Rigid bodies and the shaft as meshes for looking.
 #pragma once
 
+#include "fem/beam.hpp"
 #include "golf/head.hpp"
+#include "golf/shaft.hpp"
 #include "post/vtk_series.hpp"
 
 namespace hosel::post {
@@ -20,5 +22,8 @@ VtkMesh head_mesh(const Head& head, double width, double height);
 /// The mesh moved to `start` (its reference), with the `displacement` and `velocity` of the pose `now`,
 /// the velocity of the frame's origin [m/s] and the angular velocity [rad/s], global frame.
 VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin);
+
+/// The shaft's line with `radius` for ParaView's Tube filter, displacement and velocity.
+VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& state);
 
 }  // namespace hosel::post

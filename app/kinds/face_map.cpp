@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "app/sweep.hpp"
 #include "app/sweep_store.hpp"
 #include "models/registry.hpp"
@@ -170,7 +171,7 @@ class FaceMapJob final : public PointJob {
     std::vector<std::string> asked;
     for (const Variant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
-    s.options = read_options(root);
+    s.options = read_options(root, asked);
     if (s.blow.delivery.impact_toe != 0 || s.blow.delivery.impact_high != 0)
       root.fail("delivery", "the grid says where the ball meets the face: impact_toe and impact_high stay out");
     return s;

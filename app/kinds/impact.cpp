@@ -2,22 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "models/fe_impact.hpp"
 #include "models/registry.hpp"
+#include "post/impact_recorder.hpp"
 #include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {
 
+namespace fs = std::filesystem;
+
 class ImpactJob final : public Job {
  public:
   explicit ImpactJob(CaseFile& file) {
     Table root = file.root();
-    models_ = read_models(root);
-    blow_ = read_blow(root, models_);
-    options_ = read_options(root);
+    const std::vector<std::string> names = read_models(root);
+    blow_ = read_blow(root, names);
+    const models::Options options = read_options(root, names);
+    for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
+    if (auto output = root.optional_table("output")) {
+      record_.vtk = output->flag("vtk", record_.vtk);
+      record_.steps_per_frame = int(output->integer("steps_per_frame", 1, 100000, record_.steps_per_frame));
+      record_.angles = int(output->integer("angles", 8, 256, record_.angles));
+      record_.face_width = output->quantity("face_width", "mm", {0.005, 0.5}, record_.face_width);
+      record_.face_height = output->quantity("face_height", "mm", {0.005, 0.5}, record_.face_height);
+    }
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
         const SplitName split = split_unit(key);
@@ -28,24 +42,76 @@ class ImpactJob final : public Job {
   }
 
   void run(Output& out) override {
+    const auto fe_models = std::ranges::count_if(models_, [](const Entry& e) { return e.fe() != nullptr; });
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
-    for (const std::string& name : models_) {
-      const auto model = models::find(name)->make(options_);
-      const Launch launch = model->launch(blow_);
-      columns.push_back({name, launch});
-      summary["models"][name] = post::to_json(launch);
+    std::vector<fs::path> files;
+    for (const Entry& entry : models_) {
+      if (const models::FeModel* fe = entry.fe()) {
+        const fs::path home = fe_models > 1 ? out.directory() / entry.name : out.directory();
+        const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home, files);
+        columns.push_back({entry.name, outcome.launch});
+        summary["models"][entry.name] = post::to_json(outcome.launch);
+        summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
+      } else {
+        columns.push_back({entry.name, entry.model->launch(blow_)});
+        summary["models"][entry.name] = post::to_json(columns.back().launch);
+      }
     }
     for (const auto& [channel, value] : measured_)
       summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
     out.say(post::launch_table(columns, measured_));
+    for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
   }
 
  private:
-  std::vector<std::string> models_;
+  struct Entry {
+    std::string name;
+    std::unique_ptr<models::ImpactModel> model;
+    const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
+  };
+
+  models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const fs::path& home,
+                           std::vector<fs::path>& files) const {
+    post::ImpactRecorder recorder(home, blow_, record_);
+    Progress progress = out.progress(name);
+    const models::FeOutcome outcome = model.solve(blow_, [&](const models::ImpactView& view) {
+      recorder(view);
+      progress.update(std::min(0.99, view.state.time / view.expected_end),
+                      fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
+    });
+    progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
+    for (const fs::path& f : recorder.files()) files.push_back(f);
+    return outcome;
+  }
+
+  /// What the solution was and how well its energy adds up: for the person and the summary.
+  nlohmann::json solution(Output& out, const std::string& name, const models::FeImpactResult& r) const {
+    const double closure = r.ledger.closure / r.ledger.initial;
+    out.say(fmt::format("{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
+                        "energy closes to {:.1e} of the initial",
+                        name, 1e3 * r.contact_time, 1e-3 * r.peak_force, 1e3 * r.compression, 1e6 * r.penetration, closure));
+    nlohmann::json j = {{"contact_time_ms", 1e3 * r.contact_time},
+                        {"peak_force_N", r.peak_force},
+                        {"peak_time_ms", 1e3 * r.peak_time},
+                        {"compression_mm", 1e3 * r.compression},
+                        {"penetration_um", 1e6 * r.penetration},
+                        {"tangential_creep_um", 1e6 * r.creep},
+                        {"steps", r.counts.steps},
+                        {"rejected_steps", r.counts.rejected},
+                        {"newton_iterations", r.counts.iterations},
+                        {"factorisations", r.counts.factorisations},
+                        {"dissipated_by_layer_J", r.dissipated}};
+    j["energy_J"] = {{"initial", r.ledger.initial},   {"kinetic", r.ledger.kinetic},     {"strain", r.ledger.strain_total()},
+                     {"contact", r.ledger.contact},   {"friction", r.ledger.friction},   {"viscous", r.ledger.viscous},
+                     {"numerical", r.ledger.numerical}, {"external", r.ledger.external}, {"closure", r.ledger.closure}};
+    return j;
+  }
+
+  std::vector<Entry> models_;
   Blow blow_;
-  models::Options options_;
+  post::RecorderOptions record_;
   post::Measured measured_;
 };
 

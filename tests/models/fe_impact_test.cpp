@@ -41,7 +41,7 @@ TEST(FeImpact, NormalBlowOnAWall) {
   // Issue's bands for a golf ball at 45 m/s: 8-20 kN, 0.40-0.55 ms; restitution falls with speed.
   double last = 1;
   for (double v : {20.0, 45.0}) {
-    const FreeBodyOutcome out = solve_free_body(wall_blow(v), coarse(0));
+    const FeOutcome out = solve_free_body(wall_blow(v), coarse(0));
     const double e = (out.launch.velocity.x() - v) / v;
     EXPECT_GT(e, 0.5);
     EXPECT_LT(e, last - 0.01);
@@ -83,7 +83,7 @@ TEST(FeImpact, MomentumOfBallAndFreeHead) {
 
 TEST(FeImpact, ObliqueBlowSpinsTheBall) {
   const Blow blow = iron_blow();
-  const FreeBodyOutcome out = solve_free_body(blow, coarse(2));
+  const FeOutcome out = solve_free_body(blow, coarse(2));
   EXPECT_GT(rpm(out.launch.backspin()), 4000);
   EXPECT_LT(rpm(out.launch.backspin()), 9000);
   EXPECT_NEAR(out.launch.sidespin(), 0, 1e-6 * out.launch.backspin());

@@ -1,0 +1,73 @@
+#include "app/read_options.hpp"
+
+#include <algorithm>
+
+namespace hosel::app {
+namespace {
+
+models::FeImpactOptions read_fe(Table root) {
+  models::FeImpactOptions o;
+  // Friction is physics: a case with a deformable ball states it.
+  Table contact = root.table("contact");
+  o.friction = contact.number("face_friction", {0, 5});
+  if (contact.has_quantity("face_transition_speed"))
+    o.transition_speed = contact.quantity("face_transition_speed", "mps", Range::positive());
+  o.penalty = contact.number("penalty", {1, 1e6}, o.penalty);
+  o.tangential_penalty = contact.number("tangential_penalty", {1e-3, 10}, o.tangential_penalty);
+
+  if (auto mesh = root.optional_table("mesh")) {
+    o.mesh.sector = int(mesh->integer("sector", 1, 64, o.mesh.sector));
+    o.mesh.rings = int(mesh->integer("rings", 1, 64, o.mesh.rings));
+    o.mesh.pole = mesh->number("pole", {0.01, 1}, o.mesh.pole);
+    o.mesh.skin = mesh->number("skin", {0.01, 1}, o.mesh.skin);
+    o.mesh.core = mesh->number("core", {0.1, 0.7}, o.mesh.core);
+    o.harmonics = int(mesh->integer("harmonics", 0, 16, o.harmonics));
+    o.antisymmetric = int(mesh->integer("antisymmetric", -1, 16, o.antisymmetric));
+    o.angles = int(mesh->integer("angles", 0, 128, o.angles));
+    o.contact_angles = int(mesh->integer("contact_angles", 0, 256, o.contact_angles));
+    o.edge_points = int(mesh->integer("edge_points", 1, 5, o.edge_points));
+    o.tilt = mesh->quantity("tilt", "rad", {-1, 1}, o.tilt);
+  }
+  if (auto time = root.optional_table("time")) {
+    o.rho_inf = time->number("rho_inf", Range::fraction(), o.rho_inf);
+    o.steps_per_contact = int(time->integer("steps_per_contact", 10, 100000, o.steps_per_contact));
+    o.newton_relative = time->number("newton_relative", {1e-14, 1e-2}, o.newton_relative);
+    o.after = time->number("after", {0, 10}, o.after);
+  }
+  if (const auto faults = o.faults(); !faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+  return o;
+}
+
+}  // namespace
+
+models::Options read_options(Table root, const std::vector<std::string>& models) {
+  models::Options options;
+  if (auto t = root.optional_table("volumetric")) {
+    const Range positive = Range::positive(), some = Range::non_negative();
+    const bool iron = t->choice("published", {"driver", "iron7"}, "driver") == "iron7";
+    models::VolumetricLaw& law = options.volumetric;
+    law = iron ? models::VolumetricLaw::published_iron7() : models::VolumetricLaw::published_driver();
+    law.stiffness = t->quantity("stiffness", "N_per_m3", positive, law.stiffness);
+    law.damping = t->quantity("damping", "s_per_m", some, law.damping);
+    law.friction = t->number("friction", some, law.friction);
+    law.static_friction = t->number("static_friction", some, law.friction);
+    law.transition_speed = t->quantity("transition_speed", "mps", positive, law.transition_speed);
+    law.joint_stiffness = t->quantity("joint_stiffness", "N_m_per_rad", some, law.joint_stiffness);
+    law.joint_damping = t->quantity("joint_damping", "N_m_s_per_rad", some, law.joint_damping);
+    law.cover_thickness = t->quantity("cover_thickness", "mm", positive, law.cover_thickness);
+    options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
+  }
+  if (auto t = root.optional_table("hertz_maw")) {
+    models::HertzMawLaw& law = options.hertz_maw;
+    law.modulus = t->quantity("modulus", "MPa", Range::positive(), law.modulus);
+    law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
+    law.friction = t->number("friction", Range::non_negative(), law.friction);
+    law.damping = t->quantity("damping", "s_per_m", Range::non_negative(), law.damping);
+    options.hertz_maw_solution.springs = static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
+    options.hertz_maw_solution.steps = static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
+  }
+  if (std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); })) options.fe = read_fe(root);
+  return options;
+}
+
+}  // namespace hosel::app

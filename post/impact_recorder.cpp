@@ -1,0 +1,119 @@
+#include "post/impact_recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "post/ball_mesh.hpp"
+#include "post/bodies.hpp"
+#include "post/history.hpp"
+#include "post/vtk_series.hpp"
+
+namespace hosel::post {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The traction of the nearest quadrature point of the patch, mirrored where only half of it is computed.
+class NearestTraction {
+ public:
+  explicit NearestTraction(const models::ImpactView& view)
+      : ball_(view.ball), points_(view.contact.points(view.state)) {
+    half_ = true;
+    for (const fem::ContactPoint& p : points_) half_ = half_ && across(p.reference) > -1e-12;
+  }
+
+  Vec3 operator()(int node, double theta) const {
+    Vec3 x = ball_.reference(node, theta);
+    const Vec3 normal = ball_.placement().axes.col(2);
+    const bool mirrored = half_ && across(x) < 0;
+    if (mirrored) x -= 2 * across(x) * normal;
+    const fem::ContactPoint* nearest = nullptr;
+    double least = 0;
+    for (const fem::ContactPoint& p : points_)
+      if (const double d = (p.reference - x).squaredNorm(); !nearest || d < least) {
+        nearest = &p;
+        least = d;
+      }
+    if (!nearest || least > 4 * nearest->area) return Vec3::Zero();
+    Vec3 t = nearest->traction;
+    if (mirrored) t -= 2 * t.dot(normal) * normal;
+    return t;
+  }
+
+ private:
+  double across(const Vec3& x) const { return (x - ball_.placement().origin).dot(ball_.placement().axes.col(2)); }
+  const fem::HarmonicSolid& ball_;
+  std::vector<fem::ContactPoint> points_;
+  bool half_ = true;
+};
+
+}  // namespace
+
+struct ImpactRecorder::State {
+  fs::path directory;
+  Blow blow;
+  RecorderOptions options;
+  VtkMesh face_shape, head_shape;
+  std::optional<History> history;
+  std::optional<VtkSeries> ball, face, head, shaft;
+  std::optional<Pose> start;
+  long steps = 0;
+};
+
+ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOptions options)
+    : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.directory = std::move(directory);
+  s.options = options;
+  s.blow = blow;
+  fs::create_directories(s.directory);
+  s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
+  s.head_shape = head_mesh(blow.club.head, options.face_width, options.face_height);
+}
+
+ImpactRecorder::~ImpactRecorder() = default;
+
+void ImpactRecorder::operator()(const models::ImpactView& view) {
+  State& s = *state_;
+  const solvers::Ledger& e = view.ledger;
+  if (!s.history) {
+    std::vector<std::string> columns = {"time_s", "normal_force_N", "force_heel_N", "force_up_N", "contact_pressure_Pa",
+                                        "contact_area_m2", "penetration_m", "kinetic_J"};
+    for (const auto& [body, joules] : e.strain) columns.push_back("strain_" + body + "_J");
+    for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"}) columns.emplace_back(name);
+    s.history.emplace(s.directory / "history.csv", columns);
+  }
+  const models::FacePose face = view.face;
+  const Vec3 force = face.axes.transpose() * view.report.force;
+  std::vector<double> row = {view.state.time, force.x(), force.y(), force.z(), view.report.pressure, view.report.area,
+                             view.report.penetration, e.kinetic};
+  for (const auto& [body, joules] : e.strain) row.push_back(joules);
+  for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
+  s.history->write(row);
+
+  if (!s.options.vtk || s.steps++ % s.options.steps_per_frame != 0) return;
+  const Pose now{face.centre, face.axes};
+  if (!s.start) {
+    s.start = now;
+    const fs::path vtk = s.directory / "vtk";
+    s.ball.emplace(vtk, "ball", VtkSeries::Form::volume);
+    s.face.emplace(vtk, "face", VtkSeries::Form::surface);
+    s.head.emplace(vtk, "head", VtkSeries::Form::surface);
+    if (view.shaft) s.shaft.emplace(vtk, "shaft", VtkSeries::Form::surface);
+  }
+  const double time = view.state.time;
+  s.ball->write(time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
+  s.face->write(time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
+  s.head->write(time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
+  if (view.shaft) s.shaft->write(time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+}
+
+std::vector<fs::path> ImpactRecorder::files() const {
+  std::vector<fs::path> out;
+  for (const auto* series : {&state_->ball, &state_->face, &state_->head, &state_->shaft})
+    if (*series) out.push_back((*series)->file());
+  return out;
+}
+
+}  // namespace hosel::post

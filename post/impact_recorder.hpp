@@ -1,0 +1,35 @@
+/// Watches a finite-element impact: history.csv at every step, VTK series at every few.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "golf/blow.hpp"
+#include "models/fe_impact.hpp"
+
+namespace hosel::post {
+
+struct RecorderOptions {
+  bool vtk = true;
+  int steps_per_frame = 4;   ///< accepted steps between VTK frames
+  int angles = 32;           ///< of the revolved ball
+  double face_width = 0.08;  ///< of the drawn face, heel to toe [m]
+  double face_height = 0.05;
+};
+
+class ImpactRecorder {
+ public:
+  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,face,head,shaft}.pvd.
+  ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options);
+  ~ImpactRecorder();
+  void operator()(const models::ImpactView& view);
+  /// The series written, for a person to open.
+  std::vector<std::filesystem::path> files() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace hosel::post
