@@ -48,6 +48,9 @@ class NearestTraction {
   bool half_ = true;
 };
 
+/// The ledger has a strain column for every body; the rigid ones' and the contact's stay zero.
+bool deforms(const std::string& body) { return body != "head" && body != "contact"; }
+
 }  // namespace
 
 struct ImpactRecorder::State {
@@ -80,7 +83,8 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   if (!s.history) {
     std::vector<std::string> columns = {"time_s", "normal_force_N", "force_heel_N", "force_up_N", "contact_pressure_Pa",
                                         "contact_area_m2", "penetration_m", "kinetic_J"};
-    for (const auto& [body, joules] : e.strain) columns.push_back("strain_" + body + "_J");
+    for (const auto& [body, joules] : e.strain)
+      if (deforms(body)) columns.push_back("strain_" + body + "_J");
     for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"}) columns.emplace_back(name);
     s.history.emplace(s.directory / "history.csv", columns);
   }
@@ -88,7 +92,8 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   const Vec3 force = face.axes.transpose() * view.report.force;
   std::vector<double> row = {view.state.time, force.x(), force.y(), force.z(), view.report.pressure, view.report.area,
                              view.report.penetration, e.kinetic};
-  for (const auto& [body, joules] : e.strain) row.push_back(joules);
+  for (const auto& [body, joules] : e.strain)
+    if (deforms(body)) row.push_back(joules);
   for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
   s.history->write(row);
 
