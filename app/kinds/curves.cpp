@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "app/read_parameter.hpp"
 #include "models/hertz_maw.hpp"
 #include "models/registry.hpp"
@@ -23,7 +24,7 @@ class CurvesJob final : public Job {
     Table root = file.root();
     models_ = read_models(root);
     blow_ = read_blow(root, models_);
-    options_ = read_options(root);
+    options_ = read_options(root, models_);
     family_ = read_axis(root.table("family"));
     history_ = root.flag("history", false);
     if (history_) {

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "app/read_parameter.hpp"
 #include "loop/shots.hpp"
 #include "models/registry.hpp"
@@ -69,7 +70,7 @@ class TuneJob final : public Job {
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
-    options_ = read_options(root);
+    options_ = read_options(root, {model_});
 
     Table data = root.table("data");
     shots_file_ = data.data_file("shots");
