@@ -40,17 +40,17 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   return out;
 }
 
-FreeBodyOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer) {
+FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer) {
   FullClubImpact impact = assemble_full_club(blow, options);
-  FreeBodyOutcome out;
+  impact.parts.shaft = impact.shaft;
+  FeOutcome out;
   fem::State last;
   out.result = run_impact(impact.system, impact.parts, impact.initial, options.impact, impact.encounter.normal_speed,
                           [&](const ImpactView& view) {
                             last = view.state;
                             if (observer) observer(view);
                           });
-  out.launch.velocity = out.result.ball_velocity;
-  out.launch.spin = out.result.ball_spin;
+  out.launch = launch_of(out.result);
   out.launch.head_velocity = impact.head->velocity(last);
   out.launch.head_spin = impact.head->angular_velocity(last);
   return out;
@@ -58,6 +58,8 @@ FreeBodyOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& optio
 
 FeFullClub::FeFullClub(FeFullClubOptions options) : options_(std::move(options)) {}
 
-Launch FeFullClub::launch(const Blow& blow) const { return solve_full_club(blow, options_).launch; }
+FeOutcome FeFullClub::solve(const Blow& blow, const ImpactObserver& observer) const {
+  return solve_full_club(blow, options_, observer);
+}
 
 }  // namespace hosel::models

@@ -24,13 +24,13 @@ struct FullClubImpact {
 /// Throws std::invalid_argument on a club without shaft or with a head of infinite mass.
 FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& options);
 
-FreeBodyOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer = {});
+FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer = {});
 
 /// `fe-full-club` behind the common interface.
-class FeFullClub final : public ImpactModel {
+class FeFullClub final : public FeModel {
  public:
   explicit FeFullClub(FeFullClubOptions options);
-  Launch launch(const Blow& blow) const override;
+  FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const override;
 
  private:
   FeFullClubOptions options_;

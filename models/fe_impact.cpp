@@ -218,6 +218,16 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   return out;
 }
 
+Launch launch_of(const FeImpactResult& result) {
+  Launch l;
+  l.velocity = result.ball_velocity;
+  l.spin = result.ball_spin;
+  l.contact_time = result.contact_time;
+  l.peak_force = result.peak_force;
+  l.peak_compression = result.compression;
+  return l;
+}
+
 FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options) {
   FreeBodyImpact out;
   out.encounter = encounter(blow);
@@ -268,8 +278,7 @@ FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, cons
                             if (impact.head) last = view.state;
                             if (observer) observer(view);
                           });
-  out.launch.velocity = out.result.ball_velocity;
-  out.launch.spin = out.result.ball_spin;
+  out.launch = launch_of(out.result);
   if (impact.head) {
     out.launch.head_velocity = impact.head->velocity(last);
     out.launch.head_spin = impact.head->angular_velocity(last);

@@ -125,6 +125,9 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
                           const FeImpactOptions& options, double approach_speed,
                           const ImpactObserver& observer = {});
 
+/// What the ball does, from the result; the head's motion is the caller's to add.
+Launch launch_of(const FeImpactResult& result);
+
 /// A free head (a wall where its mass is infinite) and the ball.
 struct FreeBodyImpact {
   fem::System system;

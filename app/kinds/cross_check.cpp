@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "app/read_parameter.hpp"
 #include "models/registry.hpp"
 #include "models/rigid_eccentric.hpp"
@@ -63,7 +64,7 @@ class CrossCheckJob final : public Job {
     const std::string reference = root.choice("reference", models_, models_.front());
     reference_ = static_cast<std::size_t>(std::ranges::find(models_, reference) - models_.begin());
     blow_ = read_blow(root, models_);
-    options_ = read_options(root);
+    options_ = read_options(root, models_);
     for (Table t : root.tables("grid")) axes_.push_back(read_axis(t));
     if (axes_.empty()) root.fail("grid", "name at least one [[grid]] axis");
     points_ = 1;

@@ -31,9 +31,9 @@ Blow driver_blow(double toe) {
 TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
   for (double toe : {0.02, -0.02}) {
     const Blow blow = driver_blow(toe);
-    const FreeBodyOutcome free = solve_free_body(blow, coarse()), full = solve_full_club(blow, {coarse(), {}});
+    const FeOutcome free = solve_free_body(blow, coarse()), full = solve_full_club(blow, {coarse(), {}});
     // The blow happened: a ball of driver speed, a force of more than 10 kN over about 0.45 ms.
-    for (const FreeBodyOutcome* o : {&free, &full}) {
+    for (const FeOutcome* o : {&free, &full}) {
       EXPECT_GT(o->launch.ball_speed(), 55);
       EXPECT_GT(o->result.peak_force, 1e4);
       EXPECT_NEAR(o->result.contact_time, 0.45e-3, 0.08e-3);
@@ -54,13 +54,13 @@ TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
 
 TEST(FeFullClub, AShaftOfNothingIsAFreeHead) {
   Blow blow = driver_blow(0.02);
-  const FreeBodyOutcome free = solve_free_body(blow, coarse());
+  const FeOutcome free = solve_free_body(blow, coarse());
   for (ShaftStation& s : blow.club.shaft->stations) {
     for (double* x : {&s.bending_stiffness_y, &s.bending_stiffness_z, &s.torsional_stiffness, &s.axial_stiffness,
                       &s.shear_stiffness, &s.mass_per_length, &s.rotary_inertia_y, &s.rotary_inertia_z})
       *x *= 1e-7;
   }
-  const FreeBodyOutcome full = solve_full_club(blow, {coarse(), {.grip = Grip::free}});
+  const FeOutcome full = solve_full_club(blow, {coarse(), {.grip = Grip::free}});
   EXPECT_LT((full.launch.velocity - free.launch.velocity).norm(), 1e-4 * free.launch.ball_speed());
   EXPECT_LT((full.launch.spin - free.launch.spin).norm(), 1e-3 * free.launch.spin_rate());
   EXPECT_LT((full.launch.head_spin - free.launch.head_spin).norm(), 1e-3 * free.launch.head_spin.norm());
