@@ -66,6 +66,17 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     options.hertz_maw_solution.springs = static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
     options.hertz_maw_solution.steps = static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
   }
+  const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
+  if (asked("shaft-coupled"))
+    if (auto t = root.optional_table("shaft_coupled")) {
+      options.shaft_beam.feels_translation = t->flag("feels_translation", true);
+      options.shaft_beam.feels_rotation = t->flag("feels_rotation", true);
+    }
+  if (asked("fe-full-club"))
+    if (auto t = root.optional_table("grip")) {
+      options.shaft_mount.grip = t->choice("hold", {"clamped", "free"}, "clamped") == "free" ? models::Grip::free : models::Grip::clamped;
+      options.shaft_mount.elements = int(t->integer("elements", 2, 1000, options.shaft_mount.elements));
+    }
   if (std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); })) options.fe = read_fe(root);
   return options;
 }
