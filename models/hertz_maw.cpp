@@ -138,7 +138,7 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
       const Vec3 next = w - h * (K * s.force);
       const double change = (next - end).norm();
       end = next;
-      if (change <= 1e-13 * approach) {
+      if (change <= 1e-11 * approach) {
         s.w = end;
         return s;
       }

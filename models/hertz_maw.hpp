@@ -16,8 +16,8 @@ struct HertzMawLaw {
 };
 
 struct HertzMawOptions {
-  int springs = 48;   ///< across half the patch
-  int steps = 120;    ///< per contact of Hertz's duration
+  int springs = 24;   ///< across half the patch
+  int steps = 80;    ///< per contact of Hertz's duration
 };
 
 struct HertzMawResult {

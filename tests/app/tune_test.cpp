@@ -1,0 +1,247 @@
+// Tuning: known parameters come back, and what the data cannot separate is said.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "app/job.hpp"
+#include "golf/units.hpp"
+#include "models/parameters.hpp"
+#include "models/registry.hpp"
+#include "solvers/least_squares.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// A box of drives on the published test driver, drawn by the seed.
+Blow drive(std::mt19937_64& random) {
+  const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random() >> 11) * 0x1.0p-53; };
+  Blow b;
+  b.club.head.mass = 0.204;
+  b.club.head.cg = {-0.0423, 0.001, 0.0029};
+  b.club.head.inertia = Vec3(2.843e-4, 4.085e-4, 5.679e-4).asDiagonal();
+  b.club.head.face = {0.305, 0.305};
+  b.delivery = {.club_speed = uniform(38, 52), .attack_angle = uniform(-0.05, 0.09), .club_path = uniform(-0.08, 0.08),
+                .dynamic_loft = uniform(0.14, 0.3), .face_angle = uniform(-0.06, 0.06), .impact_toe = uniform(-0.02, 0.02),
+                .impact_high = uniform(-0.012, 0.012)};
+  return b;
+}
+
+struct Recovery {
+  int joint = 0;             ///< seeds with the truth inside the two-sigma region
+  std::vector<int> single;   ///< per parameter: within two standard deviations
+};
+
+/// 40 shots a seed, five channels with the noise of the specification's example.
+Recovery recover(const char* model, const std::vector<std::pair<const char*, double>>& truth, double region, int seeds) {
+  const double noise[5] = {0.25, radians(0.2), radians(0.2), 60 * kRadPerSecPerRpm, 60 * kRadPerSecPerRpm};
+  Recovery out;
+  out.single.assign(truth.size(), 0);
+  models::Options options;
+  options.volumetric_solution.tolerance = 1e-5;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<unsigned>(seed));
+    std::normal_distribution<double> normal;
+    std::vector<Blow> blows;
+    for (int i = 0; i < 40; ++i) blows.push_back(drive(random));
+    std::vector<solvers::Bounds> bounds;
+    Eigen::VectorXd exact(truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      exact[static_cast<Eigen::Index>(i)] = truth[i].second;
+      const double a = 0.5 * truth[i].second, b = 1.7 * truth[i].second;
+      bounds.push_back({std::min(a, b), std::max(a, b)});
+    }
+    const auto launch = [&](const Eigen::VectorXd& p, const Blow& blow, double* v) {
+      models::Options o = options;
+      Blow b = blow;
+      for (std::size_t i = 0; i < truth.size(); ++i) models::find_parameter(truth[i].first)->set(o, b, p[static_cast<Eigen::Index>(i)]);
+      const Launch l = models::find(model)->make(o)->launch(b);
+      v[0] = l.ball_speed(), v[1] = l.launch_angle(), v[2] = l.azimuth(), v[3] = l.backspin(), v[4] = l.sidespin();
+    };
+    Eigen::VectorXd measured(200);
+    for (int i = 0; i < 40; ++i) {
+      launch(exact, blows[static_cast<std::size_t>(i)], &measured[5 * i]);
+      for (int c = 0; c < 5; ++c) measured[5 * i + c] += noise[c] * normal(random);
+    }
+    const auto residuals = [&](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
+      for (int i = 0; i < 40; ++i) {
+        double v[5];
+        launch(p, blows[static_cast<std::size_t>(i)], v);
+        for (int c = 0; c < 5; ++c) r[5 * i + c] = (v[c] - measured[5 * i + c]) / noise[c];
+      }
+      return true;
+    };
+    const Eigen::VectorXd start = 1.25 * exact;
+    const auto fit = solvers::least_squares(residuals, 200, start, bounds, {.starts = 1});
+    const auto known = solvers::identifiability(fit.jacobian, bounds);
+    const Eigen::VectorXd off = fit.parameters - exact;
+    out.joint += (fit.jacobian * off).squaredNorm() <= region;  // J'J is the inverse covariance
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      out.single[i] += std::abs(off[static_cast<Eigen::Index>(i)]) <= 2 * known.sd[static_cast<Eigen::Index>(i)];
+  }
+  return out;
+}
+
+TEST(Tune, KnownParametersComeBackRigid) {
+  // Two-sigma region of four parameters: chi-squared quantile at 0.9545.
+  const Recovery r = recover("rigid-eccentric", {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}}, 9.716, 20);
+  EXPECT_GE(r.joint, 19);
+  for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("rigid_" + std::to_string(i), r.single[i]);
+}
+
+TEST(Tune, KnownParametersComeBackVolumetric) {
+  const Recovery r = recover("volumetric", {{"volumetric_damping", 6.42e-3}, {"joint_stiffness", 40.0}, {"cg_x", -0.0423}}, 8.025, 20);
+  EXPECT_GE(r.joint, 19);
+  for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("volumetric_" + std::to_string(i), r.single[i]);
+}
+
+TEST(LeastSquares, BlindDirectionIsNamed) {
+  // r depends on a + b alone.
+  const auto residuals = [](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
+    for (int i = 0; i < 5; ++i) r[i] = (p[0] + p[1] - 1.0) * (i + 1) * 10;
+    return true;
+  };
+  const std::vector<solvers::Bounds> bounds = {{0, 2}, {0, 2}};
+  const auto fit = solvers::least_squares(residuals, 5, Eigen::Vector2d(0.2, 0.3), bounds, {.starts = 3});
+  EXPECT_NEAR(fit.parameters.sum(), 1, 1e-6);
+  const auto known = solvers::identifiability(fit.jacobian, bounds);
+  ASSERT_EQ(known.blind.size(), 1u);
+  EXPECT_NEAR(std::abs(known.blind[0][0]), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(known.blind[0][0], -known.blind[0][1], 1e-6);
+  EXPECT_NEAR(known.correlation(0, 1), -1, 1e-9);
+  EXPECT_GT(known.sd[0], 2);
+}
+
+// ---- the kinds, end to end
+
+std::filesystem::path scratch(const char* name) {
+  const auto d = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(d);
+  std::filesystem::create_directories(d);
+  return d;
+}
+
+nlohmann::json run(const std::filesystem::path& directory) {
+  CaseFile file(directory);
+  const auto job = read_job(file);
+  Output out({.directory = directory / "out", .force = true, .quiet = true, .log = {}}, file.resolved());
+  job->run(out);
+  return nlohmann::json::parse(std::ifstream(directory / "out" / "summary.json"));
+}
+
+TEST(Tune, CaseTellsErrorsAndWhatCannotBeSeparated) {
+  const auto d = scratch("tune_case");
+  std::ofstream(d / "case.toml") << R"(kind = "tune"
+model = "rigid-planar"
+[head]
+mass_kg = 0.26
+[data]
+shots = "shots.csv"
+[data.noise]
+ball_speed_mps = 0.25
+spin_rate_rpm = 60.0
+[split]
+train_fraction = 0.5
+seed = 3
+[[parameters]]
+name = "restitution"
+min = 0.5
+max = 1.0
+[[parameters]]
+name = "restitution_slope"
+min_s_per_m = -0.006
+max_s_per_m = 0.0
+[[parameters]]
+name = "tangential_restitution"
+min = -0.2
+max = 0.8
+)";
+  std::ofstream shots(d / "shots.csv");
+  shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,spin_rate_rpm\n";
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 60; ++i) {
+    Blow b;
+    b.club.head.mass = 0.26;
+    b.delivery = {.club_speed = 40 + 0.1 * normal(random), .attack_angle = radians(-2), .dynamic_loft = radians(20 + 4 * normal(random))};
+    b.contact.restitution = 0.8;
+    b.contact.tangential_restitution = 0.3;
+    const Launch l = models::find("rigid-planar")->make({})->launch(b);
+    shots << i + 1 << ',' << b.delivery.club_speed << ",-2," << degrees(b.delivery.dynamic_loft) << ',' << l.ball_speed() + 0.25 * normal(random)
+          << ',' << rpm(l.spin_rate()) + 60 * normal(random) << '\n';
+  }
+  shots.close();
+  const nlohmann::json s = run(d);
+  EXPECT_EQ(s["rows"]["train"], 30);
+  EXPECT_EQ(s["rows"]["test"], 30);
+  // One club speed: level and slope of the restitution are one direction.
+  ASSERT_FALSE(s["inseparable"].empty());
+  EXPECT_NE(s["inseparable"][0].get<std::string>().find("restitution_slope"), std::string::npos);
+  EXPECT_GT(s["condition"].get<double>(), 10);
+  const double et = s["parameters"][2]["value"], sd = s["parameters"][2]["sd"];
+  EXPECT_NEAR(et, 0.3, 3 * sd);
+  for (const auto& e : s["errors"])
+    if (e["channel"] == "spin_rate_rpm") {
+      EXPECT_GT(e["before"]["mae"].get<double>(), 500);
+      EXPECT_LT(e["after"]["mae"].get<double>(), 90);
+    }
+  for (const char* name : {"parameters.csv", "correlation.csv", "errors.csv", "residuals.csv", "errors.png"})
+    EXPECT_TRUE(std::filesystem::exists(d / "out" / name)) << name;
+}
+
+TEST(CrossCheck, NamesPlaceAndQuantity) {
+  const auto d = scratch("cross_check_case");
+  std::ofstream(d / "case.toml") << R"(kind = "cross-check"
+models = ["rigid-eccentric", "stick-slip", "volumetric"]
+reference = "rigid-eccentric"
+[[grid]]
+name = "dynamic_loft"
+values_deg = [10.0, 50.0]
+[[grid]]
+name = "common_friction"
+values = [0.1, 0.4]
+[delivery]
+club_speed_mps = 40.0
+[head]
+mass_kg = 0.26
+cg_mm = [0.0, 0.0, 0.0]
+inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
+)";
+  const nlohmann::json s = run(d);
+  EXPECT_EQ(s["points"], 4);
+  bool saw = false;
+  for (const auto& e : s["differences"]) {
+    if (e["channel"] != "backspin") continue;
+    if (e["model"] == "stick-slip") EXPECT_LT(std::abs(e["largest"].get<double>()), 1e-6);  // one and the same on the centre line
+    if (e["model"] == "volumetric") {
+      saw = true;
+      EXPECT_GT(std::abs(e["largest"].get<double>()), 50);
+      EXPECT_FALSE(e["where"].get<std::string>().empty());
+      EXPECT_NE(e["differs_most"], "-");
+    }
+  }
+  EXPECT_TRUE(saw);
+  for (const char* name : {"index.md", "points.csv", "differences.csv", "map-volumetric.png"})
+    EXPECT_TRUE(std::filesystem::exists(d / "out" / name)) << name;
+}
+
+TEST(RollingIrons, FiguresAndFitsOfTheSecondSource) {
+  const auto d = scratch("rolling_irons");
+  std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE) / "cases" / "rolling-irons", d, std::filesystem::copy_options::recursive);
+  const nlohmann::json s = run(d);
+  // benchmarks.md 3.1 to 3.4, to the digits printed there.
+  EXPECT_NEAR(s["theory"]["spin_coefficient_rpm"].get<double>(), 11205.4001, 1e-3);
+  EXPECT_NEAR(s["theory"]["spin_coefficient_other_ball_rpm"].get<double>(), 11119.72, 0.01);
+  EXPECT_NEAR(s["theory"]["launch_peak_deg"].get<double>(), 44.683, 1e-3);
+  EXPECT_NEAR(s["comparison"]["spin_ratio"].get<double>(), 0.6817, 1e-4);
+  EXPECT_EQ(s["comparison"]["inside_error_bars"], nlohmann::json({0, 1, 6}));
+  EXPECT_NEAR(s["fits"][0]["spin"][0].get<double>(), 271.694, 1e-3);
+  EXPECT_NEAR(s["fits"][1]["spin"][1].get<double>(), 727.285, 1e-3);
+  EXPECT_NEAR(s["fits"][2]["launch"][0].get<double>(), 0.7229, 1e-4);
+  EXPECT_NEAR(s["sine_through_origin_rpm"].get<double>(), 17595.3, 0.1);
+}
+
+}  // namespace
+}  // namespace hosel::app
