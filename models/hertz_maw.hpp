@@ -17,7 +17,7 @@ struct HertzMawLaw {
 
 struct HertzMawOptions {
   int springs = 24;   ///< across half the patch
-  int steps = 80;    ///< per contact of Hertz's duration
+  int steps = 64;    ///< per contact of Hertz's duration
 };
 
 struct HertzMawResult {
