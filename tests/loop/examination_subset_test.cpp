@@ -1,5 +1,5 @@
 // A fixed small part of the blind examination (tests/examination): development seed 7, 30 and 100 shots.
-// The bounds are those that a loop at the examination's goals passes with a probability of about 98 % or
+// The bounds are those that a loop at the examination's goals passes with a probability of 98 % or
 // more per line: so few sets can show a broken loop, not grade a good one.
 
 #include <gtest/gtest.h>
