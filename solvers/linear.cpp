@@ -188,8 +188,9 @@ struct Factorisation::State {
 Factorisation::Factorisation() : state_(std::make_unique<State>()) {
   umfpack_di_defaults(state_->control.data());
   if (openblas_set_num_threads) openblas_set_num_threads(1);
-  state_->control[UMFPACK_IRSTEP] = 0;  // Newton refines anyway
+  // The patterns are symmetric; Newton's method is the refinement.
   state_->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  state_->control[UMFPACK_IRSTEP] = 0;
 }
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;

@@ -1,7 +1,9 @@
 #include "solvers/newton.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <stdexcept>
 
 #include "solvers/errors.hpp"
@@ -40,15 +42,51 @@ double Newton::increment_measure(const Vector& increment) const {
 
 NewtonReport Newton::solve(const NewtonProblem& problem) {
   NewtonReport report;
-  double increment = INFINITY, before = INFINITY;
-  Vector r, last;
+  double increment = INFINITY;
+  Vector r, last, direction;
+  std::deque<Vector> moved, changed;    // pairs of increment and change of the Newton direction
+  std::vector<double> shrinking;        // |r| since the factor was made or the solve began
   const auto evaluate = [&] {
     r = problem.residual(report.scale);
     report.residual = r.norm();
   };
   const auto tolerance = [&] { return options_.residual_relative * report.scale + options_.residual_absolute; };
+  const auto slow = [&] {
+    const std::size_t n = shrinking.size(), back = options_.acceleration > 0 ? 3 : 1;
+    return n > back && shrinking[n - 1] > options_.renew_above * shrinking[n - 1 - back];
+  };
+  const auto renew = [&] {
+    problem.assemble();
+    factors_.factorise(tangent_);
+    ++report.factorisations;
+    moved.clear();
+    changed.clear();
+    shrinking = {report.residual};
+  };
+  // The increment at the present iterate, from the factor and what its last increments brought about.
+  const auto next = [&] {
+    const Vector z = -factors_.solve(r);
+    if (options_.acceleration > 0 && direction.size() > 0 && last.size() > 0) {
+      moved.push_back(last);
+      changed.push_back(z - direction);
+      if (static_cast<int>(moved.size()) > options_.acceleration) {
+        moved.pop_front();
+        changed.pop_front();
+      }
+    }
+    direction = z;
+    if (moved.empty()) return z;
+    const auto m = static_cast<Index>(moved.size());
+    Eigen::MatrixXd Z(z.size(), m);
+    for (Index i = 0; i < m; ++i) Z.col(i) = changed[static_cast<std::size_t>(i)];
+    const Vector weight = Z.colPivHouseholderQr().solve(z);
+    Vector step = z - Z * weight;
+    for (Index i = 0; i < m; ++i) step -= weight[i] * moved[static_cast<std::size_t>(i)];
+    return step;
+  };
   try {
     evaluate();
+    shrinking = {report.residual};
     for (;; ++report.iterations) {
       if (!std::isfinite(report.residual)) {
         report.reason = "the residual is not finite";
@@ -63,17 +101,14 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
         break;
       }
       // A small residual needs no better factor: only the increment is still to be confirmed.
-      const bool slow = report.residual > options_.renew_above * before && report.residual > tolerance();
-      bool fresh = !factors_.ready() || slow;
-      const Vector start = r;
-      before = report.residual;
+      bool fresh = !factors_.ready() || (slow() && report.residual > tolerance());
+      const double before = report.residual;
       for (;;) {
         if (fresh) {
-          problem.assemble();
-          factors_.factorise(tangent_);
-          ++report.factorisations;
+          direction.resize(0);
+          renew();
         }
-        last = -factors_.solve(start);
+        last = next();
         increment = increment_measure(last);
         problem.advance(last);
         evaluate();
@@ -91,6 +126,7 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
         evaluate();
         if (std::isfinite(full) && std::isfinite(report.residual) && report.residual > 0.9 * full) break;
       }
+      shrinking.push_back(report.residual);
     }
   } catch (const NonConvergence& e) {
     report.reason = e.what();

@@ -18,6 +18,10 @@ struct NewtonOptions {
   int max_iterations = 25;
   /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration.
   double renew_above = 0.2;
+  /// Where above zero: increments by a kept factor are accelerated (Anderson's mixing over so many of
+  /// the last iterates; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)), and the factor is renewed
+  /// only when three such iterations together shrink |r| by less than renew_above.
+  int acceleration = 0;
 
   /// Sentences naming what is missing or cannot be; empty if all is well.
   std::vector<std::string> faults() const;
