@@ -185,7 +185,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   observe(parts.contact->report(solver.state()));
 
   bool touched = false;
-  double last_touch = 0;
+  double last_touch = 0, last_gap = gap0;
   for (;;) {
     const double before = solver.time();
     solver.advance(before + step);
@@ -200,10 +200,13 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
         out.peak_time = now;
       }
     }
-    out.compression = std::max(out.compression, gap0 - parts.contact->centre_gap(solver.state()));
+    const double gap = parts.contact->centre_gap(solver.state());
+    const bool leaving = gap > last_gap;  // a stiff skin may bounce while the ball still comes nearer
+    last_gap = gap;
+    out.compression = std::max(out.compression, gap0 - gap);
     out.penetration = report.penetration;
     out.creep = report.stick_slip_error;
-    if (touched && report.points == 0 && now >= last_touch * (1 + o.after)) break;
+    if (touched && leaving && report.points == 0 && now >= last_touch * (1 + o.after)) break;
     if (now > 20 * expected) {
       std::ostringstream text;
       text << "ball and face " << (touched ? "are still in contact" : "have not met") << " after " << now
