@@ -2,11 +2,14 @@
 
 #include <array>
 
+#include "app/kinds/calibrate_ball.hpp"
 #include "app/kinds/clubs.hpp"
 #include "app/kinds/cross_check.hpp"
 #include "app/kinds/curves.hpp"
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/impact.hpp"
+#include "app/kinds/material_point.hpp"
+#include "app/kinds/modes.hpp"
 #include "app/kinds/sweep.hpp"
 #include "app/kinds/tune.hpp"
 #include "app/kinds/loop.hpp"
@@ -23,6 +26,9 @@ constexpr std::array kKinds = {
     Kind{"tune", "parameters of a model against measured shots", read_tune},
     Kind{"sweep", "any case over a grid or a Latin hypercube of its keys", read_sweep},
     Kind{"loop", "measured shots against a model: which effect does the model lack?", read_loop},
+    Kind{"modes", "free vibrations of a ball, harmonic by harmonic", read_modes},
+    Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
+    Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},
 };
 
 }  // namespace

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "app/read_solid.hpp"
+
 namespace hosel::app {
 namespace {
 
 models::FeImpactOptions read_fe(Table root) {
   models::FeImpactOptions o;
+  if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   // Friction is physics: a case with a deformable ball states it.
   Table contact = root.table("contact");
   o.friction = contact.number("face_friction", {0, 5});

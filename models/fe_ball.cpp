@@ -1,5 +1,6 @@
 #include "models/fe_ball.hpp"
 
+#include <array>
 #include <utility>
 
 namespace hosel::models {
@@ -32,10 +33,18 @@ FeBall elastic_ball(std::string name, fem::Solid material) { return {std::move(n
 FeBall range_ball() {
   // Shear moduli and times set by hand to a normal restitution near 0.86 - 0.0029 v over 20-50 m/s and a
   // contact of 0.45 ms at 40 m/s on a rigid wall; bulk modulus of a filled rubber.
-  fem::Solid rubber{.elastic = fem::Hyperelastic{.c10 = 9e6, .bulk = 1.0e9},
-                    .branches = {{8e6, 3e-4}, {8e6, 4e-5}},
+  fem::Solid rubber{.elastic = fem::Hyperelastic{.c10 = 12.5e6, .bulk = 1.0e9},
+                    .branches = {{27e6, 2.0e-5}},
                     .density = 1129};
   return {"range-one-piece", {{1, rubber}}};
 }
+
+namespace {
+constexpr std::array kBalls = {
+    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, calibrated by cases/calibrate-range-ball", range_ball},
+};
+}  // namespace
+
+std::span<const NamedFeBall> ball_library() { return kBalls; }
 
 }  // namespace hosel::models

@@ -1,7 +1,9 @@
 /// The deformable ball as data: concentric layers of solid materials.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fem/materials/solid.hpp"
@@ -26,6 +28,14 @@ struct FeBall {
 
 /// One elastic layer; for comparison with theory.
 FeBall elastic_ball(std::string name, fem::Solid material);
+struct NamedFeBall {
+  std::string_view name;
+  std::string_view what;  ///< one sentence for `hosel list`
+  FeBall (*make)();
+};
+/// Balls by name, each calibrated to normal restitution and contact time alone.
+std::span<const NamedFeBall> ball_library();
+
 /// The one-piece ball of the shipped cases: nearly incompressible neo-Hooke with Maxwell branches.
 FeBall range_ball();
 

@@ -207,6 +207,13 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     out.penetration = report.penetration;
     out.creep = report.stick_slip_error;
     if (touched && leaving && report.points == 0 && now >= last_touch * (1 + o.after)) break;
+    if (!(std::abs(solver.ledger().closure) <= 0.05 * solver.ledger().initial)) {
+      std::ostringstream text;
+      text << "at t = " << now << " s the energy of the impact is out of balance by "
+           << 100 * solver.ledger().closure / solver.ledger().initial
+           << " % of what it began with: take more steps_per_contact or a lower rho_inf";
+      throw solvers::NonConvergence(text.str());
+    }
     if (now > 20 * expected) {
       std::ostringstream text;
       text << "ball and face " << (touched ? "are still in contact" : "have not met") << " after " << now

@@ -1,0 +1,97 @@
+#include "app/kinds/calibrate_ball.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_solid.hpp"
+#include "models/ball_calibration.hpp"
+#include "post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+class CalibrateBallJob final : public Job {
+ public:
+  explicit CalibrateBallJob(CaseFile& file) {
+    Table root = file.root();
+    Table ball = root.table("ball");
+    ball_ = read_ball(ball);
+    options_.ball = read_fe_ball(ball, models::range_ball());
+    options_.harmonics = 0;
+    if (auto mesh = root.optional_table("mesh")) {
+      options_.mesh.sector = int(mesh->integer("sector", 1, 64, options_.mesh.sector));
+      options_.mesh.rings = int(mesh->integer("rings", 1, 64, options_.mesh.rings));
+      options_.mesh.pole = mesh->number("pole", {0.01, 1}, options_.mesh.pole);
+      options_.mesh.skin = mesh->number("skin", {0.01, 1}, options_.mesh.skin);
+    }
+    if (auto time = root.optional_table("time"))
+      options_.steps_per_contact = int(time->integer("steps_per_contact", 10, 100000, options_.steps_per_contact));
+    Table target = root.table("target");
+    target_.speeds = target.quantities("speeds", "mps", 0, {1, 100}, target_.speeds);
+    target_.restitution = target.number("restitution", {0, 1}, target_.restitution);
+    target_.restitution_slope = target.quantity("restitution_slope", "s_per_m", {-0.1, 0.1}, target_.restitution_slope);
+    target_.restitution_sigma = target.number("restitution_sigma", {1e-6, 1}, target_.restitution_sigma);
+    target_.contact_speed = target.quantity("contact_speed", "mps", {1, 100}, target_.contact_speed);
+    target_.contact_time = target.quantity("contact_time", "ms", Range::positive(), target_.contact_time);
+    target_.contact_time_sigma = target.quantity("contact_time_sigma", "ms", Range::positive(), target_.contact_time_sigma);
+    if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
+  }
+
+  void run(Output& out) override {
+    Progress progress = out.progress("calibrating");
+    const models::BallCalibration fit = models::calibrate_ball(
+        options_, ball_, target_, [&](int n, double cost) {
+          progress.update(std::min(0.99, n / 40.0), fmt::format("{} evaluations, cost {:.3f}", n, cost));
+        });
+    progress.finish();
+    nlohmann::json summary{{"converged", fit.converged}, {"cost", fit.cost}, {"evaluations", fit.evaluations}, {"solver", fit.report}};
+    for (std::size_t p = 0; p < fit.names.size(); ++p) {
+      const double relative = std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p)));
+      summary["parameters"].push_back({{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]}, {"relative_sigma", relative}});
+      out.say(fmt::format("{:<32} {:12.5g}  +- {:.1f} %", fit.names[p], fit.values[p], 100 * relative));
+    }
+    for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
+      std::vector<double> row;
+      for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) row.push_back(fit.covariance(i, j));
+      summary["covariance_of_logarithms"].push_back(row);
+    }
+    out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
+    std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
+    post::Series wanted{.label = "target", .style = "lines"}, got{.label = "ball", .style = "points pt 7"};
+    for (const auto& p : fit.points) {
+      out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution, 1e3 * p.contact_time, 1e-3 * p.peak_force));
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
+      summary["points"].push_back({{"speed_mps", p.speed}, {"target_restitution", p.target}, {"restitution", p.restitution},
+                                   {"contact_time_s", p.contact_time}, {"peak_force_N", p.peak_force}});
+      wanted.x.push_back(p.speed);
+      wanted.y.push_back(p.target);
+      got.x.push_back(p.speed);
+      got.y.push_back(p.restitution);
+    }
+    out.write("fit.csv", csv);
+    post::Figure figure;
+    figure.title = "normal restitution of the calibrated ball";
+    post::Panel panel;
+    panel.x_label = "impact speed [m/s]";
+    panel.y_label = "restitution";
+    panel.series = {wanted, got};
+    figure.panels.push_back(panel);
+    if (const std::string why = post::draw(figure, out.path("fit")); !why.empty()) out.say(why);
+    if (!fit.converged) out.say("the fit has not converged: " + fit.report);
+    out.write_summary(summary);
+  }
+
+ private:
+  Ball ball_;
+  models::FeImpactOptions options_;
+  models::NormalImpactTarget target_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_calibrate_ball(CaseFile& file) { return std::make_unique<CalibrateBallJob>(file); }
+
+}  // namespace hosel::app

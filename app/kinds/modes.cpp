@@ -1,0 +1,90 @@
+#include "app/kinds/modes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_solid.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "solvers/modes.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// Frequencies of the free ball by harmonic (m = 0...), spheroidal and torsional families apart where
+/// m = 0; eta = omega R / c_s beside each, c_s of the outermost layer at an instant.
+class ModesJob final : public Job {
+ public:
+  explicit ModesJob(CaseFile& file) {
+    Table root = file.root();
+    Table ball = root.table("ball");
+    ball_ = read_ball(ball);
+    layers_ = read_fe_ball(ball, models::range_ball());
+    for (const double h : root.numbers("harmonics", 0, {0, 12}, std::vector<double>{0, 1, 2, 3}))
+      harmonics_.push_back(int(h));
+    count_ = root.integer("count", 1, 200, 6);
+    if (auto mesh = root.optional_table("mesh")) {
+      mesh_.sector = int(mesh->integer("sector", 1, 32, mesh_.sector));
+      mesh_.rings = int(mesh->integer("rings", 1, 32, mesh_.rings));
+    }
+    mesh_.pole = mesh_.skin = 1;
+  }
+
+  void run(Output& out) override {
+    nlohmann::json summary;
+    std::vector<double> radii;
+    std::vector<fem::Solid> materials;
+    for (const auto& layer : layers_.layers) {
+      radii.push_back(layer.radius * ball_.radius);
+      materials.push_back(layer.material);
+    }
+    const mesh::Meridian mesh = mesh::sphere_meridian(radii, mesh_);
+    double mass = 0;
+    {
+      fem::Layout layout;
+      mass = fem::HarmonicSolid(layout, mesh, fem::axisymmetric_family(), {fem::single_angle(), 2}, materials, {}).mass();
+    }
+    for (auto& m : materials) m.density *= ball_.mass / mass;
+    const double unit = std::sqrt(materials.back().instant_shear() / materials.back().density) / ball_.radius;
+    summary["nodes"] = mesh.nodes.size();
+    out.say(fmt::format("{} nodes; eta = omega R / c_s with c_s = {:.5f} m/s", mesh.nodes.size(), unit * ball_.radius));
+    out.say("family            frequency [Hz]          eta");
+    std::string csv = "family,harmonic,frequency_Hz,eta\n";
+    const auto solve = [&](const std::string& name, int m, const fem::Family& family) {
+      fem::System system;
+      system.terms.push_back(std::make_unique<fem::HarmonicSolid>(
+          system.layout, mesh, family, fem::SolidQuadrature{m == 0 ? fem::single_angle() : fem::full_circle(4 * m + 5), 2},
+          materials, fem::Placement{}));
+      const solvers::Modes modes = solvers::modes(system, system.layout.rest(), int(count_) + 2);
+      nlohmann::json list = nlohmann::json::array();
+      for (const double omega : modes.omega) {
+        if (omega < 1e-4 * unit || long(list.size()) == count_) continue;  // rigid motions
+        list.push_back({{"frequency_Hz", omega / (2 * kPi)}, {"eta", omega / unit}});
+        out.say(fmt::format("{:<16} {:15.3f} {:12.6f}", name, omega / (2 * kPi), omega / unit));
+        csv += fmt::format("{},{},{:.9g},{:.9g}\n", name, m, omega / (2 * kPi), omega / unit);
+      }
+      summary["modes"][name] = list;
+    };
+    for (const int m : harmonics_) {
+      solve(fmt::format("harmonic {}", m), m, fem::cylindrical_family(m));
+      if (m == 0) solve("torsion", 0, fem::torsion_family());
+    }
+    out.write("modes.csv", csv);
+    out.write_summary(summary);
+  }
+
+ private:
+  Ball ball_;
+  models::FeBall layers_;
+  std::vector<int> harmonics_;
+  long count_ = 0;
+  mesh::MeridianOptions mesh_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_modes(CaseFile& file) { return std::make_unique<ModesJob>(file); }
+
+}  // namespace hosel::app

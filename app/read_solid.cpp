@@ -1,0 +1,55 @@
+#include "app/read_solid.hpp"
+
+namespace hosel::app {
+
+fem::Solid read_solid(Table table) {
+  const Range positive = Range::positive(), some = Range::non_negative();
+  fem::Solid solid;
+  solid.density = table.quantity("density", "kg_per_m3", positive, 1129.0);
+  const std::string law = table.choice(
+      "law", {"neo-hooke", "mooney-rivlin", "yeoh", "st-venant-kirchhoff", "linear"}, "neo-hooke");
+  if (law == "mooney-rivlin" || law == "yeoh" || (law == "neo-hooke" && table.has_quantity("c10"))) {
+    fem::Hyperelastic h;
+    h.c10 = table.quantity("c10", "MPa", positive);
+    h.bulk = table.quantity("bulk", "MPa", positive);
+    if (law == "mooney-rivlin") h.c01 = table.quantity("c01", "MPa", some);
+    if (law == "yeoh") {
+      h.c20 = table.quantity("c20", "MPa");
+      h.c30 = table.quantity("c30", "MPa", Range::finite(), 0.0);
+    }
+    solid.elastic = h;
+  } else {
+    const auto lame = fem::Lame::of(table.quantity("young", "MPa", positive),
+                                    table.number("poisson", {-0.9, 0.49999}));
+    if (law == "neo-hooke") solid.elastic = fem::Hyperelastic::neo_hooke(lame);
+    if (law == "st-venant-kirchhoff") solid.elastic = fem::StVenantKirchhoff{lame};
+    if (law == "linear") solid.elastic = fem::LinearElastic{lame};
+  }
+  const auto moduli = table.quantities("branch_moduli", "MPa", 0, some, std::vector<double>{});
+  const auto times = table.quantities("branch_times", "ms", moduli.size(), positive, std::vector<double>{});
+  if (moduli.size() != times.size()) table.fail("branch_times_ms", "one relaxation time for each branch modulus");
+  for (std::size_t i = 0; i < moduli.size(); ++i) solid.branches.push_back({moduli[i], times[i]});
+  if (const auto faults = solid.faults(); !faults.empty()) table.fail("law", faults.front());
+  return solid;
+}
+
+models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
+  auto layers = table.tables("layers");
+  if (layers.empty()) {
+    std::vector<std::string> names;
+    for (const auto& named : models::ball_library()) names.emplace_back(named.name);
+    const std::string name = table.choice("model", names, standard.name);
+    for (const auto& named : models::ball_library())
+      if (named.name == name) return named.make();
+    return standard;
+  }
+  models::FeBall ball{"case", {}};
+  for (Table& layer : layers) {
+    const double radius = layer.number("radius_fraction", {0.05, 1}, &layer == &layers.back() ? std::optional<double>(1.0) : std::nullopt);
+    ball.layers.push_back({radius, read_solid(layer)});
+  }
+  if (const auto faults = ball.faults(); !faults.empty()) table.fail("layers", faults.front());
+  return ball;
+}
+
+}  // namespace hosel::app

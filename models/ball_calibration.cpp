@@ -1,0 +1,153 @@
+#include "models/ball_calibration.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "solvers/errors.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr int kParameters = 3;
+
+/// Factors on long-term moduli, branch moduli and branch times.
+FeBall scaled(FeBall ball, const double* logs) {
+  const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = std::exp(logs[2]);
+  for (BallLayer& layer : ball.layers) {
+    auto* law = std::get_if<fem::Hyperelastic>(&layer.material.elastic);
+    if (!law || layer.material.branches.empty())
+      throw std::invalid_argument("calibration needs hyperelastic layers with relaxation branches");
+    for (double* c : {&law->c10, &law->c01, &law->c20, &law->c30}) *c *= elastic;
+    for (auto& b : layer.material.branches) {
+      b.modulus *= viscous;
+      b.time *= time;
+    }
+  }
+  return ball;
+}
+
+/// Residuals over sigmas with a one-sided difference Jacobian: the contact's discreteness leaves noise of
+/// about 1e-4 in e, so the step is large.
+class Residuals final : public ceres::CostFunction {
+ public:
+  Residuals(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
+            const std::function<void(int, double)>& progress)
+      : options_(options), ball_(ball), target_(target), progress_(progress) {
+    set_num_residuals(static_cast<int>(target.speeds.size()) + 1);
+    mutable_parameter_block_sizes()->push_back(kParameters);
+  }
+
+  std::vector<NormalImpactPoint> points(const double* logs) const {
+    FeImpactOptions o = options_;
+    o.ball = scaled(options_.ball, logs);
+    std::vector<NormalImpactPoint> out;
+    for (const double v : target_.speeds) {
+      out.push_back(normal_impact(o, ball_, v));
+      out.back().target = target_.restitution + target_.restitution_slope * v;
+    }
+    return out;
+  }
+
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    try {
+      values(x[0], residuals);
+      if (!jacobians || !jacobians[0]) return true;
+      std::vector<double> moved(static_cast<std::size_t>(num_residuals()));
+      for (int p = 0; p < kParameters; ++p) {
+        double y[kParameters] = {x[0][0], x[0][1], x[0][2]};
+        constexpr double h = 0.05;
+        y[p] += h;
+        values(y, moved.data());
+        for (int i = 0; i < num_residuals(); ++i)
+          jacobians[0][i * kParameters + p] = (moved[static_cast<std::size_t>(i)] - residuals[i]) / h;
+      }
+      return true;
+    } catch (const solvers::NonConvergence&) {
+      return false;  // Ceres takes a shorter step
+    }
+  }
+
+  int evaluations() const { return evaluations_; }
+
+ private:
+  void values(const double* x, double* residuals) const {
+    const auto all = points(x);
+    double cost = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      residuals[i] = (all[i].restitution - all[i].target) / target_.restitution_sigma;
+      if (all[i].speed == target_.contact_speed)
+        residuals[all.size()] = (all[i].contact_time - target_.contact_time) / target_.contact_time_sigma;
+    }
+    for (int i = 0; i < num_residuals(); ++i) cost += 0.5 * residuals[i] * residuals[i];
+    ++evaluations_;
+    if (progress_) progress_(evaluations_, cost);
+  }
+
+  const FeImpactOptions& options_;
+  const Ball& ball_;
+  const NormalImpactTarget& target_;
+  const std::function<void(int, double)>& progress_;
+  mutable int evaluations_ = 0;
+};
+
+}  // namespace
+
+NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball, double speed) {
+  Blow blow;
+  blow.ball = ball;
+  blow.club.head.mass = INFINITY;
+  blow.delivery.club_speed = speed;
+  const FreeBodyOutcome out = solve_free_body(blow, options);
+  return {speed, 0, (out.launch.velocity.x() - speed) / speed, out.result.contact_time, out.result.peak_force};
+}
+
+BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
+                               const std::function<void(int, double)>& progress) {
+  if (std::find(target.speeds.begin(), target.speeds.end(), target.contact_speed) == target.speeds.end())
+    throw std::invalid_argument("calibration: the speed of the contact time must be one of the speeds");
+  double logs[kParameters] = {0, 0, 0};
+  Residuals residuals(options, ball, target, progress);
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  problem.AddResidualBlock(&residuals, nullptr, logs);
+  for (int p = 0; p < kParameters; ++p) {
+    problem.SetParameterLowerBound(logs, p, -3);
+    problem.SetParameterUpperBound(logs, p, 3);
+  }
+  ceres::Solver::Options solver;
+  solver.max_num_iterations = 12;
+  solver.function_tolerance = 1e-3;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  BallCalibration out;
+  out.ball = scaled(options.ball, logs);
+  const auto& law0 = std::get<fem::Hyperelastic>(options.ball.layers.front().material.elastic);
+  const auto& branch0 = options.ball.layers.front().material.branches.front();
+  out.names = {"long-term shear modulus [Pa]", "branch shear modulus [Pa]", "branch time [s]"};
+  out.start = {law0.shear(), branch0.modulus, branch0.time};
+  for (int p = 0; p < kParameters; ++p) out.values.push_back(out.start[static_cast<std::size_t>(p)] * std::exp(logs[p]));
+  out.points = residuals.points(logs);
+  const int rows = residuals.num_residuals();
+  std::vector<double> r(static_cast<std::size_t>(rows));
+  Eigen::Matrix<double, Eigen::Dynamic, kParameters, Eigen::RowMajor> J(rows, kParameters);
+  const double* x = logs;
+  double* jacobian = J.data();
+  if (!residuals.Evaluate(&x, r.data(), &jacobian))
+    throw solvers::NonConvergence("calibration: the impact does not converge at the fitted parameters");
+  out.covariance = (J.transpose() * J).inverse();
+  for (double v : r) out.cost += 0.5 * v * v;
+  out.evaluations = residuals.evaluations();
+  out.converged = summary.termination_type == ceres::CONVERGENCE;
+  out.report = summary.BriefReport();
+  return out;
+}
+
+}  // namespace hosel::models
