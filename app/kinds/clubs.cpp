@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "golf/units.hpp"
 #include "loop/shots.hpp"
 #include "models/registry.hpp"
@@ -56,9 +57,13 @@ class ClubsJob final : public Job {
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
     model_ = root.choice("model", names, "rigid-planar");
+    beside_ = root.texts("beside", std::vector<std::string>{});
+    for (const std::string& name : beside_)
+      if (!models::find(name)) root.fail("beside", fmt::format("no model '{}'; `hosel list` shows them", name));
+    options_ = read_options(root, beside_);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
-    if (auto head = root.optional_table("head")) blow_.club.head = read_head(*head, model_ != "rigid-planar");
+    if (auto head = root.optional_table("head")) blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
     Table data = root.table("data");
     shots_file_ = data.data_file("shots");
     clubs_file_ = data.data_file("clubs");
@@ -153,6 +158,8 @@ class ClubsJob final : public Job {
     out.say(fmt::format("inside the printed error bars: spin {} of {}, launch {}, ball speed {}", inside[0], clubs.size(), inside[1], inside[2]));
     summary["comparison"] = {{"spin_ratio", ratio}, {"bias", bias}, {"rms", {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])}}, {"inside_error_bars", inside}};
 
+    for (const std::string& name : beside_) compare(name, clubs, out, summary);
+
     out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope", "intercept", "R2", "launch", "intercept", "R2"));
     out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", "printed", 269.24, 668.67, .9979, .705, .5098, .9987));
     for (const auto& [name, set] : {std::pair{"table of means as printed", &prints}, std::pair{"means recomputed from the shots", &means},
@@ -191,6 +198,30 @@ class ClubsJob final : public Job {
   }
 
  private:
+  /// Another model club by club, without the theory's curves: it may be dear.
+  void compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out, nlohmann::json& summary) const {
+    const auto model = models::find(name)->make(options_);
+    out.say(fmt::format("\n{} (error of spin, launch angle, ball speed)", name));
+    double spin = 0, launch = 0, speed = 0;
+    Progress progress = out.progress(name);
+    for (std::size_t i = 0; i < clubs.size(); ++i) {
+      const ClubRow& c = clubs[i];
+      progress.update(double(i) / double(clubs.size()), c.name);
+      const Launch l = model->launch(c.blow);
+      const std::array<double, 3> m = {rpm(l.spin_rate()), degrees(l.launch_angle()), l.ball_speed() / kMpsPerMph};
+      out.say(fmt::format("{:<5} {:>10.1f} rpm {:>+7.1f}% {:>9.3f} deg {:>+7.2f} {:>9.2f} mph {:>+7.2f}%", c.name, m[0], 100 * (m[0] / c.mean[1] - 1), m[1],
+                          m[1] - c.mean[2], m[2], 100 * (m[2] / c.mean[3] - 1)));
+      summary["beside"][name][c.name] = {{"spin_rate_rpm", m[0]}, {"launch_angle_deg", m[1]}, {"ball_speed_mph", m[2]}};
+      const double n = static_cast<double>(clubs.size());
+      spin += m[0] / c.mean[1] / n;
+      launch += (m[1] - c.mean[2]) / n;
+      speed += (m[2] - c.mean[3]) / n;
+    }
+    progress.finish();
+    out.say(fmt::format("model / measured spin {:.4f}; bias {:+.3f} deg, {:+.3f} mph", spin, launch, speed));
+    summary["beside"][name]["mean"] = {{"spin_ratio", spin}, {"launch_bias_deg", launch}, {"speed_bias_mph", speed}};
+  }
+
   std::vector<ClubRow> read_rows(Output& out) const {
     try {
       const loop::Shots shots = loop::read_shots(loop::read_csv(shots_file_));
@@ -254,6 +285,8 @@ class ClubsJob final : public Job {
     }
   }
 
+  std::vector<std::string> beside_;
+  models::Options options_;
   std::string model_;
   Blow blow_;
   std::filesystem::path shots_file_, clubs_file_;
