@@ -101,7 +101,7 @@ NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball
   blow.ball = ball;
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = speed;
-  const FreeBodyOutcome out = solve_free_body(blow, options);
+  const FeOutcome out = solve_free_body(blow, options);
   return {speed, 0, (out.launch.velocity.x() - speed) / speed, out.result.contact_time, out.result.peak_force};
 }
 
