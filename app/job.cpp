@@ -7,15 +7,23 @@
 #include "app/kinds/cross_check.hpp"
 #include "app/kinds/curves.hpp"
 #include "app/kinds/face_map.hpp"
+#include "app/kinds/identify_shaft.hpp"
 #include "app/kinds/impact.hpp"
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
+#include "app/kinds/shaft_modes.hpp"
 #include "app/kinds/sweep.hpp"
+#include "app/kinds/swing.hpp"
 #include "app/kinds/tune.hpp"
 #include "app/kinds/loop.hpp"
 
 namespace hosel::app {
 namespace {
+
+/// Of a shaft where the case has one, else of a ball.
+std::unique_ptr<Job> read_either_modes(CaseFile& file) {
+  return file.root().has("shaft") ? read_shaft_modes(file) : read_modes(file);
+}
 
 constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
@@ -26,7 +34,9 @@ constexpr std::array kKinds = {
     Kind{"tune", "parameters of a model against measured shots", read_tune},
     Kind{"sweep", "any case over a grid or a Latin hypercube of its keys", read_sweep},
     Kind{"loop", "measured shots against a model: which effect does the model lack?", read_loop},
-    Kind{"modes", "free vibrations of a ball, harmonic by harmonic", read_modes},
+    Kind{"modes", "free vibrations of a ball, harmonic by harmonic, or of a shaft with its head", read_either_modes},
+    Kind{"swing", "a flexible club driven by the motion of the grip, up to impact", read_swing},
+    Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},
 };

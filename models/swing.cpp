@@ -198,6 +198,7 @@ SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) con
   const Vec3 d = out.grip.rotation.conjugate() * (hosel.position - out.grip.position) + Vec3(0, 0, length_);
   out.lead = d.x();
   out.droop = d.y();
+  out.shortening = d.z();
   out.twist = fem::rotation_log(out.grip.rotation.conjugate() * hosel.rotation);
   if (head_) {
     const Eigen::Quaterniond to_face(face_to_grip_);

@@ -55,6 +55,7 @@ struct SwingSample {
   double time = 0;         ///< [s]
   double lead = 0;         ///< hosel from its place on the rigid club along XG [m]
   double droop = 0;        ///< along YG [m]
+  double shortening = 0;   ///< along ZG [m]
   Vec3 twist = Vec3::Zero();           ///< rotation vector of the hosel in the grip frame [rad]
   fem::Pose grip, head;                ///< head: position of the cg, rotation face frame to global
   Vec3 force = Vec3::Zero();           ///< of the hands on the club, global [N]

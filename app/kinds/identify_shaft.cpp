@@ -1,0 +1,218 @@
+#include "app/kinds/identify_shaft.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "golf/shaft_library.hpp"
+#include "loop/csv.hpp"
+#include "models/marker_swing.hpp"
+#include "post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+std::vector<double> numbers(const loop::Sheet& sheet, const std::string& name) {
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    if (sheet.names[c] != name) continue;
+    std::vector<double> out;
+    for (std::size_t r = 0; r < sheet.rows(); ++r) {
+      const std::string& cell = sheet.columns[c][r];
+      double x = std::nan("");
+      if (!cell.empty()) {
+        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+        if (error != std::errc() || end != cell.data() + cell.size())
+          throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], name, cell));
+      }
+      out.push_back(x);
+    }
+    return out;
+  }
+  throw InputError(fmt::format("{}: no column '{}'", sheet.file, name));
+}
+
+std::vector<Vec3> points(const loop::Sheet& sheet, const std::string& stem) {
+  const auto x = numbers(sheet, stem + "_x_m"), y = numbers(sheet, stem + "_y_m"), z = numbers(sheet, stem + "_z_m");
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < x.size(); ++i) out.emplace_back(x[i], y[i], z[i]);
+  return out;
+}
+
+class IdentifyJob final : public Job {
+ public:
+  explicit IdentifyJob(CaseFile& file) {
+    Table root = file.root();
+    club_.shaft = read_shaft(root.table("shaft"));
+    if (!(club_.shaft->damping_time > 0)) root.fail("shaft", "identification starts from a damping_ratio above zero");
+    club_.head = read_head(root.table("head"));
+    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    options_ = read_swing_options(root);
+    if (auto markers = root.optional_table("markers")) {
+      file_ = markers->data_file("file");
+      smoothing_ = markers->quantity("smoothing", "ms", Range::positive());
+      still_ = markers->quantity("still", "s", Range::positive(), 0.1);
+      train_ = markers->quantities("train", "s", 2);
+      test_ = markers->quantities("test", "s", 2);
+      marker_kind_ = true;
+      return;
+    }
+    for (Table t : root.tables("swing")) {
+      Recorded r;
+      r.motion = read_motion(t.table("motion"));
+      r.deflection = t.data_file("deflection");
+      r.train = t.flag("train", true);
+      swings_.push_back(std::move(r));
+    }
+    if (swings_.empty()) root.fail("swing", "give [markers], or at least one [[swing]] with its motion and deflection");
+  }
+
+  void run(Output& out) override { marker_kind_ ? markers(out) : recorded(out); }
+
+ private:
+  struct Recorded {
+    MotionInput motion;
+    std::filesystem::path deflection;
+    bool train = true;
+  };
+
+  static nlohmann::json to_json(const models::ShaftIdentification& r) {
+    const double s = std::sqrt(r.covariance(0, 0)), d = std::sqrt(r.covariance(1, 1));
+    return {{"converged", r.converged},
+            {"bending_scale", r.bending_scale},
+            {"bending_scale_95", {r.bending_scale - 1.96 * s, r.bending_scale + 1.96 * s}},
+            {"damping_time_s", r.damping_time},
+            {"damping_time_95_s", {r.damping_time - 1.96 * d, r.damping_time + 1.96 * d}},
+            {"correlation", r.covariance(0, 1) / (s * d)},
+            {"train_rms_mm", {{"before", 1e3 * r.train_before}, {"after", 1e3 * r.train_after}}},
+            {"holdout_rms_mm", {{"before", 1e3 * r.holdout_before}, {"after", 1e3 * r.holdout_after}}}};
+  }
+  static void say(Output& out, const models::ShaftIdentification& r) {
+    out.say(fmt::format("bending stiffness x {:.4f} +- {:.4f}, damping time {:.3g} +- {:.2g} s (95 %); deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
+                        r.bending_scale, 1.96 * std::sqrt(r.covariance(0, 0)), r.damping_time, 1.96 * std::sqrt(r.covariance(1, 1)),
+                        1e3 * r.train_before, 1e3 * r.train_after, 1e3 * r.holdout_before, 1e3 * r.holdout_after));
+  }
+  static void skip(Output& out, const std::filesystem::path& file) {
+    const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", file.filename().string());
+    out.say(why);
+    out.write_summary({{"skipped", why}});
+  }
+
+  void recorded(Output& out) {
+    std::vector<models::GripMotion> motions;
+    motions.reserve(swings_.size());
+    std::vector<models::MeasuredSwing> measured;
+    for (const Recorded& r : swings_) {
+      if (!r.motion.present) return skip(out, r.motion.file);
+      if (!std::filesystem::exists(r.deflection)) return skip(out, r.deflection);
+      const loop::Sheet sheet = loop::read_csv(r.deflection);
+      motions.emplace_back(r.motion.track, r.motion.smoothing);
+      models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); }, .begin = r.motion.begin, .end = r.motion.end, .train = r.train};
+      m.times = numbers(sheet, "time_s");
+      m.lead = numbers(sheet, "lead_mm");
+      m.droop = numbers(sheet, "droop_mm");
+      for (double& x : m.lead) x *= 1e-3;
+      for (double& x : m.droop) x *= 1e-3;
+      measured.push_back(std::move(m));
+    }
+    const models::ShaftIdentification r = models::identify_shaft(club_, options_, measured);
+    say(out, r);
+    out.write_summary({{"identified", to_json(r)}});
+  }
+
+  std::vector<models::SwingSample> simulate(const models::GripMotion& motion, double end, double scale, double damping) const {
+    Club club = club_;
+    club.shaft = scaled(*club_.shaft, scale, 1);
+    club.shaft->damping_time = damping;
+    models::Swing swing(club, options_, {.motion = [&](double t) { return motion.at(t); }});
+    std::vector<models::SwingSample> samples;
+    swing.run(swing.start(motion.first(), swing.equilibrium(motion.first())), end, [&](const models::SwingSample& s) { samples.push_back(s); });
+    return samples;
+  }
+
+  void markers(Output& out) {
+    if (!std::filesystem::exists(file_)) return skip(out, file_);
+    const loop::Sheet sheet = loop::read_csv(file_);
+    models::MarkerTrack track;
+    track.times = numbers(sheet, "time_s");
+    std::array<std::vector<Vec3>, 3> shaft, head;
+    for (std::size_t k = 0; k < 3; ++k) {
+      shaft[k] = points(sheet, fmt::format("shaft_{}", k + 1));
+      head[k] = points(sheet, fmt::format("head_{}", k + 1));
+    }
+    const auto left = points(sheet, "left_wrist"), right = points(sheet, "right_wrist");
+    for (std::size_t i = 0; i < track.times.size(); ++i) {
+      track.shaft.push_back({shaft[0][i], shaft[1][i], shaft[2][i]});
+      track.head.push_back({head[0][i], head[1][i], head[2][i]});
+      track.wrists.push_back(0.5 * (left[i] + right[i]));
+    }
+    const double end = test_[1];
+    const models::MarkerSwing swing = models::marker_swing(track, still_, end);
+    options_.grip_point = club_.shaft->length() - swing.length;
+    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty()) throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
+    const models::GripMotion motion(swing.clamp, smoothing_);
+
+    const auto part = [&](double from, double to, bool train) {
+      models::MeasuredSwing m{.motion = [&](double t) { return motion.at(t); }, .begin = motion.first(), .end = to, .train = train};
+      for (std::size_t i = 0; i < swing.times.size(); ++i)
+        if (swing.times[i] >= from && swing.times[i] <= to) {
+          m.times.push_back(swing.times[i]);
+          m.lead.push_back(swing.lead[i]);
+          m.droop.push_back(swing.droop[i]);
+        }
+      m.end = m.times.empty() ? to : m.times.back() + 1e-6;
+      return m;
+    };
+    out.say(fmt::format("clamp to hosel {:.3f} m; identifying on {:g} to {:g} s", swing.length, train_[0], train_[1]));
+    const models::ShaftIdentification r = models::identify_shaft(club_, options_, {part(train_[0], train_[1], true), part(test_[0], test_[1], false)});
+    say(out, r);
+
+    const auto nominal = simulate(motion, motion.last(), 1, club_.shaft->damping_time);
+    const auto identified = simulate(motion, motion.last(), r.bending_scale, r.damping_time);
+    nlohmann::json errors;
+    const auto error = [&](const char* name, const std::vector<models::SwingSample>& samples) {
+      const double all = models::marker_error(swing, motion, samples, end - 0.3, end), held = models::marker_error(swing, motion, samples, test_[0], test_[1]);
+      errors[name] = {{"last_300_ms_mm", 1e3 * all}, {"test_mm", 1e3 * held}};
+      out.say(fmt::format("head markers, RMS over the last 300 ms: {:>6.1f} mm ({}); over the test interval {:.1f} mm", 1e3 * all, name, 1e3 * held));
+    };
+    error("rigid shaft", {});
+    error("nominal", nominal);
+    error("identified", identified);
+
+    post::Figure figure{.columns = 2};
+    for (const bool is_lead : {true, false}) {
+      post::Panel panel{.title = is_lead ? "lead" : "droop", .x_label = "time [s]", .y_label = "deflection [mm]", .key = "bottom left"};
+      post::Series measured{.label = "measured", .style = "points"};
+      for (std::size_t i = 0; i < swing.times.size(); ++i)
+        if (swing.times[i] > end - 0.6) measured.x.push_back(swing.times[i]), measured.y.push_back(1e3 * (is_lead ? swing.lead : swing.droop)[i]);
+      panel.series.push_back(measured);
+      for (const auto& [label, samples] : {std::pair{"nominal", &nominal}, {"identified", &identified}}) {
+        post::Series line{.label = label};
+        for (const auto& s : *samples)
+          if (s.time > end - 0.6) line.x.push_back(s.time), line.y.push_back(1e3 * (is_lead ? s.lead : s.droop));
+        panel.series.push_back(line);
+      }
+      figure.panels.push_back(panel);
+    }
+    if (const std::string why = post::draw(figure, out.path("deflection")); !why.empty()) out.say(why);
+    out.write_summary({{"identified", to_json(r)}, {"head_markers_rms", errors}, {"clamp_to_hosel_m", swing.length}});
+  }
+
+  Club club_;
+  models::SwingOptions options_;
+  bool marker_kind_ = false;
+  std::filesystem::path file_;
+  double smoothing_ = 0, still_ = 0;
+  std::vector<double> train_, test_;
+  std::vector<Recorded> swings_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_identify_shaft(CaseFile& file) { return std::make_unique<IdentifyJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,94 @@
+#include "app/kinds/swing.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+class SwingJob final : public Job {
+ public:
+  explicit SwingJob(CaseFile& file) {
+    Table root = file.root();
+    club_.shaft = read_shaft(root.table("shaft"));
+    club_.head = read_head(root.table("head"));
+    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    motion_ = read_motion(root.table("motion"));
+    options_ = read_swing_options(root);
+  }
+
+  void run(Output& out) override {
+    nlohmann::json summary;
+    if (!motion_.present) {
+      const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", motion_.file.filename().string());
+      out.say(why);
+      out.write_summary({{"skipped", why}});
+      return;
+    }
+    const models::GripMotion grip(motion_.track, motion_.smoothing);
+    models::Swing swing(club_, options_, {.motion = [&](double t) { return grip.at(t); }});
+    const fem::State from = swing.start(motion_.begin, swing.equilibrium(motion_.begin));
+    std::vector<models::SwingSample> samples;
+    {
+      Progress progress = out.progress("swing");
+      swing.run(from, motion_.end, [&](const models::SwingSample& s) {
+        samples.push_back(s);
+        progress.update((s.time - motion_.begin) / (motion_.end - motion_.begin), fmt::format("t = {:.3f} s", s.time));
+      });
+    }
+    std::string csv = "time_s,lead_mm,droop_mm,twist_deg,head_speed_mps,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+    post::Series lead{.label = "lead"}, droop{.label = "droop"}, speed{.label = ""};
+    double peak_lead = 0, peak_droop = 0;
+    for (const auto& s : samples) {
+      // The wrench in grip axes, as the first source shows it.
+      const Vec3 force = s.grip.rotation.conjugate() * s.force;
+      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.time, 1e3 * s.lead, 1e3 * s.droop,
+                         degrees(s.twist.z()), s.head.velocity.norm(), force.x(), force.y(), force.z(), s.moment.x(), s.moment.y(), s.moment.z());
+      lead.x.push_back(s.time);
+      lead.y.push_back(1e3 * s.lead);
+      droop.x.push_back(s.time);
+      droop.y.push_back(1e3 * s.droop);
+      speed.x.push_back(s.time);
+      speed.y.push_back(s.head.velocity.norm());
+      if (std::abs(s.lead) > std::abs(peak_lead)) peak_lead = s.lead;
+      if (std::abs(s.droop) > std::abs(peak_droop)) peak_droop = s.droop;
+    }
+    out.write("swing.csv", csv);
+    post::Figure figure{.columns = 2};
+    figure.panels.push_back({.title = "hosel in the grip frame", .x_label = "time [s]", .y_label = "deflection [mm]", .series = {lead, droop}, .key = "bottom left"});
+    figure.panels.push_back({.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
+    if (const std::string why = post::draw(figure, out.path("swing")); !why.empty()) out.say(why);
+
+    const models::SwingSample& last = samples.back();
+    const Delivery d = models::delivery_of(last.head);
+    summary["at_end"] = {{"time_s", last.time}, {"lead_mm", 1e3 * last.lead}, {"droop_mm", 1e3 * last.droop}, {"twist_deg", degrees(last.twist.z())}};
+    summary["peak"] = {{"lead_mm", 1e3 * peak_lead}, {"droop_mm", 1e3 * peak_droop}};
+    summary["delivery"] = {{"club_speed_mps", d.club_speed}, {"attack_angle_deg", degrees(d.attack_angle)}, {"club_path_deg", degrees(d.club_path)},
+                           {"dynamic_loft_deg", degrees(d.dynamic_loft)}, {"face_angle_deg", degrees(d.face_angle)},
+                           {"head_angular_velocity_rad_per_s", {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
+    const solvers::Ledger& l = swing.ledger();
+    summary["energy_J"] = {{"kinetic", l.kinetic}, {"strain", l.strain_total()}, {"viscous", l.viscous}, {"numerical", l.numerical},
+                           {"external", l.external}, {"initial", l.initial}, {"closure", l.closure}};
+    summary["steps"] = swing.counts().steps;
+    out.say(fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg, loft {:.2f} deg, face {:.2f} deg",
+                        last.time, 1e3 * last.lead, 1e3 * last.droop, d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.dynamic_loft), degrees(d.face_angle)));
+    out.write_summary(summary);
+  }
+
+ private:
+  Club club_;
+  MotionInput motion_;
+  models::SwingOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_swing(CaseFile& file) { return std::make_unique<SwingJob>(file); }
+
+}  // namespace hosel::app

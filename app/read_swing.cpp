@@ -1,0 +1,130 @@
+#include "app/read_swing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "loop/csv.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// A numeric column by its stem, with any unit of its name, in SI.
+std::vector<double> column(const loop::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    SplitName split = split_unit(sheet.names[c]);
+    if (!unit_needed && sheet.names[c] == stem) split = {std::string(stem), {}};
+    if (split.stem != stem) continue;
+    if (unit_needed && (!split.unit || split.unit->dimension != dimension))
+      throw InputError(fmt::format("{}: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
+    std::vector<double> out;
+    for (std::size_t r = 0; r < sheet.rows(); ++r) {
+      const std::string& cell = sheet.columns[c][r];
+      double x = 0;
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
+        throw InputError(fmt::format("{}:{}: {} '{}' is no number (a motion may have no empty cells)", sheet.file, sheet.lines[r], sheet.names[c], cell));
+      out.push_back(unit_needed ? x * split.unit->si : x);
+    }
+    return out;
+  }
+  throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
+}
+
+bool has(const loop::Sheet& sheet, std::string_view stem) {
+  return std::ranges::any_of(sheet.names, [&](const std::string& n) { return n == stem || split_unit(n).stem == stem; });
+}
+
+}  // namespace
+
+MotionInput read_motion(Table table) {
+  MotionInput in;
+  in.file = table.data_file("file");
+  in.smoothing = table.quantity("smoothing", "ms", Range::non_negative(), 0);
+  const double gap = table.quantity("longest_gap", "ms", Range::positive(), 0.02);
+  const double turn = table.quantity("turn_about_shaft", "deg", Range::finite(), 0);
+  const double tolerance = table.number("orthonormal_tolerance", {0, 0.1, true}, 1e-3);
+  const bool span = table.has_quantity("begin") || table.has_quantity("end");
+  in.present = std::filesystem::exists(in.file);
+  if (span) {
+    in.begin = table.quantity("begin", "s");
+    in.end = table.quantity("end", "s");
+    if (!(in.end > in.begin)) table.fail("end", "the motion ends before it begins");
+  }
+  if (!in.present) return in;
+
+  const loop::Sheet sheet = loop::read_csv(in.file);
+  models::GripTrack& track = in.track;
+  track.times = column(sheet, "time", Dimension::time, true);
+  const auto x = column(sheet, "grip_x", Dimension::length, true), y = column(sheet, "grip_y", Dimension::length, true),
+             z = column(sheet, "grip_z", Dimension::length, true);
+  const std::size_t n = track.times.size();
+  for (std::size_t i = 0; i < n; ++i) track.positions.emplace_back(x[i], y[i], z[i]);
+  if (has(sheet, "grip_a")) {
+    const auto a = column(sheet, "grip_a", Dimension::angle, true), b = column(sheet, "grip_b", Dimension::angle, true),
+               c = column(sheet, "grip_c", Dimension::angle, true);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (std::abs(std::cos(b[i])) < 0.01)
+        throw InputError(fmt::format("{}:{}: the Y-X-Z Euler angles are at gimbal lock (grip_b within 0.6 deg of 90 deg): give rotation columns",
+                                     sheet.file, sheet.lines[i]));
+      track.attitudes.push_back(models::from_yxz(a[i], b[i], c[i]));
+    }
+  } else {
+    std::array<std::array<std::vector<double>, 3>, 2> axes;
+    for (std::size_t k = 0; k < 2; ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        axes[k][c] = column(sheet, fmt::format("grip_e{}_{}", "xy"[k], "xyz"[c]), Dimension::length, false);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto axis = [&](std::size_t k) { return Vec3(axes[k][0][i], axes[k][1][i], axes[k][2][i]); };
+      try {
+        track.attitudes.push_back(models::from_axes(axis(0), axis(1), tolerance));
+      } catch (const std::invalid_argument& e) {
+        throw InputError(fmt::format("{}:{}: {}", sheet.file, sheet.lines[i], e.what()));
+      }
+    }
+  }
+  const Eigen::Quaterniond about(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
+  for (Eigen::Quaterniond& q : track.attitudes) q = q * about;
+  if (const auto wrong = track.faults(gap); !wrong.empty()) throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
+  if (!span) {
+    in.begin = track.times.front();
+    in.end = track.times.back();
+  }
+  if (in.begin < track.times.front() - 1e-9 || in.end > track.times.back() + 1e-9)
+    table.fail(table.has_quantity("begin") ? "begin" : "end",
+               fmt::format("the motion covers {:g} to {:g} s only", track.times.front(), track.times.back()));
+  return in;
+}
+
+models::SwingOptions read_swing_options(Table root) {
+  models::SwingOptions o;
+  if (auto t = root.optional_table("solution")) {
+    o.elements = static_cast<int>(t->integer("elements", 1, 1000, o.elements));
+    o.growth = t->number("growth", {0.5, 2}, o.growth);
+    o.step = t->quantity("step", "ms", Range::positive(), o.step);
+    o.rho_inf = t->number("rho_inf", Range::fraction(), o.rho_inf);
+    o.shear = t->flag("shear", o.shear);
+    o.grip_point = t->quantity("grip_point", "mm", Range::non_negative(), o.grip_point);
+  }
+  if (auto t = root.optional_table("joint")) {
+    const std::string kind = t->choice("kind", {"rigid", "hinge", "spring", "none"}, "rigid");
+    using models::HeadJoint;
+    o.joint = kind == "hinge" ? HeadJoint::hinge : kind == "spring" ? HeadJoint::spring : kind == "none" ? HeadJoint::none : HeadJoint::rigid;
+    if (o.joint == HeadJoint::hinge) {
+      const auto axis = t->numbers("axis", 3);
+      o.hinge_axis = Vec3(axis[0], axis[1], axis[2]);
+      if (!(o.hinge_axis.norm() > 0)) t->fail("axis", "the axis of a hinge has a direction");
+    }
+    if (o.joint == HeadJoint::spring) {
+      const auto kt = t->quantities("stiffness", "N_per_m", 3, Range::non_negative());
+      const auto kr = t->quantities("rotational_stiffness", "N_m_per_rad", 3, Range::non_negative());
+      o.joint_stiffness.translation = Vec3(kt[0], kt[1], kt[2]);
+      o.joint_stiffness.rotation = Vec3(kr[0], kr[1], kr[2]);
+    }
+  }
+  return o;
+}
+
+}  // namespace hosel::app

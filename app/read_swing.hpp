@@ -1,0 +1,27 @@
+/// A swing from a case's tables: the grip's motion from a file, the club, how it is solved.
+#pragma once
+
+#include <filesystem>
+
+#include "app/reader.hpp"
+#include "models/grip_motion.hpp"
+#include "models/swing.hpp"
+
+namespace hosel::app {
+
+/// `[motion]`: `file`, smoothing, span. `present` is false where the (large, measured) file is not there.
+struct MotionInput {
+  std::filesystem::path file;
+  bool present = true;
+  models::GripTrack track;
+  double smoothing = 0, begin = 0, end = 0;  ///< [s]
+};
+/// Positions `grip_x_*`, `grip_y_*`, `grip_z_*` with either Y-X-Z Euler angles `grip_a_*`, `grip_b_*`,
+/// `grip_c_*` or two axes `grip_ex_x` ... `grip_ey_z`. Throws InputError: time backwards, gaps, gimbal lock,
+/// axes that are not orthonormal, cells that are not numbers.
+MotionInput read_motion(Table table);
+
+/// `[solution]` and `[joint]` of a swing.
+models::SwingOptions read_swing_options(Table root);
+
+}  // namespace hosel::app

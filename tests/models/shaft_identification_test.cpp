@@ -1,0 +1,67 @@
+// Stiffness scale and damping recovered from noisy synthetic swings.
+#include "models/shaft_identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/swing_motion.hpp"
+
+namespace hosel::models {
+namespace {
+
+TEST(IdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
+  const GripMotion grip(test::swing_track(), 0);
+  const fem::Motion motion = [&](double t) { return grip.at(t); };
+  const SwingOptions options{.elements = 5, .step = 2.5e-3};
+  const double truth_scale = 1.5, truth_damping = 2 * 0.03 / (2 * kPi * 4);
+  Club truth = test::driver_club();
+  truth.shaft = scaled(*truth.shaft, truth_scale, 1);
+  truth.shaft->damping_time = truth_damping;
+
+  // Three swings: the same downswing from three places on, at 400 Hz.
+  std::vector<MeasuredSwing> clean;
+  double signal = 0;
+  std::size_t count = 0;
+  for (double begin : {-0.6, -0.5, -0.4}) {
+    MeasuredSwing m{.motion = motion, .begin = begin, .end = 0};
+    Swing s(truth, options, {.motion = motion});
+    s.run(s.start(begin, s.equilibrium(begin)), 0, [&](const SwingSample& x) {
+      m.times.push_back(x.time);
+      m.lead.push_back(x.lead);
+      m.droop.push_back(x.droop);
+      signal += x.lead * x.lead + x.droop * x.droop;
+      count += 2;
+    });
+    clean.push_back(m);
+  }
+  const double noise = std::sqrt(signal / static_cast<double>(count)) / 20;
+  EXPECT_GT(noise, 1e-4);
+
+  int inside = 0;
+  double worst_scale = 0, worst_damping = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, noise);
+    std::vector<MeasuredSwing> noisy = clean;
+    for (MeasuredSwing& m : noisy)
+      for (std::size_t i = 0; i < m.times.size(); ++i) m.lead[i] += normal(random), m.droop[i] += normal(random);
+    noisy.back().train = false;
+    const ShaftIdentification r = identify_shaft(test::driver_club(), options, noisy);
+    EXPECT_TRUE(r.converged);
+    EXPECT_NEAR(r.bending_scale, truth_scale, 0.02 * truth_scale) << seed;
+    EXPECT_NEAR(r.damping_time, truth_damping, 0.2 * truth_damping) << seed;
+    EXPECT_LT(r.holdout_after, 0.5 * r.holdout_before) << seed;
+    EXPECT_NEAR(r.train_after, noise, 0.1 * noise) << seed;
+    const bool both = std::abs(r.bending_scale - truth_scale) < 1.96 * std::sqrt(r.covariance(0, 0)) &&
+                      std::abs(r.damping_time - truth_damping) < 1.96 * std::sqrt(r.covariance(1, 1));
+    inside += both;
+    worst_scale = std::max(worst_scale, std::abs(r.bending_scale / truth_scale - 1));
+    worst_damping = std::max(worst_damping, std::abs(r.damping_time / truth_damping - 1));
+  }
+  EXPECT_GE(inside, 17);
+  std::printf("worst scale %.4f damping %.4f inside %d\n", worst_scale, worst_damping, inside);
+}
+
+}  // namespace
+}  // namespace hosel::models

@@ -1,0 +1,135 @@
+// The swing: convergence, statics, an independent integrator, and the hands' wrench fed back.
+#include "models/swing.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solvers/ida.hpp"
+#include "tests/support/swing_motion.hpp"
+
+namespace hosel::models {
+namespace {
+
+using test::driver_club;
+
+const GripMotion& grip() {
+  static const GripMotion motion(test::swing_track(), 0);
+  return motion;
+}
+fem::Motion motion() {
+  return [](double t) { return grip().at(t); };
+}
+
+std::vector<SwingSample> swing(const SwingOptions& options, double begin = -1.1, double end = 0) {
+  Swing s(driver_club(), options, {.motion = motion()});
+  std::vector<SwingSample> out;
+  s.run(s.start(begin, s.equilibrium(begin)), end, [&](const SwingSample& x) { out.push_back(x); });
+  return out;
+}
+
+double peak(const std::vector<SwingSample>& x) {
+  double p = 0;
+  for (const SwingSample& s : x) p = std::max({p, std::abs(s.lead), std::abs(s.droop)});
+  return p;
+}
+
+TEST(Swing, LeadAndDroopConverge) {
+  // Mesh and step halved: below 0.5 % of the peak deflection, which is a real one (more than 50 mm).
+  const auto coarse = swing({.elements = 40, .step = 5e-4}), fine = swing({.elements = 80, .step = 2.5e-4});
+  ASSERT_EQ(fine.size(), 2 * coarse.size() - 1);
+  const double scale = peak(fine);
+  EXPECT_GT(scale, 0.05);
+  double worst = 0;
+  for (std::size_t i = 0; i < coarse.size(); ++i)
+    worst = std::max({worst, std::abs(coarse[i].lead - fine[2 * i].lead), std::abs(coarse[i].droop - fine[2 * i].droop)});
+  EXPECT_LT(worst, 0.005 * scale);
+  RecordProperty("convergence", std::to_string(worst / scale));
+  const Delivery d = delivery_of(fine.back().head);
+  EXPECT_GT(d.club_speed, 45);
+  EXPECT_LT(d.club_speed, 55);
+}
+
+TEST(Swing, EquilibriumByNewtonKinsolAndAHold) {
+  Club club = driver_club();
+  club.shaft->damping_time = 2 * 0.5 / (2 * kPi * 4);  // half critical, so that one second is enough
+  Swing s(club, {.elements = 8}, {.motion = motion()});
+  const fem::State newton = s.equilibrium(-1.1), kinsol = s.equilibrium(-1.1, true), held = s.hold(-1.1, 1.0);
+  const fem::Vector none = fem::Vector::Zero(s.system().layout.size());
+  const SwingSample a = s.sample(newton, none), b = s.sample(kinsol, none), c = s.sample(held, none);
+  EXPECT_GT(std::hypot(a.lead, a.droop), 5e-3);  // the head hangs
+  EXPECT_NEAR(a.lead, b.lead, 1e-7);
+  EXPECT_NEAR(a.droop, b.droop, 1e-7);
+  // A second of hold leaves e^(-0.5 * 25) of the fall.
+  EXPECT_NEAR(a.lead, c.lead, 1e-4);
+  EXPECT_NEAR(a.droop, c.droop, 1e-4);
+}
+
+TEST(Swing, IdaAgrees) {
+  // The downswing, 10 elements, both integrators at tight tolerances: 0.2 % of the peak deflection.
+  const double begin = -0.3;
+  Swing s(driver_club(), {.elements = 10, .step = 2.5e-4}, {.motion = motion()});
+  const fem::State from = s.start(begin, s.equilibrium(begin));
+  std::vector<SwingSample> ours;
+  std::vector<double> times;
+  s.run(from, 0, [&](const SwingSample& x) { ours.push_back(x); });
+  for (std::size_t i = 40; i < ours.size(); i += 40) times.push_back(ours[i].time);
+  fem::State consistent = from;
+  {
+    fem::System& system = const_cast<fem::System&>(s.system());
+    const solvers::NewtonOptions newton{.residual_relative = 1e-9, .residual_absolute = 1e-9, .increment_vector = 1e-9, .increment_rotation = 1e-9};
+    consistent = solvers::GeneralizedAlpha(system, {.rho_inf = 0.8, .newton = newton, .step_max = 1e-3, .step_min = 1e-3,
+                                                    .error_vector = INFINITY, .error_rotation = INFINITY}, from).state();
+  }
+  const fem::Vector none = fem::Vector::Zero(s.system().layout.size());
+  const double scale = peak(ours);
+  EXPECT_GT(scale, 0.05);
+  std::size_t i = 0;
+  double worst = 0;
+  solvers::integrate_ida(s.system(), consistent, times, {}, [&](const fem::State& x) {
+    const SwingSample other = s.sample(x, none);
+    const SwingSample& own = ours[40 * ++i];
+    worst = std::max({worst, std::abs(own.lead - other.lead), std::abs(own.droop - other.droop)});
+  });
+  EXPECT_EQ(i, times.size());
+  EXPECT_LT(worst, 0.002 * scale);
+  RecordProperty("ida", std::to_string(worst / scale));
+}
+
+TEST(Swing, TheHandsWrenchFedBackReproducesTheGrip) {
+  const double step = 2.5e-4;
+  Swing driven(driver_club(), {.elements = 10, .step = step}, {.motion = motion()});
+  const fem::State from = driven.start(-1.1, driven.equilibrium(-1.1));
+  std::vector<SwingSample> record;
+  driven.run(from, 0, [&](const SwingSample& x) { record.push_back(x); });
+  const auto wrench = [&](double t) {
+    const double at = std::clamp((t + 1.1) / step, 0.0, static_cast<double>(record.size() - 1));
+    const auto k = std::min(static_cast<std::size_t>(at), record.size() - 2);
+    const double w = at - static_cast<double>(k);
+    return fem::Wrench{(1 - w) * record[k].force + w * record[k + 1].force, (1 - w) * record[k].moment + w * record[k + 1].moment};
+  };
+  Swing forced(driver_club(), {.elements = 10, .step = step}, {.kind = GripDrive::Kind::forced, .motion = motion(), .wrench = wrench});
+  double distance = 0, angle = 0;
+  forced.run(from, 0, [&](const SwingSample& x) {
+    const fem::Pose p = grip().at(x.time);
+    distance = std::max(distance, (x.grip.position - p.position).norm());
+    angle = std::max(angle, x.grip.rotation.angularDistance(p.rotation));
+  });
+  EXPECT_LT(distance, 1e-3);
+  EXPECT_LT(degrees(angle), 0.1);
+  std::printf("forced replay: %.3e m %.3e deg\n", distance, degrees(angle));
+}
+
+TEST(Swing, HingeAndSpringJoints) {
+  // A stiff spring is a weld; a hinge lets the head turn about its axis and nothing else.
+  const auto last = [](const SwingOptions& o) { return swing(o, -0.3, -0.1).back(); };
+  const SwingSample rigid = last({.elements = 8});
+  SwingOptions stiff{.elements = 8, .joint = HeadJoint::spring};
+  stiff.joint_stiffness.translation = Vec3::Constant(1e8);
+  stiff.joint_stiffness.rotation = Vec3::Constant(1e5);
+  const SwingSample spring = last(stiff);
+  EXPECT_NEAR(spring.lead, rigid.lead, 1e-3 * std::abs(rigid.lead) + 1e-4);
+  const SwingSample hinge = last({.elements = 8, .joint = HeadJoint::hinge, .hinge_axis = Vec3::UnitZ()});
+  EXPECT_GT(hinge.head.rotation.angularDistance(rigid.head.rotation), 0.05);
+}
+
+}  // namespace
+}  // namespace hosel::models
