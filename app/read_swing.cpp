@@ -39,6 +39,14 @@ bool has(const loop::Sheet& sheet, std::string_view stem) {
 
 }  // namespace
 
+loop::Sheet read_sheet(const std::filesystem::path& file) {
+  try {
+    return loop::read_csv(file);
+  } catch (const loop::DataError& e) {
+    throw InputError(e.what());
+  }
+}
+
 MotionInput read_motion(Table table) {
   MotionInput in;
   in.file = table.data_file("file");
@@ -55,7 +63,7 @@ MotionInput read_motion(Table table) {
   }
   if (!in.present) return in;
 
-  const loop::Sheet sheet = loop::read_csv(in.file);
+  const loop::Sheet sheet = read_sheet(in.file);
   models::GripTrack& track = in.track;
   track.times = column(sheet, "time", Dimension::time, true);
   const auto x = column(sheet, "grip_x", Dimension::length, true), y = column(sheet, "grip_y", Dimension::length, true),

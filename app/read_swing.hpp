@@ -4,10 +4,14 @@
 #include <filesystem>
 
 #include "app/reader.hpp"
+#include "loop/csv.hpp"
 #include "models/grip_motion.hpp"
 #include "models/swing.hpp"
 
 namespace hosel::app {
+
+/// A CSV whose faults are faults of the input.
+loop::Sheet read_sheet(const std::filesystem::path& file);
 
 /// `[motion]`: `file`, smoothing, span. `present` is false where the (large, measured) file is not there.
 struct MotionInput {

@@ -109,7 +109,7 @@ class IdentifyJob final : public Job {
     for (const Recorded& r : swings_) {
       if (!r.motion.present) return skip(out, r.motion.file);
       if (!std::filesystem::exists(r.deflection)) return skip(out, r.deflection);
-      const loop::Sheet sheet = loop::read_csv(r.deflection);
+      const loop::Sheet sheet = read_sheet(r.deflection);
       motions.emplace_back(r.motion.track, r.motion.smoothing);
       models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); }, .begin = r.motion.begin, .end = r.motion.end, .train = r.train};
       m.times = numbers(sheet, "time_s");
@@ -136,7 +136,7 @@ class IdentifyJob final : public Job {
 
   void markers(Output& out) {
     if (!std::filesystem::exists(file_)) return skip(out, file_);
-    const loop::Sheet sheet = loop::read_csv(file_);
+    const loop::Sheet sheet = read_sheet(file_);
     models::MarkerTrack track;
     track.times = numbers(sheet, "time_s");
     std::array<std::vector<Vec3>, 3> shaft, head;

@@ -60,7 +60,9 @@ TEST(IdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
     worst_damping = std::max(worst_damping, std::abs(r.damping_time / truth_damping - 1));
   }
   EXPECT_GE(inside, 17);
-  std::printf("worst scale %.4f damping %.4f inside %d\n", worst_scale, worst_damping, inside);
+  RecordProperty("worst_scale", std::to_string(worst_scale));
+  RecordProperty("worst_damping", std::to_string(worst_damping));
+  RecordProperty("inside", inside);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(Swing, TheHandsWrenchFedBackReproducesTheGrip) {
   });
   EXPECT_LT(distance, 1e-3);
   EXPECT_LT(degrees(angle), 0.1);
-  std::printf("forced replay: %.3e m %.3e deg\n", distance, degrees(angle));
+  RecordProperty("distance_m", std::to_string(distance));
 }
 
 TEST(Swing, HingeAndSpringJoints) {

@@ -1,0 +1,124 @@
+// The kinds modes, swing and identify-shaft as a person types them: bad input is status 2 and one line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/app/command.hpp"
+
+namespace hosel::test {
+namespace {
+
+const std::string kCase = R"(kind = "swing"
+[motion]
+file = "grip.csv"
+[shaft.table]
+arc_length_mm = [0, 500, 1100]
+bending_stiffness_N_m2 = [70, 45, 20]
+torsional_stiffness_N_m2 = [25, 16, 7]
+mass_per_length_g_per_m = [55, 55, 55]
+mean_radius_mm = [7, 6, 4]
+[head]
+mass_kg = 0.2
+cg_mm = [-35, 0, 0]
+inertia_kg_m2 = [[2e-4, 0, 0], [0, 3e-4, 0], [0, 0, 4e-4]]
+[solution]
+elements = 4
+step_ms = 5.0
+)";
+
+std::string euler_motion() {
+  std::string csv = "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n";
+  for (int i = 0; i < 21; ++i) csv += std::to_string(0.01 * i) + ",0,0," + std::to_string(1 + 1e-4 * i * i) + "," + std::to_string(i) + ",10,0\n";
+  return csv;
+}
+
+struct Bad {
+  const char* name;
+  const char* from;   // text of the case or of the motion ...
+  const char* to;     // ... and what stands there instead
+  const char* hint;   // what the line must say
+};
+
+class BadSwing : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadSwing, EndsWithStatusTwoAndOneLine) {
+  const Bad& bad = GetParam();
+  const auto dir = fresh_directory(std::string("swing_") + bad.name);
+  std::string text = kCase, motion = euler_motion();
+  const auto replace = [&](std::string& where) {
+    const auto at = where.find(bad.from);
+    if (at == std::string::npos) return false;
+    where.replace(at, std::string(bad.from).size(), bad.to);
+    return true;
+  };
+  const bool in_case = replace(text), in_motion = !in_case && replace(motion);
+  ASSERT_TRUE(in_case || in_motion);
+  std::ofstream(dir / "case.toml") << text;
+  std::ofstream(dir / "grip.csv") << motion;
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_EQ(std::count(o.text.begin(), o.text.end(), '\n'), 1) << o.text;
+  EXPECT_NE(o.text.find(bad.hint), std::string::npos) << o.text;
+  EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Input, BadSwing,
+    testing::Values(Bad{"backwards", "\n0.070000", "\n0.030000", "backwards"},
+                    Bad{"gap", "\n0.200000", "\n0.400000", "gap"},
+                    Bad{"gimbal", ",5,10,0\n", ",5,89.9,0\n", "gimbal"},
+                    Bad{"jump", ",5,10,0\n", ",95,10,0\n", "jumps"},
+                    Bad{"empty", ",5,10,0\n", ",,10,0\n", "no number"},
+                    Bad{"axes", "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n",
+                        "time_s,grip_x_m,grip_y_m,grip_z_m,wrist_deg,x_deg,y_deg\n", "no column 'grip_ex_x'"},
+                    Bad{"order", "[0, 500, 1100]", "[1100, 500, 0]", "butt to tip"},
+                    Bad{"negative", "[70, 45, 20]", "[70, -45, 20]", "bending_stiffness"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(SwingCase, AxesThatAreNotOrthonormal) {
+  const auto dir = fresh_directory("swing_axes");
+  std::ofstream(dir / "case.toml") << kCase;
+  std::string csv = "time_s,grip_x_m,grip_y_m,grip_z_m,grip_ex_x,grip_ex_y,grip_ex_z,grip_ey_x,grip_ey_y,grip_ey_z\n";
+  for (int i = 0; i < 21; ++i) csv += std::to_string(0.01 * i) + ",0,0,1,1,0,0," + (i == 7 ? "0.1" : "0") + ",1,0\n";
+  std::ofstream(dir / "grip.csv") << csv;
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find(":9:"), std::string::npos) << o.text;  // header is line 1
+  EXPECT_NE(o.text.find("orthonormal"), std::string::npos) << o.text;
+}
+
+TEST(SwingCase, RunsAndWritesItsHistory) {
+  const auto dir = fresh_directory("swing_good");
+  std::ofstream(dir / "case.toml") << kCase;
+  std::ofstream(dir / "grip.csv") << euler_motion();
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_TRUE(std::filesystem::exists(dir / "out" / "swing.csv"));
+  EXPECT_TRUE(std::filesystem::exists(dir / "out" / "summary.json"));
+}
+
+TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
+  const auto dir = fresh_directory("swing_skipped");
+  for (const std::string name : {"club-6dof", "swing-markers"}) {
+    const Outcome o = command("run " + std::string(HOSEL_SOURCE) + "/cases/" + name + " --set " +
+                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there.csv --out " + (dir / name).string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
+  }
+}
+
+TEST(ModesCase, FrequencyMachineCountsAsPublished) {
+  // A 60 g composite driver shaft with about 200 g at the tip counts about 266 cpm (published).
+  const auto dir = fresh_directory("modes");
+  const Outcome o = command("run " + std::string(HOSEL_SOURCE) + "/cases/frequency-machine --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 0) << o.text;
+  std::ifstream file(dir / "out" / "modes.csv");
+  std::string header, row;
+  std::getline(file, header);
+  std::getline(file, row);
+  const double cpm = std::stod(row.substr(row.find(',', row.find(',') + 1) + 1));
+  EXPECT_NEAR(cpm, 266, 5);
+}
+
+}  // namespace
+}  // namespace hosel::test
