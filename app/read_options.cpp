@@ -80,7 +80,10 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
       options.shaft_mount.grip = t->choice("hold", {"clamped", "free"}, "clamped") == "free" ? models::Grip::free : models::Grip::clamped;
       options.shaft_mount.elements = int(t->integer("elements", 2, 1000, options.shaft_mount.elements));
     }
-  if (std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); })) options.fe = read_fe(root);
+  // A case with finite-element tables keeps them where only its other models are asked.
+  const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
+  const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));
+  if (fe || there) options.fe = read_fe(root);
   return options;
 }
 
