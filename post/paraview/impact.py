@@ -2,10 +2,14 @@
 
 usage: scripts/pvbatch post/paraview/impact.py VTK_DIRECTORY [PICTURE.png]
 """
+import csv
 import os
 import sys
 
+import paraview.simple
 from paraview.simple import *  # noqa: F403  (the way ParaView scripts are written)
+
+paraview.simple._DisableFirstRenderCameraReset()
 
 directory = sys.argv[1]
 picture = sys.argv[2] if len(sys.argv) > 2 else "impact.png"
@@ -29,15 +33,12 @@ _, warped_face = open_series("face")
 _, warped_head = open_series("head")
 _, warped_shaft = open_series("shaft")
 
-# Maximum compression: the instant of the largest von Mises stress summed over the ball's points.
-times = list(ball.TimestepValues)
-best, at = -1.0, times[0]
-for time in times:
-    ball.UpdatePipeline(time)
-    high = ball.PointData["contact_pressure"].GetRange()[1]
-    if high > best:
-        best, at = high, time
-print("maximum compression near t = %.3f ms, contact pressure up to %.1f MPa" % (1e3 * at, 1e-6 * best))
+# Maximum compression: the frame nearest to the largest normal force in the run's history.
+with open(os.path.join(directory, "..", "history.csv")) as file:
+    rows = list(csv.DictReader(file))
+peak = max(rows, key=lambda row: float(row["normal_force_N"]))
+at = min(ball.TimestepValues, key=lambda time: abs(time - float(peak["time_s"])))
+print("largest force %.2f kN at t = %.3f ms" % (1e-3 * float(peak["normal_force_N"]), 1e3 * float(peak["time_s"])))
 
 view = CreateView("RenderView")
 view.ViewSize = [1400, 1000]
@@ -46,7 +47,7 @@ view.UseColorPaletteForBackground = 0
 view.OrientationAxesVisibility = 1
 view.ViewTime = at
 
-# The near half is cut away, so that the flattened patch is seen against the face.
+# Seen from the toe; the near half is cut away, so that the flattened patch is seen against the face.
 cut = Clip(Input=warped_ball)
 cut.ClipType = "Plane"
 cut.ClipType.Origin = [0.0, 0.0, 0.0]
@@ -56,6 +57,7 @@ shown = Show(cut, view)
 ColorBy(shown, ("POINTS", "von_mises"))
 shown.SetScalarBarVisibility(view, True)
 shown.RescaleTransferFunctionToDataRange(False, True)
+shown.Interpolation = "Gouraud"
 bar = GetScalarBar(GetColorTransferFunction("von_mises"), view)
 bar.Title = "von Mises stress [Pa]"
 bar.ComponentTitle = ""
@@ -66,11 +68,11 @@ for body, colour, opacity in ((warped_face, [0.35, 0.35, 0.4], 1.0), (warped_hea
         display.DiffuseColor = colour
         display.AmbientColor = colour
         display.Opacity = opacity
-        ColorBy(display, None)
+        display.ColorArrayName = ["POINTS", ""]
 if warped_shaft is not None:
     tube = Tube(Input=warped_shaft, Radius=0.005)
     display = Show(tube, view)
-    ColorBy(display, None)
+    display.ColorArrayName = ["POINTS", ""]
     display.DiffuseColor = [0.2, 0.2, 0.2]
 
 label = Text(Text="t = %.3f ms" % (1e3 * at))
@@ -79,7 +81,7 @@ label_display.Color = [0, 0, 0]
 label_display.WindowLocation = "Upper Left Corner"
 
 view.CameraFocalPoint = [0.0, 0.0, 0.0]
-view.CameraPosition = [0.0, 0.16, 0.02]
+view.CameraPosition = [0.0, -0.16, 0.02]
 view.CameraViewUp = [0.0, 0.0, 1.0]
 view.CameraParallelProjection = 1
 view.CameraParallelScale = 0.032
