@@ -184,6 +184,15 @@ Errors errors(const Problem& problem, const Rows& rows, int channel, const Eigen
   return e;
 }
 
+/// At most so many rows, evenly spread: what names an effect does not need thousands, and their cost would be felt.
+std::vector<int> thinned(const std::vector<int>& rows) {
+  constexpr std::size_t most = 900;
+  if (rows.size() <= most) return rows;
+  std::vector<int> some;
+  for (std::size_t k = 0; k < most; ++k) some.push_back(rows[k * rows.size() / most]);
+  return some;
+}
+
 /// Mean log predictive density per value.
 double score(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p, const Loss& loss) {
   const Eigen::VectorXd z = whitened(problem, rows, model, p);
@@ -481,10 +490,10 @@ class Loop {
     std::set<int> out;
     estimate_noise(nullptr);
     set_covariance(nullptr);
-    regressors_ = loop::regressors(case_.shots, inputs_.row_of, rows_.train, *problem_);
+    regressors_ = loop::regressors(case_.shots, inputs_.row_of, thinned(rows_.train), *problem_);
     if (rows_.train.size() < 4) return;
     for (int pass = 0; pass < 4; ++pass) {
-      result.selection = loop::select(*problem_, rows_.train, base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
+      result.selection = loop::select(*problem_, thinned(rows_.train), base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
       const Fit& at = result.selection.chosen;
       flags_ = screen(*problem_, case_.shots, inputs_.row_of, uses_, at);
       std::set<int> now;
@@ -502,10 +511,10 @@ class Loop {
         settled_noise = settled_noise && std::abs(problem_->channels()[std::size_t(c)].noise / before[std::size_t(c)] - 1) < 0.03;
       const bool first_covariance = pass == 0 && !inputs_.covariance.empty() && !at.model.forms.empty();
       set_covariance(&at);
-      regressors_ = loop::regressors(case_.shots, inputs_.row_of, rows_.train, *problem_);
+      regressors_ = loop::regressors(case_.shots, inputs_.row_of, thinned(rows_.train), *problem_);
       if (settled_rows && settled_noise && !first_covariance) break;
       if (pass == 3) {
-        result.selection = loop::select(*problem_, rows_.train, base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
+        result.selection = loop::select(*problem_, thinned(rows_.train), base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
       }
     }
   }
@@ -557,6 +566,11 @@ class Loop {
       result.verdict = s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
     }
 
+    if (rows_.train.size() > thinned(rows_.train).size()) {
+      result.notes.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", thinned(rows_.train).size(), rows_.train.size()));
+      Fit& chosen = result.selection.chosen;
+      if (chosen.size() > 0) chosen = fit(*problem_, rows_.train, chosen.model, {chosen.p}, loss_);
+    }
     // The holdout is read here, once, after the verdict.
     const Fit& base = s.base;
     const bool shown = result.verdict != Verdict::unexplained && result.verdict != Verdict::insufficient && s.level > 0;
@@ -576,13 +590,13 @@ class Loop {
       result.base_score = score(*problem_, rows_.holdout, base.model, base.p, loss_);
       for (std::size_t k = 0; k < std::min<std::size_t>(s.candidates.size(), 25); ++k) {
         ScoredCandidate sc{.candidate = s.candidates[k]};
-        const Eigen::MatrixXd cov = covariance(*problem_, rows_.train, sc.candidate.fit, loss_, !noise_declared());
+        const Eigen::MatrixXd cov = covariance(*problem_, thinned(rows_.train), sc.candidate.fit, loss_, !noise_declared());
         for (Eigen::Index j = 0; j < cov.rows(); ++j) sc.sd.push_back(std::sqrt(cov(j, j)));
         sc.holdout_score = score(*problem_, rows_.holdout, sc.candidate.fit.model, sc.candidate.fit.p, loss_);
         result.candidates.push_back(std::move(sc));
       }
-      result.minimum_detectable = detectable(*problem_, rows_.train, base, candidate_forms_, case_.rules);
-      result.next = design(case_, *problem_, rows_.train, s, result.unexplained, result.verdict);
+      result.minimum_detectable = detectable(*problem_, thinned(rows_.train), base, candidate_forms_, case_.rules);
+      result.next = design(case_, *problem_, thinned(rows_.train), s, result.unexplained, result.verdict);
       std::vector<int> all = all_rows(rows_);
       const std::set<int> held(rows_.holdout.begin(), rows_.holdout.end());
       for (const int i : all) {

@@ -9,10 +9,10 @@
 
 namespace hosel::loop {
 
-/// Thresholds of the selection; design/README of this folder explains the figures.
+/// Thresholds of the selection; the README of this folder explains the figures.
 struct Rules {
   double gate = 0.01;          ///< level of the test for structure at all
-  double gain = 20;            ///< least fall of the deviance for a first effect
+  double gain = 22;            ///< least fall of the deviance for a first effect
   double further_gain = 16;    ///< least fall of the criterion for one more effect
   double parameter_cost = 4;   ///< criterion = deviance + cost * parameters
   double tie = 7;              ///< candidates within this of the best criterion tie with it

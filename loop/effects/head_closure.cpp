@@ -41,8 +41,10 @@ std::vector<Form> head_closure(const Setting& setting) {
       };
     return f;
   };
-  return {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
-          about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+  // A club closes about the shaft, which stands more upright than flat: the horizontal alone is unusual.
+  Form flat = about({1}, "about the horizontal across the target line");
+  flat.rarity = 5;
+  return {about({2}, "about the vertical"), flat, about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
 }
 
 }  // namespace hosel::loop::forms

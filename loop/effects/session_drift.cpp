@@ -33,6 +33,23 @@ std::vector<Form> session_drift(const Setting& setting) {
       };
       forms.push_back(f);
     }
+    if (setting.outputs.size() > 1) {
+      // Several readings at once. Its cost is that of three parameters, not of one per channel: an instrument that
+      // drifts does so in more than one.
+      Form all{.effect = effect, .what = "of all readings, " + from};
+      for (const Output output : setting.outputs) {
+        Parameter p = size_of(output);
+        p.name = fmt::format("{}_per_session", stem(output));
+        all.parameters.push_back(p);
+      }
+      all.rarity = 12 - 4 * double(setting.outputs.size());
+      all.reading = [outputs = setting.outputs, zero](std::span<const double> q, const Trial& t, Output o, double value) {
+        for (std::size_t k = 0; k < outputs.size(); ++k)
+          if (o == outputs[k] && q[k] != 0) return value + q[k] * (t.order - zero);
+        return value;
+      };
+      forms.push_back(all);
+    }
     Form speed{.effect = effect, .what = "of the club speed, " + from, .parameters = {{"relative_club_speed_per_session", "1", 1, -0.2, 0.2, 0.01}}};
     speed.before = [zero](std::span<const double> q, Trial& t) { t.blow.delivery.club_speed *= 1 + q[0] * (t.order - zero); };
     speed.rarity = 3;
