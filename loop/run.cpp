@@ -186,7 +186,7 @@ Errors errors(const Problem& problem, const Rows& rows, int channel, const Eigen
 
 /// At most so many rows, evenly spread: what names an effect does not need thousands, and their cost would be felt.
 std::vector<int> thinned(const std::vector<int>& rows) {
-  constexpr std::size_t most = 900;
+  constexpr std::size_t most = 450;
   if (rows.size() <= most) return rows;
   std::vector<int> some;
   for (std::size_t k = 0; k < most; ++k) some.push_back(rows[k * rows.size() / most]);
