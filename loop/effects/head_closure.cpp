@@ -41,10 +41,12 @@ std::vector<Form> head_closure(const Setting& setting) {
       };
     return f;
   };
-  // A club closes about the shaft, which stands more upright than flat: the horizontal alone is unusual.
-  Form flat = about({1}, "about the horizontal across the target line");
-  flat.rarity = 5;
-  return {about({2}, "about the vertical"), flat, about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+  // A club closes about its shaft, which stands more upright than flat: rates about the horizontal are unusual, and
+  // they do to the launch what a shifted centre of gravity does.
+  std::vector<Form> all = {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
+                           about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+  for (std::size_t k = 1; k < all.size(); ++k) all[k].rarity = 8;
+  return all;
 }
 
 }  // namespace hosel::loop::forms
