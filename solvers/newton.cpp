@@ -50,13 +50,14 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
     r = problem.residual(report.scale);
     report.residual = r.norm();
   };
-  const auto tolerance = [&] { return options_.residual_relative * report.scale + options_.residual_absolute; };
+  const auto tolerance = [&] { return options_.residual_relative * report.scale + options_.residual_absolute + round_off_; };
+  const bool guarded = options_.acceleration > 0;
   const auto slow = [&] {
     const std::size_t n = shrinking.size(), back = options_.acceleration > 0 ? 3 : 1;
     return n > back && shrinking[n - 1] > options_.renew_above * shrinking[n - 1 - back];
   };
   const auto renew = [&] {
-    problem.assemble();
+    round_off_ = problem.assemble();
     factors_.factorise(tangent_);
     ++report.factorisations;
     moved.clear();
@@ -112,14 +113,15 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
         increment = increment_measure(last);
         problem.advance(last);
         evaluate();
-        if (fresh || report.residual <= std::max(before, tolerance())) break;
+        if (fresh || !guarded || report.residual <= std::max(before, tolerance())) break;
         // A kept factor that leads away is not worth following.
         problem.advance(-last);
         evaluate();
         fresh = true;
       }
       // Kinks of contact make a full step overshoot: halve it while that brings the residual down.
-      for (int halvings = 0; halvings < 8 && !(report.residual <= std::max(before, tolerance())); ++halvings) {
+      // Slender structures, whose residual must rise before it falls, are left alone.
+      for (int halvings = 0; guarded && halvings < 8 && !(report.residual <= std::max(before, tolerance())); ++halvings) {
         const double full = report.residual;
         last *= 0.5;
         problem.advance(-last);
