@@ -60,8 +60,8 @@ ShaftIdentification identify_shaft(const Club& club, const SwingOptions& options
     if (m.times.empty()) throw std::invalid_argument("a measured swing has no samples");
     if (!m.train) continue;
     ceres::NumericDiffOptions difference;
-    difference.relative_step_size = 1e-4;
-    auto* cost = new ceres::DynamicNumericDiffCostFunction<Cost, ceres::CENTRAL>(new Cost{club, options, m}, ceres::TAKE_OWNERSHIP, difference);
+    difference.relative_step_size = 5e-3;
+    auto* cost = new ceres::DynamicNumericDiffCostFunction<Cost, ceres::FORWARD>(new Cost{club, options, m}, ceres::TAKE_OWNERSHIP, difference);
     cost->AddParameterBlock(2);
     cost->SetNumResiduals(static_cast<int>(2 * m.times.size()));
     problem.AddResidualBlock(cost, nullptr, p.data());
@@ -87,9 +87,9 @@ ShaftIdentification identify_shaft(const Club& club, const SwingOptions& options
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = 50;
-  solver.function_tolerance = 1e-8;
-  solver.parameter_tolerance = 1e-6;
+  solver.max_num_iterations = 30;
+  solver.function_tolerance = 1e-6;
+  solver.parameter_tolerance = 1e-4;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   out.converged = summary.termination_type == ceres::CONVERGENCE;

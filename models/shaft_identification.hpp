@@ -28,7 +28,7 @@ struct ShaftIdentification {
 };
 
 /// Least squares over all training swings, in the logarithms of scale and damping time (Ceres,
-/// Levenberg-Marquardt, central differences); the covariance takes the noise from the residuals.
+/// Levenberg-Marquardt, forward differences); the covariance takes the noise from the residuals.
 /// `club.shaft` is the nominal shaft, its damping_time the first guess (above zero).
 /// Throws std::invalid_argument on swings without samples.
 ShaftIdentification identify_shaft(const Club& club, const SwingOptions& options, const std::vector<MeasuredSwing>& swings);

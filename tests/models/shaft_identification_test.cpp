@@ -13,17 +13,17 @@ namespace {
 TEST(IdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
   const GripMotion grip(test::swing_track(), 0);
   const fem::Motion motion = [&](double t) { return grip.at(t); };
-  const SwingOptions options{.elements = 5, .step = 2.5e-3};
-  const double truth_scale = 1.5, truth_damping = 2 * 0.03 / (2 * kPi * 4);
+  const SwingOptions options{.elements = 4, .step = 5e-3};
+  const double truth_scale = 1.5, truth_damping = 2 * 0.05 / (2 * kPi * 4);
   Club truth = test::driver_club();
   truth.shaft = scaled(*truth.shaft, truth_scale, 1);
   truth.shaft->damping_time = truth_damping;
 
-  // Three swings: the same downswing from three places on, at 400 Hz.
+  // Two swings: the same downswing from two places on, one held out, at 200 Hz.
   std::vector<MeasuredSwing> clean;
   double signal = 0;
   std::size_t count = 0;
-  for (double begin : {-0.6, -0.5, -0.4}) {
+  for (double begin : {-0.35, -0.3}) {
     MeasuredSwing m{.motion = motion, .begin = begin, .end = 0};
     Swing s(truth, options, {.motion = motion});
     s.run(s.start(begin, s.equilibrium(begin)), 0, [&](const SwingSample& x) {
@@ -52,7 +52,8 @@ TEST(IdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
     EXPECT_NEAR(r.bending_scale, truth_scale, 0.02 * truth_scale) << seed;
     EXPECT_NEAR(r.damping_time, truth_damping, 0.2 * truth_damping) << seed;
     EXPECT_LT(r.holdout_after, 0.5 * r.holdout_before) << seed;
-    EXPECT_NEAR(r.train_after, noise, 0.1 * noise) << seed;
+    // The noise of about 140 numbers is known to 6 %: four times that.
+    EXPECT_NEAR(r.train_after, noise, 0.25 * noise) << seed;
     const bool both = std::abs(r.bending_scale - truth_scale) < 1.96 * std::sqrt(r.covariance(0, 0)) &&
                       std::abs(r.damping_time - truth_damping) < 1.96 * std::sqrt(r.covariance(1, 1));
     inside += both;
