@@ -100,11 +100,12 @@ TEST(ContactFace, ForcesBalance) {
     scene.contact->accept(scene.s);
     for (const auto& p : scene.contact->points(scene.s)) {
       if (p.pressure == 0) continue;
-      // Across the normal where the point stands; the law takes it at the foot, 1e-4 away at this depth.
+      // Across the normal where the point stands. The law's foot is right to first order: 0.8 mm deep and
+      // 20 mm off the centre of a face of 250 mm the normals differ by up to 0.0032 * 0.08 = 2.6e-4.
       const Mat3 R = rotation(scene.s, scene.r).toRotationMatrix();
       const Vec3 place = R.transpose() * (p.position - Vec3(scene.s.q.segment<3>(scene.x.q))) - scene.centre;
       const Vec3 n = R * scene.face.normal(place.y(), place.z());
-      EXPECT_LE((p.traction - p.traction.dot(n) * n).norm(), 0.02 * p.pressure * (1 + 1e-3));
+      EXPECT_LE((p.traction - p.traction.dot(n) * n).norm(), (0.02 + 2.6e-4) * p.pressure);
       ++(p.sliding ? sliding : sticking);
     }
   }
