@@ -1,17 +1,19 @@
 #include "models/shaft_identification.hpp"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "golf/shaft_library.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/least_squares.hpp"
 
 namespace hosel::models {
 namespace {
 
 /// Simulated minus measured deflection at every sample: leads, then droops.
-Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const MeasuredSwing& m, double scale, double damping) {
+Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const MeasuredSwing& m, double scale, double damping, long& shortened) {
   Club club = nominal;
   club.shaft = scaled(*nominal.shaft, scale, 1);
   club.shaft->damping_time = damping;
@@ -32,83 +34,67 @@ Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const M
     last = now;
     first = false;
   });
+  shortened += swing.counts().rejected;
   if (k < n) throw std::invalid_argument("a measured sample lies beyond the end of its swing");
   return out;
 }
 
-struct Cost {
-  const Club& club;
-  const SwingOptions& options;
-  const MeasuredSwing& swing;
-  bool operator()(const double* const* p, double* residual) const {
-    const Eigen::VectorXd e = errors(club, options, swing, std::exp(p[0][0] - 1), club.shaft->damping_time * std::exp(p[0][1] - 1));
-    Eigen::Map<Eigen::VectorXd>(residual, e.size()) = e;
-    return true;
-  }
-};
-
 }  // namespace
 
-ShaftIdentification identify_shaft(const Club& club, const SwingOptions& options, const std::vector<MeasuredSwing>& swings) {
+ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const std::vector<MeasuredSwing>& swings) {
   if (!club.shaft || !(club.shaft->damping_time > 0))
     throw std::invalid_argument("identification starts from a shaft with a damping time above zero");
-  // 1 + log of the ratio to the first guess: away from zero, where relative difference steps would vanish.
-  std::array<double, 2> p{1, 1};
-  ceres::Problem problem;
-  Eigen::Index samples = 0;
+  int samples = 0;
   for (const MeasuredSwing& m : swings) {
     if (m.times.empty()) throw std::invalid_argument("a measured swing has no samples");
-    if (!m.train) continue;
-    ceres::NumericDiffOptions difference;
-    difference.relative_step_size = 5e-3;
-    auto* cost = new ceres::DynamicNumericDiffCostFunction<Cost, ceres::FORWARD>(new Cost{club, options, m}, ceres::TAKE_OWNERSHIP, difference);
-    cost->AddParameterBlock(2);
-    cost->SetNumResiduals(static_cast<int>(2 * m.times.size()));
-    problem.AddResidualBlock(cost, nullptr, p.data());
-    samples += static_cast<Eigen::Index>(2 * m.times.size());
+    if (m.train) samples += static_cast<int>(2 * m.times.size());
   }
-  if (samples == 0) throw std::invalid_argument("no swing to train on");
+  if (samples <= 2) throw std::invalid_argument("no swing to train on");
+  options.tolerance = std::min(options.tolerance, 1e-9);  // what Newton leaves must not show in differences
 
-  ShaftIdentification out;
-  const auto rms = [&](bool train, double scale, double damping) {
-    double sum = 0;
-    Eigen::Index n = 0;
+  long shortened = 0;
+  const auto all = [&](bool train, double scale, double damping) {
+    Eigen::VectorXd out(0);
+    shortened = 0;
     for (const MeasuredSwing& m : swings)
       if (m.train == train) {
-        const Eigen::VectorXd e = errors(club, options, m, scale, damping);
-        sum += e.squaredNorm();
-        n += e.size();
+        const Eigen::VectorXd e = errors(club, options, m, scale, damping, shortened);
+        out.conservativeResize(out.size() + e.size());
+        out.tail(e.size()) = e;
       }
-    return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+    return out;
   };
-  out.train_before = rms(true, 1, club.shaft->damping_time);
-  out.holdout_before = rms(false, 1, club.shaft->damping_time);
+  const auto rms = [&](bool train, double scale, double damping) {
+    const Eigen::VectorXd e = all(train, scale, damping);
+    return e.size() > 0 ? std::sqrt(e.squaredNorm() / static_cast<double>(e.size())) : 0.0;
+  };
+  const double guess = club.shaft->damping_time;
+  ShaftIdentification out;
+  out.train_before = rms(true, 1, guess);
+  out.holdout_before = rms(false, 1, guess);
 
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = 30;
-  solver.function_tolerance = 1e-6;
-  solver.parameter_tolerance = 1e-4;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  out.converged = summary.termination_type == ceres::CONVERGENCE;
-  out.iterations = static_cast<int>(summary.iterations.size());
-  out.bending_scale = std::exp(p[0] - 1);
-  out.damping_time = club.shaft->damping_time * std::exp(p[1] - 1);
-
-  ceres::Covariance covariance{ceres::Covariance::Options()};
-  std::array<double, 4> log_covariance{};
-  const std::vector<std::pair<const double*, const double*>> blocks{{p.data(), p.data()}};
-  if (covariance.Compute(blocks, &problem)) {
-    covariance.GetCovarianceBlock(p.data(), p.data(), log_covariance.data());
-    const double noise = 2 * summary.final_cost / static_cast<double>(samples - 2);
-    const Eigen::Vector2d d(out.bending_scale, out.damping_time);  // d exp(p)
-    out.covariance = noise * d.asDiagonal() * Eigen::Map<const Eigen::Matrix2d>(log_covariance.data()) * d.asDiagonal();
-  } else {
-    out.converged = false;
-  }
+  // In units of the error before, so that the search's tolerances are relative ones.
+  const double unit = out.train_before > 0 ? out.train_before : 1;
+  const solvers::Residuals residuals = [&](const Eigen::VectorXd& log, Eigen::VectorXd& r) {
+    try {
+      r = all(true, std::exp(log[0]), guess * std::exp(log[1])) / unit;
+      return true;
+    } catch (const solvers::NonConvergence&) {
+      return false;  // no swing with such a shaft: a shorter step
+    }
+  };
+  const std::vector<solvers::Bounds> bounds{{-std::log(10.0), std::log(10.0)}, {-std::log(1000.0), std::log(1000.0)}};
+  const solvers::LeastSquaresFit fit = solvers::least_squares(residuals, samples, Eigen::Vector2d::Zero(), bounds, {.starts = 1});
+  for (Eigen::Index i = 0; i < 2; ++i)
+    if (std::abs(fit.parameters[i]) > 0.99 * bounds[static_cast<std::size_t>(i)].high)
+      throw solvers::NonConvergence(i == 0 ? "identify-shaft: no stiffness within a factor of 10 of the nominal fits best"
+                                           : "identify-shaft: no damping within a factor of 1000 of the first guess fits best");
+  out.bending_scale = std::exp(fit.parameters[0]);
+  out.damping_time = guess * std::exp(fit.parameters[1]);
+  const double variance = 2 * fit.cost / static_cast<double>(samples - 2);
+  out.log_covariance = variance * Eigen::Matrix2d(fit.jacobian.transpose() * fit.jacobian).inverse();
   out.train_after = rms(true, out.bending_scale, out.damping_time);
+  out.shortened_steps = shortened;
   out.holdout_after = rms(false, out.bending_scale, out.damping_time);
   return out;
 }

@@ -20,17 +20,21 @@ struct MeasuredSwing {
 struct ShaftIdentification {
   double bending_scale = 1;   ///< of bending and axial stiffness
   double damping_time = 0;    ///< [s]
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of (bending_scale, damping_time)
+  /// Of the logarithms of bending_scale and damping_time: 95 % of a parameter lies within a factor
+  /// exp(+-1.96 sd) of the estimate.
+  Eigen::Matrix2d log_covariance = Eigen::Matrix2d::Zero();
   double train_before = 0, train_after = 0;      ///< RMS error of the deflection [m]
   double holdout_before = 0, holdout_after = 0;  ///< 0 where nothing is held out [m]
-  int iterations = 0;
-  bool converged = false;
+  /// Steps that Newton made shorter, over all training swings at the solution: above zero the swings are
+  /// not smooth functions of the shaft, and the case wants a shorter step.
+  long shortened_steps = 0;
 };
 
-/// Least squares over all training swings, in the logarithms of scale and damping time (Ceres,
-/// Levenberg-Marquardt, forward differences); the covariance takes the noise from the residuals.
+/// Least squares over all training swings, in the logarithms of scale and damping time, within factors of 10
+/// and 1000 of the first guess; derivatives by central differences of swings solved tightly enough for them.
+/// The covariance takes the noise, independent from sample to sample, from the residuals.
 /// `club.shaft` is the nominal shaft, its damping_time the first guess (above zero).
-/// Throws std::invalid_argument on swings without samples.
-ShaftIdentification identify_shaft(const Club& club, const SwingOptions& options, const std::vector<MeasuredSwing>& swings);
+/// Throws std::invalid_argument on swings without samples, NonConvergence where there is no minimum inside.
+ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const std::vector<MeasuredSwing>& swings);
 
 }  // namespace hosel::models

@@ -35,6 +35,7 @@ std::vector<std::string> SwingOptions::faults() const {
   if (!(growth > 0)) out.emplace_back("the growth of the elements is above zero");
   if (!(step > 0)) out.emplace_back("the step is above zero");
   if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf lies in [0, 1]");
+  if (!(tolerance > 0)) out.emplace_back("the tolerance is above zero");
   if (!(grip_point >= 0)) out.emplace_back("the grip point lies on the shaft");
   return out;
 }
@@ -115,8 +116,8 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
 double Swing::mass() const { return shaft_->mass() + (head_ ? head_->properties().mass : 0); }
 
 solvers::NewtonOptions Swing::newton() const {
-  // Displacements to a micrometre, forces to a millionth of what acts.
-  return {.residual_relative = 1e-6, .residual_absolute = 1e-6, .increment_vector = 1e-7, .increment_rotation = 1e-7};
+  const double t = options_.tolerance;
+  return {.residual_relative = t, .residual_absolute = t, .increment_vector = 0.1 * t, .increment_rotation = 0.1 * t};
 }
 
 fem::State Swing::equilibrium(double time, bool kinsol) {

@@ -31,6 +31,7 @@ struct SwingOptions {
   double growth = 1;         ///< of the elements' lengths towards the tip
   double step = 1e-3;        ///< [s]
   double rho_inf = 0.8;      ///< of generalized-alpha
+  double tolerance = 1e-6;   ///< of Newton: forces, of what acts; displacements, of 0.1 m or rad
   bool shear = true;         ///< Timoshenko; false: Rayleigh
   double grip_point = 0;     ///< arc length of the grip point from the butt; the shaft above it is the hands' [m]
   Vec3 gravity = Vec3(0, 0, -kGravity);

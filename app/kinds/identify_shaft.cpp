@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -80,21 +81,28 @@ class IdentifyJob final : public Job {
     bool train = true;
   };
 
+  /// Value with the 95 % interval of its logarithm.
+  static std::array<double, 2> interval(double value, double log_variance) {
+    const double factor = std::exp(1.96 * std::sqrt(log_variance));
+    return {value / factor, value * factor};
+  }
   static nlohmann::json to_json(const models::ShaftIdentification& r) {
-    const double s = std::sqrt(r.covariance(0, 0)), d = std::sqrt(r.covariance(1, 1));
-    return {{"converged", r.converged},
-            {"bending_scale", r.bending_scale},
-            {"bending_scale_95", {r.bending_scale - 1.96 * s, r.bending_scale + 1.96 * s}},
+    return {{"bending_scale", r.bending_scale},
+            {"bending_scale_95", interval(r.bending_scale, r.log_covariance(0, 0))},
             {"damping_time_s", r.damping_time},
-            {"damping_time_95_s", {r.damping_time - 1.96 * d, r.damping_time + 1.96 * d}},
-            {"correlation", r.covariance(0, 1) / (s * d)},
+            {"damping_time_95_s", interval(r.damping_time, r.log_covariance(1, 1))},
+            {"correlation", r.log_covariance(0, 1) / std::sqrt(r.log_covariance(0, 0) * r.log_covariance(1, 1))},
+            {"shortened_steps", r.shortened_steps},
             {"train_rms_mm", {{"before", 1e3 * r.train_before}, {"after", 1e3 * r.train_after}}},
             {"holdout_rms_mm", {{"before", 1e3 * r.holdout_before}, {"after", 1e3 * r.holdout_after}}}};
   }
   static void say(Output& out, const models::ShaftIdentification& r) {
-    out.say(fmt::format("bending stiffness x {:.4f} +- {:.4f}, damping time {:.3g} +- {:.2g} s (95 %); deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
-                        r.bending_scale, 1.96 * std::sqrt(r.covariance(0, 0)), r.damping_time, 1.96 * std::sqrt(r.covariance(1, 1)),
-                        1e3 * r.train_before, 1e3 * r.train_after, 1e3 * r.holdout_before, 1e3 * r.holdout_after));
+    const auto scale = interval(r.bending_scale, r.log_covariance(0, 0)), damping = interval(r.damping_time, r.log_covariance(1, 1));
+    out.say(fmt::format("bending stiffness x {:.4f} (95 %: {:.4f} to {:.4f}), damping time {:.3g} s ({:.3g} to {:.3g}); deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
+                        r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before, 1e3 * r.train_after,
+                        1e3 * r.holdout_before, 1e3 * r.holdout_after));
+    if (r.shortened_steps > 0)
+      out.say(fmt::format("{} steps did not converge at their full length: shorten solution.step, or the interval says too little", r.shortened_steps));
   }
   static void skip(Output& out, const std::filesystem::path& file) {
     const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", file.filename().string());

@@ -5,30 +5,32 @@
 
 #include <random>
 
+#include "golf/shaft_library.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
 namespace {
 
-// Not met: the least-squares search stops early in some seeds (12 of 20 inside their intervals, damping off by up to
-// 70 % in one); it stands here, disabled, until it is.
-TEST(IdentifyShaft, DISABLED_TwentySeedsAtASignalToNoiseRatioOfTwenty) {
+TEST(SlowIdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
   const GripMotion grip(test::swing_track(), 0);
   const fem::Motion motion = [&](double t) { return grip.at(t); };
-  const SwingOptions options{.elements = 4, .step = 5e-3};
   const double truth_scale = 1.5, truth_damping = 2 * 0.05 / (2 * kPi * 4);
   Club truth = test::driver_club();
   truth.shaft = scaled(*truth.shaft, truth_scale, 1);
   truth.shaft->damping_time = truth_damping;
 
-  // Two swings: the same downswing from two places on, one held out, at 200 Hz.
+  // Two swings, the second held out, sampled at 250 Hz. The data come from twice the elements and half the step of
+  // the model that is fitted to them.
+  const SwingOptions model{.elements = 4, .step = 1e-3}, source{.elements = 8, .step = 5e-4, .tolerance = 1e-9};
   std::vector<MeasuredSwing> clean;
   double signal = 0;
   std::size_t count = 0;
   for (double begin : {-0.35, -0.3}) {
     MeasuredSwing m{.motion = motion, .begin = begin, .end = 0};
-    Swing s(truth, options, {.motion = motion});
+    Swing s(truth, source, {.motion = motion});
+    int step = 0;
     s.run(s.start(begin, s.equilibrium(begin)), 0, [&](const SwingSample& x) {
+      if (step++ % 8) return;
       m.times.push_back(x.time);
       m.lead.push_back(x.lead);
       m.droop.push_back(x.droop);
@@ -37,11 +39,13 @@ TEST(IdentifyShaft, DISABLED_TwentySeedsAtASignalToNoiseRatioOfTwenty) {
     });
     clean.push_back(m);
   }
+  EXPECT_EQ(clean.front().times.size(), 88u);
   const double noise = std::sqrt(signal / static_cast<double>(count)) / 20;
-  EXPECT_GT(noise, 1e-4);
+  EXPECT_GT(noise, 1e-3);
 
-  int inside = 0;
+  int scale_inside = 0, damping_inside = 0, both_inside = 0;
   double worst_scale = 0, worst_damping = 0;
+  Eigen::Vector2d scatter = Eigen::Vector2d::Zero(), stated = Eigen::Vector2d::Zero();  // mean squares of 20 seeds
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, noise);
@@ -49,23 +53,37 @@ TEST(IdentifyShaft, DISABLED_TwentySeedsAtASignalToNoiseRatioOfTwenty) {
     for (MeasuredSwing& m : noisy)
       for (std::size_t i = 0; i < m.times.size(); ++i) m.lead[i] += normal(random), m.droop[i] += normal(random);
     noisy.back().train = false;
-    const ShaftIdentification r = identify_shaft(test::driver_club(), options, noisy);
-    EXPECT_TRUE(r.converged);
+    const ShaftIdentification r = identify_shaft(test::driver_club(), model, noisy);
+    EXPECT_EQ(r.shortened_steps, 0);
     EXPECT_NEAR(r.bending_scale, truth_scale, 0.02 * truth_scale) << seed;
     EXPECT_NEAR(r.damping_time, truth_damping, 0.2 * truth_damping) << seed;
     EXPECT_LT(r.holdout_after, 0.5 * r.holdout_before) << seed;
-    // The noise of about 140 numbers is known to 6 %: four times that.
-    EXPECT_NEAR(r.train_after, noise, 0.25 * noise) << seed;
-    const bool both = std::abs(r.bending_scale - truth_scale) < 1.96 * std::sqrt(r.covariance(0, 0)) &&
-                      std::abs(r.damping_time - truth_damping) < 1.96 * std::sqrt(r.covariance(1, 1));
-    inside += both;
+    // The noise of 176 numbers is known to 5 %: four times that.
+    EXPECT_NEAR(r.train_after, noise, 0.2 * noise) << seed;
+    const Eigen::Vector2d off(std::log(r.bending_scale / truth_scale), std::log(r.damping_time / truth_damping));
+    const Eigen::Vector2d variance = r.log_covariance.diagonal();
+    const bool scale = std::abs(off[0]) < 1.96 * std::sqrt(variance[0]), damping = std::abs(off[1]) < 1.96 * std::sqrt(variance[1]);
+    scale_inside += scale;
+    damping_inside += damping;
+    both_inside += scale && damping;
+    scatter += off.cwiseAbs2() / 20;
+    stated += variance / 20;
     worst_scale = std::max(worst_scale, std::abs(r.bending_scale / truth_scale - 1));
     worst_damping = std::max(worst_damping, std::abs(r.damping_time / truth_damping - 1));
   }
-  EXPECT_GE(inside, 17);
+  EXPECT_GE(both_inside, 17);
+  // The stated variance against that of the seeds: chi-square of 20 lies in 7.4 to 40 in 99 of 100 cases.
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(scatter[i], 7.4 / 20 * stated[i]) << i;
+    EXPECT_LT(scatter[i], 40.0 / 20 * stated[i]) << i;
+  }
   RecordProperty("worst_scale", std::to_string(worst_scale));
   RecordProperty("worst_damping", std::to_string(worst_damping));
-  RecordProperty("inside", inside);
+  RecordProperty("scale_inside", scale_inside);
+  RecordProperty("damping_inside", damping_inside);
+  RecordProperty("both_inside", both_inside);
+  std::printf("worst scale %.2f %%, damping %.1f %%; inside: scale %d, damping %d, both %d of 20\n", 100 * worst_scale, 100 * worst_damping,
+              scale_inside, damping_inside, both_inside);
 }
 
 }  // namespace
