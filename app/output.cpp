@@ -80,6 +80,7 @@ void Progress::finish(std::string_view note) {
 
 struct Output::State {
   OutputOptions options;
+  std::string resolved;
   std::shared_ptr<spdlog::logger> logger;
 };
 
@@ -99,6 +100,7 @@ Output::Output(OutputOptions options, std::string_view resolved) : state_(std::m
   state_->logger = std::make_shared<spdlog::logger>("hosel", sinks.begin(), sinks.end());
   state_->logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
   state_->logger->flush_on(spdlog::level::info);
+  state_->resolved = resolved;
   write("case.resolved.toml", resolved);
 }
 
@@ -110,6 +112,8 @@ fs::path Output::path(std::string_view name) const {
   fs::create_directories(p.parent_path());
   return p;
 }
+
+const std::string& Output::resolved_case() const { return state_->resolved; }
 
 bool Output::quiet() const { return state_->options.quiet; }
 bool Output::force() const { return state_->options.force; }

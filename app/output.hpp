@@ -44,6 +44,7 @@ class Output {
 
   const std::filesystem::path& directory() const;
   std::filesystem::path path(std::string_view name) const;  ///< OUT/name, parent folders made
+  const std::string& resolved_case() const;  ///< as written to `case.resolved.toml`
   bool quiet() const;
   bool force() const;  ///< what an unfinished run left is to be discarded
 

@@ -10,7 +10,8 @@ function(hosel_floor name)
     add_library(hosel_${name} STATIC ${sources} ${headers})
     set(scope PUBLIC)
     target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict
-                           $<$<BOOL:${HOSEL_WERROR}>:-Werror>)
+                           # Designated initialisers leave out what has a default.
+                           "$<$<BOOL:${HOSEL_WERROR}>:-Werror;-Wno-missing-field-initializers>")
   endif()
   add_library(hosel::${name} ALIAS hosel_${name})
   set_target_properties(hosel_${name} PROPERTIES EXPORT_NAME ${name})

@@ -2,6 +2,18 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 get_property(floors GLOBAL PROPERTY HOSEL_FLOORS)
+# Eigen's alignment is part of the binary interface and follows the instruction set that the library is built for:
+# whoever links it takes the same value, whatever its own flags are.
+separate_arguments(flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
+execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${flags} -dM -E -x c++ /dev/null OUTPUT_VARIABLE macros)
+if(macros MATCHES "__AVX512F__")
+  set(alignment 64)
+elseif(macros MATCHES "__AVX__")
+  set(alignment 32)
+else()
+  set(alignment 16)
+endif()
+target_compile_definitions(hosel_golf INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=${alignment}>)
 install(TARGETS ${floors} EXPORT hosel ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS hosel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY golf mesh fem solvers models post loop app

@@ -40,26 +40,23 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   return out;
 }
 
-FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer) {
+FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer,
+                          const ImpactCheckpoint* from) {
   FullClubImpact impact = assemble_full_club(blow, options);
   impact.parts.shaft = impact.shaft;
   FeOutcome out;
-  fem::State last;
   out.result = run_impact(impact.system, impact.parts, impact.initial, options.impact, impact.encounter.normal_speed,
-                          [&](const ImpactView& view) {
-                            last = view.state;
-                            if (observer) observer(view);
-                          });
+                          observer, from);
   out.launch = launch_of(out.result);
-  out.launch.head_velocity = impact.head->velocity(last);
-  out.launch.head_spin = impact.head->angular_velocity(last);
+  out.launch.head_velocity = impact.head->velocity(out.result.last);
+  out.launch.head_spin = impact.head->angular_velocity(out.result.last);
   return out;
 }
 
 FeFullClub::FeFullClub(FeFullClubOptions options) : options_(std::move(options)) {}
 
-FeOutcome FeFullClub::solve(const Blow& blow, const ImpactObserver& observer) const {
-  return solve_full_club(blow, options_, observer);
+FeOutcome FeFullClub::solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const {
+  return solve_full_club(blow, options_, observer, from);
 }
 
 }  // namespace hosel::models

@@ -24,13 +24,14 @@ struct FullClubImpact {
 /// Throws std::invalid_argument on a club without shaft or with a head of infinite mass.
 FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& options);
 
-FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer = {});
+FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, const ImpactObserver& observer = {},
+                          const ImpactCheckpoint* from = nullptr);
 
 /// `fe-full-club` behind the common interface.
 class FeFullClub final : public FeModel {
  public:
   explicit FeFullClub(FeFullClubOptions options);
-  FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const override;
+  FeOutcome solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const override;
 
  private:
   FeFullClubOptions options_;

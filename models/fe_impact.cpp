@@ -153,7 +153,7 @@ FacePose face_pose(const fem::ContactFace& contact, const fem::State& s) {
 }  // namespace
 
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial, const FeImpactOptions& o,
-                          double approach_speed, const ImpactObserver& observer) {
+                          double approach_speed, const ImpactObserver& observer, const ImpactCheckpoint* from) {
   parts.contact->start(initial);
   const double mass = parts.ball->mass(), radius = parts.ball->mesh().radius;
   const double expected = hertz_time(mass, radius, o.ball.instant_young(), approach_speed);
@@ -177,36 +177,44 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   const Mat3 inertia = parts.ball->motion(system.layout.rest()).inertia;
   const double gap0 = parts.contact->centre_gap(initial);
   solvers::GeneralizedAlpha solver(system, options, std::move(initial));
-  FeImpactResult out;
+  ImpactCheckpoint at{.last_gap = gap0};
+  if (from) {
+    at = *from;
+    solver.restore(from->solver);
+  }
+  FeImpactResult& out = at.so_far;
+  const solvers::GeneralizedAlpha::Counts before = out.counts;
   const auto observe = [&](const fem::ContactReport& report) {
-    if (observer) observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
-                            face_pose(*parts.contact, solver.state()), expected, parts.shaft});
+    if (observer)
+      observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
+                face_pose(*parts.contact, solver.state()), expected, parts.shaft, [&] {
+                  at.solver = solver.checkpoint();
+                  return at;
+                }});
   };
-  observe(parts.contact->report(solver.state()));
+  if (!from) observe(parts.contact->report(solver.state()));
 
-  bool touched = false;
-  double last_touch = 0, last_gap = gap0;
-  for (;;) {
-    const double before = solver.time();
-    solver.advance(before + step);
+  while (!at.over) {
+    solver.advance(solver.time() + step);
     const fem::ContactReport report = parts.contact->report(solver.state());
-    observe(report);
     const double now = solver.time();
     if (report.points > 0) {
-      touched = true;
-      last_touch = now;
+      at.touched = true;
+      at.last_touch = now;
       if (report.normal_force > out.peak_force) {
         out.peak_force = report.normal_force;
         out.peak_time = now;
       }
     }
     const double gap = parts.contact->centre_gap(solver.state());
-    const bool leaving = gap > last_gap;  // a stiff skin may bounce while the ball still comes nearer
-    last_gap = gap;
+    const bool leaving = gap > at.last_gap;  // a stiff skin may bounce while the ball still comes nearer
+    at.last_gap = gap;
     out.compression = std::max(out.compression, gap0 - gap);
     out.penetration = report.penetration;
     out.creep = report.stick_slip_error;
-    if (touched && leaving && report.points == 0 && now >= last_touch * (1 + o.after)) break;
+    out.counts = before + solver.counts();
+    at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + o.after);
+    observe(report);
     if (!(std::abs(solver.ledger().closure) <= 0.05 * solver.ledger().initial)) {
       std::ostringstream text;
       text << "at t = " << now << " s the energy of the impact is out of balance by "
@@ -216,7 +224,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     }
     if (now > 20 * expected) {
       std::ostringstream text;
-      text << "ball and face " << (touched ? "are still in contact" : "have not met") << " after " << now
+      text << "ball and face " << (at.touched ? "are still in contact" : "have not met") << " after " << now
            << " s, twenty times the time that Hertz's theory expects: is the ball far too soft or viscous?";
       throw solvers::NonConvergence(text.str());
     }
@@ -224,10 +232,10 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   const fem::MeanMotion motion = parts.ball->motion(solver.state());
   out.ball_velocity = motion.velocity;
   out.ball_spin = inertia.inverse() * motion.angular_momentum;
-  out.contact_time = last_touch;
+  out.contact_time = at.last_touch;
   out.dissipated = parts.ball->dissipated();
   out.ledger = solver.ledger();
-  out.counts = solver.counts();
+  out.last = solver.state();
   return out;
 }
 
@@ -282,19 +290,15 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
   return out;
 }
 
-FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer) {
+FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer,
+                          const ImpactCheckpoint* from) {
   FreeBodyImpact impact = assemble_free_body(blow, options);
   FeOutcome out;
-  fem::State last;
-  out.result = run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed,
-                          [&](const ImpactView& view) {
-                            if (impact.head) last = view.state;
-                            if (observer) observer(view);
-                          });
+  out.result = run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed, observer, from);
   out.launch = launch_of(out.result);
   if (impact.head) {
-    out.launch.head_velocity = impact.head->velocity(last);
-    out.launch.head_spin = impact.head->angular_velocity(last);
+    out.launch.head_velocity = impact.head->velocity(out.result.last);
+    out.launch.head_spin = impact.head->angular_velocity(out.result.last);
   } else {
     out.launch.velocity += blow.delivery.velocity();
     out.launch.head_velocity = blow.delivery.velocity();
@@ -306,8 +310,8 @@ FeFreeBody::FeFreeBody(FeImpactOptions options) : options_(std::move(options)) {
   if (const auto faults = options_.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
 }
 
-FeOutcome FeFreeBody::solve(const Blow& blow, const ImpactObserver& observer) const {
-  return solve_free_body(blow, options_, observer);
+FeOutcome FeFreeBody::solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const {
+  return solve_free_body(blow, options_, observer, from);
 }
 
 }  // namespace hosel::models

@@ -78,20 +78,6 @@ struct FacePose {
   Vec3 spin = Vec3::Zero();        ///< global [rad/s]
 };
 
-/// What an observer sees after every accepted step, and once at the start.
-struct ImpactView {
-  const fem::System& system;
-  const fem::State& state;
-  const fem::HarmonicSolid& ball;
-  const fem::ContactFace& contact;
-  const fem::ContactReport& report;
-  const solvers::Ledger& ledger;
-  FacePose face;
-  double expected_end = 0;            ///< when Hertz's theory would have contact end [s]
-  const fem::Beam* shaft = nullptr;   ///< of a full club
-};
-using ImpactObserver = std::function<void(const ImpactView&)>;
-
 /// What the impact was.
 struct FeImpactResult {
   Vec3 ball_velocity = Vec3::Zero();  ///< of the centre of mass: momentum over mass, global [m/s]
@@ -107,17 +93,44 @@ struct FeImpactResult {
   std::vector<double> dissipated;     ///< by layer [J]
   solvers::Ledger ledger;
   solvers::GeneralizedAlpha::Counts counts;
+  fem::State last;                    ///< when it was over
 };
+
+/// An impact under way: all that is needed to go on exactly where it was.
+struct ImpactCheckpoint {
+  solvers::Checkpoint solver;
+  FeImpactResult so_far;   ///< what grows with the steps: peak, compression
+  bool touched = false, over = false;
+  double last_touch = 0;   ///< [s]
+  double last_gap = 0;     ///< between ball centre and face [m]
+};
+
+/// What an observer sees after every accepted step, and once at the start.
+struct ImpactView {
+  const fem::System& system;
+  const fem::State& state;
+  const fem::HarmonicSolid& ball;
+  const fem::ContactFace& contact;
+  const fem::ContactReport& report;
+  const solvers::Ledger& ledger;
+  FacePose face;
+  double expected_end = 0;            ///< when Hertz's theory would have contact end [s]
+  const fem::Beam* shaft = nullptr;   ///< of a full club
+  std::function<ImpactCheckpoint()> checkpoint;
+};
+using ImpactObserver = std::function<void(const ImpactView&)>;
 
 struct FeOutcome {
   FeImpactResult result;
   Launch launch;
 };
 
-/// A model whose impact can be watched step by step.
+/// A model whose impact can be watched step by step, and gone on with from where it stopped.
 class FeModel : public ImpactModel {
  public:
-  virtual FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const = 0;
+  /// `from`: a checkpoint that an observer of the same blow and options was given.
+  virtual FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {},
+                          const ImpactCheckpoint* from = nullptr) const = 0;
   Launch launch(const Blow& blow) const final { return solve(blow).launch; }
 };
 
@@ -125,7 +138,7 @@ class FeModel : public ImpactModel {
 /// Throws solvers::NonConvergence.
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial,
                           const FeImpactOptions& options, double approach_speed,
-                          const ImpactObserver& observer = {});
+                          const ImpactObserver& observer = {}, const ImpactCheckpoint* from = nullptr);
 
 /// What the ball does, from the result; the head's motion is the caller's to add.
 Launch launch_of(const FeImpactResult& result);
@@ -140,13 +153,14 @@ struct FreeBodyImpact {
 };
 FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options);
 
-FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {});
+FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {},
+                          const ImpactCheckpoint* from = nullptr);
 
 /// `fe-free-body` behind the common interface.
 class FeFreeBody final : public FeModel {
  public:
   explicit FeFreeBody(FeImpactOptions options);
-  FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {}) const override;
+  FeOutcome solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const override;
 
  private:
   FeImpactOptions options_;

@@ -11,8 +11,9 @@ namespace hosel::post {
 
 class History {
  public:
-  /// Columns as `name_unit`; an existing file is replaced. Throws std::runtime_error if it cannot be.
-  History(const std::filesystem::path& file, const std::vector<std::string>& columns);
+  /// Columns as `name_unit`. An existing file is replaced, but for its lines up to `resume_after` in the
+  /// first column where that is not negative. Throws std::runtime_error if it cannot be written.
+  History(const std::filesystem::path& file, const std::vector<std::string>& columns, double resume_after = -1);
   /// One value a column, else std::invalid_argument.
   void write(std::span<const double> values);
 

@@ -6,6 +6,7 @@
 
 #include "post/ball_mesh.hpp"
 #include "post/bodies.hpp"
+#include "post/checkpoint.hpp"
 #include "post/history.hpp"
 #include "post/vtk_series.hpp"
 
@@ -60,11 +61,17 @@ struct ImpactRecorder::State {
   VtkMesh face_shape, head_shape;
   std::optional<History> history;
   std::optional<VtkSeries> ball, face, head, shaft;
+  std::string run;
+  std::optional<SavedImpact> resumed;
   std::optional<Pose> start;
   long steps = 0;
+
+  /// Output up to here is kept; negative: none.
+  double kept() const { return resumed ? resumed->impact.solver.state.time : -1; }
+  fs::path checkpoint() const { return directory / "checkpoint.cbor"; }
 };
 
-ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOptions options)
+ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOptions options, std::string run)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.directory = std::move(directory);
@@ -73,9 +80,21 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   fs::create_directories(s.directory);
   s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
   s.head_shape = head_mesh(blow.club.head, options.face_width, options.face_height);
+  s.run = std::move(run);
+  s.resumed = load_checkpoint(s.checkpoint(), s.run);
+  if (!s.resumed) {
+    fs::remove(s.checkpoint());
+    return;
+  }
+  s.start = Pose{s.resumed->face_centre, s.resumed->face_axes};
+  s.steps = s.resumed->steps;
 }
 
 ImpactRecorder::~ImpactRecorder() = default;
+
+const models::ImpactCheckpoint* ImpactRecorder::resume() const {
+  return state_->resumed ? &state_->resumed->impact : nullptr;
+}
 
 void ImpactRecorder::operator()(const models::ImpactView& view) {
   State& s = *state_;
@@ -86,7 +105,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
     for (const auto& [body, joules] : e.strain)
       if (deforms(body)) columns.push_back("strain_" + body + "_J");
     for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"}) columns.emplace_back(name);
-    s.history.emplace(s.directory / "history.csv", columns);
+    s.history.emplace(s.directory / "history.csv", columns, s.kept());
   }
   const models::FacePose face = view.face;
   const Vec3 force = face.axes.transpose() * view.report.force;
@@ -97,27 +116,30 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
   s.history->write(row);
 
-  if (!s.options.vtk || s.steps++ % s.options.steps_per_frame != 0) return;
   const Pose now{face.centre, face.axes};
-  if (!s.start) {
-    s.start = now;
+  if (!s.start) s.start = now;
+  if (s.steps++ % s.options.steps_per_frame != 0) return;
+  if (s.options.vtk) {
     const fs::path vtk = s.directory / "vtk";
-    s.ball.emplace(vtk, "ball", VtkSeries::Form::volume);
-    s.face.emplace(vtk, "face", VtkSeries::Form::surface);
-    s.head.emplace(vtk, "head", VtkSeries::Form::surface);
-    if (view.shaft) s.shaft.emplace(vtk, "shaft", VtkSeries::Form::surface);
+    if (!s.ball) {
+      s.ball.emplace(vtk, "ball", VtkSeries::Form::volume, s.kept());
+      s.face.emplace(vtk, "face", VtkSeries::Form::surface, s.kept());
+      s.head.emplace(vtk, "head", VtkSeries::Form::surface, s.kept());
+      if (view.shaft) s.shaft.emplace(vtk, "shaft", VtkSeries::Form::surface, s.kept());
+    }
+    const double time = view.state.time;
+    s.ball->write(time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
+    s.face->write(time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
+    s.head->write(time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
+    if (view.shaft) s.shaft->write(time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
   }
-  const double time = view.state.time;
-  s.ball->write(time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
-  s.face->write(time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
-  s.head->write(time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
-  if (view.shaft) s.shaft->write(time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+  save_checkpoint(s.checkpoint(), s.run, {view.checkpoint(), s.start->origin, s.start->rotation, s.steps});
 }
 
 std::vector<fs::path> ImpactRecorder::files() const {
   std::vector<fs::path> out;
-  for (const auto* series : {&state_->ball, &state_->face, &state_->head, &state_->shaft})
-    if (*series) out.push_back((*series)->file());
+  for (const char* body : {"ball", "face", "head", "shaft"})
+    if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file)) out.push_back(file);
   return out;
 }
 

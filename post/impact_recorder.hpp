@@ -20,10 +20,14 @@ struct RecorderOptions {
 
 class ImpactRecorder {
  public:
-  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,face,head,shaft}.pvd.
-  ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options);
+  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,face,head,shaft}.pvd, and with every frame
+  /// DIRECTORY/checkpoint.cbor. `run` names what is computed: where a checkpoint of the same run lies
+  /// there, what it had written is kept and gone on with.
+  ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options, std::string run);
   ~ImpactRecorder();
   void operator()(const models::ImpactView& view);
+  /// Where the impact goes on from; null: from the start.
+  const models::ImpactCheckpoint* resume() const;
   /// The series written, for a person to open.
   std::vector<std::filesystem::path> files() const;
 

@@ -84,6 +84,9 @@ class GeneralizedAlpha {
 
   struct Counts {
     long steps = 0, rejected = 0, iterations = 0, factorisations = 0;
+    friend Counts operator+(const Counts& a, const Counts& b) {
+      return {a.steps + b.steps, a.rejected + b.rejected, a.iterations + b.iterations, a.factorisations + b.factorisations};
+    }
   };
   const Counts& counts() const { return counts_; }
 

@@ -42,14 +42,12 @@ class ImpactJob final : public Job {
   }
 
   void run(Output& out) override {
-    const auto fe_models = std::ranges::count_if(models_, [](const Entry& e) { return e.fe() != nullptr; });
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
     for (const Entry& entry : models_) {
       if (const models::FeModel* fe = entry.fe()) {
-        const fs::path home = fe_models > 1 ? out.directory() / entry.name : out.directory();
-        const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home, files);
+        const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
@@ -63,6 +61,8 @@ class ImpactJob final : public Job {
     out.say(post::launch_table(columns, measured_));
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
+    for (const Entry& entry : models_)
+      if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
   }
 
  private:
@@ -72,15 +72,27 @@ class ImpactJob final : public Job {
     const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
   };
 
+  /// Where an FE model's files go: OUT itself, or OUT/<model> where several models share it.
+  fs::path home(const Output& out, const Entry& entry) const {
+    const auto several = std::ranges::count_if(models_, [](const Entry& e) { return e.fe() != nullptr; }) > 1;
+    return several ? out.directory() / entry.name : out.directory();
+  }
+
   models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const fs::path& home,
                            std::vector<fs::path>& files) const {
-    post::ImpactRecorder recorder(home, blow_, record_);
+    if (out.force()) fs::remove(home / "checkpoint.cbor");
+    post::ImpactRecorder recorder(home, blow_, record_, name + "\n" + out.resolved_case());
+    if (const models::ImpactCheckpoint* from = recorder.resume())
+      out.say(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name, 1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
-    const models::FeOutcome outcome = model.solve(blow_, [&](const models::ImpactView& view) {
-      recorder(view);
-      progress.update(std::min(0.99, view.state.time / view.expected_end),
-                      fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
-    });
+    const models::FeOutcome outcome = model.solve(
+        blow_,
+        [&](const models::ImpactView& view) {
+          recorder(view);
+          progress.update(std::min(0.99, view.state.time / view.expected_end),
+                          fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
+        },
+        recorder.resume());
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
     return outcome;

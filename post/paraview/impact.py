@@ -70,7 +70,7 @@ for body, colour, opacity in ((warped_face, [0.35, 0.35, 0.4], 1.0), (warped_hea
         display.Opacity = opacity
         display.ColorArrayName = ["POINTS", ""]
 if warped_shaft is not None:
-    tube = Tube(Input=warped_shaft, Radius=0.005)
+    tube = Tube(Input=warped_shaft, Radius=0.005, NumberofSides=32)
     display = Show(tube, view)
     display.ColorArrayName = ["POINTS", ""]
     display.DiffuseColor = [0.2, 0.2, 0.2]

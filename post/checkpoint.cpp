@@ -1,0 +1,136 @@
+#include "post/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
+
+namespace hosel::post {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+template <class Dense>
+json numbers(const Dense& x) {
+  return std::vector<double>(x.data(), x.data() + x.size());
+}
+
+template <class Dense>
+void numbers(const json& j, Dense& x) {
+  const auto values = j.get<std::vector<double>>();
+  if constexpr (Dense::SizeAtCompileTime == Eigen::Dynamic) x.resize(Eigen::Index(values.size()));
+  if (Eigen::Index(values.size()) != x.size()) throw std::length_error("checkpoint");
+  std::copy(values.begin(), values.end(), x.data());
+}
+
+json to_json(const fem::State& s) {
+  return {{"time", s.time}, {"q", numbers(s.q)}, {"v", numbers(s.v)}, {"a", numbers(s.a)}};
+}
+
+void from_json(const json& j, fem::State& s) {
+  s.time = j.at("time");
+  numbers(j.at("q"), s.q);
+  numbers(j.at("v"), s.v);
+  numbers(j.at("a"), s.a);
+}
+
+json to_json(const solvers::Ledger& l) {
+  return {{"time", l.time},         {"kinetic", l.kinetic},     {"strain", l.strain},     {"contact", l.contact},
+          {"friction", l.friction}, {"viscous", l.viscous},     {"numerical", l.numerical}, {"external", l.external},
+          {"initial", l.initial},   {"closure", l.closure}};
+}
+
+void from_json(const json& j, solvers::Ledger& l) {
+  l.time = j.at("time");
+  l.kinetic = j.at("kinetic");
+  l.strain = j.at("strain").get<std::vector<std::pair<std::string, double>>>();
+  l.contact = j.at("contact");
+  l.friction = j.at("friction");
+  l.viscous = j.at("viscous");
+  l.numerical = j.at("numerical");
+  l.external = j.at("external");
+  l.initial = j.at("initial");
+  l.closure = j.at("closure");
+}
+
+}  // namespace
+
+void save_checkpoint(const fs::path& file, const std::string& run, const SavedImpact& saved) {
+  const models::ImpactCheckpoint& i = saved.impact;
+  const solvers::Checkpoint& s = i.solver;
+  const models::FeImpactResult& r = i.so_far;
+  const json j = {
+      {"run", run},
+      {"solver",
+       {{"state", to_json(s.state)},
+        {"auxiliary", numbers(s.auxiliary)},
+        {"step", s.step},
+        {"last_step", s.last_step},
+        {"ledger", to_json(s.ledger)},
+        {"friction_before", s.friction_before},
+        {"viscous_before", s.viscous_before},
+        {"external_before", s.external_before},
+        {"history", s.history}}},
+      {"so_far",
+       {{"peak_force", r.peak_force},
+        {"peak_time", r.peak_time},
+        {"compression", r.compression},
+        {"penetration", r.penetration},
+        {"creep", r.creep},
+        {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
+      {"touched", i.touched},
+      {"over", i.over},
+      {"last_touch", i.last_touch},
+      {"last_gap", i.last_gap},
+      {"face_centre", numbers(saved.face_centre)},
+      {"face_axes", numbers(saved.face_axes)},
+      {"steps", saved.steps}};
+  const fs::path beside = file.string() + ".part";
+  {
+    std::ofstream out(beside, std::ios::binary);
+    const std::vector<std::uint8_t> bytes = json::to_cbor(j);
+    out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  }
+  fs::rename(beside, file);
+}
+
+std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::string& run) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  const json j = json::from_cbor(std::vector<char>(std::istreambuf_iterator<char>(in), {}), true, false);
+  if (!j.is_object() || j.value("run", "") != run) return std::nullopt;
+  SavedImpact out;
+  models::ImpactCheckpoint& i = out.impact;
+  const json &s = j.at("solver"), &r = j.at("so_far");
+  from_json(s.at("state"), i.solver.state);
+  numbers(s.at("auxiliary"), i.solver.auxiliary);
+  i.solver.step = s.at("step");
+  i.solver.last_step = s.at("last_step");
+  from_json(s.at("ledger"), i.solver.ledger);
+  i.solver.friction_before = s.at("friction_before");
+  i.solver.viscous_before = s.at("viscous_before");
+  i.solver.external_before = s.at("external_before");
+  i.solver.history = s.at("history").get<std::vector<double>>();
+  i.so_far.peak_force = r.at("peak_force");
+  i.so_far.peak_time = r.at("peak_time");
+  i.so_far.compression = r.at("compression");
+  i.so_far.penetration = r.at("penetration");
+  i.so_far.creep = r.at("creep");
+  const auto counts = r.at("counts").get<std::array<long, 4>>();
+  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3]};
+  i.touched = j.at("touched");
+  i.over = j.at("over");
+  i.last_touch = j.at("last_touch");
+  i.last_gap = j.at("last_gap");
+  numbers(j.at("face_centre"), out.face_centre);
+  numbers(j.at("face_axes"), out.face_axes);
+  out.steps = j.at("steps");
+  return out;
+}
+
+}  // namespace hosel::post

@@ -1,0 +1,196 @@
+// What `hosel run` on an impact leaves on disk, opened as a person would.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUtilities.h>
+
+#include <Eigen/Core>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "command.hpp"
+
+namespace hosel::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// driver-toe with the full club alone on a coarse mesh: all four bodies in a few seconds.
+std::string coarse_full_club() {
+  return "run " HOSEL_SOURCE "/cases/driver-toe --quiet --set 'models=[\"fe-full-club\"]' --set mesh.sector=2 "
+         "--set mesh.rings=2 --set mesh.harmonics=2 --set mesh.antisymmetric=2 --set time.steps_per_contact=40 --set output.steps_per_frame=2 --out ";
+}
+
+struct Frame {
+  double time;
+  fs::path file;
+};
+
+/// Entries of a .pvd in their order; empty where it is no well-formed collection.
+std::vector<Frame> frames(const fs::path& pvd) {
+  std::vector<Frame> out;
+  auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(pvd.c_str()));
+  vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
+  for (int i = 0; collection && i < collection->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* e = collection->GetNestedElement(i);
+    double time = -1;
+    EXPECT_TRUE(e->GetScalarAttribute("timestep", time));
+    out.push_back({time, pvd.parent_path() / e->GetAttribute("file")});
+  }
+  return out;
+}
+
+vtkSmartPointer<vtkDataSet> read(const fs::path& file) {
+  if (file.extension() == ".vtu") {
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    reader->SetFileName(file.c_str());
+    reader->Update();
+    EXPECT_EQ(reader->GetErrorCode(), 0u) << file;
+    return reader->GetOutput();
+  }
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  EXPECT_EQ(reader->GetErrorCode(), 0u) << file;
+  return reader->GetOutput();
+}
+
+/// Rows of history.csv by column name.
+std::map<std::string, std::vector<double>> columns(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line, cell;
+  std::getline(in, line);
+  std::vector<std::string> names;
+  for (std::stringstream s(line); std::getline(s, cell, ',');) names.push_back(cell);
+  std::map<std::string, std::vector<double>> out;
+  while (std::getline(in, line)) {
+    std::stringstream s(line);
+    for (const std::string& name : names) std::getline(s, cell, ','), out[name].push_back(std::stod(cell));
+  }
+  return out;
+}
+
+struct Array {
+  const char* name;
+  int components;
+  const char* unit;
+};
+
+TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
+  const fs::path out = fresh_directory("read_back") / "out";
+  const Outcome run = command(coarse_full_club() + out.string());
+  ASSERT_EQ(run.status, 0) << run.text;
+  const auto history = columns(out / "history.csv");
+  const std::vector<double>& force = history.at("normal_force_N");
+  const auto peak = std::ranges::max_element(force);
+  ASSERT_GT(*peak, 8e3);  // the blow happened
+  const double peak_time = history.at("time_s")[std::size_t(peak - force.begin())];
+
+  const std::map<std::string, std::vector<Array>> expected = {
+      {"ball", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"contact_traction", 3, "Pa"}, {"cauchy_stress", 6, "Pa"},
+                {"von_mises", 1, "Pa"}, {"contact_pressure", 1, "Pa"}}},
+      {"face", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
+      {"head", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
+      {"shaft", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"radius", 1, "m"}}}};
+  for (const auto& [body, arrays] : expected) {
+    const std::vector<Frame> series = frames(out / "vtk" / (body + ".pvd"));
+    ASSERT_GT(series.size(), 10u) << body;
+    double last = -1;
+    for (const Frame& frame : series) {
+      EXPECT_GT(frame.time, last) << body;
+      last = frame.time;
+      const auto data = read(frame.file);
+      ASSERT_GT(data->GetNumberOfPoints(), 0) << frame.file;
+      EXPECT_NEAR(data->GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), frame.time, 1e-8 * frame.time);
+      for (const Array& a : arrays) {
+        vtkDataArray* array = data->GetPointData()->GetArray(a.name);
+        ASSERT_NE(array, nullptr) << body << ' ' << a.name;
+        EXPECT_EQ(array->GetNumberOfComponents(), a.components) << a.name;
+        ASSERT_TRUE(array->GetInformation()->Has(vtkDataArray::UNITS_LABEL())) << a.name;
+        EXPECT_STREQ(array->GetInformation()->Get(vtkDataArray::UNITS_LABEL()), a.unit);
+        for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+          for (int c = 0; c < a.components; ++c) ASSERT_TRUE(std::isfinite(array->GetComponent(i, c))) << a.name;
+      }
+    }
+    EXPECT_GT(last, 0.35e-3);
+  }
+
+  // At the largest force the ball is flat against the face: thinner along the blow than across by millimetres.
+  const std::vector<Frame> series = frames(out / "vtk" / "ball.pvd");
+  const auto at = std::ranges::min_element(series, {}, [&](const Frame& f) { return std::abs(f.time - peak_time); });
+  const auto ball = read(at->file);
+  vtkDataArray* u = ball->GetPointData()->GetArray("displacement");
+  Eigen::Array3d low = Eigen::Array3d::Constant(1e9), high = -low;
+  double pressure = 0;
+  for (vtkIdType i = 0; i < ball->GetNumberOfPoints(); ++i) {
+    const Eigen::Array3d x = Eigen::Map<const Eigen::Array3d>(ball->GetPoint(i)) +
+                             Eigen::Array3d(u->GetComponent(i, 0), u->GetComponent(i, 1), u->GetComponent(i, 2));
+    low = low.min(x);
+    high = high.max(x);
+    pressure = std::max(pressure, ball->GetPointData()->GetArray("contact_pressure")->GetComponent(i, 0));
+  }
+  const Eigen::Array3d size = high - low;
+  EXPECT_LT(size.x(), size.y() - 4e-3);
+  EXPECT_GT(pressure, 10e6);
+  // The face is curved as its radii of 300 mm say: 40 mm towards heel and toe are 2.7 mm lower than the middle.
+  const auto face = read(frames(out / "vtk" / "face.pvd").front().file);
+  double bounds[6];
+  face->GetBounds(bounds);
+  EXPECT_GT(bounds[1] - bounds[0], 2e-3);
+}
+
+TEST(ImpactCase, KilledRunLeavesSeriesThatOpenAndGoesOn) {
+  const fs::path out = fresh_directory("killed") / "out";
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string line = "exec " HOSEL_COMMAND " " + coarse_full_club() + out.string() + " >/dev/null 2>&1";
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  const auto written = [&] { return fs::exists(out / "vtk" / "ball" / "ball_0006.vtu"); };
+  int status = 0;
+  while (!written() && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(written());
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the run had ended before it was killed";
+  EXPECT_FALSE(fs::exists(out / "summary.json"));
+  for (const char* body : {"ball", "face", "head", "shaft"}) {
+    const std::vector<Frame> series = frames(out / "vtk" / (std::string(body) + ".pvd"));
+    ASSERT_GE(series.size(), 5u) << body;
+    for (const Frame& frame : series) EXPECT_GT(read(frame.file)->GetNumberOfPoints(), 0) << frame.file;
+  }
+  EXPECT_GT(columns(out / "history.csv").at("time_s").size(), 5u);
+
+  // The same command again goes on from there and ends where an uninterrupted run ends.
+  const fs::path whole = fresh_directory("whole") / "out";
+  ASSERT_EQ(command(coarse_full_club() + whole.string()).status, 0);
+  const Outcome again = command(coarse_full_club() + out.string());
+  ASSERT_EQ(again.status, 0) << again.text;
+  EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
+  const auto speed = [](const fs::path& run) {
+    return nlohmann::json::parse(content(run / "summary.json"))["models"]["fe-full-club"]["ball_speed_mps"].get<double>();
+  };
+  EXPECT_NEAR(speed(out), speed(whole), 1e-4);  // Newton's tolerance: factors are not kept
+  const auto times = columns(out / "history.csv").at("time_s"), expected = columns(whole / "history.csv").at("time_s");
+  ASSERT_EQ(times.size(), expected.size());
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-12);
+  EXPECT_EQ(frames(out / "vtk" / "ball.pvd").size(), frames(whole / "vtk" / "ball.pvd").size());
+  EXPECT_FALSE(fs::exists(out / "checkpoint.cbor"));
+}
+
+}  // namespace
+}  // namespace hosel::test
