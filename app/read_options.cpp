@@ -22,6 +22,7 @@ models::FeImpactOptions read_fe(Table root) {
     o.mesh.sector = int(mesh->integer("sector", 1, 64, o.mesh.sector));
     o.mesh.rings = int(mesh->integer("rings", 1, 64, o.mesh.rings));
     o.mesh.pole = mesh->number("pole", {0.01, 1}, o.mesh.pole);
+    if (mesh->has("far")) o.mesh.far = mesh->number("far", {1, 100});
     o.mesh.skin = mesh->number("skin", {0.01, 1}, o.mesh.skin);
     o.mesh.core = mesh->number("core", {0.1, 0.7}, o.mesh.core);
     o.harmonics = int(mesh->integer("harmonics", 0, 16, o.harmonics));

@@ -7,7 +7,7 @@ fem::Solid read_solid(Table table) {
   fem::Solid solid;
   solid.density = table.quantity("density", "kg_per_m3", positive, 1129.0);
   const std::string law = table.choice(
-      "law", {"neo-hooke", "mooney-rivlin", "yeoh", "st-venant-kirchhoff", "linear"}, "neo-hooke");
+      "law", {"neo-hooke", "mooney-rivlin", "yeoh", "ogden", "st-venant-kirchhoff", "linear"}, "neo-hooke");
   if (law == "mooney-rivlin" || law == "yeoh" || (law == "neo-hooke" && table.has_quantity("c10"))) {
     fem::Hyperelastic h;
     h.c10 = table.quantity("c10", "MPa", positive);
@@ -18,6 +18,12 @@ fem::Solid read_solid(Table table) {
       h.c30 = table.quantity("c30", "MPa", Range::finite(), 0.0);
     }
     solid.elastic = h;
+  } else if (law == "ogden") {
+    fem::Ogden o{.bulk = table.quantity("bulk", "MPa", positive)};
+    const auto moduli = table.quantities("moduli", "MPa", 0, Range::finite());
+    const auto exponents = table.numbers("exponents", moduli.size(), Range::finite());
+    for (std::size_t i = 0; i < moduli.size(); ++i) o.powers.push_back({moduli[i], exponents[i]});
+    solid.elastic = o;
   } else {
     const auto lame = fem::Lame::of(table.quantity("young", "MPa", positive),
                                     table.number("poisson", {-0.9, 0.49999}));

@@ -93,6 +93,9 @@ std::vector<std::string> MeridianOptions::faults() const {
   if (sector < 1) out.push_back("mesh: sector must be at least 1");
   if (rings < 1) out.push_back("mesh: rings must be at least 1");
   if (!(pole > 0 && pole <= 1)) out.push_back("mesh: pole must lie in (0, 1]");
+  if (far && !(*far >= 1 && std::isfinite(*far))) out.push_back("mesh: far must be at least 1 and finite");
+  if (both_poles && !far) out.push_back("mesh: both_poles needs far, the size at the equator");
+  if (far && pole == 1 && *far != 1) out.push_back("mesh: far is 1 where pole is");
   if (!(skin > 0 && skin <= 1)) out.push_back("mesh: skin must lie in (0, 1]");
   if (!(core > 0.05 && core < 0.8)) out.push_back("mesh: core must lie in (0.05, 0.8)");
   return out;
@@ -113,12 +116,23 @@ Meridian sphere_meridian(const std::vector<double>& interfaces, const MeridianOp
   const std::vector<double> radii = ring_radii(1.15 * c, interfaces, options);
 
   // Angular grading grows with the radius, so that the centre stays undistorted: tan(phi'/2) =
-  // kappa(r) tan(phi/2) crowds the elements about the pole by the factor kappa.
+  // kappa(r) tan(phi/2) crowds the elements about the pole by the factor kappa; with `far`,
+  // phi' = phi (kappa + (1 - kappa) (phi/pi)^q), whose slope is kappa at the one pole and far at the other.
   const auto graded = [&](const Point& p) {
     const double r = p.norm();
     if (r == 0 || p.y() == 0) return p;
     const double kappa = 1 + (options.pole - 1) * (r / R) * (r / R);
-    const double phi = 2 * std::atan(kappa * std::tan(std::atan2(p.y(), p.x()) / 2));
+    const double angle = std::atan2(p.y(), p.x());
+    const auto power = [&](double from_pole, double end) {
+      return from_pole * (kappa + (1 - kappa) * std::pow(from_pole / end, (*options.far - 1) / (1 - options.pole)));
+    };
+    double phi = 0;
+    if (!options.far || kappa == 1)
+      phi = 2 * std::atan(kappa * std::tan(angle / 2));
+    else if (!options.both_poles)
+      phi = power(angle, kPi);
+    else
+      phi = angle <= kPi / 2 ? power(angle, kPi / 2) : kPi - power(kPi - angle, kPi / 2);
     return Point(r * std::cos(phi), r * std::sin(phi));
   };
   // The core block lies between a square and a disc, corners at 45 degrees.

@@ -56,6 +56,9 @@ std::vector<std::string> Solid::faults() const {
   if (!(shear() > 0)) out.emplace_back("a material needs a positive long-term shear modulus");
   if (linear() && !branches.empty())
     out.emplace_back("small-strain linear elasticity is for comparison with theory and takes no relaxation: use neo-hooke");
+  if (const auto* ogden = std::get_if<Ogden>(&elastic))
+    for (const auto& p : ogden->powers)
+      if (p.exponent == 0 || !std::isfinite(p.exponent)) out.emplace_back("an Ogden exponent must be finite and not zero");
   for (const auto& b : branches) {
     if (!(b.modulus >= 0)) out.emplace_back("a relaxation branch needs a modulus of at least zero");
     if (!(b.time > 0)) out.emplace_back("a relaxation branch needs a positive time");
@@ -64,7 +67,8 @@ std::vector<std::string> Solid::faults() const {
 }
 
 double Solid::shear() const {
-  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.shear(); }, [](const Lame& l) { return l.mu; }},
+  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.shear(); }, [](const Ogden& o) { return o.shear(); },
+                               [](const Lame& l) { return l.mu; }},
                     elastic);
 }
 
@@ -75,7 +79,8 @@ double Solid::instant_shear() const {
 }
 
 double Solid::bulk() const {
-  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.bulk; }, [](const Lame& l) { return l.bulk(); }},
+  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.bulk; }, [](const Ogden& o) { return o.bulk; },
+                               [](const Lame& l) { return l.bulk(); }},
                     elastic);
 }
 
@@ -93,18 +98,20 @@ void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, st
   if (const auto* law = std::get_if<LinearElastic>(&solid.elastic)) return respond_linear(*law, F, frame, tangent, out);
   const Sym C = to_sym(F.transpose() * F);
   Response r;
-  if (const auto* law = std::get_if<Hyperelastic>(&solid.elastic)) {
-    // det C cannot tell an inverted point from an upright one: only F can.
-    if (!(F.determinant() > 0)) {
-      out.energy = NAN;
-      out.stress.setConstant(NAN);
-      if (tangent) out.tangent.setConstant(NAN);
-      return;
-    }
-    law->add(C, tangent, r);
-  } else {
-    std::get<StVenantKirchhoff>(solid.elastic).add(C, tangent, r);
+  const auto* svk = std::get_if<StVenantKirchhoff>(&solid.elastic);
+  // det C cannot tell an inverted point from an upright one: only F can.
+  if (!svk && !(F.determinant() > 0)) {
+    out.energy = NAN;
+    out.stress.setConstant(NAN);
+    if (tangent) out.tangent.setConstant(NAN);
+    return;
   }
+  if (const auto* law = std::get_if<Hyperelastic>(&solid.elastic))
+    law->add(C, tangent, r);
+  else if (const auto* powers = std::get_if<Ogden>(&solid.elastic))
+    powers->add(C, tangent, r);
+  else
+    svk->add(C, tangent, r);
   if (!solid.branches.empty()) {
     const double det = determinant(C), p = 1 / std::cbrt(det);
     const Sym Ci = inverse(C, det);

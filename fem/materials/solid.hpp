@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "fem/materials/maxwell.hpp"
+#include "fem/materials/ogden.hpp"
 
 namespace hosel::fem {
 
 struct Solid {
-  std::variant<LinearElastic, StVenantKirchhoff, Hyperelastic> elastic;
+  std::variant<LinearElastic, StVenantKirchhoff, Hyperelastic, Ogden> elastic;
   std::vector<MaxwellBranch> branches;
   double density = 0;  ///< [kg/m^3]
 

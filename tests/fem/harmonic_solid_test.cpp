@@ -104,6 +104,29 @@ TEST(HarmonicSolid, SphereModes) {
   }
 }
 
+/// The lowest modes converge with the fourth power of the element size: quadratic fields, 2 (p + 1) - 2 in frequency.
+TEST(HarmonicSolid, SphereModesConverge) {
+  struct Row {
+    double nu, eta;
+    int m;
+    std::size_t at;
+  };
+  for (const Row& row : {Row{.3, 2.6462170, 2, 1}, Row{.49, 2.6648287, 2, 1}, Row{.4999, 2.6656143, 2, 1}, Row{.49, 2.50113262, 2, 0}}) {
+    const Solid solid = neo_hooke(row.nu);
+    const double unit = std::sqrt(solid.shear() / kDensity) / kRadius;
+    const auto error = [&](int n) {
+      System system;
+      system.terms.push_back(std::make_unique<HarmonicSolid>(system.layout, ball(n, n), cylindrical_family(row.m),
+                                                             SolidQuadrature{full_circle(4 * row.m + 5), 3},
+                                                             std::vector<Solid>{solid}, Placement{}));
+      return std::abs(solvers::modes(system, system.layout.rest(), 4).omega[row.at] / unit / row.eta - 1);
+    };
+    const double coarse = error(1), fine = error(2);
+    ASSERT_GT(fine, 1e-8);
+    EXPECT_GT(std::log2(coarse / fine), 3.5) << row.nu << " " << coarse << " " << fine;
+  }
+}
+
 /// A rotation of any size is a member of the Cartesian family from order 1 on: no strain, no force.
 TEST(HarmonicSolid, RigidRotationIsExact) {
   const double angle = 1;

@@ -27,7 +27,9 @@ std::vector<Named> materials() {
           {"neo-hooke", {.elastic = Hyperelastic::neo_hooke(l), .branches = {}, .density = 1100}},
           {"mooney-rivlin", {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
           {"yeoh", {.elastic = Hyperelastic{.c10 = 10e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
+          {"ogden", {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1100}},
           {"neo-hooke with branches", {.elastic = Hyperelastic::neo_hooke(l), .branches = two, .density = 1100}},
+          {"ogden with branches", {.elastic = Ogden{.powers = {{15e6, 3}}, .bulk = 1e9}, .branches = two, .density = 1100}},
           {"yeoh with branches",
            {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 2e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = two, .density = 1100}}};
 }
@@ -61,6 +63,22 @@ TEST(Solid, EnergyStressTangentAgree) {
         EXPECT_LE((difference - predicted).norm(), 1e-7 * predicted.norm()) << name << " dt " << dt;
       }
     }
+}
+
+/// Ogden's powers 2 and -2 are Mooney-Rivlin, also where stretches coincide.
+TEST(Solid, OgdenHoldsMooneyRivlin) {
+  const Solid ogden{.elastic = Ogden{.powers = {{20e6, 2}, {8e6, -2}}, .bulk = 1e9}, .branches = {}, .density = 1},
+      mooney{.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .bulk = 1e9}, .branches = {}, .density = 1};
+  std::mt19937 g(3);
+  const Mat3 twice = Vec3(1.2, 1.2, 0.7).asDiagonal();
+  for (const Mat3& F : {Mat3(Mat3::Identity()), twice, random_gradient(g, 0.2), random_gradient(g, 0.2)}) {
+    PointResponse a, b;
+    respond(ogden, F, Mat3::Identity(), 0, {}, true, a);
+    respond(mooney, F, Mat3::Identity(), 0, {}, true, b);
+    EXPECT_NEAR(a.energy, b.energy, 1e-10 * (b.energy + 1e6));
+    EXPECT_LT((a.stress - b.stress).norm(), 1e-10 * (b.stress.norm() + 1e6));
+    EXPECT_LT((a.tangent - b.tangent).norm(), 1e-9 * b.tangent.norm());
+  }
 }
 
 /// Benchmark 2.3: stretch, lateral stretch, Cauchy stress of uniaxial tension, W = mu/2 (I1'-3) + K/2 (J-1)^2.
@@ -185,7 +203,7 @@ TEST(Solid, DissipationIsNeverNegative) {
 
 /// Work of the stress = stored + dissipated over a strain path, to second order in the step.
 TEST(Solid, EnergyBalanceClosesAtSecondOrder) {
-  const Solid solid = materials()[5].solid;
+  const Solid solid = materials()[6].solid;
   const auto gap = [&](int steps) {
     std::vector<double> history(static_cast<std::size_t>(solid.history_size()));
     solid.start(history);
