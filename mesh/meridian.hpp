@@ -17,7 +17,7 @@ struct MeridianOptions {
   double pole = 0.5;   ///< surface element size at the contact pole relative to the ungraded one, in (0, 1]
   /// The same at the other pole, at least 1. Where set, sizes grow as a power of the angle between the two;
   /// else half-tangents grade them, with 1/pole there: too coarse for a pole below 0.15.
-  std::optional<double> far;
+  std::optional<double> far = {};
   bool both_poles = false;  ///< for a ball between two plates: graded alike to both; `far` is then at the equator
   double skin = 0.5;   ///< thickness of the outermost ring relative to the innermost, in (0, 1]
   double core = 0.4;   ///< half-width of the core block relative to the first layer's radius
