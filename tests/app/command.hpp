@@ -13,6 +13,18 @@
 
 namespace hosel::test {
 
+/// A closed-form blow that runs as it is.
+inline const std::string kEccentricBlow = R"(kind = "impact"
+models = ["rigid-eccentric"]
+[delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 10.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 0.0]
+inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
+)";
+
 struct Outcome {
   int status;
   std::string text;  ///< both streams

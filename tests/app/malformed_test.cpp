@@ -1,48 +1,14 @@
 // Malformed cases: status 2, one line that names file, line and key; nothing is written.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <regex>
-#include <string>
+#include <algorithm>
+
+#include "command.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string kGood = R"(kind = "impact"
-models = ["rigid-eccentric"]
-[delivery]
-club_speed_mps = 45.0
-dynamic_loft_deg = 10.0
-[head]
-mass_kg = 0.2
-cg_mm = [-35.0, 0.0, 0.0]
-inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
-)";
-
-struct Outcome {
-  int status;
-  std::string error;
-};
-
-Outcome run_command(const std::string& arguments) {
-  const std::string command = std::string(HOSEL_COMMAND) + " " + arguments + " 2>&1 >/dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
-  std::string text;
-  std::array<char, 512> buffer;
-  while (fgets(buffer.data(), buffer.size(), pipe)) text += buffer.data();
-  return {WEXITSTATUS(pclose(pipe)), text};
-}
-
-fs::path fresh_directory(const std::string& name) {
-  const fs::path dir = fs::path(testing::TempDir()) / ("hosel_" + name);
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  return dir;
-}
+using namespace hosel::test;
 
 struct Malformed {
   const char* name;
@@ -58,17 +24,17 @@ class MalformedCase : public testing::TestWithParam<Malformed> {};
 TEST_P(MalformedCase, EndsWithStatusTwoAndOneLine) {
   const Malformed& m = GetParam();
   const fs::path dir = fresh_directory(m.name);
-  std::string text = kGood;
+  std::string text = kEccentricBlow;
   const auto at = text.find(m.from);
   ASSERT_NE(at, std::string::npos);
   text.replace(at, std::string(m.from).size(), m.to);
   std::ofstream(dir / "case.toml") << text;
-  const Outcome o = run_command("run " + dir.string() + " --out " + (dir / "out").string());
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 2);
-  EXPECT_EQ(std::count(o.error.begin(), o.error.end(), '\n'), 1) << o.error;
-  EXPECT_NE(o.error.find("case.toml:" + std::to_string(m.line) + ":"), std::string::npos) << o.error;
-  EXPECT_NE(o.error.find(m.key), std::string::npos) << o.error;
-  EXPECT_NE(o.error.find(m.hint), std::string::npos) << o.error;
+  EXPECT_EQ(std::count(o.text.begin(), o.text.end(), '\n'), 1) << o.text;
+  EXPECT_NE(o.text.find("case.toml:" + std::to_string(m.line) + ":"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find(m.key), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find(m.hint), std::string::npos) << o.text;
   EXPECT_FALSE(fs::exists(dir / "out"));
 }
 
@@ -90,28 +56,28 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Command, MissingFileNamesTheNearestCase) {
-  const Outcome o = run_command("run iron7-trakman");
+  const Outcome o = command("run iron7-trakman");
   EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.error.find("did you mean 'iron7-trackman'"), std::string::npos) << o.error;
+  EXPECT_NE(o.text.find("did you mean 'iron7-trackman'"), std::string::npos) << o.text;
 }
 
 TEST(Command, FinishedRunIsNotOverwrittenUnlessTold) {
   const fs::path dir = fresh_directory("finished");
-  std::ofstream(dir / "case.toml") << kGood;
+  std::ofstream(dir / "case.toml") << kEccentricBlow;
   const std::string arguments = "run " + dir.string() + " --out " + (dir / "out").string();
-  ASSERT_EQ(run_command(arguments).status, 0);
+  ASSERT_EQ(command(arguments).status, 0);
   for (const char* file : {"case.resolved.toml", "summary.json", "log.txt"}) EXPECT_TRUE(fs::exists(dir / "out" / file));
-  const Outcome again = run_command(arguments);
+  const Outcome again = command(arguments);
   EXPECT_EQ(again.status, 2);
-  EXPECT_NE(again.error.find("--force"), std::string::npos);
-  EXPECT_EQ(run_command(arguments + " --force").status, 0);
+  EXPECT_NE(again.text.find("--force"), std::string::npos);
+  EXPECT_EQ(command(arguments + " --force").status, 0);
 }
 
 TEST(Command, ResolvedCaseRunsAgain) {
   const fs::path dir = fresh_directory("resolved");
-  std::ofstream(dir / "case.toml") << kGood;
-  ASSERT_EQ(run_command("run " + dir.string() + " --out " + (dir / "out").string()).status, 0);
-  EXPECT_EQ(run_command("check " + (dir / "out" / "case.resolved.toml").string()).status, 0);
+  std::ofstream(dir / "case.toml") << kEccentricBlow;
+  ASSERT_EQ(command("run " + dir.string() + " --out " + (dir / "out").string()).status, 0);
+  EXPECT_EQ(command("check " + (dir / "out" / "case.resolved.toml").string()).status, 0);
 }
 
 }  // namespace

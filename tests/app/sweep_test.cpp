@@ -22,17 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace hosel::test;
 
-const std::string kBlow = R"(kind = "impact"
-models = ["rigid-eccentric"]
-[delivery]
-club_speed_mps = 45.0
-dynamic_loft_deg = 10.0
-[head]
-mass_kg = 0.2
-cg_mm = [-35.0, 0.0, 0.0]
-inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
-)";
-
 const std::string kSample = R"(kind = "sweep"
 case = "../blow"
 [sample]
@@ -49,7 +38,7 @@ range = [-20.0, 20.0]
 /// A sweep with the blow beside it; returns the sweep's directory.
 fs::path sweep_case(const std::string& name, const std::string& text) {
   const fs::path dir = fresh_directory(name);
-  write(dir / "blow" / "case.toml", kBlow);
+  write(dir / "blow" / "case.toml", kEccentricBlow);
   write(dir / "sweep" / "case.toml", text);
   return dir;
 }
@@ -166,7 +155,7 @@ TEST(Sweep, MixedCasesAndVersionsAreRefused) {
   EXPECT_NE(o.text.find("another version"), std::string::npos) << o.text;
   write(points, good);
 
-  std::string blow = kBlow;  // the case that is swept changes
+  std::string blow = kEccentricBlow;  // the case that is swept changes
   blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
   write(dir / "blow" / "case.toml", blow);
   o = command("sweep merge " + out);
@@ -175,7 +164,7 @@ TEST(Sweep, MixedCasesAndVersionsAreRefused) {
   o = command("run " + sweep + " --quiet --out " + out);
   EXPECT_EQ(o.status, 2);
   EXPECT_FALSE(fs::exists(dir / "out" / "sweep.csv"));
-  write(dir / "blow" / "case.toml", kBlow);
+  write(dir / "blow" / "case.toml", kEccentricBlow);
   EXPECT_EQ(command("sweep merge " + out).status, 0);
 }
 
@@ -223,7 +212,7 @@ values = [90, 100.5]
 key = "delivery.dynamic_loft_deg"
 values = [0.0, 20.0, 40.0]
 )");
-  write(dir / "blow" / "case.toml", std::string(kBlow).replace(kBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
+  write(dir / "blow" / "case.toml", std::string(kEccentricBlow).replace(kEccentricBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
   // `models` is a list, and a word is not: the error is the case's own.
   const Outcome refused = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
   EXPECT_EQ(refused.status, 2);

@@ -3,30 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/swing_motion.hpp"
+#include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
 namespace {
 
-/// Coarse, for tests: differences between club and free head hold on any mesh.
-FeImpactOptions coarse() {
-  FeImpactOptions o;
-  o.harmonics = 2;
-  o.antisymmetric = 1;
-  o.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
-  o.penalty = 200;
-  o.steps_per_contact = 40;
-  return o;
-}
+using test::driver_blow;
 
-Blow driver_blow(double toe) {
-  Blow b;
-  b.club = test::driver_club();
-  // A damping ratio of 1 % at 1 kHz: the frequencies of the blow, not those of the swing.
-  b.club.shaft->damping_time = 2 * 0.01 / (2 * kPi * 1000);
-  b.delivery = {.club_speed = 45, .attack_angle = radians(2), .dynamic_loft = radians(11), .impact_toe = toe};
-  return b;
-}
+FeImpactOptions coarse() { return test::coarse_impact(2, 1); }
 
 TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
   for (double toe : {0.02, -0.02}) {

@@ -8,32 +8,16 @@
 
 #include "models/fe_full_club.hpp"
 #include "models/shaft_coupled.hpp"
-#include "golf/units.hpp"
 #include "models/volumetric.hpp"
 #include "solvers/least_squares.hpp"
-#include "tests/support/swing_motion.hpp"
+#include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
 namespace {
 
-/// Differences between club and free head hold on any mesh.
-FeImpactOptions coarse() {
-  FeImpactOptions o;
-  o.harmonics = 2;
-  o.antisymmetric = 2;
-  o.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
-  o.penalty = 200;
-  o.steps_per_contact = 40;
-  return o;
-}
+using test::driver_blow;
 
-Blow driver_blow(double toe, double high) {
-  Blow b;
-  b.club = test::driver_club();
-  b.club.shaft->damping_time = 2 * 0.01 / (2 * kPi * 1000);
-  b.delivery = {.club_speed = 45, .attack_angle = radians(2), .dynamic_loft = radians(11), .impact_toe = toe, .impact_high = high};
-  return b;
-}
+FeImpactOptions coarse() { return test::coarse_impact(2); }
 
 VolumetricLaw law_of(const Eigen::VectorXd& p) {
   VolumetricLaw law;
