@@ -4,6 +4,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hosel::loop {
@@ -22,13 +23,36 @@ void whitened_row(const Problem& problem, int shot, const Model& model, const do
   out.noalias() = problem.whitening(shot) * Eigen::Map<const Eigen::VectorXd>(scratch, m);
 }
 
-/// Scales every shot so that the plain sum of squares is the loss.
-void apply(const Loss& loss, int width, Eigen::VectorXd& z) {
-  if (!std::isfinite(loss.knee)) return;
-  for (Eigen::Index i = 0; i < z.size(); i += width) {
-    const double s = z.segment(i, width).squaredNorm();
-    if (s > loss.knee) z.segment(i, width) *= std::sqrt(loss(s) / s);
+/// Whitened residual of a row and its derivatives; zero derivatives where the blow or a neighbour cannot happen.
+void linear_row(const Problem& problem, int shot, const Model& model, const double* p, double step, bool central,
+                Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) {
+  const int m = problem.width();
+  std::array<double, 16> scratch{};
+  if (!problem.linearise(shot, model, p, step, central, scratch.data(), J.data())) {
+    J.setZero();
+    whitened_row(problem, shot, model, p, scratch.data(), z.data());
+    return;
   }
+  for (int c = 0; c < m; ++c) {
+    const bool seen = problem.observed(shot, c);
+    scratch[std::size_t(c)] = seen ? scratch[std::size_t(c)] - problem.measured()(shot, c) : 0.0;
+    if (!seen) J.row(c).setZero();
+  }
+  const auto W = problem.whitening(shot).triangularView<Eigen::Lower>();
+  z = W * Eigen::Map<const Eigen::VectorXd>(scratch.data(), m);
+  J = (W * J).eval();
+}
+
+/// Scales a shot so that the plain sum of squares is the loss; the derivatives likewise.
+void apply(const Loss& loss, Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd* J) {
+  const double s = z.squaredNorm();
+  if (!(s > loss.knee)) return;
+  const double value = loss(s), g = std::sqrt(value / s);
+  if (J) {
+    const double slope = (loss.weight(s) * s - value) / (g * s * s);  // twice the derivative of g
+    *J = g * *J + slope * (z * (z.transpose() * *J)).eval();
+  }
+  z *= g;
 }
 
 class Cost final : public ceres::CostFunction {
@@ -40,31 +64,28 @@ class Cost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    const int n = model_.size();
+    const int n = model_.size(), m = problem_.width();
     const auto parameters = model_.parameters();
     Eigen::VectorXd p(n);
     for (int k = 0; k < n; ++k) p[k] = x[0][k] * parameters[std::size_t(k)]->scale;
-    Eigen::VectorXd z = whitened(problem_, rows_, model_, p);
-    apply(loss_, problem_.width(), z);
-    Eigen::Map<Eigen::VectorXd>(residuals, z.size()) = z;
-    if (jacobians && jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> J(jacobians[0], z.size(), n);
-      for (int k = 0; k < n; ++k) {
-        const double h = kStep * parameters[std::size_t(k)]->scale, at = p[k];
-        p[k] = at + h;
-        Eigen::VectorXd up = whitened(problem_, rows_, model_, p);
-        apply(loss_, problem_.width(), up);
-        p[k] = at - h;
-        Eigen::VectorXd down = whitened(problem_, rows_, model_, p);
-        apply(loss_, problem_.width(), down);
-        p[k] = at;
-        J.col(k) = (up - down) / (2 * kStep);
-      }
+    Eigen::Map<Eigen::VectorXd> z(residuals, std::ptrdiff_t(rows_.size()) * m);
+    if (!jacobians || !jacobians[0]) {
+      z = whitened(problem_, rows_, model_, p);
+      for (Eigen::Index i = 0; i < z.size(); i += m) apply(loss_, z.segment(i, m), nullptr);
+      return true;
+    }
+    Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> J(jacobians[0], z.size(), n);
+    Eigen::MatrixXd part(m, n);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto at = std::ptrdiff_t(i) * m;
+      linear_row(problem_, rows_[i], model_, p.data(), kForward, false, z.segment(at, m), part);
+      apply(loss_, z.segment(at, m), &part);
+      J.middleRows(at, m) = part;
     }
     return true;
   }
 
-  static constexpr double kStep = 1e-3;  // of a parameter's scale
+  static constexpr double kCentral = 1e-3, kForward = 1e-5;  // of a parameter's scale
 
  private:
   const Problem& problem_;
@@ -84,16 +105,12 @@ Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, c
 }
 
 Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& at) {
-  const auto parameters = model.parameters();
-  Eigen::VectorXd p = at;
-  Eigen::MatrixXd J(std::ptrdiff_t(rows.size()) * problem.width(), model.size());
-  for (int k = 0; k < model.size(); ++k) {
-    const double h = Cost::kStep * parameters[std::size_t(k)]->scale;
-    p[k] = at[k] + h;
-    const Eigen::VectorXd up = whitened(problem, rows, model, p);
-    p[k] = at[k] - h;
-    J.col(k) = (up - whitened(problem, rows, model, p)) / (2 * Cost::kStep);
-    p[k] = at[k];
+  const int m = problem.width();
+  Eigen::MatrixXd J(std::ptrdiff_t(rows.size()) * m, model.size()), part(m, model.size());
+  Eigen::VectorXd z(m);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    linear_row(problem, rows[i], model, at.data(), Cost::kCentral, true, z, part);
+    J.middleRows(std::ptrdiff_t(i) * m, m) = part;
   }
   return J;
 }
@@ -111,7 +128,7 @@ std::vector<Eigen::VectorXd> starts(const Model& model) {
     const int n = int(f->parameters.size());
     const std::size_t known = all.size();
     for (const auto& s : f->starts)
-      for (std::size_t i = 0; i < known && all.size() < 8; ++i) {
+      for (std::size_t i = 0; i < known && all.size() < 24; ++i) {
         Eigen::VectorXd p = all[i];
         p.segment(at, n) = Eigen::Map<const Eigen::VectorXd>(s.data(), n);
         all.push_back(p);
@@ -121,7 +138,7 @@ std::vector<Eigen::VectorXd> starts(const Model& model) {
   return all;
 }
 
-Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& from, const Loss& loss) {
+Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& from, const Loss& loss, std::size_t most) {
   Fit best;
   best.model = model;
   best.p = Eigen::VectorXd::Zero(model.size());
@@ -132,7 +149,13 @@ Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model
     best.converged = true;
     return best;
   }
-  for (const Eigen::VectorXd& start : from) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    order.emplace_back(from.size() > most ? deviance(whitened(problem, rows, model, from[k]), problem.width(), loss) : 0.0, k);
+  std::ranges::stable_sort(order, {}, [](const auto& o) { return o.first; });
+  order.resize(std::min(order.size(), most));
+  for (const auto& [unused, which] : order) {
+    const Eigen::VectorXd& start = from[which];
     Eigen::VectorXd x(model.size());
     for (int k = 0; k < x.size(); ++k) {
       const Parameter& q = *parameters[std::size_t(k)];
@@ -150,8 +173,8 @@ Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model
       ceres::Solver::Options options;
       options.linear_solver_type = ceres::DENSE_QR;
       options.max_num_iterations = 40;
-      options.function_tolerance = 1e-9;
-      options.parameter_tolerance = 1e-9;
+      options.function_tolerance = 1e-7;  // hundredths of a unit of deviance on long sets
+      options.parameter_tolerance = 1e-7;
       options.gradient_tolerance = 1e-9;
       options.num_threads = 1;
       options.logging_type = ceres::SILENT;

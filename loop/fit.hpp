@@ -41,10 +41,10 @@ Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>
 double deviance(const Eigen::VectorXd& whitened, int width, const Loss& loss);
 
 /// Bounded nonlinear least squares from each of the starts (Ceres, trust region), first with the uncapped loss,
-/// which sees far, then with the loss itself; the best. Starts in SI.
+/// which sees far, then with the loss itself; the best. Starts in SI; only the `most` of least deviance are followed.
 Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& starts,
-        const Loss& loss);
-/// All combinations of the forms' own starting points, zero first, at most 8.
+        const Loss& loss, std::size_t most = 2);
+/// All combinations of the forms' own starting points, zero first, at most 24.
 std::vector<Eigen::VectorXd> starts(const Model& model);
 
 /// Standard deviations of the parameters [SI] from the whitened Jacobian; infinite along null vectors.

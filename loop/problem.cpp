@@ -1,6 +1,8 @@
 #include "loop/problem.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -58,35 +60,89 @@ Launch Problem::answer(const Trial& trial, int shot) const {
   return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
 }
 
+void Problem::change(const Model& model, const double* p, Trial& trial) {
+  for (const Form* f : model.forms) {
+    if (f->before) f->before({p, f->parameters.size()}, trial);
+    p += f->parameters.size();
+  }
+}
+
+void Problem::change(const Model& model, const double* p, const Trial& trial, Launch& launch) {
+  for (const Form* f : model.forms) {
+    if (f->after) f->after({p, f->parameters.size()}, trial, launch);
+    p += f->parameters.size();
+  }
+}
+
+bool Problem::read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch, double* out) const {
+  bool good = true;
+  for (int c = 0; c < width(); ++c) {
+    const Channel& channel = channels_[std::size_t(c)];
+    double value = get(launch, channel.output);
+    const double* p = parameters;
+    for (const Form* f : model.forms) {
+      if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
+      p += f->parameters.size();
+    }
+    if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
+      value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
+    out[c] = value / channel.si;
+    good = good && std::isfinite(out[c]);
+  }
+  return good;
+}
+
 bool Problem::predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const {
   try {
     Trial t = trial;
-    const double* p = parameters;
-    for (const Form* f : model.forms) {
-      if (f->before) f->before({p, f->parameters.size()}, t);
-      p += f->parameters.size();
-    }
+    change(model, parameters, t);
     Launch l = answer(t, shot);
-    p = parameters;
-    for (const Form* f : model.forms) {
-      if (f->after) f->after({p, f->parameters.size()}, t, l);
-      p += f->parameters.size();
-    }
-    bool good = true;
-    for (int c = 0; c < width(); ++c) {
-      const Channel& channel = channels_[std::size_t(c)];
-      double value = get(l, channel.output);
-      p = parameters;
-      for (const Form* f : model.forms) {
-        if (f->reading) value = f->reading({p, f->parameters.size()}, t, channel.output, value);
-        p += f->parameters.size();
+    change(model, parameters, t, l);
+    return read(t, shot, model, parameters, l, out);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+bool Problem::linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out, double* derivative) const {
+  try {
+    Trial t = trial(shot);
+    change(model, parameters, t);
+    const Launch bare = answer(t, shot);
+    Launch l = bare;
+    change(model, parameters, t, l);
+    if (!read(t, shot, model, parameters, l, out)) return false;
+    const int m = width();
+    std::array<double, 64> moved{}, there{}, here{};
+    const int n = model.size();
+    if (n > int(moved.size()) || m > int(there.size())) throw std::length_error("too many parameters for one model");
+    std::copy_n(parameters, n, moved.begin());
+    int k = 0;
+    for (const Form* f : model.forms)
+      for (const Parameter& q : f->parameters) {
+        const double h = step * q.scale, at = moved[std::size_t(k)];
+        const auto look = [&](double x, double* values) {
+          moved[std::size_t(k)] = x;
+          bool good = false;
+          if (f->before) {
+            good = predict(shot, model, moved.data(), values);
+          } else if (f->after) {
+            Launch other = bare;
+            change(model, moved.data(), t, other);
+            good = read(t, shot, model, moved.data(), other, values);
+          } else {
+            good = read(t, shot, model, moved.data(), l, values);
+          }
+          moved[std::size_t(k)] = at;
+          return good;
+        };
+        if (!look(at + h, there.data())) return false;
+        if (central && !look(at - h, here.data())) return false;
+        for (int c = 0; c < m; ++c)
+          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * step) : (there[std::size_t(c)] - out[c]) / step;
+        ++k;
       }
-      if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
-        value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
-      out[c] = value / channel.si;
-      good = good && std::isfinite(out[c]);
-    }
-    return good;
+    return true;
   } catch (const std::invalid_argument&) {
     return false;
   }
@@ -94,17 +150,9 @@ bool Problem::predict(const Trial& trial, int shot, const Model& model, const do
 
 bool Problem::launch(Trial t, const Model& model, const double* parameters, Launch& out) const {
   try {
-    const double* p = parameters;
-    for (const Form* f : model.forms) {
-      if (f->before) f->before({p, f->parameters.size()}, t);
-      p += f->parameters.size();
-    }
+    change(model, parameters, t);
     out = answer(t, -1);
-    p = parameters;
-    for (const Form* f : model.forms) {
-      if (f->after) f->after({p, f->parameters.size()}, t, out);
-      p += f->parameters.size();
-    }
+    change(model, parameters, t, out);
     return out.velocity.allFinite() && out.spin.allFinite();
   } catch (const std::invalid_argument&) {
     return false;

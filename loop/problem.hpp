@@ -56,6 +56,10 @@ class Problem {
   bool predict(int shot, const Model& model, const double* parameters, double* out) const {
     return predict(trial(shot), shot, model, parameters, out);
   }
+  /// The same with the derivatives by the parameters, per Parameter::scale, by differences over `step` scales
+  /// (one-sided, or central); what a parameter does not touch is not computed again. `derivative` is width x
+  /// size, column-major. Also false where a neighbour cannot happen.
+  bool linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out, double* derivative) const;
   /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
   /// base's own answer).
   bool launch(Trial trial, const Model& model, const double* parameters, Launch& out) const;
@@ -78,6 +82,10 @@ class Problem {
 
  private:
   Launch answer(const Trial& trial, int shot) const;
+  /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
+  static void change(const Model& model, const double* parameters, Trial& trial);
+  static void change(const Model& model, const double* parameters, const Trial& trial, Launch& launch);
+  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch, double* out) const;
 
   const models::ImpactModel& base_;
   bool direct_;

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <set>
 
 #include "loop/experiment.hpp"
 #include "loop/inputs.hpp"
+#include "models/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -98,7 +100,8 @@ struct Rows {
 };
 
 /// Whole clusters or single rows, by a seeded shuffle of their names in order of appearance.
-Rows split_rows(const LoopCase& c, const std::vector<int>& row_of, const std::vector<int>& usable, std::vector<std::string>& notes) {
+Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of, const std::vector<int>& usable,
+                std::vector<std::string>& notes) {
   std::vector<int> group(usable.size());
   int count = 0;
   if (!c.split.by.empty()) {
@@ -112,28 +115,31 @@ Rows split_rows(const LoopCase& c, const std::vector<int>& row_of, const std::ve
       if (x < 0) x = missing++;
     count = missing;
   } else {
-    // Single rows: of every three (at one third) neighbours in spin loft one is held out, so that both sets reach
+    // Single rows: of every three (at one third) neighbours in obliquity one is held out, so that both sets reach
     // over the whole range, where thresholds show.
     std::vector<std::size_t> order(usable.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
-    const auto obliquity = [&](std::size_t i) {
-      const Column* loft = c.shots.find_stem("dynamic_loft");
-      const Column* attack = c.shots.find_stem("attack_angle");
-      const auto row = std::size_t(row_of[std::size_t(usable[i])]);
-      const double a = attack ? attack->value[row] : 0;
-      return loft->value[row] - (std::isfinite(a) ? a : 0);
-    };
-    std::ranges::stable_sort(order, std::ranges::greater{}, obliquity);
+    std::vector<double> oblique;
+    for (const int i : usable) {
+      const models::ContactGeometry g = models::contact_geometry(problem.trial(i).blow);
+      const double approach = g.approach.dot(g.normal);
+      oblique.push_back((g.approach - approach * g.normal).norm() / approach);
+    }
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return oblique[i]; });
     std::mt19937_64 random(c.split.seed);
     const double fraction = c.split.holdout_fraction;
     std::vector<char> out(usable.size(), 0);
+    const std::size_t outermost = order.size() < 60 ? 1 : 2;
     const std::size_t block = fraction > 0 ? std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction))) : 0;
     for (std::size_t k = 0; block && k < order.size(); k += block) {
       const std::size_t size = std::min(block, order.size() - k);
       if (size < block && double(random() >> 11) * 0x1p-53 > double(size) * fraction) continue;
-      // One of the block, or as many as the fraction asks for.
+      // One of the block, or as many as the fraction asks for; never the outermost, beyond which nothing would be learnt.
       const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
-      for (std::size_t t = 0; t < take; ++t) out[order[k + (random() % size)]] = 1;
+      for (std::size_t t = 0; t < take; ++t) {
+        const std::size_t which = k + (random() % size);
+        out[order[std::max<std::size_t>(which, std::min(outermost, k + size - 1))]] = 1;
+      }
     }
     Rows rows;
     for (std::size_t i = 0; i < usable.size(); ++i) (out[i] ? rows.holdout : rows.train).push_back(usable[i]);
@@ -278,7 +284,10 @@ class Loop {
     result.derived = derived;
     result.selection.clean = true;
     prepare();
-    if (!problem_) return;
+    if (!problem_) {
+      report_flags();
+      return;
+    }
     work();
     conclude();
   }
@@ -295,14 +304,16 @@ class Loop {
   std::vector<ColumnUse> uses_;
   std::vector<int> usable_;  // shots whose base answer exists
   Rows rows_;
+  std::vector<RowFlag> early_;  // flagged before they could become shots
   std::vector<RowFlag> flags_;
+  std::string widespread_;      // see Screening
   Loss loss_;
   std::vector<Regressor> regressors_;
   std::vector<std::string> contradicted_;
   std::vector<double> declared_;
 
-  void flag_row(int row, std::string column, std::string reason, int finding) {
-    result.flagged.push_back({row, case_.shots.id[std::size_t(row)], std::move(column), std::move(reason), finding});
+  void flag_early(int row, std::string column, std::string reason, int shot = -1) {
+    early_.push_back({.shot = shot, .row = row, .column = std::move(column), .reason = std::move(reason), .slip = false});
   }
 
   void prepare() {
@@ -317,13 +328,12 @@ class Loop {
     if (doubted_) distrust(*doubted_);
 
     // Cells that are no numbers, and values no blow has: flagged before anything is fitted.
-    int finding = 0;
     std::set<int> bad;
     for (const Column& c : shots.columns)
       for (const std::size_t row : c.broken)
-        if (bad.insert(int(row)).second) flag_row(int(row), c.name, "not a finite number", ++finding);
+        if (bad.insert(int(row)).second) flag_early(int(row), c.name, "not a finite number");
     for (const auto& [row, what] : inputs_.impossible)
-      if (bad.insert(row).second) flag_row(row, what.substr(0, what.find('|')), what.substr(what.find('|') + 1), ++finding);
+      if (bad.insert(row).second) flag_early(row, what.substr(0, what.find('|')), what.substr(what.find('|') + 1));
 
     std::vector<Channel> channels;
     std::vector<const Column*> columns;
@@ -401,7 +411,7 @@ class Loop {
     std::vector<double> out(channels.size());
     for (int i = 0; i < problem_->shots(); ++i) {
       if (problem_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
-      else flag_row(row_of[std::size_t(i)], "", "the base model has no answer: the head moves away from the ball", ++finding);
+      else flag_early(row_of[std::size_t(i)], "", "the base model has no answer: the head moves away from the ball", i);
     }
     const boost::math::chi_squared law(problem_->width());
     loss_.knee = quantile(law, 0.999);
@@ -436,7 +446,7 @@ class Loop {
     } else {
       // The split is made over all usable rows, so that screening does not reshuffle it.
       std::vector<std::string> unheard;
-      const Rows all = split_rows(case_, inputs_.row_of, usable_, unheard);
+      const Rows all = split_rows(case_, *problem_, inputs_.row_of, usable_, unheard);
       rows_ = {};
       for (const int i : all.train)
         if (!without.contains(i)) rows_.train.push_back(i);
@@ -481,8 +491,16 @@ class Loop {
     else problem_->set_covariance(inputs_.covariance, Model{}, nullptr);
   }
 
-  bool noise_declared() const {
-    return contradicted_.empty() && std::ranges::all_of(problem_->channels(), &Channel::declared);
+  /// Per channel: the noise is declared and not contradicted.
+  std::vector<char> declared() const {
+    std::vector<char> all;
+    for (const Channel& c : problem_->channels()) all.push_back(c.declared && !std::ranges::count(contradicted_, c.name));
+    return all;
+  }
+  bool noise_declared() const { return std::ranges::all_of(declared(), std::identity{}); }
+
+  void select(bool deep) {
+    result.selection = loop::select(*problem_, thinned(rows_.train), base_forms_, candidate_forms_, regressors_, loss_, declared(), case_.rules, deep);
   }
 
   void work() {
@@ -493,12 +511,17 @@ class Loop {
     regressors_ = loop::regressors(case_.shots, inputs_.row_of, thinned(rows_.train), *problem_);
     if (rows_.train.size() < 4) return;
     for (int pass = 0; pass < 4; ++pass) {
-      result.selection = loop::select(*problem_, thinned(rows_.train), base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
+      select(pass > 0);
       const Fit& at = result.selection.chosen;
-      flags_ = screen(*problem_, case_.shots, inputs_.row_of, uses_, at);
+      const Screening screening = screen(*problem_, case_.shots, inputs_.row_of, uses_, at, early_);
+      flags_ = screening.flags;
+      widespread_ = screening.widespread;
       std::set<int> now;
-      for (const RowFlag& f : flags_) now.insert(f.shot);
-      const bool settled_rows = now == out;
+      for (const RowFlag& f : flags_)
+        if (f.shot >= 0) now.insert(f.shot);
+      std::vector<int> changed;
+      std::ranges::set_symmetric_difference(now, out, std::back_inserter(changed));
+      const bool settled_rows = changed.size() * 500 <= std::size_t(problem_->shots());
       out = now;
       split(out);
       if (rows_.train.size() < 4) return;
@@ -512,10 +535,11 @@ class Loop {
       const bool first_covariance = pass == 0 && !inputs_.covariance.empty() && !at.model.forms.empty();
       set_covariance(&at);
       regressors_ = loop::regressors(case_.shots, inputs_.row_of, thinned(rows_.train), *problem_);
-      if (settled_rows && settled_noise && !first_covariance) break;
-      if (pass == 3) {
-        result.selection = loop::select(*problem_, thinned(rows_.train), base_forms_, candidate_forms_, regressors_, loss_, noise_declared(), case_.rules);
+      if (settled_rows && settled_noise && !first_covariance) {
+        if (pass == 0 && !result.selection.clean && result.selection.level == 2) select(true);
+        break;
       }
+      if (pass == 3) select(true);
     }
   }
 
@@ -533,13 +557,7 @@ class Loop {
 
   void conclude() {
     const Selection& s = result.selection;
-    for (const RowFlag& f : flags_) {
-      int most = 0;
-      for (const auto& g : result.flagged) most = std::max(most, g.finding);
-      (void)most;
-      flag_row(inputs_.row_of[std::size_t(f.shot)], f.column, f.reason, f.finding + 100000);
-    }
-    renumber();
+    report_flags();
     result.train = int(rows_.train.size());
     result.holdout = int(rows_.holdout.size());
     result.used = result.train + result.holdout;
@@ -552,14 +570,19 @@ class Loop {
       result.ties.clear();
       result.notes.push_back(fmt::format("{} training rows: too few to test anything", rows_.train.size()));
     } else if (!s.clean || (s.structured && s.level == 0)) {
-      const double strongest = s.before.findings.empty() ? 0 : std::abs(s.before.findings.front().signal);
-      result.verdict = !s.clean && (strongest > 5.5 || s.after.p < 0.002) ? Verdict::unexplained : Verdict::insufficient;
-      if (!s.clean && s.level > 0) result.verdict = Verdict::unexplained;
+      result.verdict = s.clean ? Verdict::insufficient : Verdict::unexplained;
       result.adopted.clear();
       result.ties.clear();
       if (result.verdict == Verdict::unexplained) locate();
+    } else if (shape_remains()) {
+      result.verdict = Verdict::unexplained;
+      result.adopted.clear();
+      result.ties.clear();
     } else if (!contradicted_.empty()) {
       result.verdict = Verdict::noise_contradicted;
+    } else if (s.nameless) {
+      result.verdict = Verdict::insufficient;
+      result.ties.clear();
     } else if (!s.ties.empty()) {
       result.verdict = Verdict::ambiguous;
     } else {
@@ -614,7 +637,12 @@ class Loop {
   }
 
   /// Findings numbered 1, 2, ... in order of rows.
-  void renumber() {
+  void report_flags() {
+    if (flags_.empty()) flags_ = early_;
+    int own = 0;
+    for (const RowFlag& f : flags_) own = std::max(own, f.finding);
+    for (const RowFlag& f : flags_)
+      result.flagged.push_back({f.row, case_.shots.id[std::size_t(f.row)], f.column, f.reason, f.finding ? f.finding : ++own});
     std::ranges::stable_sort(result.flagged, {}, &LoopResult::Flag::row);
     std::map<int, int> number;
     for (auto& f : result.flagged) {
@@ -623,23 +651,66 @@ class Loop {
     }
   }
 
+  Location place(const Finding& f) const {
+    Location l;
+    l.channel = f.channel >= 0 ? result.channel_names[std::size_t(f.channel)] : "";
+    if (f.regressor < 0) {
+      l.regressor = "shot";
+      l.detail = "neighbours alike";
+    } else if (std::size_t(f.regressor) < result.selection.regressors.size()) {
+      const Regressor& r = result.selection.regressors[std::size_t(f.regressor)];
+      l.regressor = r.column;
+      l.detail = r.kind + (r.detail.empty() ? "" : " " + r.detail);
+    }
+    return l;
+  }
+
+  /// What scatter alone does not do, where a channel's scatter contradicts its declared noise or many shots are far
+  /// off: it follows a regressor at a level that would not count alone, it has two heads, or it strikes a share of
+  /// the shots that is no exception.
+  bool shape_remains() {
+    const Selection& s = result.selection;
+    const Eigen::MatrixXd r = problem_->residuals(s.chosen.model, s.chosen.p.data());
+    for (int c = 0; c < problem_->width(); ++c) {
+      const std::string& name = result.channel_names[std::size_t(c)];
+      const bool refuted = std::ranges::count(contradicted_, name) > 0;
+      if (!refuted && name != widespread_) continue;
+      for (const Finding& f : s.after.findings)
+        if (f.channel == c && f.p_adjusted < 0.05) {
+          result.unexplained.push_back(place(f));
+          return true;
+        }
+      double n = 0, mean = 0, second = 0, fourth = 0;
+      for (const int i : rows_.train)
+        if (std::isfinite(r(i, c))) mean += r(i, c), ++n;
+      mean /= std::max(1.0, n);
+      for (const int i : rows_.train)
+        if (std::isfinite(r(i, c))) {
+          const double d = r(i, c) - mean;
+          second += d * d / n;
+          fourth += d * d * d * d / n;
+        }
+      // Two heads: kurtosis below that of a normal sample by 2.5 of its own standard deviations.
+      if (n > 20 && fourth / (second * second) < 3 - 2.5 * std::sqrt(24 / n)) {
+        result.unexplained.push_back({name, "", "two heads in the distribution: a mixture"});
+        return true;
+      }
+      if (name == widespread_) {
+        Location l{name, "", "many shots far off, the others within the noise: a mixture or a threshold"};
+        for (const StructureMap* map : {&s.after, &s.before})
+          for (const Finding& f : map->findings)
+            if (f.channel == c && l.regressor.empty()) l.regressor = place(f).regressor;
+        result.unexplained.push_back(l);
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// Where the structure sits: what remains after the best model if a foreign column drives it, else the map of
   /// the base, before anything was fitted to it.
   void locate() {
     const Selection& s = result.selection;
-    const auto place = [&](const Finding& f) {
-      Location l;
-      l.channel = f.channel >= 0 ? result.channel_names[std::size_t(f.channel)] : "";
-      if (f.regressor < 0) {
-        l.regressor = "shot";
-        l.detail = "neighbours alike";
-      } else if (std::size_t(f.regressor) < s.regressors.size()) {
-        const Regressor& r = s.regressors[std::size_t(f.regressor)];
-        l.regressor = r.column;
-        l.detail = r.kind + (r.detail.empty() ? "" : " " + r.detail);
-      }
-      return l;
-    };
     const auto foreign = [&](const Finding& f) {
       return f.regressor < 0 || (std::size_t(f.regressor) < s.regressors.size() && s.regressors[std::size_t(f.regressor)].foreign);
     };
@@ -663,6 +734,10 @@ class Loop {
       add(base);
       add(left);
     }
+    // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
+    for (const StructureMap* map : {&s.after, &s.before})
+      for (const Finding& f : map->findings)
+        if (f.channel >= 0 && result.unexplained.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) && f.p_adjusted < 0.05) add(&f);
   }
 };
 

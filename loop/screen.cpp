@@ -12,7 +12,7 @@ namespace hosel::loop {
 namespace {
 
 struct Slip {
-  std::string column, reason, key;
+  std::string column, reason;
   double distance = 0;
   double cost = 0;  ///< rarer slips need a better fit
 };
@@ -89,13 +89,98 @@ class Row {
   bool predicted_ = false;
 };
 
+double median(std::vector<double> x) {
+  std::ranges::nth_element(x, x.begin() + std::ptrdiff_t(x.size() / 2));
+  return x[x.size() / 2];
+}
+
+/// The column whose values stand in column `u` over these rows, and not over the others: "" where none.
+std::string copied_from(const Shots& shots, const Column& u, const std::vector<int>& rows) {
+  const auto typical = [&](const Column& c, bool inside) {
+    std::vector<double> x;
+    for (std::size_t i = 0; i < c.value.size(); ++i)
+      if (std::isfinite(c.value[i]) && (std::ranges::binary_search(rows, int(i)) == inside)) x.push_back(c.native(i));
+    return x.empty() ? std::numeric_limits<double>::quiet_NaN() : median(x);
+  };
+  const double here = typical(u, true), elsewhere = typical(u, false);
+  std::string best;
+  double least = 0.03;
+  for (const Column& v : shots.columns) {
+    if (!v.numeric || &v == &u || v.role == Role::bookkeeping) continue;
+    const double there = typical(v, true);
+    const double gap = std::abs(here / there - 1);
+    if (gap < least && std::abs(elsewhere / there - 1) > 0.2) {
+      least = gap;
+      best = v.name;
+    }
+  }
+  return best;
+}
+
+/// One cause, one finding: a cluster most of whose rows are flagged. Its other shots are flagged too.
+void gather_clusters(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const Fit& fit, std::vector<RowFlag>& flags) {
+  int finding = 0;
+  std::map<int, int> shot_of;
+  for (int i = 0; i < problem.shots(); ++i) shot_of[row_of[std::size_t(i)]] = i;
+  std::map<int, std::size_t> flag_of;
+  for (std::size_t k = 0; k < flags.size(); ++k) flag_of[flags[k].row] = k;
+  for (const Column& c : shots.columns) {
+    if (c.numeric) continue;
+    const Groups g = groups(c);
+    if (g.name.size() < 2) continue;
+    std::vector<std::vector<int>> of_group(g.name.size());
+    for (std::size_t row = 0; row < g.of_row.size(); ++row)
+      if (g.of_row[row] >= 0 && (shot_of.contains(int(row)) || flag_of.contains(int(row)))) of_group[std::size_t(g.of_row[row])].push_back(int(row));
+    for (std::size_t k = 0; k < g.name.size(); ++k) {
+      const std::vector<int>& members = of_group[k];
+      std::vector<std::size_t> bad;
+      for (const int row : members)
+        if (const auto it = flag_of.find(row); it != flag_of.end() && flags[it->second].finding == 0) bad.push_back(it->second);
+      if (members.size() < 3 || bad.size() * 2 <= members.size()) continue;
+      std::map<std::string, int> votes;
+      for (const std::size_t b : bad) ++votes[flags[b].column];
+      const std::string column = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
+      // The most telling reason: a slip before a value that cannot be.
+      std::string reason;
+      for (const bool slip : {true, false})
+        for (const std::size_t b : bad)
+          if (reason.empty() && flags[b].column == column && flags[b].slip == slip) reason = flags[b].reason;
+      const Column* u = shots.find(column);
+      if (const std::string other = u && u->numeric ? copied_from(shots, *u, members) : ""; !other.empty())
+        reason = fmt::format("the values of {} stand in {}", other, column);
+      ++finding;
+      const std::string said = fmt::format("all of {} '{}' recorded wrongly in {}: {}", c.name, g.name[k], column, reason);
+      for (const int row : members) {
+        if (const auto it = flag_of.find(row); it != flag_of.end()) {
+          RowFlag& f = flags[it->second];
+          f.finding = finding;
+          f.column = column;
+          f.reason = said;
+          f.slip = true;
+        } else {
+          const int shot = shot_of.at(row);
+          flags.push_back({shot, row, column, said, finding, Row(problem, fit, shot).distance({}, {}), true});
+          flag_of[row] = flags.size() - 1;
+        }
+      }
+    }
+  }
+  // The same slip in the same column is the same cause only where most of a cluster shows it; else each row is its own.
+  for (RowFlag& f : flags)
+    if (f.finding == 0) f.finding = ++finding;
+}
+
 }  // namespace
 
-std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
-                            const Fit& fit) {
+Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
+                 const Fit& fit, const std::vector<RowFlag>& before) {
   const int n = problem.shots();
-  std::vector<RowFlag> flags;
-  std::map<int, std::string> key_of;
+  Screening screening;
+  std::vector<RowFlag>& flags = screening.flags;
+  flags = before;
+  std::map<int, std::size_t> known;
+  for (std::size_t k = 0; k < flags.size(); ++k)
+    if (flags[k].shot >= 0) known[flags[k].shot] = k;
   // Against the bulk: where the fit misses everything by some factor, that is the fit's fault, not the rows'.
   std::vector<double> relative;
   for (int i = 0; i < n; ++i) {
@@ -103,7 +188,7 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
     for (int c = 0; c < problem.width(); ++c) seen += problem.observed(i, c);
     if (seen) relative.push_back(Row(problem, fit, i).distance({}, {}) / quantile(boost::math::chi_squared(seen), 0.5));
   }
-  if (relative.empty()) return flags;
+  if (relative.empty()) return screening;
   std::ranges::nth_element(relative, relative.begin() + std::ptrdiff_t(relative.size() / 2));
   const double bulk = std::max(1.0, relative[relative.size() / 2]);
   for (int i = 0; i < n; ++i) {
@@ -118,9 +203,9 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
 
     const std::size_t file_row = std::size_t(row_of[std::size_t(i)]);
     std::vector<Slip> slips;
-    const auto try_one = [&](const ColumnUse& u, double si, std::string reason, std::string key, double cost) {
+    const auto try_one = [&](const ColumnUse& u, double si, std::string reason, double cost) {
       const double d = u.input >= 0 ? row.distance({{u.input, si}}, {}) : row.distance({}, {{u.channel, si / u.column->si}});
-      slips.push_back({u.column->name, std::move(reason), std::move(key), d, cost});
+      slips.push_back({u.column->name, std::move(reason), d, cost});
     };
     std::vector<const ColumnUse*> present;
     for (const ColumnUse& u : uses)
@@ -129,12 +214,12 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
       const double x = u->column->value[file_row], native = x / u->column->si;
       for (const Factor& f : factors(*u->column)) {
         const double cost = std::string_view(f.what).find("decimal") == std::string_view::npos ? 0 : 3;
-        try_one(*u, x * f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native * f.value, f.what), std::string("x") + f.what, cost);
-        try_one(*u, x / f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native / f.value, f.what), std::string("/") + f.what, cost);
+        try_one(*u, x * f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native * f.value, f.what), cost);
+        try_one(*u, x / f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native / f.value, f.what), cost);
       }
-      if (x != 0) try_one(*u, -x, fmt::format("{:g} fits with the other sign", native), "sign", 3);
+      if (x != 0) try_one(*u, -x, fmt::format("{:g} fits with the other sign", native), 3);
       for (const double t : transpositions(native, u->column->resolution / u->column->si))
-        try_one(*u, t * u->column->si, fmt::format("{:g} fits as {:g}: digits transposed", native, t), "digits", 3);
+        try_one(*u, t * u->column->si, fmt::format("{:g} fits as {:g}: digits transposed", native, t), 3);
     }
     for (std::size_t a = 0; a < present.size(); ++a)
       for (std::size_t b = a + 1; b < present.size(); ++b) {
@@ -144,7 +229,7 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
         (u.input >= 0 ? inputs : channels).emplace_back(u.input >= 0 ? u.input : u.channel, u.input >= 0 ? x : x / u.column->si);
         (v.input >= 0 ? inputs : channels).emplace_back(v.input >= 0 ? v.input : v.channel, v.input >= 0 ? y : y / v.column->si);
         slips.push_back({u.column->name, fmt::format("fits with {} and {} swapped", u.column->name, v.column->name),
-                         "swap " + v.column->name, row.distance(inputs, channels), 2});
+                         row.distance(inputs, channels), 2});
       }
     // Another quantity copied over this one: leaving a single channel or input out would do.
     const double fits = bulk * (quantile(law, 0.95) + 2), half = 0.25 * distance;
@@ -152,11 +237,12 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
     for (const Slip& s : slips)
       if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost)) best = &s;
     if (best) {
-      flags.push_back({i, best->column, best->reason, 0, distance});
-      key_of[i] = best->column + "|" + best->key;
+      const RowFlag flag{i, int(file_row), best->column, best->reason, 0, distance, true};
+      if (const auto it = known.find(i); it != known.end()) flags[it->second] = flag;
+      else flags.push_back(flag);
       continue;
     }
-    if (distance < surely) continue;
+    if (distance < surely || known.contains(i)) continue;
     // No slip found: name the channel that, left out, helps most, unless one input can be anything.
     std::string column = "";
     double least = distance;
@@ -184,52 +270,25 @@ std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const st
         column = u->column->name;
       }
     }
-    flags.push_back({i, column, fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked", std::sqrt(distance)), 0, distance});
-    key_of[i] = "|" + std::to_string(i);
+    flags.push_back({i, int(file_row), column,
+                     fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked", std::sqrt(distance)), 0, distance, false});
   }
+  gather_clusters(problem, shots, row_of, fit, flags);
 
-  // One cause, one finding: a cluster most of whose rows are flagged.
-  int finding = 0;
-  std::map<int, RowFlag*> by_shot;
-  for (RowFlag& f : flags) by_shot[f.shot] = &f;
-  std::vector<RowFlag> added;
-  for (const Column& c : shots.columns) {
-    if (c.numeric) continue;
-    const Groups g = groups(c);
-    if (g.name.size() < 2) continue;
-    for (std::size_t k = 0; k < g.name.size(); ++k) {
-      std::vector<int> members, bad;
-      for (int i = 0; i < n; ++i)
-        if (g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k)) {
-          members.push_back(i);
-          if (by_shot.contains(i) && by_shot[i]->finding == 0) bad.push_back(i);
-        }
-      if (members.size() < 3 || bad.size() * 2 <= members.size()) continue;
-      std::map<std::string, int> votes;
-      for (const int i : bad) ++votes[by_shot[i]->column];
-      const auto top = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; });
-      ++finding;
-      std::string reason;
-      for (const int i : bad)
-        if (by_shot[i]->column == top->first && reason.empty()) reason = by_shot[i]->reason;
-      for (const int i : members) {
-        const std::string said = fmt::format("all of {} '{}' recorded wrongly in {}: {}", c.name, g.name[k], top->first, reason);
-        if (by_shot.contains(i)) {
-          by_shot[i]->finding = finding;
-          by_shot[i]->column = top->first;
-          by_shot[i]->reason = said;
-        } else {
-          added.push_back({i, top->first, said, finding, Row(problem, fit, i).distance({}, {})});
-        }
-      }
+  // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.
+  std::map<std::string, int> unreasoned;
+  int count = 0;
+  for (const RowFlag& f : flags)
+    if (!f.slip && f.shot >= 0) {
+      ++count;
+      ++unreasoned[f.column];
     }
+  if (count > std::max(2.0, 0.08 * n)) {
+    std::erase_if(flags, [](const RowFlag& f) { return !f.slip && f.shot >= 0; });
+    screening.widespread = std::ranges::max_element(unreasoned, {}, [](const auto& v) { return v.second; })->first;
   }
-  // The same slip in the same column is the same cause only where most of a cluster shows it; else each row is its own.
-  for (RowFlag& f : flags)
-    if (f.finding == 0) f.finding = ++finding;
-  flags.insert(flags.end(), added.begin(), added.end());
-  std::ranges::stable_sort(flags, {}, &RowFlag::shot);
-  return flags;
+  std::ranges::stable_sort(flags, {}, &RowFlag::row);
+  return screening;
 }
 
 }  // namespace hosel::loop

@@ -9,11 +9,20 @@
 namespace hosel::loop {
 
 struct RowFlag {
-  int shot = 0;         ///< of the problem; or the row of the file where the row never became a shot
+  int shot = -1;        ///< of the problem; -1 where the row never became one
+  int row = 0;          ///< of the file
   std::string column;
   std::string reason;
   int finding = 0;
   double distance = 0;  ///< squared Mahalanobis distance
+  bool slip = true;     ///< a slip of the record explains it; else only that nothing explains it is known
+};
+
+struct Screening {
+  std::vector<RowFlag> flags;  ///< by row
+  /// Channel in which so many shots are far off, without a slip that would bring them back, that they are no
+  /// exceptions: then they are not flagged, and the residual is to be explained. Empty: none.
+  std::string widespread;
 };
 
 /// Which column of the data holds an input or a channel of the problem.
@@ -25,8 +34,9 @@ struct ColumnUse {
 
 /// Flags shots of the problem at a fitted model. A row is flagged where its distance is beyond what the noise
 /// allows in so many rows, or somewhat less where one slip (unit, swapped columns, transposed digits, sign,
-/// decimal point) brings it back. A cluster most of whose rows are flagged is one finding.
-std::vector<RowFlag> screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of,
-                            const std::vector<ColumnUse>& uses, const Fit& fit);
+/// decimal point) brings it back. `before`: rows that were flagged before they could become shots. A cluster most
+/// of whose rows are flagged is one finding, with what stands in its column where another column shows it.
+Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
+                 const Fit& fit, const std::vector<RowFlag>& before);
 
 }  // namespace hosel::loop

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -105,7 +106,19 @@ class Search {
       Eigen::VectorXd second(from.size());
       second << base_fit.p, single_optimum(linear_[g.a].form), single_optimum(linear_[g.b].form);
       starting.push_back(second);
-      all[k] = candidate(m, starting);
+      // A threshold: every start of it beside the other's optimum.
+      bool threshold = false;
+      std::ptrdiff_t at = base_fit.p.size();
+      for (const Form* form : {linear_[g.a].form, linear_[g.b].form}) {
+        const auto n = std::ptrdiff_t(form->parameters.size());
+        for (const auto& s : form->starts) {
+          starting.push_back(second);
+          starting.back().segment(at, n) = Eigen::Map<const Eigen::VectorXd>(s.data(), n);
+          threshold = true;
+        }
+        at += n;
+      }
+      all[k] = candidate(m, starting, threshold ? 2 : 1);
     });
     pairs = best_of_each(std::move(all));
   }
@@ -143,9 +156,18 @@ class Search {
     tbb::parallel_for(std::size_t(0), tries.size(), [&](std::size_t k) {
       Eigen::VectorXd zero = tries[k].second;
       zero.tail(std::ptrdiff_t(tries[k].first.forms.back()->parameters.size())).setZero();
-      all[k] = candidate(tries[k].first, {tries[k].second, zero});
+      all[k] = candidate(tries[k].first, {tries[k].second, zero}, 1);
     });
     triples = best_of_each(std::move(all));
+  }
+
+  /// Fall of the deviance by the best threshold effect. It acts on few shots, which the map's weights take for bad
+  /// ones; that a plausible threshold explains them is seen here only.
+  double threshold_gain() const {
+    double gain = 0;
+    for (const Candidate& c : form_fits_)
+      if (!c.fit.model.forms.back()->starts.empty()) gain = std::max(gain, base_fit.deviance - c.fit.deviance);
+    return gain;
   }
 
   /// Whitened unit directions of the candidates, for the gate.
@@ -209,9 +231,9 @@ class Search {
     return all;
   }
 
-  Candidate candidate(const Model& m, const std::vector<Eigen::VectorXd>& from) const {
+  Candidate candidate(const Model& m, const std::vector<Eigen::VectorXd>& from, std::size_t most = 2) const {
     Candidate c;
-    c.fit = fit(problem_, rows_, m, from, loss_);
+    c.fit = fit(problem_, rows_, m, from, loss_, most);
     c.criterion = c.fit.deviance + rules_.parameter_cost * m.size();
     for (const Form* f : m.forms) c.criterion += f->rarity;
     for (std::size_t k = base_.size(); k < m.forms.size(); ++k) c.effects.push_back(m.forms[k]->effect);
@@ -339,7 +361,7 @@ void ties_of(const std::vector<const Candidate*>& tied, Selection& out) {
 
 Selection select(const Problem& problem, const std::vector<int>& rows, const std::vector<const Form*>& base,
                  const std::vector<const Form*>& candidates, const std::vector<Regressor>& regressors, const Loss& loss,
-                 bool noise_declared, const Rules& rules) {
+                 const std::vector<char>& declared, const Rules& rules, bool deep) {
   Selection s;
   s.regressors = regressors;
   Search search(problem, rows, base, candidates, loss, rules);
@@ -358,14 +380,17 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   const Eigen::VectorXd scatter = whitened(problem, rows, near.model, near.p);
   s.before = structure(problem, rows, search.z0, scatter, weights(scatter), jacobian(search.base_fit), regressors, search.directions(), {},
                        rules.flips, rules.seed);
-  const double strongest = s.before.findings.empty() ? 0 : std::abs(s.before.findings.front().signal);
-  s.structured = s.before.p < rules.gate || (noise_declared && strongest > rules.remaining_signal);
+  const auto strongest = [&](const StructureMap& map) {
+    for (const Finding& f : map.findings)
+      if (f.channel >= 0 ? declared[std::size_t(f.channel)] : std::ranges::all_of(declared, std::identity{})) return std::abs(f.signal);
+    return 0.0;
+  };
+  s.structured = s.before.p < rules.gate || strongest(s.before) > rules.remaining_signal || search.threshold_gain() > rules.threshold_gain;
 
   const auto check = [&](const Fit& f) {
     const Eigen::VectorXd z = whitened(problem, rows, f.model, f.p);
     s.after = structure(problem, rows, z, z, weights(z), jacobian(f), regressors, Eigen::MatrixXd(z.size(), 0), {}, rules.flips, rules.seed);
-    const double most = s.after.findings.empty() ? 0 : std::abs(s.after.findings.front().signal);
-    return !(s.after.p < rules.remaining || (noise_declared && most > rules.remaining_signal));
+    return !(s.after.p < rules.remaining || strongest(s.after) > rules.remaining_signal);
   };
 
   const std::vector<Candidate>* level = nullptr;
@@ -384,7 +409,7 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
       }
     };
     step(search.pairs);
-    if (s.level == 2 && !s.clean) {
+    if (s.level == 2 && !s.clean && deep) {
       search.fit_triples();
       step(search.triples);
     }
@@ -407,6 +432,8 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
     for (const Candidate& c : *level)
       if (c.criterion <= level->front().criterion + rules.tie) tied.push_back(&c);
     ties_of(tied, s);
+    // Many sets without a name in common: the data do not name anything.
+    s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;
   }
   for (const auto* list : {&search.singles, &search.pairs, &search.triples})
     s.candidates.insert(s.candidates.end(), list->begin(), list->end());

@@ -13,6 +13,7 @@ namespace hosel::loop {
 struct Rules {
   double gate = 0.01;          ///< level of the test for structure at all
   double gain = 22;            ///< least fall of the deviance for a first effect
+  double threshold_gain = 32;  ///< least fall by a threshold effect that opens the gate on its own
   double further_gain = 16;    ///< least fall of the criterion for one more effect
   double parameter_cost = 4;   ///< criterion = deviance + cost * parameters
   double tie = 7;              ///< candidates within this of the best criterion tie with it
@@ -37,15 +38,17 @@ struct Selection {
   int level = 0;                     ///< number of effects that the data ask for
   bool structured = false;           ///< the gate
   bool clean = true;                 ///< nothing remains after `chosen`
+  bool nameless = false;             ///< many sets of effects tie and no name is common to them
   StructureMap before, after;
   std::vector<Regressor> regressors;
   std::vector<std::string> silent;   ///< effects without influence on these channels at these inputs
 };
 
 /// Candidate forms given; `base` are forms that are always part of the model. Rows: training rows of the
-/// problem. `noise_declared`: every channel's noise is known, so that signals can be read in its units.
+/// problem. `declared`: per channel, whether its noise is known, so that signals can be read in its units.
+/// `deep`: go on to triples where pairs leave structure.
 Selection select(const Problem& problem, const std::vector<int>& rows, const std::vector<const Form*>& base,
                  const std::vector<const Form*>& candidates, const std::vector<Regressor>& regressors, const Loss& loss,
-                 bool noise_declared, const Rules& rules);
+                 const std::vector<char>& declared, const Rules& rules, bool deep = true);
 
 }  // namespace hosel::loop

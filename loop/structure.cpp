@@ -46,6 +46,50 @@ void remove_trend(Eigen::VectorXd& q, const Eigen::VectorXd& x, const std::vecto
   if (xx > 0) q -= (xq / xx) * x;
 }
 
+/// What an instrument does to a reading y: dead band about a value, saturation beyond one, the reading of the shot
+/// before mixed in. The value is the base model's, so that noise does not enter.
+void add_responses(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& order, std::vector<Regressor>& all) {
+  const int n = problem.shots(), m = problem.width();
+  if (rows.size() < 12) return;
+  Eigen::MatrixXd y(n, m);
+  std::vector<double> out(static_cast<std::size_t>(m));
+  for (int i = 0; i < n; ++i) {
+    const bool good = problem.predict(i, Model{}, nullptr, out.data());
+    for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : std::nan("");
+  }
+  std::vector<int> by_order(static_cast<std::size_t>(n));
+  std::iota(by_order.begin(), by_order.end(), 0);
+  std::ranges::stable_sort(by_order, {}, [&](int i) { return order[i]; });
+  for (int c = 0; c < m; ++c) {
+    const std::string& name = problem.channels()[std::size_t(c)].name;
+    std::vector<double> sorted;
+    for (const int i : rows)
+      if (std::isfinite(y(i, c))) sorted.push_back(y(i, c));
+    if (sorted.size() < 12) continue;
+    std::ranges::sort(sorted);
+    const auto at = [&](double q) { return sorted[std::size_t(q * double(sorted.size() - 1))]; };
+    Eigen::VectorXd line = y.col(c);
+    if (!standardise(line, rows)) continue;
+    const auto add = [&](const char* kind, std::string detail, const std::string& column, auto&& value) {
+      Eigen::VectorXd x(n);
+      for (int i = 0; i < n; ++i) x[i] = value(y(i, c));
+      if (!standardise(x, rows)) return;
+      remove_trend(x, line, rows);
+      if (x.norm() < 0.05 * std::sqrt(double(n)) || !standardise(x, rows)) return;
+      all.push_back({column, kind, std::move(detail), false, x, c});
+    };
+    for (const double share : {0.3, 0.5, 0.7}) {
+      const double half = 0.5 * (at(0.5 + share / 2) - at(0.5 - share / 2)), centre = at(0.5);
+      add("response", fmt::format("dead band about {:.4g}", centre), name, [&](double v) { return std::abs(v - centre) < half ? v - centre : 0.0; });
+    }
+    for (const double q : {0.2, 0.4, 0.6, 0.8})
+      add("response", fmt::format("kink at {:.4g}", at(q)), name, [&](double v) { return q < 0.5 ? std::min(0.0, v - at(q)) : std::max(0.0, v - at(q)); });
+    Eigen::VectorXd lag = Eigen::VectorXd::Zero(n);
+    for (int k = 1; k < n; ++k) lag[by_order[std::size_t(k)]] = y(by_order[std::size_t(k) - 1], c) - y(by_order[std::size_t(k)], c);
+    if (standardise(lag, rows)) all.push_back({"shot", "lag", "the reading of the shot before", true, lag, c});
+  }
+}
+
 }  // namespace
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
@@ -131,6 +175,8 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     }
   }
 
+  add_responses(problem, rows, order, all);
+
   if (rows.size() >= 12) {
     for (int k = 1; k < 12; ++k) {
       Eigen::VectorXd x(n);
@@ -138,14 +184,15 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
       if (standardise(x, rows)) all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
     }
     const int fastest = std::clamp(int(rows.size()) / 4, 2, 16);
-    for (int f = 1; f <= fastest; ++f)
+    // Half periods too: the slow ones need not close over the session.
+    for (int half = 2; half <= 2 * fastest; half += half < 12 ? 1 : 2)
       for (const bool sine : {true, false}) {
         Eigen::VectorXd x(n);
         for (int i = 0; i < n; ++i) {
-          const double phase = 2 * kPi * f * order[i];
+          const double phase = kPi * half * order[i];
           x[i] = sine ? std::sin(phase) : std::cos(phase);
         }
-        if (standardise(x, rows)) all.push_back({"shot", "oscillation", fmt::format("{} periods in the session", f), true, x});
+        if (standardise(x, rows)) all.push_back({"shot", "oscillation", fmt::format("{:g} periods in the session", 0.5 * half), true, x});
       }
   }
   return all;
@@ -193,6 +240,7 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
   };
   for (std::size_t r = 0; r < regressors.size(); ++r)
     for (int c = 0; c < m; ++c) {
+      if (regressors[r].channel >= 0 && regressors[r].channel != c) continue;
       for (int i = 0; i < n; ++i) {
         auto part = a.segment(std::ptrdiff_t(i) * m, m);
         if (problem.observed(rows[std::size_t(i)], c))

@@ -16,9 +16,10 @@ std::vector<Form> cg_shift(const Setting& setting) {
     return f;
   };
   Form depth = along({0}, "out of the face");
-  depth.rarity = 4;  // the depth is what a balance finds first
-  return {along({1}, "towards the heel"), along({2}, "up"), depth,
-          along({1, 2}, "in the face plane"), along({0, 1, 2}, "in three directions")};
+  depth.rarity = 8;  // the depth is what a balance finds first
+  Form all = along({0, 1, 2}, "in three directions");
+  all.rarity = 6;
+  return {along({1}, "towards the heel"), along({2}, "up"), depth, along({1, 2}, "in the face plane"), all};
 }
 
 }  // namespace hosel::loop::forms

@@ -41,11 +41,22 @@ std::vector<Form> head_closure(const Setting& setting) {
       };
     return f;
   };
+  Form shaft{.effect = "head-closure", .what = "about the shaft", .parameters = {rate("rate_shaft")}};
+  const auto about_shaft = [](double w, const Blow& b) { return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis)); };
+  if (setting.head_turns)
+    shaft.before = [about_shaft](std::span<const double> p, Trial& t) {
+      if (p[0] != 0) t.blow.delivery.head_angular_velocity += about_shaft(p[0], t.blow);
+    };
+  else
+    shaft.after = [about_shaft](std::span<const double> p, const Trial& t, Launch& launch) {
+      if (p[0] != 0) add_moving_point(about_shaft(p[0], t.blow), t, launch);
+    };
   // A club closes about its shaft, which stands more upright than flat: rates about the horizontal are unusual, and
   // they do to the launch what a shifted centre of gravity does.
   std::vector<Form> all = {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
                            about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
-  for (std::size_t k = 1; k < all.size(); ++k) all[k].rarity = 8;
+  for (std::size_t k = 1; k < all.size(); ++k) all[k].rarity = 10;
+  all.push_back(shaft);
   return all;
 }
 

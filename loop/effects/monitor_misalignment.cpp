@@ -1,9 +1,11 @@
 // The launch monitor's axes are turned against the target frame: it reports the same vectors in its own axes.
+#include <algorithm>
+
 #include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> monitor_misalignment(const Setting&) {
+std::vector<Form> monitor_misalignment(const Setting& setting) {
   const auto angle = [](const char* name) { return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}; };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](std::vector<int> axes, const char* what) {
@@ -24,6 +26,11 @@ std::vector<Form> monitor_misalignment(const Setting&) {
     };
     return f;
   };
+  // Without a sideways reading, yaw and roll show in the second order only.
+  const bool sideways = std::ranges::any_of(setting.outputs, [](Output o) {
+    return o == Output::azimuth || o == Output::sidespin || o == Output::spin_axis;
+  });
+  if (!sideways) return {about({1}, "pitch")};
   return {about({2}, "yaw"), about({1}, "pitch"), about({0}, "roll"), about({2, 1}, "yaw and pitch"),
           about({2, 1, 0}, "yaw, pitch and roll")};
 }

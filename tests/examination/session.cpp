@@ -271,11 +271,13 @@ Fit fit(const Session& s, const std::vector<Swing>& swings, const std::vector<co
     }
   if (forms.size() == 1 && forms[0]->effect == "head-rotation") starts = {{1.0}};
 
-  if (starts.size() > 2) {  // refine only the two nearest
+  if (starts.size() > 4) {  // refine only the four nearest
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t k = 0; k < starts.size(); ++k) order.push_back({whiten(target - outputs(starts[k])).norm(), k});
     std::sort(order.begin(), order.end());
-    starts = {starts[order[0].second], starts[order[1].second]};
+    std::vector<std::vector<double>> near;
+    for (std::size_t k = 0; k < 4; ++k) near.push_back(starts[order[k].second]);
+    starts = near;
   }
   Fit best;
   best.distance = std::numeric_limits<double>::infinity();
