@@ -76,7 +76,9 @@ void save(Data& data, const fs::path& file) {
   vtkNew<Writer> writer;
   writer->SetFileName(file.string().c_str());
   writer->SetInputData(&data);
-  writer->SetDataModeToAppended();
+  // Inline: ParaView 5.11 cannot read appended data where libexpat puts off its parsing (2.6, and 2.5 with the fix
+  // of CVE-2023-52425: "junk after document element").
+  writer->SetDataModeToBinary();
   if (!writer->Write()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
 }
 
