@@ -8,6 +8,7 @@
 #include "app/kinds/curves.hpp"
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/identify_shaft.hpp"
+#include "app/kinds/loaded_club.hpp"
 #include "app/kinds/impact.hpp"
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
@@ -36,6 +37,7 @@ constexpr std::array kKinds = {
     Kind{"loop", "measured shots against a model: which effect does the model lack?", read_loop},
     Kind{"modes", "free vibrations of a ball, harmonic by harmonic, or of a shaft with its head", read_either_modes},
     Kind{"swing", "a flexible club driven by the motion of the grip, up to impact", read_swing},
+    Kind{"loaded-club", "a swing and the blow at its end: what preload, gravity and the grip change", read_loaded_club},
     Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},

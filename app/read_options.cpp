@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/read_solid.hpp"
+#include "app/read_swing.hpp"
 
 namespace hosel::app {
 namespace {
@@ -44,6 +45,16 @@ models::FeImpactOptions read_fe(Table root) {
 
 }  // namespace
 
+void read_grip(Table& t, models::ShaftMount& mount) {
+  using models::Grip;
+  const std::string hold = t.choice("hold", {"clamped", "free", "forced", "hands"}, "clamped");
+  mount.grip = hold == "free" ? Grip::free : hold == "forced" ? Grip::forced : hold == "hands" ? Grip::hands : Grip::clamped;
+  mount.elements = int(t.integer("elements", 2, 1000, mount.elements));
+  if (mount.grip == Grip::hands) mount.hands = read_springs(t);
+  if (t.has_quantity("force") || t.has_quantity("moment"))
+    mount.load = models::GripLoad{.force = t.vector("force", "N"), .moment = t.vector("moment", "N_m")};
+}
+
 models::Options read_options(Table root, const std::vector<std::string>& models) {
   models::Options options;
   if (auto t = root.optional_table("volumetric")) {
@@ -76,11 +87,8 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
       options.shaft_beam.feels_translation = t->flag("feels_translation", true);
       options.shaft_beam.feels_rotation = t->flag("feels_rotation", true);
     }
-  if (asked("fe-full-club"))
-    if (auto t = root.optional_table("grip")) {
-      options.shaft_mount.grip = t->choice("hold", {"clamped", "free"}, "clamped") == "free" ? models::Grip::free : models::Grip::clamped;
-      options.shaft_mount.elements = int(t->integer("elements", 2, 1000, options.shaft_mount.elements));
-    }
+  if (asked("fe-full-club") || asked("shaft-coupled"))
+    if (auto t = root.optional_table("grip")) read_grip(*t, options.shaft_mount);
   // A case with finite-element tables keeps them where only its other models are asked.
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
   const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));

@@ -12,4 +12,8 @@ namespace hosel::app {
 /// Reads the tables that the named models look at, and no others.
 models::Options read_options(Table root, const std::vector<std::string>& models);
 
+/// `[grip]`: what the hands do during the impact, and the wrench (`force`, `moment`, grip axes) with which they load
+/// the shaft before it; without one the shaft is straight and moves with the head.
+void read_grip(Table& table, models::ShaftMount& mount);
+
 }  // namespace hosel::app

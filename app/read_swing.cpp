@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -106,6 +107,57 @@ MotionInput read_motion(Table table) {
   return in;
 }
 
+fem::JointStiffness read_springs(Table& t) {
+  const auto three = [&](std::string_view stem, std::string_view unit, bool needed) {
+    if (!needed && !t.has_quantity(stem)) return Vec3(Vec3::Zero());
+    const auto v = t.quantities(stem, unit, 3, Range::non_negative());
+    return Vec3(v[0], v[1], v[2]);
+  };
+  fem::JointStiffness k;
+  k.translation = three("stiffness", "N_per_m", true);
+  k.rotation = three("rotational_stiffness", "N_m_per_rad", true);
+  k.translation_damping = three("damping", "N_s_per_m", false);
+  k.rotation_damping = three("rotational_damping", "N_m_s_per_rad", false);
+  return k;
+}
+
+GripInput read_grip_drive(Table root) {
+  GripInput in;
+  auto t = root.optional_table("grip");
+  if (!t) return in;
+  const std::string drive = t->choice("drive", {"prescribed", "hands", "forced"}, "prescribed");
+  using Kind = models::GripDrive::Kind;
+  in.kind = drive == "hands" ? Kind::hands : drive == "forced" ? Kind::forced : Kind::prescribed;
+  if (in.kind == Kind::hands) in.hands = read_springs(*t);
+  if (in.kind == Kind::forced) in.wrench = t->data_file("wrench");
+  return in;
+}
+
+models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem::Motion motion) {
+  models::GripDrive drive{.kind = grip.kind, .motion = std::move(motion), .wrench = {}, .hands = grip.hands};
+  if (grip.kind != models::GripDrive::Kind::forced) return drive;
+  const loop::Sheet sheet = read_sheet(grip.wrench);
+  const std::vector<double> times = column(sheet, "time", Dimension::time, true);
+  std::array<std::vector<double>, 6> parts;
+  for (std::size_t c = 0; c < 3; ++c) {
+    parts[c] = column(sheet, fmt::format("force_{}", "xyz"[c]), Dimension::force, true);
+    parts[3 + c] = column(sheet, fmt::format("moment_{}", "xyz"[c]), Dimension::moment, true);
+  }
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] > times[i - 1])) throw InputError(fmt::format("{}:{}: time goes backwards or stands still", sheet.file, sheet.lines[i]));
+  if (times.size() < 2 || times.front() > span.begin + 1e-9 || times.back() < span.end - 1e-9)
+    throw InputError(fmt::format("{}: the wrench does not cover the motion, {:g} to {:g} s", sheet.file, span.begin, span.end));
+  drive.wrench = [times, parts, motion = drive.motion](double t) {
+    const auto after = std::ranges::upper_bound(times, t);
+    const auto k = std::clamp<std::ptrdiff_t>(after - times.begin(), 1, std::ssize(times) - 1);
+    const auto b = static_cast<std::size_t>(k), a = b - 1;
+    const double w = (t - times[a]) / (times[b] - times[a]);
+    const auto at = [&](std::size_t c) { return (1 - w) * parts[c][a] + w * parts[c][b]; };
+    return fem::Wrench{motion(t).rotation * Vec3(at(0), at(1), at(2)), Vec3(at(3), at(4), at(5))};
+  };
+  return drive;
+}
+
 models::SwingOptions read_swing_options(Table root) {
   models::SwingOptions o;
   if (auto t = root.optional_table("solution")) {
@@ -114,6 +166,7 @@ models::SwingOptions read_swing_options(Table root) {
     o.step = t->quantity("step", "ms", Range::positive(), o.step);
     o.rho_inf = t->number("rho_inf", Range::fraction(), o.rho_inf);
     o.shear = t->flag("shear", o.shear);
+    o.modal_damping = t->numbers("modal_damping", 0, {0, 0.999}, std::vector<double>{});
     o.grip_point = t->quantity("grip_point", "mm", Range::non_negative(), o.grip_point);
   }
   if (auto t = root.optional_table("joint")) {
@@ -125,12 +178,7 @@ models::SwingOptions read_swing_options(Table root) {
       o.hinge_axis = Vec3(axis[0], axis[1], axis[2]);
       if (!(o.hinge_axis.norm() > 0)) t->fail("axis", "the axis of a hinge has a direction");
     }
-    if (o.joint == HeadJoint::spring) {
-      const auto kt = t->quantities("stiffness", "N_per_m", 3, Range::non_negative());
-      const auto kr = t->quantities("rotational_stiffness", "N_m_per_rad", 3, Range::non_negative());
-      o.joint_stiffness.translation = Vec3(kt[0], kt[1], kt[2]);
-      o.joint_stiffness.rotation = Vec3(kr[0], kr[1], kr[2]);
-    }
+    if (o.joint == HeadJoint::spring) o.joint_stiffness = read_springs(*t);
   }
   return o;
 }

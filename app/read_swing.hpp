@@ -25,6 +25,21 @@ struct MotionInput {
 /// axes that are not orthonormal, cells that are not numbers.
 MotionInput read_motion(Table table);
 
+/// Springs and dampers of a joint: `stiffness`, `rotational_stiffness` and (0) `damping`, `rotational_damping`, three each.
+fem::JointStiffness read_springs(Table& table);
+
+/// `[grip]` of a swing: `drive = "prescribed"` (the motion itself), `"hands"` (springs to it) or `"forced"` by a
+/// `wrench` file with the columns that a swing's own `swing.csv` has.
+struct GripInput {
+  models::GripDrive::Kind kind = models::GripDrive::Kind::prescribed;
+  fem::JointStiffness hands;
+  std::filesystem::path wrench;
+};
+GripInput read_grip_drive(Table root);
+/// The drive of a swing along `motion`. A wrench is given in the axes of that motion. Throws InputError where the
+/// file does not cover the motion's span.
+models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem::Motion motion);
+
 /// `[solution]` and `[joint]` of a swing.
 models::SwingOptions read_swing_options(Table root);
 

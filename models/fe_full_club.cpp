@@ -12,6 +12,9 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   if (const auto faults = head.faults(); !faults.empty()) throw std::invalid_argument("fe full club: " + faults.front());
   if (options.impact.harmonics == 0)
     throw std::invalid_argument("fe full club: the shaft turns the head, which the axisymmetric ball cannot follow: use harmonics of 2 or more");
+  ShaftMount mount = options.mount;
+  if (mount.load && !mount.loaded)
+    mount.loaded = loaded_by_grip(blow, *mount.load, mount.grip_point, mount.elements, mount.growth, mount.shear);
   FullClubImpact out;
   out.encounter = encounter(blow);
   const Encounter& e = out.encounter;
@@ -20,7 +23,8 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   const Vec3& hosel = blow.club.geometry.hosel;
   out.hosel = {out.system.layout.add_vector(3), out.system.layout.add_rotation()};
   auto body = std::make_unique<fem::RigidBody>("head", out.hosel.translation, out.hosel.rotation,
-                                               fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel});
+                                               fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel},
+                                               mount.loaded ? Vec3(e.face_axes * mount.loaded->gravity) : Vec3(Vec3::Zero()));
   out.head = body.get();
   out.system.terms.push_back(std::move(body));
 
@@ -36,7 +40,7 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   fem::set_rotation(out.initial, out.hosel.rotation, Eigen::Quaterniond(e.face_axes));
   out.initial.v.segment<3>(out.hosel.translation.v) = blow.delivery.velocity() + w.cross(e.face_axes * (hosel - head.cg));
   out.initial.v.segment<3>(out.hosel.rotation.v) = e.face_axes.transpose() * w;
-  out.shaft = &mount_shaft(out.system, out.initial, out.hosel, blow.club, options.mount);
+  out.shaft = &mount_shaft(out.system, out.initial, out.hosel, blow.club, mount);
   return out;
 }
 

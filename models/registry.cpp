@@ -30,7 +30,7 @@ std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
 }
 
 std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
-  return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam);
+  return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam, o.shaft_mount);
 }
 std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<FeFreeBody>(o.fe); }
 std::unique_ptr<ImpactModel> fe_full_club(const Options& o) {

@@ -39,7 +39,13 @@ std::shared_ptr<const ShaftImpedance> condensed(const Club& club, const ShaftImp
 
 Launch ShaftCoupled::launch(const Blow& blow) const {
   const auto shaft = condensed(blow.club, beam_);
-  return volumetric_impact(blow, law_, options_, shaft.get()).launch;
+  std::optional<LoadedShaft> loaded = mount_.loaded;
+  if (!loaded && mount_.load)
+    loaded = loaded_by_grip(blow, *mount_.load, mount_.grip_point, mount_.elements, mount_.growth, mount_.shear);
+  if (!loaded) return volumetric_impact(blow, law_, options_, shaft.get()).launch;
+  ShaftImpedance accelerating = *shaft;
+  accelerating.acceleration.emplace() << loaded->head_acceleration, loaded->head_angular_acceleration;
+  return volumetric_impact(blow, law_, options_, &accelerating).launch;
 }
 
 }  // namespace hosel::models

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "golf/blow.hpp"
 
@@ -20,6 +21,9 @@ struct ShaftImpedance {
   Eigen::Matrix<double, 6, Eigen::Dynamic> coupling;  ///< G
   Eigen::VectorXd frequency2;      ///< w_k^2 [1/s^2]
   double damping_time = 0;         ///< stiffness-proportional: K (u + t u') [s]
+  /// Of a club loaded by its swing: how the head's cg and its turning accelerate if no blow comes (linear,
+  /// angular; face frame). The undisturbed motion, from which u counts, then is that one.
+  std::optional<Vec6> acceleration;
 };
 
 struct ShaftImpedanceOptions {

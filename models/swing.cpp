@@ -3,7 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fem/modal_damping.hpp"
 #include "golf/shaft_library.hpp"
+#include "solvers/modes.hpp"
 #include "solvers/statics.hpp"
 
 namespace hosel::models {
@@ -36,6 +38,8 @@ std::vector<std::string> SwingOptions::faults() const {
   if (!(step > 0)) out.emplace_back("the step is above zero");
   if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf lies in [0, 1]");
   if (!(tolerance > 0)) out.emplace_back("the tolerance is above zero");
+  for (const double ratio : modal_damping)
+    if (!(ratio >= 0 && ratio < 1)) out.emplace_back("a modal damping ratio lies in [0, 1)");
   if (!(grip_point >= 0)) out.emplace_back("the grip point lies on the shaft");
   return out;
 }
@@ -61,8 +65,24 @@ Delivery delivery_of(const fem::Pose& head) {
   return d;
 }
 
+double dynamic_lie(const fem::Pose& head) {
+  const Vec3 heel = delivery_of(head).face_to_global().transpose() * (head.rotation * Vec3::UnitY());
+  return std::atan2(-heel.z(), heel.y());
+}
+
+Club turned_about_normal(Club club, double angle) {
+  if (angle != 0 && club.head.face.bulge != club.head.face.roll)
+    throw std::invalid_argument("a face of unlike bulge and roll cannot be described in a turned frame");
+  const Mat3 turn = Eigen::AngleAxisd(-angle, Vec3::UnitX()).toRotationMatrix();
+  club.head.cg = turn * club.head.cg;
+  club.head.inertia = (turn * club.head.inertia * turn.transpose()).eval();
+  club.geometry.hosel = turn * club.geometry.hosel;
+  club.geometry.shaft_axis = turn * club.geometry.shaft_axis;
+  return club;
+}
+
 Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
-    : club_(club), options_(options), drive_(std::move(drive)), face_to_grip_(face_to_grip(club.geometry)) {
+    : club_(club), options_(options), drive_(std::move(drive)), face_to_grip_(models::face_to_grip(club.geometry)) {
   if (!club.shaft) throw std::invalid_argument("a swing needs a shaft");
   if (const auto wrong = faults(*club.shaft); !wrong.empty()) throw std::invalid_argument(wrong.front());
   if (const auto wrong = options.faults(); !wrong.empty()) throw std::invalid_argument("swing: " + wrong.front());
@@ -98,6 +118,8 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
     system_.terms.push_back(std::move(body));
   }
 
+  if (!options.modal_damping.empty()) system_.terms.push_back(modal_damping());
+
   const fem::Node& grip = shaft_->nodes().front();
   const fem::Motion motion = [this](double t) {
     if (!held_) return drive_.motion(t);
@@ -111,6 +133,42 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
     system_.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, grip, drive_.hands));
   else if (drive_.kind == Kind::forced)
     system_.terms.push_back(std::make_unique<fem::NodeLoad>("hands", grip, drive_.wrench, fem::NodeLoad::Moment::body));
+}
+
+std::unique_ptr<fem::Term> Swing::modal_damping() {
+  // The club at rest, held at the grip: its modes, and M phi gathered from the terms' blocks.
+  fem::State rest = system_.layout.rest();
+  shaft_->place(rest);
+  if (head_node_.translation.v != shaft_->nodes().back().translation.v)
+    rest.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
+  const auto count = static_cast<Eigen::Index>(options_.modal_damping.size());
+  system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(shaft_->nodes().front(), fem::at_rest(Vec3::Zero())));
+  const solvers::Modes modes = solvers::modes(system_, rest, static_cast<int>(count));
+  system_.prescribed.pop_back();
+  if (static_cast<Eigen::Index>(modes.omega.size()) < count) throw std::invalid_argument("swing: the club has fewer modes than damping ratios");
+  struct Product final : fem::TangentSink {  // mass matrix times the modes
+    const Eigen::MatrixXd& of;
+    Eigen::MatrixXd sum;
+    explicit Product(const Eigen::MatrixXd& m) : of(m), sum(Eigen::MatrixXd::Zero(m.rows(), m.cols())) {}
+    void add(const std::vector<fem::Index>& rows, const std::vector<fem::Index>& columns, const Eigen::Ref<const Eigen::MatrixXd>& block) override {
+      sum(rows, Eigen::all) += block * of(columns, Eigen::all);
+    }
+  } product(modes.shapes);
+  for (const auto& term : system_.terms) term->tangent(rest, {0, 0, 1}, product);
+  std::vector<fem::Node> nodes = shaft_->nodes();
+  if (head_node_.translation.v != nodes.back().translation.v) nodes.push_back(head_node_);
+  Eigen::MatrixXd weights(6 * static_cast<Eigen::Index>(nodes.size()), count);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    weights.middleRows<3>(at) = product.sum.middleRows<3>(nodes[i].translation.v);
+    weights.middleRows<3>(at + 3) = product.sum.middleRows<3>(nodes[i].rotation.v);
+  }
+  fem::Vector rates(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    rates[k] = 2 * options_.modal_damping[i] * modes.omega[i];
+  }
+  return std::make_unique<fem::ModalDamping>("shaft", shaft_->nodes().front(), nodes, weights, rates);
 }
 
 double Swing::mass() const { return shaft_->mass() + (head_ ? head_->properties().mass : 0); }

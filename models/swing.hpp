@@ -36,6 +36,8 @@ struct SwingOptions {
   double grip_point = 0;     ///< arc length of the grip point from the butt; the shaft above it is the hands' [m]
   Vec3 gravity = Vec3(0, 0, -kGravity);
   HeadJoint joint = HeadJoint::rigid;
+  /// Damping ratios of the club's first modes, held at the grip, beside the shaft's own damping time.
+  std::vector<double> modal_damping = {};
   Vec3 hinge_axis = Vec3::UnitX();  ///< face frame
   /// For HeadJoint::spring, in face axes; of a hinge the stiffness about the other two axes.
   fem::JointStiffness joint_stiffness;
@@ -68,6 +70,11 @@ Mat3 face_to_grip(const ClubGeometry& geometry);
 
 /// The delivery of a head at a pose: speed, attack, path of the cg, loft and face angle.
 Delivery delivery_of(const fem::Pose& head);
+/// What a Delivery leaves out of the pose: the turn of the face about its normal, positive toe up [rad].
+double dynamic_lie(const fem::Pose& head);
+/// The same club described in a face frame turned about the normal by `angle`, so that a head with that
+/// dynamic lie has none. Throws std::invalid_argument where bulge and roll differ.
+Club turned_about_normal(Club club, double angle);
 
 /// A club in a system of its own.
 class Swing {
@@ -90,12 +97,16 @@ class Swing {
   const fem::System& system() const { return system_; }
   const fem::Beam& shaft() const { return *shaft_; }
   const fem::RigidBody* head() const { return head_; }
+  const fem::Node& head_node() const { return head_node_; }
+  const Mat3& face_to_grip() const { return face_to_grip_; }
+  const Vec3& gravity() const { return options_.gravity; }
   double mass() const;
   const solvers::Ledger& ledger() const { return ledger_; }  ///< of the last run
   const solvers::GeneralizedAlpha::Counts& counts() const { return counts_; }
 
  private:
   solvers::NewtonOptions newton() const;
+  std::unique_ptr<fem::Term> modal_damping();
 
   Club club_;
   SwingOptions options_;

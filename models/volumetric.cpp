@@ -31,7 +31,8 @@ enum : int {
   kLostJoint = 30,
   kCarrier = 31,
   kLostShaft = 32,
-  kFree = 33,        // size without a shaft; with one: head's departure u from the carrier, q, q'
+  kTime = 33,        // since first contact
+  kFree = 34,        // size without a shaft; with one: head's departure u from the carrier, q, q'
 };
 
 using ConstVec = Eigen::Map<const Vec3>;
@@ -60,6 +61,10 @@ class Contact {
     if (shaft_) {
       modes_ = static_cast<int>(shaft_->frequency2.size());
       added_ = shaft_->mass - shaft_->coupling * shaft_->coupling.transpose();
+      if (shaft_->acceleration && !wall_) {
+        carried_ = *shaft_->acceleration;
+        held_ << head_.mass * carried_.head<3>(), head_.inertia * carried_.tail<3>() + start_spin_.cross(head_.inertia * start_spin_);
+      }
     }
     speed_ = d.velocity().norm();
   }
@@ -123,6 +128,7 @@ class Contact {
     } else {
       shaft_rate(y, dy, torque);
     }
+    dy[kTime] = 1;
     dy[kLostNormal] = law_.stiffness * overlap_.volume * law_.damping * approach_ * approach_;
     dy[kLostFriction] = friction_.dot(slip_);
     dy[kLostJoint] = law_.joint_damping * relative.squaredNorm();
@@ -282,7 +288,7 @@ class Contact {
   Vec6 velocity(const double* y) const {
     Vec6 v;
     v << ConstVec(y + kHeadVelocity) - start_velocity_, ConstVec(y + kHeadSpin) - start_spin_;
-    return v;
+    return v - y[kTime] * carried_;
   }
 
   void shaft_rate(const double* y, double* dy, const Vec3& torque) {
@@ -297,12 +303,17 @@ class Contact {
     const Vec6 pull = shaft_->stiffness * (u + damping * v);
     Vec6 wrench;
     wrench << -force_, torque;
-    const Vec6 a = head_mass().ldlt().solve(wrench - shaft_->coupling * dp_rate - pull);
+    // From the carrier's motion, in which the loaded shaft holds the head with `held_`.
+    Mat6 head = Mat6::Zero();
+    head.topLeftCorner<3, 3>() = head_.mass * Mat3::Identity();
+    head.bottomRightCorner<3, 3>() = R_ * head_.inertia * R_.transpose();
+    const Vec6 a = (head + added_).ldlt().solve(wrench + held_ - head * carried_ - shaft_->coupling * dp_rate - pull);
     dp_rate -= shaft_->coupling.transpose() * a;
-    Eigen::Map<Vec6>(dy + kHeadVelocity) = a;
-    Vec6 carrier;
+    Eigen::Map<Vec6>(dy + kHeadVelocity) = a + carried_;
+    Vec6 carrier, moves;
     carrier << start_velocity_, start_spin_;
-    dy[kCarrier] = -carrier.dot(shaft_->mass * a + shaft_->coupling * dp_rate + pull);
+    moves << ConstVec(y + kHeadVelocity), ConstVec(y + kHeadSpin);
+    dy[kCarrier] = moves.dot(held_) - (carrier + y[kTime] * carried_).dot(shaft_->mass * a + shaft_->coupling * dp_rate + pull);
     dy[kLostShaft] = damping * (v.dot(shaft_->stiffness * v) + dp.dot(shaft_->frequency2.cwiseProduct(dp)));
   }
 
@@ -316,6 +327,7 @@ class Contact {
   bool wall_ = false;
   int modes_ = 0;
   Mat6 added_ = Mat6::Zero();
+  Vec6 carried_ = Vec6::Zero(), held_ = Vec6::Zero();  // the carrier's acceleration, and what it takes from the shaft
 
   // The instant, as evaluate() left it.
   std::array<double, kLostNormal> seen_ = {};

@@ -21,6 +21,7 @@ class SwingJob final : public Job {
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
     motion_ = read_motion(root.table("motion"));
     options_ = read_swing_options(root);
+    grip_ = read_grip_drive(root);
   }
 
   void run(Output& out) override {
@@ -32,8 +33,11 @@ class SwingJob final : public Job {
       return;
     }
     const models::GripMotion grip(motion_.track, motion_.smoothing);
-    models::Swing swing(club_, options_, {.motion = [&](double t) { return grip.at(t); }});
-    const fem::State from = swing.start(motion_.begin, swing.equilibrium(motion_.begin));
+    const fem::Motion motion = [&](double t) { return grip.at(t); };
+    models::Swing swing(club_, options_, make_drive(grip_, motion_, motion));
+    // The swing starts bent by gravity as held hands would have it, whatever drives it then.
+    models::Swing held(club_, options_, {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
+    const fem::State from = swing.start(motion_.begin, held.equilibrium(motion_.begin));
     std::vector<models::SwingSample> samples;
     {
       Progress progress = out.progress("swing");
@@ -70,7 +74,7 @@ class SwingJob final : public Job {
     summary["at_end"] = {{"time_s", last.time}, {"lead_mm", 1e3 * last.lead}, {"droop_mm", 1e3 * last.droop}, {"twist_deg", degrees(last.twist.z())}};
     summary["peak"] = {{"lead_mm", 1e3 * peak_lead}, {"droop_mm", 1e3 * peak_droop}};
     summary["delivery"] = {{"club_speed_mps", d.club_speed}, {"attack_angle_deg", degrees(d.attack_angle)}, {"club_path_deg", degrees(d.club_path)},
-                           {"dynamic_loft_deg", degrees(d.dynamic_loft)}, {"face_angle_deg", degrees(d.face_angle)},
+                           {"dynamic_loft_deg", degrees(d.dynamic_loft)}, {"face_angle_deg", degrees(d.face_angle)}, {"dynamic_lie_deg", degrees(models::dynamic_lie(last.head))},
                            {"head_angular_velocity_rad_per_s", {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
     const solvers::Ledger& l = swing.ledger();
     summary["energy_J"] = {{"kinetic", l.kinetic}, {"strain", l.strain_total()}, {"viscous", l.viscous}, {"numerical", l.numerical},
@@ -85,6 +89,7 @@ class SwingJob final : public Job {
   Club club_;
   MotionInput motion_;
   models::SwingOptions options_;
+  GripInput grip_;
 };
 
 }  // namespace

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
 
 #include "tests/app/command.hpp"
 
@@ -95,6 +98,36 @@ TEST(SwingCase, RunsAndWritesItsHistory) {
   EXPECT_EQ(o.status, 0) << o.text;
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "swing.csv"));
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "summary.json"));
+}
+
+TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
+  // Prescribed; forced by the wrench that this took; springs so stiff that they hardly give.
+  const auto dir = fresh_directory("swing_drives");
+  std::ofstream(dir / "grip.csv") << euler_motion();
+  const auto run = [&](const std::string& name, const std::string& grip) {
+    std::ofstream(dir / "case.toml") << kCase << grip;
+    const Outcome o = command("run " + dir.string() + " --out " + (dir / name).string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    std::ifstream file(dir / name / "swing.csv");
+    std::string row, last;
+    while (std::getline(file, row)) last = row;
+    std::stringstream cells(last);
+    std::vector<double> out;
+    for (std::string cell; std::getline(cells, cell, ',');) out.push_back(std::stod(cell));
+    return out;
+  };
+  const auto prescribed = run("prescribed", "");
+  const auto forced = run("forced", "[grip]\ndrive = \"forced\"\nwrench = \"" + (dir / "prescribed" / "swing.csv").string() + "\"\n");
+  const auto hands = run("hands", "[grip]\ndrive = \"hands\"\nstiffness_N_per_m = [1e8, 1e8, 1e8]\nrotational_stiffness_N_m_per_rad = [1e6, 1e6, 1e6]\n");
+  const double bent = std::hypot(prescribed.at(1), prescribed.at(2));
+  EXPECT_GT(bent, 5);  // mm
+  EXPECT_LT(std::hypot(forced.at(1) - prescribed.at(1), forced.at(2) - prescribed.at(2)), 0.02 * bent);
+  EXPECT_LT(std::hypot(hands.at(1) - prescribed.at(1), hands.at(2) - prescribed.at(2)), 0.02 * bent);
+  std::ofstream(dir / "case.toml") << kCase << "[grip]\ndrive = \"forced\"\nwrench = \"short.csv\"\n";
+  std::ofstream(dir / "short.csv") << "time_s,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n0,0,0,0,0,0,0\n0.1,0,0,0,0,0,0\n";
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "short").string());
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find("does not cover"), std::string::npos) << o.text;
 }
 
 TEST(SwingCase, MissingDataAreSkippedWithTheReason) {

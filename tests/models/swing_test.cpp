@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "fem/modal_damping.hpp"
 #include "solvers/ida.hpp"
+#include "solvers/modes.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
@@ -116,6 +120,56 @@ TEST(Swing, TheHandsWrenchFedBackReproducesTheGrip) {
   EXPECT_LT(distance, 1e-3);
   EXPECT_LT(degrees(angle), 0.1);
   RecordProperty("distance_m", std::to_string(distance));
+}
+
+TEST(Swing, ModalDampingTakesTheStatedShareOfEachMode) {
+  // The held club set swinging in one of its first two modes loses exp(-2 pi zeta) of its amplitude a period; the
+  // damping force has neither force nor moment on the whole, and a rigid motion does not feel it.
+  Club club = driver_club();
+  club.shaft->damping_time = 0;
+  const std::array ratio{0.02, 0.05};
+  const fem::Motion still = fem::at_rest(Vec3::Zero());
+  Swing s(club, {.elements = 6, .step = 5e-4, .rho_inf = 1, .gravity = Vec3::Zero(), .modal_damping = {ratio[0], ratio[1]}}, {.motion = still});
+  const fem::Term* damping = nullptr;
+  for (const auto& term : s.system().terms)
+    if (dynamic_cast<const fem::ModalDamping*>(term.get())) damping = term.get();
+  ASSERT_NE(damping, nullptr);
+  const auto& modal = dynamic_cast<const fem::ModalDamping&>(*damping);
+  fem::State rest = s.system().layout.rest();
+  s.shaft().place(rest);
+  const solvers::Modes modes = solvers::modes(s.system(), rest, 2);
+  for (int k = 0; k < 2; ++k) {
+    fem::State from = rest;
+    from.v = 1e-3 * modes.shapes.col(k);
+    EXPECT_NEAR(modal.speeds(from)[k], 1e-3, 1e-9);
+    EXPECT_NEAR(modal.speeds(from)[1 - k], 0, 1e-9);
+    // Amplitude at the first crest and ten periods later, from the energy.
+    const double omega = modes.omega[static_cast<std::size_t>(k)], zeta = ratio[static_cast<std::size_t>(k)];
+    const fem::State after = s.run(from, 10 * 2 * kPi / omega, {});
+    const double kept = (s.ledger().kinetic + s.ledger().strain_total()) / s.ledger().initial;
+    EXPECT_NEAR(-std::log(kept) / (2 * 10 * 2 * kPi), zeta, 0.01 * zeta) << k;
+    EXPECT_NEAR(s.ledger().viscous, (1 - kept) * s.ledger().initial, 0.01 * s.ledger().initial);
+  }
+  fem::State moving = rest;
+  std::srand(1);
+  moving.v = fem::Vector::Random(moving.v.size());
+  moving.q = s.system().layout.advanced(moving.q, 0.1 * fem::Vector::Random(moving.v.size()));
+  fem::Vector inertia = fem::Vector::Zero(moving.v.size()), force = inertia;
+  damping->residual(moving, inertia, force);
+  Vec3 sum = Vec3::Zero(), moment = sum;
+  for (const fem::Node& n : s.shaft().nodes()) {
+    const Vec3 f = force.segment<3>(n.translation.v), x = moving.q.segment<3>(n.translation.q);
+    sum += f;
+    moment += x.cross(f) + fem::rotation(moving, n.rotation) * Vec3(force.segment<3>(n.rotation.v));
+  }
+  EXPECT_GT(force.norm(), 1e-3);
+  EXPECT_LT(sum.norm() + moment.norm(), 1e-10 * force.norm());
+  const Vec3 v(1, 2, 3), w(3, -2, 1);
+  for (const fem::Node& n : s.shaft().nodes()) {
+    moving.v.segment<3>(n.translation.v) = v + w.cross(Vec3(moving.q.segment<3>(n.translation.q)));
+    moving.v.segment<3>(n.rotation.v) = fem::rotation(moving, n.rotation).conjugate() * w;
+  }
+  EXPECT_LT(modal.speeds(moving).norm(), 1e-12);
 }
 
 TEST(Swing, HingeAndSpringJoints) {
