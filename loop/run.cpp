@@ -392,7 +392,11 @@ class Loop {
     setting.inertia_declared = case_.inertia_declared;
     for (const Channel& ch : channels) setting.outputs.push_back(ch.output);
     for (const EffectEntry& e : effects())
-      for (Form& f : e.forms(setting)) result.forms.push_back(std::move(f));
+      for (Form& f : e.forms(setting)) {
+        // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
+        if (f.effect == "session-drift" && !shots.has_shot_column) f.rarity += 10;
+        result.forms.push_back(std::move(f));
+      }
     for (const std::string& e : case_.effects) {
       bool found = false;
       for (const Form& f : result.forms)
@@ -513,7 +517,7 @@ class Loop {
     for (int pass = 0; pass < 4; ++pass) {
       select(pass > 0);
       const Fit& at = result.selection.chosen;
-      const Screening screening = screen(*problem_, case_.shots, inputs_.row_of, uses_, at, early_);
+      const Screening screening = screen(*problem_, case_.shots, inputs_.row_of, uses_, at, result.selection.clean, early_);
       flags_ = screening.flags;
       widespread_ = screening.widespread;
       std::set<int> now;
@@ -795,6 +799,8 @@ void leave_one_out(const LoopCase& c, const std::vector<DerivedColumn>& derived,
 }  // namespace
 
 LoopResult run(const LoopCase& c) {
+  if (c.shots.rows() > kMostShots)
+    throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(), kMostShots));
   std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
   const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
   auto loop = std::make_unique<Loop>(c, derived, held);

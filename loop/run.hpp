@@ -119,6 +119,9 @@ struct LoopResult {
   std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
 };
 
+/// More rows than this are refused: everything is held in memory, and no effect needs so many.
+inline constexpr std::size_t kMostShots = 200'000;
+
 /// Throws DataError where the data cannot be used at all.
 LoopResult run(const LoopCase& c);
 

@@ -173,7 +173,7 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
 }  // namespace
 
 Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
-                 const Fit& fit, const std::vector<RowFlag>& before) {
+                 const Fit& fit, bool clean, const std::vector<RowFlag>& before) {
   const int n = problem.shots();
   Screening screening;
   std::vector<RowFlag>& flags = screening.flags;
@@ -189,8 +189,9 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
     if (seen) relative.push_back(Row(problem, fit, i).distance({}, {}) / quantile(boost::math::chi_squared(seen), 0.5));
   }
   if (relative.empty()) return screening;
-  std::ranges::nth_element(relative, relative.begin() + std::ptrdiff_t(relative.size() / 2));
-  const double bulk = std::max(1.0, relative[relative.size() / 2]);
+  std::ranges::sort(relative);
+  double bulk = std::max(1.0, relative[relative.size() / 2]);
+  if (!clean) bulk = 2 * std::max(bulk, 0.65 * relative[relative.size() * 3 / 4]);  // 0.65: median over upper quartile of chi-squared, 5 channels
   for (int i = 0; i < n; ++i) {
     const Row row(problem, fit, i);
     int seen = 0;
@@ -275,6 +276,14 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
   }
   gather_clusters(problem, shots, row_of, fit, flags);
 
+  // Few rows of a set slip. Where more seem to, any row far off finds some slip that fits: only the plainest stay.
+  std::map<int, int> of_finding;
+  for (const RowFlag& f : flags) ++of_finding[f.finding];
+  const auto single = [&](const RowFlag& f) { return f.slip && f.shot >= 0 && of_finding[f.finding] == 1; };
+  if (double(std::ranges::count_if(flags, single)) > std::max(3.0, 0.08 * n)) {
+    const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(problem.width()), 2e-4));
+    std::erase_if(flags, [&](const RowFlag& f) { return single(f) && f.distance < plain; });
+  }
   // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.
   std::map<std::string, int> unreasoned;
   int count = 0;

@@ -36,7 +36,8 @@ struct ColumnUse {
 /// allows in so many rows, or somewhat less where one slip (unit, swapped columns, transposed digits, sign,
 /// decimal point) brings it back. `before`: rows that were flagged before they could become shots. A cluster most
 /// of whose rows are flagged is one finding, with what stands in its column where another column shows it.
+/// `clean`: the fit leaves no structure; else its own misfit has tails, and a row must stand out from those.
 Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
-                 const Fit& fit, const std::vector<RowFlag>& before);
+                 const Fit& fit, bool clean, const std::vector<RowFlag>& before);
 
 }  // namespace hosel::loop

@@ -5,7 +5,7 @@
 namespace hosel::loop::forms {
 
 std::vector<Form> normal_force_offset(const Setting&) {
-  const Parameter offset{"offset", "1", 1, -0.3, 0.3, 0.01};
+  const Parameter offset{"offset", "1", 1, -0.2, 0.2, 0.01};
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
   Form couple{.effect = "normal-force-offset", .what = "offset over the ball's radius, its couple added to rolling", .parameters = {offset}, .rarity = 3};
   couple.after = [](std::span<const double> p, const Trial& t, Launch& launch) {

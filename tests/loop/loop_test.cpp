@@ -1,10 +1,12 @@
 // The whole loop on small sets made here with the closed form, and on broken input.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "loop/report.hpp"
 #include "models/registry.hpp"
@@ -125,6 +127,57 @@ TEST_F(Loop, TheSameReportTwice) {
   const LoopResult a = run(c), b = run(c);
   EXPECT_EQ(to_json(a).dump(), to_json(b).dump());
   EXPECT_EQ(residuals_csv(a), residuals_csv(b));
+}
+
+TEST_F(Loop, TheSameReportOnOneThreadAndOnTwo) {
+  const LoopCase c = case_of(csv({.shots = 60, .tangential = 0.25, .humidity = 0.02}));
+  std::vector<std::string> reports;
+  for (const std::size_t threads : {1U, 2U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    ASSERT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), threads);
+    const LoopResult r = run(c);
+    ASSERT_TRUE(r.selection.structured);
+    reports.push_back(to_json(r).dump() + residuals_csv(r));
+  }
+  EXPECT_EQ(reports[0], reports[1]);
+}
+
+TEST_F(Loop, AWholeClubInAnotherUnitIsOneFinding) {
+  // Club speeds of one club in mph: above what any golfer does, so its rows never become shots.
+  std::string text = csv({.shots = 60});
+  std::istringstream in(text);
+  std::string line, clubs;
+  std::getline(in, line);
+  clubs = "club," + line + "\n";
+  for (int i = 0; std::getline(in, line); ++i) {
+    const char club = char('A' + i % 5);
+    if (club == 'C') {
+      const auto a = line.find(','), b = line.find(',', a + 1);
+      line = line.substr(0, a + 1) + std::to_string(std::stod(line.substr(a + 1, b - a - 1)) / kMpsPerMph) + line.substr(b);
+    }
+    clubs += std::string(1, club) + "," + line + "\n";
+  }
+  const LoopResult r = run(case_of(clubs));
+  ASSERT_EQ(r.flagged.size(), 12U);
+  for (const auto& f : r.flagged) {
+    EXPECT_EQ(f.finding, 1);
+    EXPECT_EQ(f.column, "club_speed_mps");
+  }
+  EXPECT_TRUE(r.adopted.empty());
+}
+
+TEST_F(Loop, TooManyRowsAreOneLine) {
+  Sheet sheet{.file = "long.csv", .names = {"club_speed_mps"}};
+  sheet.columns.assign(1, std::vector<std::string>(kMostShots + 1, "45"));
+  for (std::size_t i = 0; i <= kMostShots; ++i) sheet.lines.push_back(i + 2);
+  LoopCase c = case_of(csv({.shots = 3}));
+  c.shots = read_shots(sheet);
+  try {
+    run(c);
+    FAIL();
+  } catch (const DataError& e) {
+    EXPECT_EQ(std::string(e.what()), "long.csv: 200001 rows; a loop takes at most 200000: give it a sample");
+  }
 }
 
 TEST_F(Loop, BrokenInputEndsInAReportOrOneLine) {
