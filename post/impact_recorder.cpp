@@ -8,6 +8,7 @@
 #include "post/bodies.hpp"
 #include "post/checkpoint.hpp"
 #include "post/history.hpp"
+#include "post/patch_mesh.hpp"
 #include "post/vtk_series.hpp"
 
 namespace hosel::post {
@@ -57,10 +58,11 @@ bool deforms(const std::string& body) { return body != "head" && body != "contac
 struct ImpactRecorder::State {
   fs::path directory;
   Blow blow;
+  Vec3 slip;  // of the face along the ball at first touch: the tangential force begins positive and reverses
   RecorderOptions options;
   VtkMesh face_shape, head_shape;
   std::optional<History> history;
-  std::optional<VtkSeries> ball, face, head, shaft;
+  std::optional<VtkSeries> ball, patch, face, head, shaft;
   std::string run;
   std::optional<SavedImpact> resumed;
   std::optional<Pose> start;
@@ -77,6 +79,7 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   s.directory = std::move(directory);
   s.options = options;
   s.blow = blow;
+  s.slip = models::encounter(blow).ball_axes.col(1);
   fs::create_directories(s.directory);
   s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
   s.head_shape = head_mesh(blow.club.head, options.face_width, options.face_height);
@@ -100,20 +103,23 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   State& s = *state_;
   const solvers::Ledger& e = view.ledger;
   if (!s.history) {
-    std::vector<std::string> columns = {"time_s", "normal_force_N", "force_heel_N", "force_up_N", "contact_pressure_Pa",
+    std::vector<std::string> columns = {"time_s", "normal_force_N", "force_heel_N", "force_up_N", "tangential_force_N", "contact_pressure_Pa",
                                         "contact_area_m2", "penetration_m", "kinetic_J"};
     for (const auto& [body, joules] : e.strain)
       if (deforms(body)) columns.push_back("strain_" + body + "_J");
     for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"}) columns.emplace_back(name);
+    for (std::size_t layer = 0; layer < view.ball.dissipated().size(); ++layer)
+      columns.push_back(fmt::format("viscous_layer{}_J", layer));
     s.history.emplace(s.directory / "history.csv", columns, s.kept());
   }
   const models::FacePose face = view.face;
   const Vec3 force = face.axes.transpose() * view.report.force;
-  std::vector<double> row = {view.state.time, force.x(), force.y(), force.z(), view.report.pressure, view.report.area,
+  std::vector<double> row = {view.state.time, force.x(), force.y(), force.z(), view.report.force.dot(s.slip), view.report.pressure, view.report.area,
                              view.report.penetration, e.kinetic};
   for (const auto& [body, joules] : e.strain)
     if (deforms(body)) row.push_back(joules);
   for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
+  for (double x : view.ball.dissipated()) row.push_back(x);
   s.history->write(row);
 
   const Pose now{face.centre, face.axes};
@@ -123,12 +129,14 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
     const fs::path vtk = s.directory / "vtk";
     if (!s.ball) {
       s.ball.emplace(vtk, "ball", VtkSeries::Form::volume, s.kept());
+      s.patch.emplace(vtk, "patch", VtkSeries::Form::surface, s.kept());
       s.face.emplace(vtk, "face", VtkSeries::Form::surface, s.kept());
       s.head.emplace(vtk, "head", VtkSeries::Form::surface, s.kept());
       if (view.shaft) s.shaft.emplace(vtk, "shaft", VtkSeries::Form::surface, s.kept());
     }
     const double time = view.state.time;
     s.ball->write(time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
+    s.patch->write(time, patch_mesh(view.contact.points(view.state)));
     s.face->write(time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
     s.head->write(time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
     if (view.shaft) s.shaft->write(time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
@@ -138,7 +146,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
 
 std::vector<fs::path> ImpactRecorder::files() const {
   std::vector<fs::path> out;
-  for (const char* body : {"ball", "face", "head", "shaft"})
+  for (const char* body : {"ball", "patch", "face", "head", "shaft"})
     if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file)) out.push_back(file);
   return out;
 }

@@ -1,6 +1,7 @@
 #include "app/kinds/calibrate_ball.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -60,7 +61,7 @@ class CalibrateBallJob final : public Job {
     }
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
     std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
-    post::Series wanted{.label = "target", .style = "lines"}, got{.label = "ball", .style = "points pt 7"};
+    post::Series wanted{.label = "target", .style = "lines"}, got{.label = "ball", .style = "points"};
     for (const auto& p : fit.points) {
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution, 1e3 * p.contact_time, 1e-3 * p.peak_force));
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
@@ -72,6 +73,7 @@ class CalibrateBallJob final : public Job {
       got.y.push_back(p.restitution);
     }
     out.write("fit.csv", csv);
+    out.write("ball.toml", ball_file(fit));
     post::Figure figure;
     figure.title = "normal restitution of the calibrated ball";
     post::Panel panel;
@@ -85,6 +87,32 @@ class CalibrateBallJob final : public Job {
   }
 
  private:
+  /// The fitted layers as a case has them under [ball], with where they come from.
+  std::string ball_file(const models::BallCalibration& fit) const {
+    std::string text = fmt::format(
+        "# Fitted to restitution {} {:+} v at {} m/s and a contact of {} ms at {} m/s on a rigid wall; no spin data.\n# {}\n",
+        target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
+        target_.contact_speed, fit.report);
+    for (std::size_t p = 0; p < fit.names.size(); ++p)
+      text += fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p],
+                          100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));
+    text += "# covariance of their logarithms:";
+    for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
+    text += "\n";
+    for (const models::BallLayer& layer : fit.ball.layers) {
+      const auto& law = std::get<fem::Hyperelastic>(layer.material.elastic);
+      std::vector<double> moduli, times;
+      for (const auto& b : layer.material.branches) moduli.push_back(b.modulus / 1e6), times.push_back(b.time * 1e3);
+      const char* name = law.c01 != 0 ? "mooney-rivlin" : law.c20 != 0 || law.c30 != 0 ? "yeoh" : "neo-hooke";
+      text += fmt::format("\n[[ball.layers]]\nradius_fraction = {}\nlaw = \"{}\"\nc10_MPa = {:.6g}\n", layer.radius, name, law.c10 / 1e6);
+      if (law.c01 != 0) text += fmt::format("c01_MPa = {:.6g}\n", law.c01 / 1e6);
+      if (law.c20 != 0 || law.c30 != 0) text += fmt::format("c20_MPa = {:.6g}\nc30_MPa = {:.6g}\n", law.c20 / 1e6, law.c30 / 1e6);
+      text += fmt::format("bulk_MPa = {:.6g}\ndensity_kg_per_m3 = {:.6g}\nbranch_moduli_MPa = [{:.6g}]\nbranch_times_ms = [{:.6g}]\n",
+                          law.bulk / 1e6, layer.material.density, fmt::join(moduli, ", "), fmt::join(times, ", "));
+    }
+    return text;
+  }
+
   Ball ball_;
   models::FeImpactOptions options_;
   models::NormalImpactTarget target_;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
@@ -50,6 +52,7 @@ class ImpactJob final : public Job {
         const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
+        if (const auto e_t = tangential_restitution(outcome.launch)) summary["models"][entry.name]["tangential_restitution"] = *e_t;
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
       } else {
         columns.push_back({entry.name, entry.model->launch(blow_)});
@@ -96,6 +99,18 @@ class ImpactJob final : public Job {
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
     return outcome;
+  }
+
+  /// Slip speed of ball over face at the contact point after the blow, over that before it, reversed: 1 for a perfect
+  /// superball, 0 for rolling. None where there was no slip. The head is taken in the attitude of first contact.
+  std::optional<double> tangential_restitution(const Launch& launch) const {
+    const models::Encounter e = models::encounter(blow_);
+    const Vec3 slip = e.approach - e.normal_speed * e.normal;
+    if (slip.norm() < 1e-9 * e.approach.norm()) return std::nullopt;
+    const Vec3 arm = e.point - (e.face_centre + e.face_axes * blow_.club.head.cg);
+    const Vec3 face = launch.head_velocity + (std::isfinite(blow_.club.head.mass) ? Vec3(launch.head_spin.cross(arm)) : Vec3::Zero());
+    const Vec3 ball = launch.velocity + launch.spin.cross(-blow_.ball.radius * e.normal);
+    return (ball - face).dot(slip) / slip.squaredNorm();
   }
 
   /// What the solution was and how well its energy adds up: for the person and the summary.
