@@ -401,6 +401,22 @@ fs::path Table::data_file(std::string_view key) {
   return document_->named_files.back();
 }
 
+std::vector<fs::path> Table::data_files(std::string_view key) {
+  {
+    Access access{*document_, as_table(node_)};
+    const toml::node* node = access.find(key);
+    if (!node || !node->is_array()) return {data_file(key)};
+  }
+  std::vector<fs::path> out;
+  for (const std::string& name : texts(key)) {
+    const fs::path own = document_->directory / name;
+    out.push_back(fs::is_regular_file(own) ? own : data_directory() / name);
+    document_->named_files.push_back(out.back());
+  }
+  if (out.empty()) fail(key, "expected at least one file");
+  return out;
+}
+
 Table Table::table(std::string_view key) {
   auto found = optional_table(key);
   if (found) return *found;

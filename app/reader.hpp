@@ -77,6 +77,8 @@ class Table {
   /// ../shared/data beside the project or the working directory). Missing files are returned as
   /// they would be expected, for the caller to say SKIPPED.
   std::filesystem::path data_file(std::string_view key);
+  /// One such file, or a list of them.
+  std::vector<std::filesystem::path> data_files(std::string_view key);
 
   /// A sub-table; required unless `optional_table` is used instead.
   Table table(std::string_view key);

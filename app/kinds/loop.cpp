@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/kinds/loop_history.hpp"
 #include "app/read_blow.hpp"
 #include "loop/report.hpp"
 #include "loop/run.hpp"
@@ -165,6 +166,9 @@ class LoopJob final : public Job {
 
 }  // namespace
 
-std::unique_ptr<Job> read_loop(CaseFile& file) { return std::make_unique<LoopJob>(file); }
+std::unique_ptr<Job> read_loop(CaseFile& file) {
+  if (file.root().table("model").text("base") == "shaft") return read_loop_history(file);
+  return std::make_unique<LoopJob>(file);
+}
 
 }  // namespace hosel::app

@@ -1,0 +1,206 @@
+#include "app/kinds/loop_history.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/read_blow.hpp"
+#include "app/read_series.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "loop/history/swing_history.hpp"
+#include "loop/report.hpp"
+
+namespace hosel::app {
+namespace {
+
+constexpr std::size_t kMostSamples = 8000;  ///< of a bench record; a swing takes as long whatever its samples
+
+class HistoryJob final : public Job {
+ public:
+  explicit HistoryJob(CaseFile& file) {
+    Table root = file.root();
+    case_.title = root.text("title", "");
+    Table model = root.table("model");
+    case_.base = model.text("base");
+    case_.effects = model.texts("effects", std::vector<std::string>{});
+    std::vector<std::string> known;
+    for (const auto& e : loop::history_effects()) known.emplace_back(e.name);
+    for (const std::string& e : case_.effects)
+      if (!loop::find_history_effect(e)) {
+        const std::string near = nearest(e, known);
+        model.fail("effects", fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+      }
+    club_.shaft = read_shaft(root.table("shaft"));
+    loop::HistorySetting& setting = case_.setting;
+    if (auto head = root.optional_table("head")) {
+      club_.head = read_head(*head);
+      setting.head = true;
+    }
+    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    setting.swing = root.has("motion");
+    if (setting.swing && !setting.head) root.fail("head", "a swing needs a head");
+    if (auto grip = root.optional_table("grip"); grip && grip->choice("hold", {"clamped", "free"}, "clamped") == "free")
+      grip->fail("hold", "the records of a free shaft are not modelled: clamp the butt");
+    setting.swing ? read_swing_test(root) : read_bench_test(root);
+    if (auto split = root.optional_table("split")) {
+      case_.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
+      case_.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
+    }
+  }
+
+  void run(Output& out) override {
+    if (!skipped_.empty()) {
+      out.say(fmt::format("SKIPPED: {} is not there; name the folder of the measured files in HOSEL_DATA", skipped_));
+      out.write_summary({{"skipped", skipped_}});
+      return;
+    }
+    loop::LoopResult result;
+    try {
+      result = loop::run(case_);
+    } catch (const loop::DataError& e) {
+      throw InputError(e.what());
+    }
+    out.write_json("report.json", loop::to_json(result));
+    out.write("residuals.csv", loop::history_residuals_csv(case_, result));
+    out.write("report.html", loop::page(result, loop::as_shots(case_)));
+    out.say(loop::sentence(result));
+    for (const auto& c : result.channels)
+      out.say(fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})", c.name,
+                          c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise, c.noise_source));
+    if (!result.flagged.empty()) out.say(fmt::format("  {} readings flagged", result.flagged.size()));
+    out.write_summary({{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+  }
+
+ private:
+  /// `[data]`: the records, the same channels in each; noise by header.
+  std::vector<loop::BenchRecord> read_records(Table root, double clamp, std::size_t most) {
+    Table data = root.table("data");
+    const std::vector<std::filesystem::path> files = data.data_files("series");
+    std::optional<Table> sensors = root.optional_table("sensors");
+    std::vector<loop::BenchRecord> drives;
+    std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
+    for (const auto& f : files) {
+      if (!std::filesystem::exists(f)) {
+        skipped_ = f.string();
+        break;
+      }
+      Series s = read_series(f, sensors ? &*sensors : nullptr, club_.shaft->length(), clamp, most, case_.notes);
+      if (channels.empty()) {
+        channels = s.channels;
+      } else {
+        const auto same = [](const loop::HistoryChannel& a, const loop::HistoryChannel& b) { return a.name == b.name; };
+        if (!std::ranges::equal(channels, s.channels, same)) throw InputError(fmt::format("{}:1: other channels than in {}", f.string(), files.front().string()));
+        for (std::size_t k = 0; k < channels.size(); ++k) channels[k].resolution = std::max(channels[k].resolution, s.channels[k].resolution);
+      }
+      case_.records.push_back(std::move(s.record));
+      drives.push_back(std::move(s.drive));
+    }
+    if (sensors && !skipped_.empty())
+      for (const std::string& key : sensors->keys()) {
+        Table place = sensors->table(key);
+        place.quantity("arc_length", "mm", Range::non_negative(), 0);
+        if (place.has("axis")) place.choice("axis", {"lead", "droop"});
+      }
+    if (auto noise = data.optional_table("noise"))
+      for (const std::string& key : noise->keys()) {
+        const double sigma = noise->number(key, Range::positive());
+        const auto it = std::ranges::find(channels, key, &loop::HistoryChannel::name);
+        if (it != channels.end()) {
+          it->noise = sigma;
+          it->declared = true;
+        } else if (skipped_.empty()) {
+          noise->fail(key, "no measured channel of this name");
+        }
+      }
+    return drives;
+  }
+
+  void read_bench_test(Table root) {
+    models::BenchOptions options;
+    loop::BenchStart start;
+    std::vector<double> rates{0};
+    if (auto t = root.optional_table("bench")) {
+      options.clamped_length = t->quantity("clamped_length", "mm", Range::non_negative(), 0);
+      if (options.clamped_length >= club_.shaft->length()) t->fail("clamped_length_mm", "the clamp holds the whole shaft");
+      options.elements = int(t->integer("elements", 2, 60, options.elements));
+      options.shear = t->flag("shear", true);
+      const std::string hang = t->choice("shaft", {"horizontal", "hanging", "standing"}, "horizontal");
+      if (hang != "horizontal") options.gravity = Vec3(0, 0, hang == "hanging" ? -kGravity : kGravity);
+      const std::string kind = t->choice("start", {"unknown", "release", "impulse", "rest"}, "unknown");
+      using loop::Start;
+      start.kind = kind == "release" ? Start::release : kind == "impulse" ? Start::impulse : kind == "rest" ? Start::rest : Start::unknown;
+      if (start.kind == Start::release) {
+        start.force = t->vector("load", "N", Vec3::Zero());
+        start.moment = t->vector("load_moment", "N_m", Vec3::Zero());
+        if (start.force.norm() + start.moment.norm() == 0) t->fail("load_N", "a release needs the load that held the hosel");
+      }
+      if (start.kind == Start::impulse) {
+        const auto j = t->numbers("impulse_N_s", 3);
+        start.force = Vec3(j[0], j[1], j[2]);
+      }
+      if (start.kind == Start::release || start.kind == Start::impulse) start.at = t->quantity("at", "s", Range::finite(), 0);
+      rates = t->quantities("rotation_rate", "rpm", 0, Range::finite(), std::vector<double>{0});
+      if (t->has("rotation_axis")) options.rotation_axis = t->choice("rotation_axis", {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
+      options.hub = t->quantity("hub", "mm", Range::non_negative(), 0);
+    }
+    std::vector<loop::BenchRecord> records = read_records(root, options.clamped_length, kMostSamples);
+    if (!skipped_.empty()) return;
+    if (rates.size() != 1 && rates.size() != records.size()) root.table("bench").fail("rotation_rate", "one rate for all records, or one for each");
+    loop::HistorySetting& setting = case_.setting;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      records[k].rotation_rate = rates[rates.size() == 1 ? 0 : k];
+      setting.turning = setting.turning || records[k].rotation_rate != 0;
+    }
+    try {
+      auto bench = std::make_unique<loop::BenchHistory>(club_, setting.head, options, start, std::move(records), setting.channels);
+      std::tie(setting.frequency, setting.ratio) = bench->first_mode();
+      model_ = std::move(bench);
+    } catch (const std::invalid_argument& e) {
+      root.fail("", e.what());
+    }
+    setting.driven = start.kind != loop::Start::unknown;
+    case_.start_unknown = !setting.driven;
+    const double free = club_.shaft->length() - options.clamped_length;
+    setting.compliance = free / club_.shaft->at(options.clamped_length + 0.5 * free).bending_stiffness_y;
+    case_.model = model_.get();
+  }
+
+  void read_swing_test(Table root) {
+    Table table = root.table("motion");
+    const MotionInput motion = read_motion(table);
+    const models::SwingOptions options = read_swing_options(root);
+    std::vector<loop::BenchRecord> records = read_records(root, 0, kMostSamples);
+    if (!motion.present) skipped_ = motion.file.string();
+    if (!skipped_.empty()) return;
+    for (const loop::HistoryChannel& c : case_.setting.channels)
+      if (c.reading == loop::Reading::strain_lead || c.reading == loop::Reading::strain_droop || c.order > 0)
+        throw InputError(fmt::format("{}:1: channel '{}': of a swing, lead, droop, shortening and twist of the hosel are known", case_.records.front().name, c.name));
+    std::vector<std::vector<double>> times;
+    for (const auto& r : records) {
+      if (r.times.front() < motion.begin - 1e-9 || r.times.back() > motion.end + 1e-9)
+        throw InputError(fmt::format("{}: the record reaches beyond the motion ({:g} to {:g} s)", case_.records[times.size()].name, motion.begin, motion.end));
+      times.push_back(r.times);
+    }
+    auto swing = std::make_unique<loop::SwingHistory>(club_, options, models::GripMotion(motion.track, motion.smoothing), motion.begin, times, case_.setting.channels);
+    loop::HistorySetting& setting = case_.setting;
+    setting.driven = true;
+    std::tie(setting.frequency, setting.ratio) = swing->first_mode();
+    const double free = club_.shaft->length() - options.grip_point;
+    setting.compliance = free / club_.shaft->at(options.grip_point + 0.5 * free).bending_stiffness_y;
+    model_ = std::move(swing);
+    case_.model = model_.get();
+  }
+
+  Club club_;
+  loop::HistoryCase case_;
+  std::unique_ptr<loop::HistoryModel> model_;
+  std::string skipped_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_loop_history(CaseFile& file) { return std::make_unique<HistoryJob>(file); }
+
+}  // namespace hosel::app

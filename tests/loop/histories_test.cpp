@@ -1,0 +1,235 @@
+// The loop on records of a clamped shaft that this file makes from beam theory: the closed-form modes of a uniform
+// cantilever with a mass at its tip, released from a static load, read at the tip and half way.
+#include "loop/history/histories.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "golf/shaft_library.hpp"
+#include "loop/history/bench_history.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kLength = 1, kStiffness = 40, kDensity = 0.06, kDamping = 1e-4, kLoad = 3, kNoise = 0.2;
+
+struct Truth {
+  double stiffness = 1;   ///< factor
+  double tip_mass = 0;    ///< [kg]
+  double ratio = 0;       ///< added damping ratio of every mode
+  double delay = 0;       ///< of the second channel [s]
+  double gain = 0;        ///< of the first
+  double rate = 0;        ///< a tone that no effect has, in the first channel [Hz]
+  double colour = 0;      ///< of the noise
+  unsigned seed = 1;
+  double seconds = 1.5;
+};
+
+double shape(double beta, double x) {
+  const double s = (std::cosh(beta) + std::cos(beta)) / (std::sinh(beta) + std::sin(beta));
+  return std::cosh(beta * x) - std::cos(beta * x) - s * (std::sinh(beta * x) - std::sin(beta * x));
+}
+
+/// Roots of 1 + cos cosh + r beta (cos sinh - sin cosh) = 0.
+std::vector<double> roots(double mass_ratio, int count) {
+  const auto f = [&](double b) { return (1 + std::cos(b) * std::cosh(b) + mass_ratio * b * (std::cos(b) * std::sinh(b) - std::sin(b) * std::cosh(b))) / std::cosh(b); };
+  std::vector<double> out;
+  for (double b = 0.1; int(out.size()) < count; b += 0.01) {
+    if (f(b) * f(b + 0.01) > 0) continue;
+    double low = b, high = b + 0.01;
+    for (int k = 0; k < 60; ++k) (f(low) * f(0.5 * (low + high)) <= 0 ? high : low) = 0.5 * (low + high);
+    out.push_back(low);
+  }
+  return out;
+}
+
+HistoryRecord record(const Truth& w) {
+  std::mt19937 random(w.seed);
+  std::normal_distribution<double> gauss;
+  HistoryRecord r{.name = "tip.csv"};
+  const double rate = 400;
+  for (int i = 0; i < int(w.seconds * rate); ++i) r.times.push_back(i / rate);
+  r.measured = Eigen::MatrixXd::Zero(std::ptrdiff_t(r.times.size()), 2);
+  for (const double beta : roots(w.tip_mass / (kDensity * kLength), 5)) {
+    const double omega = beta * beta * std::sqrt(w.stiffness * kStiffness / kDensity) / (kLength * kLength);
+    double mass = w.tip_mass * std::pow(shape(beta, 1), 2);
+    for (int i = 0; i < 4000; ++i) mass += kDensity * kLength / 4000 * std::pow(shape(beta, (i + 0.5) / 4000), 2);
+    const double zeta = 0.5 * omega * kDamping + w.ratio, damped = omega * std::sqrt(1 - zeta * zeta), q0 = kLoad * shape(beta, 1) / (omega * omega * mass);
+    const auto q = [&](double t) {
+      return t < 0 ? q0 : q0 * std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
+    };
+    for (std::size_t i = 0; i < r.times.size(); ++i) {
+      r.measured(std::ptrdiff_t(i), 0) += 1e3 * (1 + w.gain) * shape(beta, 1) * q(r.times[i]);
+      r.measured(std::ptrdiff_t(i), 1) += 1e3 * shape(beta, 0.5) * q(r.times[i] - w.delay);
+    }
+  }
+  for (int c = 0; c < 2; ++c) {
+    double e = kNoise * gauss(random);
+    for (std::size_t i = 0; i < r.times.size(); ++i) {
+      e = w.colour * e + std::sqrt(1 - w.colour * w.colour) * kNoise * gauss(random);
+      r.measured(std::ptrdiff_t(i), c) += e;
+      if (c == 0 && w.rate > 0) r.measured(std::ptrdiff_t(i), 0) += 1.0 * std::sin(2 * 3.14159265358979 * w.rate * r.times[i]);
+    }
+  }
+  return r;
+}
+
+struct Bench {
+  HistoryCase c;
+  std::unique_ptr<BenchHistory> model;
+};
+
+Bench bench(const Truth& w, bool declared = true, Start start = Start::release) {
+  Bench b;
+  Club club;
+  club.shaft = composite_shaft({{0, kStiffness, kStiffness, kDensity, 1e-3}, {kLength, kStiffness, kStiffness, kDensity, 1e-3}});
+  club.shaft->damping_time = kDamping;
+  HistorySetting& s = b.c.setting;
+  s.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3}, {.name = "lead_mid_mm", .arc_length = 0.5 * kLength, .si = 1e-3}};
+  for (HistoryChannel& ch : s.channels)
+    if (declared) {
+      ch.noise = kNoise;
+      ch.declared = true;
+    }
+  b.c.records = {record(w)};
+  BenchRecord drive{.times = b.c.records.front().times};
+  b.model = std::make_unique<BenchHistory>(club, false, models::BenchOptions{.shear = false}, BenchStart{.kind = start, .force = Vec3(kLoad, 0, 0)}, std::vector{drive}, s.channels);
+  std::tie(s.frequency, s.ratio) = b.model->first_mode();
+  s.driven = start != Start::unknown;
+  b.c.start_unknown = !s.driven;
+  s.compliance = kLength / kStiffness;
+  b.c.model = b.model.get();
+  return b;
+}
+
+const ScoredCandidate& best(const LoopResult& r) { return r.candidates.front(); }
+
+using Names = std::vector<std::string>;
+
+TEST(Histories, NothingIsAdoptedWhereNothingIsHidden) {
+  int adopted = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Bench b = bench({.seed = seed}, seed % 2 == 0);
+    const LoopResult r = run(b.c);
+    ASSERT_EQ(r.channels.size(), 2u);
+    EXPECT_LT(r.channels[0].before.holdout_rmse, 1.3 * kNoise);
+    adopted += !r.adopted.empty() || !r.ties.empty();
+    EXPECT_EQ(r.verdict, Verdict::no_residual) << "seed " << seed;
+  }
+  EXPECT_EQ(adopted, 0);
+}
+
+TEST(Histories, ColouredNoiseIsNoEffect) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Bench b = bench({.colour = 0.8, .seed = seed}, false);
+    const LoopResult r = run(b.c);
+    EXPECT_TRUE(r.adopted.empty() && r.ties.empty()) << "seed " << seed;
+    EXPECT_EQ(r.verdict, Verdict::no_residual) << "seed " << seed;
+  }
+}
+
+struct Hidden {
+  const char* effect;
+  Truth truth;
+  double value, tolerance;  ///< printed unit
+};
+
+class HistoriesName : public testing::TestWithParam<Hidden> {};
+
+TEST_P(HistoriesName, TheHiddenEffect) {
+  const Hidden& h = GetParam();
+  for (const bool declared : {true, false}) {
+    const Bench b = bench(h.truth, declared);
+    const LoopResult r = run(b.c);
+    EXPECT_EQ(r.verdict, Verdict::explained);
+    EXPECT_EQ(r.adopted, Names{h.effect});
+    // The event happened: the base was wrong, the model that was adopted is not.
+    ASSERT_EQ(r.channels.size(), 2u);
+    const auto worst = [&](auto&& of) { return std::max(of(r.channels[0]), of(r.channels[1])); };
+    EXPECT_GT(worst([](const ChannelResult& c) { return c.before.holdout_rmse; }), 2 * kNoise);
+    EXPECT_LT(worst([](const ChannelResult& c) { return c.after.holdout_rmse; }), 1.2 * kNoise);
+    ASSERT_EQ(best(r).candidate.effects, Names{h.effect});
+    const Parameter& p = *best(r).candidate.fit.model.parameters().front();
+    const double value = best(r).candidate.fit.p[0] / p.si, sd = best(r).sd[0] / p.si;
+    EXPECT_NEAR(value, h.value, std::max(4 * sd, h.tolerance)) << best(r).candidate.fit.model.forms.front()->what;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, HistoriesName,
+                         testing::Values(Hidden{"shaft-stiffness", {.stiffness = 1.5}, std::log(1.5), 1e-3}, Hidden{"shaft-stiffness", {.stiffness = 0.93}, std::log(0.93), 1e-3},
+                                         Hidden{"shaft-damping", {.ratio = 0.01}, 0.01, 1e-4}, Hidden{"tip-mass", {.tip_mass = 0.008}, 8, 0.1},
+                                         Hidden{"sensor-delay", {.delay = 4e-3}, 4, 0.02}, Hidden{"sensor-gain", {.gain = 0.06}, 0.06, 1e-3}),
+                         [](const auto& p) {
+                           std::string name = p.param.effect;
+                           std::erase(name, '-');
+                           return name + std::to_string(p.index);
+                         });
+
+TEST(Histories, TwoEffectsAreBothNamed) {
+  const Bench b = bench({.tip_mass = 0.01, .delay = 5e-3});
+  const LoopResult r = run(b.c);
+  EXPECT_EQ(r.verdict, Verdict::explained);
+  EXPECT_EQ(r.adopted, (Names{"tip-mass", "sensor-delay"}));
+}
+
+TEST(Histories, WithAnUnknownStartFrequencyAndShapeStillTell) {
+  // Nothing is known of the release: stiffness is seen in the frequencies alone, and one delay between the channels.
+  const Bench stiff = bench({.stiffness = 1.3}, true, Start::unknown);
+  const LoopResult r = run(stiff.c);
+  EXPECT_NE(r.verdict, Verdict::unexplained);
+  const bool named = r.adopted == Names{"shaft-stiffness"} || (!r.ties.empty() && std::ranges::count(r.ties.front(), "shaft-stiffness"));
+  EXPECT_TRUE(named);
+  const Bench late = bench({.delay = 4e-3}, true, Start::unknown);
+  EXPECT_EQ(run(late.c).adopted, Names{"sensor-delay"});
+}
+
+TEST(Histories, AToneThatNoEffectHasIsUnexplainedInItsChannel) {
+  for (const bool declared : {true, false}) {
+    const Bench b = bench({.rate = 29}, declared);
+    const LoopResult r = run(b.c);
+    EXPECT_EQ(r.verdict, Verdict::unexplained);
+    EXPECT_TRUE(r.adopted.empty());
+    ASSERT_FALSE(r.unexplained.empty());
+    EXPECT_EQ(r.unexplained.front().channel, "lead_mm");
+    ASSERT_TRUE(r.unexplained.front().detail.starts_with("oscillation at ")) << r.unexplained.front().detail;
+    EXPECT_NEAR(std::stod(r.unexplained.front().detail.substr(15)), 29, 0.5);
+  }
+}
+
+TEST(Histories, NoiseThatIsNotTheDeclaredIsSaid) {
+  Bench b = bench({});
+  for (HistoryChannel& c : b.c.setting.channels) c.noise = kNoise / 2;
+  const LoopResult r = run(b.c);
+  EXPECT_EQ(r.verdict, Verdict::noise_contradicted);
+}
+
+TEST(Histories, ZeroParametersAreTheBaseBitForBit) {
+  const Bench b = bench({});
+  std::vector<Answer> base, zero;
+  ASSERT_TRUE(b.model->answer(Rig(2), base));
+  for (const HistoryEffect& e : history_effects())
+    for (const HistoryForm& f : e.forms(b.c.setting)) {
+      Rig rig(2);
+      const std::vector<double> none(f.form.parameters.size(), 0.0);
+      f.apply(none, rig);
+      ASSERT_TRUE(b.model->answer(rig, zero));
+      EXPECT_EQ((zero[0].value - base[0].value).cwiseAbs().maxCoeff(), 0.0) << e.name;
+      EXPECT_EQ(rig.gain[0] + rig.gain[1] + rig.offset[0] + rig.offset[1], 0.0);
+    }
+}
+
+TEST(Histories, ASpikeIsFlaggedAndDoesNoHarm) {
+  Bench b = bench({.gain = 0.06});
+  b.c.records.front().measured(200, 1) += 30;
+  b.c.records.front().measured(333, 0) = std::nan("");
+  const LoopResult r = run(b.c);
+  EXPECT_EQ(r.adopted, Names{"sensor-gain"});
+  ASSERT_EQ(r.flagged.size(), 1u);
+  EXPECT_EQ(r.flagged.front().row, 200);
+  EXPECT_EQ(r.flagged.front().column, "lead_mid_mm");
+}
+
+}  // namespace
+}  // namespace hosel::loop
