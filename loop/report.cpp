@@ -116,6 +116,21 @@ json to_json(const LoopResult& r) {
   out["next_experiment"] = {{"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json(nullptr)}};
   out["without_doubted_inputs"] = json::array();
   for (const auto& [column, adopted] : r.without) out["without_doubted_inputs"].push_back({{"column", column}, {"adopted", adopted}});
+  out["absorption"] = json::array();
+  for (const Absorption& a : r.likeness.absorption)
+    out["absorption"].push_back({{"effect", a.effect}, {"parameter", a.parameter}, {"absorbed", value(a.absorbed)}, {"nearest", a.nearest}, {"correlation", value(a.likeness)}});
+  out["null_vectors"] = json::array();
+  for (const NullVector& v : r.likeness.null_vectors) {
+    json weights = json::object();
+    for (const auto& [effect, weight] : v.weights) weights[effect] = value(weight);
+    out["null_vectors"].push_back({{"singular_value", value(v.singular)}, {"weights", weights}});
+  }
+  if (r.balance_before) {
+    const auto one = [](const Balance& b) {
+      return json{{"contact", value(b.contact)}, {"contact_freedom", b.contact_freedom}, {"inertia", value(b.inertia)}, {"inertia_freedom", b.inertia_freedom}, {"inertia_share", value(b.inertia_share())}};
+    };
+    out["balances"] = {{"before", one(*r.balance_before)}, {"after", one(*r.balance_after)}};
+  }
   out["notes"] = r.notes;
   return out;
 }

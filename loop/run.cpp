@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "loop/alike.hpp"
 #include "loop/experiment.hpp"
 #include "loop/inputs.hpp"
 #include "models/rigid_eccentric.hpp"
@@ -623,6 +624,9 @@ class Loop {
         result.candidates.push_back(std::move(sc));
       }
       result.minimum_detectable = detectable(*problem_, thinned(rows_.train), base, candidate_forms_, case_.rules);
+      result.likeness = alike(*problem_, thinned(rows_.train), after, candidate_forms_);
+      result.balance_before = balance(*problem_, rows_.train, base.model, base.p.data());
+      result.balance_after = balance(*problem_, rows_.train, after.model, after.p.data());
       result.next = design(case_, *problem_, thinned(rows_.train), s, result.unexplained, result.verdict);
       std::vector<int> all = all_rows(rows_);
       const std::set<int> held(rows_.holdout.begin(), rows_.holdout.end());

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "loop/absorption.hpp"
 #include "loop/audit.hpp"
+#include "loop/balances.hpp"
 #include "loop/screen.hpp"
 #include "loop/select.hpp"
 
@@ -116,6 +118,8 @@ struct LoopResult {
   NextExperiment next;
   std::vector<UsedShot> shots;
   std::vector<std::string> notes;          ///< sentences for people: assumptions, absorptions, contradictions
+  Likeness likeness;                       ///< of the effects to each other and to what is fitted
+  std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories
   std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
 };
 

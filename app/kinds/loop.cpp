@@ -10,9 +10,13 @@
 
 #include "app/kinds/loop_history.hpp"
 #include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
 #include "loop/report.hpp"
 #include "loop/run.hpp"
+#include "loop/spread.hpp"
 #include "models/registry.hpp"
+#include "models/response_surface.hpp"
 
 namespace hosel::app {
 namespace {
@@ -42,9 +46,14 @@ class LoopJob final : public Job {
     for (const auto& m : models::registry()) names.emplace_back(m.name);
     case_.title = root.text("title", "");
     case_.base = model.choice("base", names);
-    model_ = models::find(case_.base)->make(models::Options{});
+    model_ = models::find(case_.base)->make(read_options(root, {case_.base}));
     case_.model = model_.get();
     case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
+    if (auto surface = model.optional_table("surrogate")) {
+      if (case_.direct) surface->fail("", "this base answers in microseconds and needs no surrogate");
+      points_ = int(surface->integer("points", 8, 100000, 80));
+      surface_seed_ = static_cast<unsigned long>(surface->integer("seed", 0, 1L << 53, 1));
+    }
     case_.head_turns = case_.base != "rigid-planar";
     case_.effects = model.texts("effects", std::vector<std::string>{});
     std::vector<std::string> known;
@@ -57,7 +66,8 @@ class LoopJob final : public Job {
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
-    std::vector<std::pair<std::string, Table>> tables;
+    if (auto shaft = root.optional_table("shaft")) case_.blow.club.shaft = read_shaft(*shaft);
+    if (auto hosel = root.optional_table("hosel")) case_.blow.club.geometry = read_club_geometry(*hosel);
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
       case_.head_mass_declared = table->has_quantity("mass");
@@ -116,6 +126,7 @@ class LoopJob final : public Job {
     }
     loop::LoopResult result;
     try {
+      if (points_ > 0) build_surrogate(out);
       result = loop::run(case_);
     } catch (const loop::DataError& e) {
       throw InputError(e.what());
@@ -159,9 +170,40 @@ class LoopJob final : public Job {
     return head;
   }
 
+  /// The base behind a response surface over the recorded inputs, its error beside the channels' names.
+  void build_surrogate(Output& out) {
+    const std::vector<Delivery> deliveries = loop::spread(case_.shots, points_, surface_seed_);
+    std::unique_ptr<models::ResponseSurface> surface;
+    try {
+      surface = std::make_unique<models::ResponseSurface>(*model_, case_.blow, deliveries);
+    } catch (const std::invalid_argument& e) {
+      throw InputError(fmt::format("{}: surrogate of {}: {}", case_.shots.file, case_.base, e.what()));
+    }
+    std::string errors;
+    for (const loop::Column& c : case_.shots.columns) {
+      if (c.role != loop::Role::output) continue;
+      const std::optional<loop::Output> output = loop::output_of(c.stem);
+      if (!output) continue;
+      double square = 0;
+      for (std::size_t i = 0; i < deliveries.size(); ++i) {
+        const double e = (loop::get(surface->predicted()[i], *output) - loop::get(surface->answers()[i], *output)) / c.si;
+        square += e * e / double(deliveries.size());
+      }
+      errors += fmt::format("{}{} {:.3g}", errors.empty() ? "" : ", ", c.name, std::sqrt(square));
+    }
+    case_.notes.push_back(fmt::format("{} stands behind a response surface of degree {} through {} of its answers; error of each answer predicted from the others: {}",
+                                      case_.base, surface->degree(), deliveries.size(), errors));
+    out.say(case_.notes.back());
+    model_ = std::move(surface);
+    case_.model = model_.get();
+    case_.direct = true;
+  }
+
   loop::LoopCase case_;
   std::unique_ptr<models::ImpactModel> model_;
   std::string skipped_;
+  int points_ = 0;  ///< of the surrogate; 0: none
+  unsigned long surface_seed_ = 1;
 };
 
 }  // namespace

@@ -394,6 +394,7 @@ class Histories {
     }
     for (const std::string& e : s.silent) result.notes.push_back(fmt::format("{}: these channels would not show it", e));
     detectable(base);
+    result.likeness = alike(after);
     next_experiment();
     int row = 0;
     for (std::size_t r = 0; r < problem_->records().size(); ++r) {
@@ -444,6 +445,22 @@ class Histories {
       const double value = std::sqrt(case_.rules.gain) / column.norm() * q.scale;
       result.minimum_detectable.push_back({f->effect, q.name, q.unit, value < std::max(q.max, -q.min) ? value / q.si : std::numeric_limits<double>::infinity()});
     }
+  }
+
+  /// One column per effect beside a fit.
+  Likeness alike(const Fit& at) const {
+    std::vector<EffectColumn> columns;
+    std::set<std::string> seen;
+    for (const Form* f : at.model.forms) seen.insert(f->effect);
+    for (const Form* f : candidates_) {
+      if (f->parameters.size() != 1 || !seen.insert(f->effect).second) continue;
+      Model more = at.model;
+      more.forms.push_back(f);
+      Eigen::VectorXd p(more.size());
+      p << at.p, 0.0;
+      columns.push_back({f->effect, f->parameters.front().name, problem_->jacobian(more, p).rightCols(1)});
+    }
+    return likeness(columns, problem_->jacobian(at.model, at.p));
   }
 
   void next_experiment() {
