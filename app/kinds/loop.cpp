@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/kinds/loop_history.hpp"
+#include "app/kinds/loop_report.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
 #include "app/read_shaft.hpp"
@@ -131,16 +132,9 @@ class LoopJob final : public Job {
     } catch (const loop::DataError& e) {
       throw InputError(e.what());
     }
-    const nlohmann::json report = loop::to_json(result);
-    out.write_json("report.json", report);
     out.write("residuals.csv", loop::residuals_csv(result));
     out.write("report.html", loop::page(result, case_.shots));
-    out.say(loop::sentence(result));
-    for (const auto& c : result.channels)
-      out.say(fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})", c.name,
-                          c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise, c.noise_source));
-    if (!result.flagged.empty()) out.say(fmt::format("  {} rows flagged", result.flagged.size()));
-    out.write_summary({{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+    report_loop(out, result, "rows");
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/kinds/loop_report.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_series.hpp"
 #include "app/read_shaft.hpp"
@@ -62,15 +63,9 @@ class HistoryJob final : public Job {
     } catch (const loop::DataError& e) {
       throw InputError(e.what());
     }
-    out.write_json("report.json", loop::to_json(result));
     out.write("residuals.csv", loop::history_residuals_csv(case_, result));
     out.write("report.html", loop::page(result, loop::as_shots(case_)));
-    out.say(loop::sentence(result));
-    for (const auto& c : result.channels)
-      out.say(fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})", c.name,
-                          c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise, c.noise_source));
-    if (!result.flagged.empty()) out.say(fmt::format("  {} readings flagged", result.flagged.size()));
-    out.write_summary({{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+    report_loop(out, result, "readings");
   }
 
  private:
