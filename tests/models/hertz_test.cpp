@@ -5,6 +5,7 @@
 
 #include "solvers/statics.hpp"
 #include "tests/support/elastic_sphere.hpp"
+#include "tests/support/squeezed_sphere.hpp"
 
 namespace hosel::models {
 namespace {
@@ -71,18 +72,26 @@ double over_hertz(Squeeze& squeeze, double a, double nu) {
   return squeeze.force(d) / (4.0 / 3 * plane_modulus(100e6, nu) * std::sqrt(kRadius) * std::pow(d, 1.5));
 }
 
-/// The finite sphere's departure at a/R = 0.097, and the same answer on two quite different meshes beyond. There the
-/// table (1.107, 1.163, 1.243, 1.370 at nu = 0.3) lies 1.6, 2.0, 3.1 and 4.3 % above both.
+/// The finite sphere's departure from Hertz against the exact solution of the same problem, and against the table. From
+/// a/R = 0.217 (nu = 0.3) and 0.153 (nu = 0.49) on the table lies above the exact solution by 2.2 to 4.3 % and by 2.8 to
+/// 9.3 %, and is missed by as much.
 TEST(Hertz, StaticDepartureOfAFiniteSphere) {
-  Squeeze fine(linear(.3), {.sector = 10, .rings = 8, .pole = 0.12, .far = 2, .both_poles = true, .skin = 0.1, .core = 0.4}, 2e4),
-      even(linear(.3), {.sector = 12, .rings = 8, .pole = 1, .far = 1, .both_poles = true, .skin = 0.5, .core = 0.4}, 2e4);
-  EXPECT_NEAR(over_hertz(fine, .0968, .3), 1.058, 0.015 * 1.058);
-  double last = 1.05;
-  for (const double a : {.153, .217, .306, .433}) {
-    const double one = over_hertz(fine, a, .3), other = over_hertz(even, a, .3);
-    EXPECT_NEAR(one, other, 0.01 * one) << a;
-    EXPECT_GT(one, last);
-    last = one;
+  struct Row {
+    double nu, approach, table;
+    bool met;
+  };
+  const Row rows[] = {{.3, .05, 1.023, true},   {.3, .2, 1.058, true},   {.3, .5, 1.107, true},   {.3, 1, 1.163, false},
+                      {.3, 2, 1.243, false},    {.3, 4, 1.370, false},   {.49, .2, 1.045, true},  {.49, .5, 1.091, false},
+                      {.49, 1, 1.136, false},   {.49, 2, 1.192, false},  {.49, 4, 1.291, false}};
+  for (const double nu : {.3, .49}) {
+    Squeeze squeeze(linear(nu), {.sector = 16, .rings = 12, .pole = 0.06, .far = 2.5, .both_poles = true, .skin = 0.05, .core = 0.4}, 1e5);
+    for (const Row& row : rows) {
+      if (row.nu != nu) continue;
+      const double d = 1e-3 * row.approach / kRadius, exact = test::squeezed_over_hertz(nu, d);
+      const double found = over_hertz(squeeze, std::sqrt(d), nu);
+      EXPECT_NEAR(found, exact, .005 * exact) << nu << " " << row.approach << " mm";
+      EXPECT_EQ(std::abs(found - row.table) <= .015 * row.table, row.met) << nu << " " << row.approach << " mm " << found;
+    }
   }
 }
 
@@ -99,7 +108,7 @@ TEST(Hertz, LimitOfASmallContact) {
       ratio[i] = over_hertz(squeeze, a, nu);
     }
     const Eigen::Vector2d fit = line.colPivHouseholderQr().solve(ratio);
-    EXPECT_NEAR(fit[0], 1, 0.01) << nu;
+    EXPECT_NEAR(fit[0], 1, 0.005) << nu;
     EXPECT_GT(fit[1], 0.2);
     EXPECT_LT(fit[1], 0.9);
   }
@@ -121,8 +130,8 @@ TEST(Hertz, ImpactOfAFiniteSphere) {
   struct Row {
     double nu, v, time, force, loss;
   };
-  // At nu = 0.49 and 1 m/s the table's loss of 0.0014 is not met: 0.0008 here on every mesh and step, as the
-  // peer's 0.0008 at nu = 0.45 and a speed 1.29 times as high.
+  // At nu = 0.49 and 1 m/s the table's loss of 0.0014 is not met: 0.0009 here with 200 to 800 steps, rho_inf 0.5 to 0.9
+  // and a penalty of 1000 to 4000, 0.0008 on twice as many elements each way; the peer has 0.0008 at nu = 0.45.
   const Row table[] = {{.3, .2, .979, 1.030, NAN}, {.3, 1, .958, 1.056, NAN}, {.3, 3, .938, 1.094, .0015},
                        {.3, 10, .917, 1.154, .006}, {.49, 1, .970, 1.046, NAN}, {.49, 10, .931, 1.089, .011}};
   for (const Row& row : table) {
@@ -140,25 +149,26 @@ TEST(Hertz, ImpactOfAFiniteSphere) {
 }
 
 /// G = 20 + 20 exp(-t/tau) MPa, nearly incompressible.
-fem::Solid zener(double tau) {
-  return {.elastic = fem::Hyperelastic{.c10 = 10e6, .bulk = 1e10}, .branches = {{20e6, tau}}, .density = 1129};
+fem::Solid zener(double tau, double bulk = 1e10) {
+  return {.elastic = fem::Hyperelastic{.c10 = 10e6, .bulk = bulk}, .branches = {{20e6, tau}}, .density = 1129};
 }
 
 /// Lee and Radok: held at a depth the force relaxes as the modulus does; under a ramp it is the hereditary integral.
-/// Both over the instant elastic force of the same ball, which takes the finite size out.
+/// Both over the instant elastic force of the same ball, which takes the finite size out. A compressible ball relaxes
+/// less: G / K = 0.004 would change the ratio by 0.001.
 TEST(Hertz, ViscoelasticIndentation) {
   const mesh::MeridianOptions mesh{.sector = 8, .rings = 6, .pole = 0.06, .far = 3, .both_poles = true, .skin = 0.06, .core = 0.4};
-  const double d = 1e-4;
-  Squeeze held(zener(1e-3), mesh, 1e4);
-  const double instant = held.force(d);
-  EXPECT_NEAR(instant / 31.160545, 1.03, 0.02);  // finite size at a/R = 0.068
+  constexpr double d = 1e-4, bulk = 1e11, penalty = 1e5;
+  Squeeze held(zener(1e-3, bulk), mesh, penalty);
+  const double instant = held.force(d), finite = test::squeezed_over_hertz(.4999, d / kRadius);
+  EXPECT_NEAR(instant / 31.160545, finite, .015 * finite);
   double force = 0;
   for (int i = 0; i < 10; ++i) force = held.force(d, 1e-4);
-  EXPECT_NEAR(force / instant, 21.311934 / 31.160545, 5e-3);  // strains of a/R, squared
+  EXPECT_NEAR(force / instant, 21.311934 / 31.160545, 2e-3);
 
-  Squeeze ramp(zener(1e-3), mesh, 1e4), elastic(zener(1e9), mesh, 1e4);
+  Squeeze ramp(zener(1e-3, bulk), mesh, penalty), elastic(zener(1e9, bulk), mesh, penalty);
   for (int i = 1; i <= 20; ++i) force = ramp.force(0.1 * 5e-5 * i, 5e-5);
-  EXPECT_NEAR(force / elastic.force(d), 26.375543 / 31.160545, 5e-3);
+  EXPECT_NEAR(force / elastic.force(d), 26.375543 / 31.160545, 2e-3);
 }
 
 /// Benchmark 2.6: the impact of a Zener ball at 1 m/s. Contact time and force depart as the elastic ball's do at
