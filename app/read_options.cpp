@@ -70,6 +70,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     law.joint_stiffness = t->quantity("joint_stiffness", "N_m_per_rad", some, law.joint_stiffness);
     law.joint_damping = t->quantity("joint_damping", "N_m_s_per_rad", some, law.joint_damping);
     law.cover_thickness = t->quantity("cover_thickness", "mm", positive, law.cover_thickness);
+    law.volume_exponent = t->number("volume_exponent", {0.5, 1.5}, law.volume_exponent);
     options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }
   if (auto t = root.optional_table("hertz_maw")) {

@@ -4,6 +4,8 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 #include "golf/units.hpp"
 #include "models/hertz_maw.hpp"
 #include "models/shaft_coupled.hpp"
@@ -24,12 +26,21 @@ Blow blow(double toe) {
   return b;
 }
 
+/// Argument: minus the power of ten of the tolerance (4 is the default), with what it costs in accuracy.
 void Volumetric(benchmark::State& state) {
   const Blow b = blow(0.014);
-  const models::Volumetric model;
-  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+  const auto run = [&](double tolerance) {
+    return models::volumetric_impact(b, {}, {models::Integrator::rosenbrock, tolerance});
+  };
+  const double tolerance = std::pow(10.0, -double(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(run(tolerance).launch);
+  const auto r = run(tolerance), exact = run(1e-9);
+  state.counters["steps"] = double(r.steps);
+  state.counters["rates"] = double(r.rate_calls);
+  state.counters["speed_error"] = (r.launch.velocity - exact.launch.velocity).norm() / exact.launch.velocity.norm();
+  state.counters["spin_error"] = (r.launch.spin - exact.launch.spin).norm() / exact.launch.spin.norm();
 }
-BENCHMARK(Volumetric)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Volumetric)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
 
 void VolumetricCvode(benchmark::State& state) {
   const Blow b = blow(0.014);

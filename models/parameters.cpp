@@ -44,6 +44,7 @@ constexpr std::array kParameters = {
     PLAIN("friction", "", 0.0, 2.0, b.contact.friction),
     PLAIN("normal_force_offset", "", -0.3, 0.3, b.contact.normal_force_offset),
     PLAIN("volumetric_stiffness", "N_per_m3", 1e8, 1e11, o.volumetric.stiffness),
+    PLAIN("volume_exponent", "", 0.5, 1.5, o.volumetric.volume_exponent),
     PLAIN("volumetric_damping", "s_per_m", 0.0, 0.05, o.volumetric.damping),
     NamedParameter{"volumetric_friction", "", 0.01, 2.0, [](const Options& o, const Blow&) { return o.volumetric.friction; },
                    [](Options& o, Blow&, double x) { o.volumetric.friction = o.volumetric.static_friction = x; }},

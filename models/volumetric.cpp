@@ -129,7 +129,7 @@ class Contact {
       shaft_rate(y, dy, torque);
     }
     dy[kTime] = 1;
-    dy[kLostNormal] = law_.stiffness * overlap_.volume * law_.damping * approach_ * approach_;
+    dy[kLostNormal] = elastic_ * law_.damping * approach_ * approach_;
     dy[kLostFriction] = friction_.dot(slip_);
     dy[kLostJoint] = law_.joint_damping * relative.squaredNorm();
   }
@@ -203,7 +203,7 @@ class Contact {
                              : head_energy(start_velocity_, start_spin_);
     e.kinetic_after = (ball_.mass * vb.squaredNorm() + core_inertia_ * core.squaredNorm() +
                        cover_inertia_ * cover.squaredNorm()) / 2 + head_energy(vh, R_.transpose() * wh);
-    e.stored_contact = law_.stiffness * overlap_potential(depth_, ball_.radius, curvature_);
+    e.stored_contact = law_.stiffness * overlap_potential(depth_, ball_.radius, curvature_, law_.volume_exponent);
     e.stored_joint = law_.joint_stiffness * twist.squaredNorm() / 2;
     e.lost_normal = y[kLostNormal];
     e.lost_friction = y[kLostFriction];
@@ -259,7 +259,8 @@ class Contact {
     const Vec3 w = vh + wh.cross(head_arm_) - vb - cover.cross(arm_);
     approach_ = w.dot(normal_);
     slip_ = w - approach_ * normal_;
-    normal_force_ = law_.stiffness * overlap_.volume * (1 + law_.damping * approach_);
+    elastic_ = law_.stiffness * powered(overlap_.volume, law_.volume_exponent);
+    normal_force_ = elastic_ * (1 + law_.damping * approach_);
     friction_ = normal_force_ * friction_over_slip(slip_.norm()) * slip_;
     force_ = normal_force_ * normal_ + friction_;
   }
@@ -334,7 +335,7 @@ class Contact {
   Mat3 R_;
   Vec3 normal_, arm_, head_arm_, from_cg_, slip_, friction_, force_;
   Overlap overlap_;
-  double depth_ = 0, approach_ = 0, normal_force_ = 0;
+  double depth_ = 0, approach_ = 0, elastic_ = 0, normal_force_ = 0;
 
   // The stiff block, as linearise() left it.
   double ball_rate_ = 0, step_ = 0;

@@ -58,6 +58,8 @@ TEST_P(OverlapOf, QuadratureAndDifferences) {
     EXPECT_NEAR(o.area, slope, 1e-7 * o.area);
     const double energy = (overlap_potential(d + h, r, c) - overlap_potential(d - h, r, c)) / (2 * h);
     EXPECT_NEAR(energy, o.volume, 1e-7 * o.volume);
+    const double flat = (overlap_potential(d + h, r, c, 0.6) - overlap_potential(d - h, r, c, 0.6)) / (2 * h);
+    EXPECT_NEAR(flat, powered(o.volume, 0.6), 1e-6 * flat);  // the rule's error where the power sets in
   }
   EXPECT_EQ(overlapping, 7);
 }
