@@ -91,6 +91,15 @@ TEST(Tune, KnownParametersComeBackRigid) {
   for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("rigid_" + std::to_string(i), r.single[i]);
 }
 
+TEST(Tune, IntervalsCoverWhatTheyClaim) {
+  // Two standard deviations hold 95.45 % of a normal's draws; 400 seeds tell that to three sigma of a binomial, 3.1 %.
+  const int seeds = 400;
+  const Recovery r = recover("rigid-eccentric", {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}}, 9.716, seeds);
+  EXPECT_NEAR(r.joint, 0.9545 * seeds, 0.031 * seeds);
+  for (const int inside : r.single) EXPECT_NEAR(inside, 0.9545 * seeds, 0.031 * seeds);
+  for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("of_400_" + std::to_string(i), r.single[i]);
+}
+
 TEST(Tune, KnownParametersComeBackVolumetric) {
   const Recovery r = recover("volumetric", {{"volumetric_damping", 6.42e-3}, {"joint_stiffness", 40.0}, {"cg_x", -0.0423}}, 8.025, 20);
   EXPECT_GE(r.joint, 19);
