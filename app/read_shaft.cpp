@@ -57,6 +57,27 @@ Shaft by_tube(Table table) {
   return tube_shaft(tube, layers, kappa);
 }
 
+/// Centres off the line, at stations of their own, linear between them and held beyond.
+void read_offsets(Table table, Shaft& shaft) {
+  const auto arc = table.quantities("arc_length", "mm", 0);
+  for (std::size_t i = 1; i < arc.size(); ++i)
+    if (!(arc[i] > arc[i - 1])) table.fail("arc_length", "stations run from butt to tip with increasing arc length");
+  if (arc.empty()) table.fail("arc_length", "offsets need at least one station");
+  Shaft offsets;
+  for (const double s : arc) offsets.stations.push_back({.arc_length = s});
+  const auto read = [&](const char* key, std::array<double, 2> CentreOffsets::*centre, std::size_t axis) {
+    const auto values = table.quantities(key, "mm", arc.size(), Range::finite(), std::vector<double>(arc.size(), 0.0));
+    for (std::size_t i = 0; i < arc.size(); ++i) (offsets.stations[i].centres.*centre)[axis] = values[i];
+  };
+  read("elastic_centre_y", &CentreOffsets::elastic, 0);
+  read("elastic_centre_z", &CentreOffsets::elastic, 1);
+  read("shear_centre_y", &CentreOffsets::shear, 0);
+  read("shear_centre_z", &CentreOffsets::shear, 1);
+  read("mass_centre_y", &CentreOffsets::mass, 0);
+  read("mass_centre_z", &CentreOffsets::mass, 1);
+  for (ShaftStation& s : shaft.stations) s.centres = offsets.at(s.arc_length).centres;
+}
+
 }  // namespace
 
 Shaft read_shaft(Table table) {
@@ -83,6 +104,7 @@ Shaft read_shaft(Table table) {
     s.rotary_inertia_y *= mass_scale;
     s.rotary_inertia_z *= mass_scale;
   }
+  if (auto offsets = table.optional_table("offsets")) read_offsets(*offsets, shaft);
   // Stiffness-proportional: the damping ratio holds at one frequency and grows in proportion to it.
   const double ratio = table.number("damping_ratio", {0, 1}, 0.0);
   if (ratio > 0)

@@ -37,6 +37,18 @@ void check(const Section& s, double at) {
                                 " m has a stiffness that is not positive or a negative mass");
 }
 
+/// Stiffness of (gamma, kappa) in the section's axes.
+Mat6 section_stiffness(const Vec3& force, const Section& s) {
+  Mat6 at_centres = Mat6::Identity();  // the strains there: gamma + kappa x r
+  at_centres(0, 4) = s.centres.elastic[1];
+  at_centres(0, 5) = -s.centres.elastic[0];
+  at_centres(1, 3) = -s.centres.shear[1];
+  at_centres(2, 3) = s.centres.shear[0];
+  Vec6 own;
+  own << force, s.torsion, s.bending_y, s.bending_z;
+  return at_centres.transpose() * own.asDiagonal() * at_centres;
+}
+
 Mat3 exp_matrix(const Vec3& w) { return rotation_exp(w).toRotationMatrix(); }
 
 }  // namespace
@@ -75,7 +87,8 @@ namespace {
 
 /// One Gauss point: strains and their derivative B by p.
 struct PointStrain {
-  Vec3 psi, dpsi, dy, gamma, kappa;
+  Vec3 psi, dpsi, dy;
+  Vec6 strain;  // gamma, kappa
   RotationForm turn, curve;
   Mat3 Vc, Vt, Dc, Dt;
 };
@@ -93,8 +106,7 @@ PointStrain point_strain(const Kinematics& k, const Point& g) {
   s.Vt = s.curve.matrix(s.psi);
   s.Dc = s.turn.derivative(s.psi, s.dy);
   s.Dt = s.curve.derivative(s.psi, s.dpsi);
-  s.gamma = s.Vc * s.dy - g.tangent;
-  s.kappa = s.Vt * s.dpsi;
+  s.strain << s.Vc * s.dy - g.tangent, s.Vt * s.dpsi;
   return s;
 }
 
@@ -124,6 +136,7 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
     else
       nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
   rotary_.assign(line.size(), Mat3::Zero());
+  moment_.assign(line.size(), Vec3::Zero());
   weight_.assign(line.size(), 0);
 
   for (std::size_t first = 0; first + 2 < line.size(); first += 2) {
@@ -153,8 +166,9 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
       const double held = kHeldShear / (length * length);
       const Vec3 force(s.axial, std::isinf(s.shear_y) ? held * s.bending_z : s.shear_y,
                        std::isinf(s.shear_z) ? held * s.bending_y : s.shear_z);
-      g.force = g.frame * force.asDiagonal() * g.frame.transpose();
-      g.moment = g.frame * Vec3(s.torsion, s.bending_y, s.bending_z).asDiagonal() * g.frame.transpose();
+      Mat6 frames = Mat6::Zero();
+      frames.topLeftCorner<3, 3>() = frames.bottomRightCorner<3, 3>() = g.frame;
+      g.stiffness = frames * section_stiffness(force, s) * frames.transpose();
     }
     e.mass.setZero();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -164,9 +178,11 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
       check(s, at);
       e.mass += weight * s.mass * N * N.transpose();
       const Mat3 frame = frame_at(N);
-      const Mat3 J = frame * s.rotary.asDiagonal() * frame.transpose();
+      const Vec3 centre = frame * Vec3(0, s.centres.mass[0], s.centres.mass[1]);
+      const Mat3 J = frame * s.rotary.asDiagonal() * frame.transpose() - s.mass * skew(centre) * skew(centre);
       for (int n = 0; n < 3; ++n) {
         rotary_[first + static_cast<std::size_t>(n)] += weight * N[n] * J;
+        moment_[first + static_cast<std::size_t>(n)] += weight * N[n] * s.mass * centre;
         weight_[first + static_cast<std::size_t>(n)] += weight * N[n] * s.mass;
       }
     }
@@ -183,6 +199,10 @@ void Beam::place(State& s) const {
 
 void Beam::pattern(std::vector<std::vector<Index>>& blocks) const {
   for (const Element& e : elements_) blocks.push_back(e.equations);
+}
+
+Mat3 Beam::attitude(const State& s, std::size_t node) const {
+  return rotation(s, nodes_[node].rotation).toRotationMatrix();
 }
 
 Beam::Kinematics Beam::kinematics(const State& s, const Element& e) const {
@@ -223,13 +243,10 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
     std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
-      Vec3 gamma = p.gamma, kappa = p.kappa;
-      if (tau > 0) {
-        const Eigen::Matrix<double, 6, 1> strain_rate = strain_matrix(p, g) * rate;
-        gamma += tau * strain_rate.head<3>();
-        kappa += tau * strain_rate.tail<3>();
-      }
-      const Vec3 n = g.force * gamma, m = g.moment * kappa;
+      Vec6 strain = p.strain;
+      if (tau > 0) strain += tau * strain_matrix(p, g) * rate;
+      const Vec6 stress = g.stiffness * strain;
+      const Vec3 n = stress.head<3>(), m = stress.tail<3>();
       const Vec3 along = p.Vc.transpose() * n, curve = p.Vt.transpose() * m;
       const Vec3 turn = p.Dc.transpose() * n + p.Dt.transpose() * m;
       for (std::size_t i = 0; i < 2; ++i) {
@@ -256,10 +273,13 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
             e.mass(static_cast<Index>(i), static_cast<Index>(j)) * s.a.segment<3>(e.equations[6 * j]);
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Index r = nodes_[i].rotation.v;
-    const Vec3 w = s.v.segment<3>(r);
-    inertia.segment<3>(r) += rotary_[i] * s.a.segment<3>(r) + w.cross(rotary_[i] * w);
-    force.segment<3>(nodes_[i].translation.v) -= weight_[i] * options_.gravity;
+    const Index t = nodes_[i].translation.v, r = nodes_[i].rotation.v;
+    const Vec3 w = s.v.segment<3>(r), turn = s.a.segment<3>(r);
+    const Mat3 R = attitude(s, i);
+    inertia.segment<3>(t) += R * (turn.cross(moment_[i]) + w.cross(w.cross(moment_[i])));
+    inertia.segment<3>(r) += rotary_[i] * turn + w.cross(rotary_[i] * w) + moment_[i].cross(R.transpose() * s.a.segment<3>(t));
+    force.segment<3>(t) -= weight_[i] * options_.gravity;
+    force.segment<3>(r) -= moment_[i].cross(R.transpose() * options_.gravity);
   }
 }
 
@@ -279,15 +299,11 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
       for (const Point& g : e.points) {
         const PointStrain p = point_strain(k, g);
         const Eigen::Matrix<double, 6, 12> B = strain_matrix(p, g);
-        Vec3 gamma = p.gamma, kappa = p.kappa;
-        if (tau > 0) {
-          const Eigen::Matrix<double, 6, 1> strain_rate = B * rate;
-          gamma += tau * strain_rate.head<3>();
-          kappa += tau * strain_rate.tail<3>();
-        }
-        const Vec3 n = g.force * gamma, m = g.moment * kappa;
-        H.noalias() += (g.weight * material) * B.topRows<3>().transpose() * (g.force * B.topRows<3>());
-        H.noalias() += (g.weight * material) * B.bottomRows<3>().transpose() * (g.moment * B.bottomRows<3>());
+        Vec6 strain = p.strain;
+        if (tau > 0) strain += tau * B * rate;
+        const Vec6 stress = g.stiffness * strain;
+        const Vec3 n = stress.head<3>(), m = stress.tail<3>();
+        H.noalias() += (g.weight * material) * B.transpose() * (g.stiffness * B);
         if (weights.stiffness == 0) continue;
         const double w = g.weight * weights.stiffness;
         const Mat3 turn = p.turn.hessian(p.psi, n, p.dy) + p.curve.hessian(p.psi, m, p.dpsi);
@@ -338,6 +354,15 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
       const Vec3 w = s.v.segment<3>(nodes_[first + i].rotation.v);
       const auto at = static_cast<Index>(6 * i + 3);
       K.block<3, 3>(at, at) += weights.mass * J + weights.damping * (skew(w) * J - skew(J * w));
+      const Vec3& S = moment_[first + i];
+      if (S.isZero()) continue;
+      const Mat3 R = attitude(s, first + i);
+      const Vec3 turn = s.a.segment<3>(nodes_[first + i].rotation.v);
+      const Vec3 lift = R.transpose() * (s.a.segment<3>(nodes_[first + i].translation.v) - options_.gravity);
+      K.block<3, 3>(at - 3, at) -= R * (weights.mass * skew(S) + weights.damping * (skew(w.cross(S)) + skew(w) * skew(S)) +
+                                        weights.stiffness * skew(turn.cross(S) + w.cross(w.cross(S))));
+      K.block<3, 3>(at, at - 3) += weights.mass * skew(S) * R.transpose();
+      K.block<3, 3>(at, at) += weights.stiffness * skew(S) * skew(lift);
     }
     sink.add(e.equations, e.equations, K);
   }
@@ -349,7 +374,7 @@ Energies Beam::energies(const State& s) const {
     const Kinematics k = kinematics(s, e);
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
-      out.strain += 0.5 * g.weight * (p.gamma.dot(g.force * p.gamma) + p.kappa.dot(g.moment * p.kappa));
+      out.strain += 0.5 * g.weight * p.strain.dot(g.stiffness * p.strain);
     }
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
@@ -358,7 +383,8 @@ Energies Beam::energies(const State& s) const {
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Vec3 w = s.v.segment<3>(nodes_[i].rotation.v);
-    out.kinetic += 0.5 * w.dot(rotary_[i] * w);
+    out.kinetic += 0.5 * w.dot(rotary_[i] * w) +
+                   s.v.segment<3>(nodes_[i].translation.v).dot(attitude(s, i) * w.cross(moment_[i]));
   }
   out.viscous = viscous_;
   out.external = fall_;
@@ -368,15 +394,15 @@ Energies Beam::energies(const State& s) const {
 void Beam::accept(const State& s) {
   double height = 0, power = 0;
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    height += weight_[i] * options_.gravity.dot(s.q.segment<3>(nodes_[i].translation.q));
+    height += options_.gravity.dot(weight_[i] * s.q.segment<3>(nodes_[i].translation.q) + attitude(s, i) * moment_[i]);
   if (options_.damping_time > 0)
     for (const Element& e : elements_) {
       const Kinematics k = kinematics(s, e);
       const Vec12 rate = k.jacobian() * velocities(s, e.equations);
       for (const Point& g : e.points) {
-        const Eigen::Matrix<double, 6, 1> r = strain_matrix(point_strain(k, g), g) * rate;
+        const Vec6 r = strain_matrix(point_strain(k, g), g) * rate;
         power += options_.damping_time * g.weight *
-                 (r.head<3>().dot(g.force * r.head<3>()) + r.tail<3>().dot(g.moment * r.tail<3>()));
+                 r.dot(g.stiffness * r);
       }
     }
   if (started_) {
@@ -410,7 +436,7 @@ std::vector<Beam::Strain> Beam::strains(const State& s) const {
     const Kinematics k = kinematics(s, e);
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
-      out.push_back({g.arc_length, g.frame.transpose() * p.gamma, g.frame.transpose() * p.kappa});
+      out.push_back({g.arc_length, g.frame.transpose() * p.strain.head<3>(), g.frame.transpose() * p.strain.tail<3>()});
     }
   }
   return out;

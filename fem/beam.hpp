@@ -7,7 +7,8 @@
 /// M. A. Crisfield, G. Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147: R = R_2 exp(sum N_i log(R_2^T R_i)),
 /// which is objective and depends on no path. Strain energy is integrated at two Gauss points, where the
 /// section's properties are evaluated; the residual is its exact derivative.
-/// Mass is consistent for translations; rotary inertia sits at the nodes (Lobatto weights), each node
+/// Centres off the line: axial strain is taken at the elastic centre, shear at the shear centre, gamma + kappa x r.
+/// Mass is consistent for translations; rotary inertia and the mass centre's offset sit at the nodes (Lobatto weights), each node
 /// a small rigid body, so that momenta are those of a system of bodies.
 #pragma once
 
@@ -72,7 +73,7 @@ class Beam final : public Term {
     double weight, arc_length;
     Vec3 N, dN;          // shape functions and their derivatives by arc length
     Vec3 tangent;        // X'
-    Mat3 force, moment;  // section stiffness in reference axes
+    Mat6 stiffness;      // of (gamma, kappa), reference axes
     Mat3 frame;
   };
   struct Element {
@@ -82,12 +83,14 @@ class Beam final : public Term {
   };
   struct Kinematics;
   Kinematics kinematics(const State& s, const Element& e) const;
+  Mat3 attitude(const State& s, std::size_t node) const;
 
   BeamOptions options_;
   std::vector<mesh::LineNode> line_;
   std::vector<Node> nodes_;
   std::vector<Element> elements_;
-  std::vector<Mat3> rotary_;    // of each node, reference axes
+  std::vector<Mat3> rotary_;    // of each node and about it, reference axes
+  std::vector<Vec3> moment_;    // mass times offset of its centre from the node, reference axes
   std::vector<double> weight_;  // integral of mass times shape function, for gravity
   // History: dissipated and external work so far, and what the next step adds to.
   double viscous_ = 0, power_ = 0, time_ = 0, height_ = 0, fall_ = 0;

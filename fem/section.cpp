@@ -15,7 +15,8 @@ SectionLaw shaft_sections(const Shaft& shaft, bool shear) {
                    .bending_y = st.bending_stiffness_y,
                    .bending_z = st.bending_stiffness_z,
                    .mass = st.mass_per_length,
-                   .rotary = {st.rotary_inertia_y + st.rotary_inertia_z, st.rotary_inertia_y, st.rotary_inertia_z}};
+                   .rotary = {st.rotary_inertia_y + st.rotary_inertia_z, st.rotary_inertia_y, st.rotary_inertia_z},
+                   .centres = st.centres};
   };
 }
 

@@ -14,7 +14,8 @@ struct Section {
   double torsion = 0;            ///< GJ [N m^2]
   double bending_y = 0, bending_z = 0;  ///< EI about y, z [N m^2]
   double mass = 0;               ///< rho A [kg/m]
-  Vec3 rotary = Vec3::Zero();    ///< rho times second moments about x, y, z [kg m]
+  Vec3 rotary = Vec3::Zero();    ///< rho times second moments about x, y, z through the centre of mass [kg m]
+  CentreOffsets centres = {};
 };
 
 /// The section at an arc length [m].

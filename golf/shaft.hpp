@@ -1,11 +1,22 @@
 /// The shaft as data: properties along the arc length, butt (0) to tip (length).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "golf/vector.hpp"
 
 namespace hosel {
+
+/// Where a section's centres lie off the line of nodes, along local y and z [m]: a seam, a bent or an unevenly
+/// wound tube.
+struct CentreOffsets {
+  std::array<double, 2> elastic = {};  ///< where an axial force bends nothing
+  std::array<double, 2> shear = {};    ///< where a transverse force twists nothing
+  std::array<double, 2> mass = {};     ///< centre of mass, about which the rotary inertias are
+  bool none() const { return *this == CentreOffsets{}; }
+  bool operator==(const CentreOffsets&) const = default;
+};
 
 /// Properties of one cross-section; local axes: x along the shaft towards the tip, y and z across.
 struct ShaftStation {
@@ -19,6 +30,7 @@ struct ShaftStation {
   double rotary_inertia_y = 0;     ///< rho I about local y [kg m]
   double rotary_inertia_z = 0;     ///< rho I about local z [kg m]
   double outer_radius = 0;         ///< for looking [m]
+  CentreOffsets centres = {};
 };
 
 struct Shaft {

@@ -8,6 +8,8 @@ namespace hosel {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// The matrix of the cross product: skew(a) b = a x b.
 inline Mat3 skew(const Vec3& a) {

@@ -16,7 +16,6 @@
 namespace hosel::models {
 namespace {
 
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 

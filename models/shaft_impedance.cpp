@@ -94,6 +94,9 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
   if (!club.shaft || club.shaft->stations.size() < 2)
     throw std::invalid_argument("shaft-coupled: the club has no shaft");
   const Shaft& shaft = *club.shaft;
+  for (const ShaftStation& s : shaft.stations)
+    if (!s.centres.none())
+      throw std::invalid_argument("shaft-coupled: the condensed shaft has its centres on its line; for [shaft.offsets] use fe-full-club");
   const int n = options.functions, pieces = static_cast<int>(shaft.stations.size()) - 1;
   const double start = shaft.stations.front().arc_length, length = shaft.length() - start;
   MatrixXd My = MatrixXd::Zero(2 * n, 2 * n), Ky = My, Mz = My, Kz = My;  // bending: displacement, slope

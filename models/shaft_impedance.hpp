@@ -8,8 +8,6 @@
 
 namespace hosel::models {
 
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 /// Craig-Bampton form for the twist u of the head about its centre of gravity (translation, rotation;
 /// face frame at first contact), measured from the undisturbed motion of the club:

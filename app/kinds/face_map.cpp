@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,8 @@
 #include "app/read_options.hpp"
 #include "app/sweep.hpp"
 #include "app/sweep_store.hpp"
+#include "models/fe_impact.hpp"
+#include "models/hosel_load.hpp"
 #include "models/registry.hpp"
 #include "post/face_map.hpp"
 #include "post/launch_table.hpp"
@@ -30,6 +33,15 @@ json stored(const Launch& l) {
   if (l.contact_time) out["contact_time"] = *l.contact_time;
   if (l.peak_force) out["peak_force"] = *l.peak_force;
   if (l.peak_compression) out["peak_compression"] = *l.peak_compression;
+  return out;
+}
+
+/// Rows of time [s], force [N] and moment [N m], and what they add up to.
+json stored(const models::HoselHistory& h) {
+  const fem::Wrench impulse = h.impulse();
+  json out = {{"impulse", {list(impulse.force), list(impulse.moment)}}};
+  for (std::size_t i = 0; i < h.times.size(); ++i)
+    out["history"].push_back({h.times[i], list(h.loads[i].force), list(h.loads[i].moment)});
   return out;
 }
 
@@ -98,7 +110,15 @@ class FaceMapJob final : public PointJob {
     Blow blow = layers_[layer].blow;
     blow.delivery.impact_toe = grid_.toe_at(place);
     blow.delivery.impact_high = grid_.high_at(place);
-    return stored(layers_[layer].model->launch(blow));
+    const models::ImpactModel& model = *layers_[layer].model;
+    const auto* fe = dynamic_cast<const models::FeModel*>(&model);
+    if (!fe) return stored(model.launch(blow));
+    models::HoselHistory hosel;
+    json out = stored(fe->solve(blow, [&](const models::ImpactView& v) {
+                          if (v.shaft) hosel.add(*v.shaft, v.state);
+                        }).launch);
+    if (!hosel.times.empty()) out["hosel"] = stored(hosel);
+    return out;
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
@@ -125,6 +145,7 @@ class FaceMapJob final : public PointJob {
       const auto& centre = map.launches[post::coarse_points(grid_)[4]];
       if (centre) m["centre"] = post::to_json(*centre);
       draw(out, map);
+      hosel(out, points, std::size_t(&map - maps.data()));
       if (&map == &maps[reference_]) continue;
       draw(out, map, &reference);
       if (whole && std::ranges::all_of(reference.launches, [](const auto& l) { return l.has_value(); }))
@@ -203,6 +224,38 @@ class FaceMapJob final : public PointJob {
                                                fmt::format("[{}]", unit), reference != nullptr));
     }
     picture(out, figure, fmt::format("figures/{}{}", reference ? "difference-" : "map-", file_name(map.title)));
+  }
+
+  /// What the shaft does to the head at every point: force and moment over time, and their impulses as maps.
+  void hosel(Output& out, const std::vector<json>& points, std::size_t layer) const {
+    static constexpr std::array kAxes = {"x", "y", "z"};
+    std::string csv = "impact_toe_mm,impact_high_mm,time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+    std::array<std::vector<double>, 6> impulses;
+    bool any = false;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (work_[i].layer != layer) continue;
+      const bool has = points[i].contains("hosel");
+      for (std::size_t k = 0; k < 6; ++k)
+        impulses[k].push_back(has ? points[i]["hosel"]["impulse"][k / 3][k % 3].get<double>() : std::nan(""));
+      if (!has) continue;
+      any = true;
+      for (const json& row : points[i]["hosel"]["history"]) {
+        const Vec3 force = vector(row.at(1)), moment = vector(row.at(2));
+        csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", 1e3 * grid_.toe_at(work_[i].place),
+                           1e3 * grid_.high_at(work_[i].place), 1e3 * row.at(0).get<double>(), force.x(), force.y(), force.z(),
+                           moment.x(), moment.y(), moment.z());
+      }
+    }
+    if (!any) return;
+    const std::string name = file_name(layers_[layer].title);
+    out.write(fmt::format("hosel-{}.csv", name), csv);
+    post::Figure figure{.title = fmt::format("{}: impulse of the shaft on the head at the hosel, face axes; {}", layers_[layer].title, post::kFaceView),
+                        .columns = 3, .panel_width = 640, .panel_height = 330};
+    for (std::size_t k = 0; k < 6; ++k)
+      figure.panels.push_back(post::face_panel(
+          grid_, impulses[k], fmt::format("{} along {}", k < 3 ? "force's impulse" : "moment's impulse", kAxes[k % 3]),
+          k < 3 ? "[N s]" : "[N m s]", true));
+    picture(out, figure, "figures/hosel-" + name);
   }
 
   static void picture(Output& out, const post::Figure& figure, const std::string& stem) {

@@ -6,7 +6,6 @@
 namespace hosel::fem {
 
 using Sym = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat9 = Eigen::Matrix<double, 9, 9>;
 
 inline constexpr int kSymRow[6] = {0, 1, 2, 0, 1, 0};

@@ -179,6 +179,64 @@ TEST_F(FaceMapRun, ShardsAndASecondRunGiveTheSameBytes) {
   }
 }
 
+/// Nine points with finite elements: a symmetric head alone and on a shaft.
+TEST(SlowFaceMap, FreeBodyIsSymmetricAndTheHoselIsOnRecord) {
+  const fs::path dir = fresh_directory("fe_face_map");
+  write(dir / "case" / "case.toml", R"(kind = "face-map"
+models = ["fe-free-body", "fe-full-club"]
+[grid]
+width_mm = 40.0
+height_mm = 20.0
+columns = 3
+rows = 3
+[delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 12.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 2.0]
+inertia_kg_m2 = [[2.4e-4, 0, 0], [0, 3.4e-4, 0], [0, 0, 4.8e-4]]
+bulge_mm = 305.0
+roll_mm = 305.0
+[contact]
+face_friction = 0.4
+[ball]
+mass_kg = 0.04593
+radius_mm = 21.3
+[mesh]
+harmonics = 2
+sector = 2
+rings = 2
+[time]
+steps_per_contact = 30
+newton_relative = 1e-9
+[shaft]
+name = "composite-driver"
+[hosel]
+position_mm = [-15.0, 55.0, 10.0]
+)");
+  const Outcome outcome = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  const auto summary = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  const Rows map = csv(dir / "out" / "face_map.csv");
+  ASSERT_EQ(map.cells.size(), 18u);
+  for (std::size_t i = 0; i < map.cells.size(); ++i) EXPECT_GT(map.number(i, "peak_force_N"), 8e3);
+  EXPECT_LT(summary["models"]["fe-free-body"]["mirror_error"].get<double>(), 1e-6);
+  EXPECT_GT(summary["models"]["fe-full-club"]["mirror_error"].get<double>(), 1e-4);  // the hosel is on one side
+  EXPECT_FALSE(fs::exists(dir / "out" / "hosel-fe-free-body.csv"));
+  const Rows hosel = csv(dir / "out" / "hosel-fe-full-club.csv");
+  std::map<std::pair<double, double>, int> instants;
+  double largest = 0;
+  for (std::size_t i = 0; i < hosel.cells.size(); ++i) {
+    ++instants[{hosel.number(i, "impact_toe_mm"), hosel.number(i, "impact_high_mm")}];
+    largest = std::max(largest, std::abs(hosel.number(i, "force_x_N")));
+  }
+  EXPECT_EQ(instants.size(), 9u);
+  for (const auto& [place, count] : instants) EXPECT_GT(count, 20);
+  EXPECT_GT(largest, 100);
+  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "hosel-fe-full-club.png"));
+}
+
 TEST(FaceMap, AnImpactPointInTheDeliveryIsRefused) {
   const fs::path dir = fresh_directory("face_map_point");
   write(dir / "case.toml", kMap);

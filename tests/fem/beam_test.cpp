@@ -12,7 +12,8 @@ namespace {
 
 Section thick() {
   return {.axial = 3e3, .shear_y = 1.1e3, .shear_z = 0.9e3, .torsion = 40, .bending_y = 50, .bending_z = 70,
-          .mass = 400, .rotary = Vec3(30, 10, 20)};
+          .mass = 400, .rotary = Vec3(30, 10, 20),
+          .centres = {.elastic = {0.03, -0.05}, .shear = {-0.04, 0.02}, .mass = {0.06, 0.01}}};
 }
 
 /// A two-element beam far from its reference, with rotations of up to about a radian between nodes.

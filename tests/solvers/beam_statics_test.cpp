@@ -37,6 +37,30 @@ TEST(StaticCompliance, TaperedTubeB2) {
   EXPECT_NEAR(ua.x() / F, 3.329019e-7, 1e-4 * 3.33e-7);
 }
 
+TEST(StaticCompliance, ForceOffTheCentresBendsAndTwists) {
+  // A uniform cantilever: an axial force at e from the elastic centres bends it, w = P e L^2 / (2 EI); a transverse one
+  // at e from the shear centres twists it, F e L / GJ. What is small of second order stays below 1e-4.
+  const fem::Section plain = b2(Theory::timoshenko)(0.5);
+  const double e = 0.004, F = 1e-3;
+  const auto tip = [&](const CentreOffsets& centres, const Vec3& force) {
+    fem::Section s = plain;
+    s.centres = centres;
+    BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()), constant(s));
+    b.clamp_first();
+    b.load(b.tip(), [force](double) { return fem::Wrench{.force = force}; });
+    const auto r = solve_static(b.system, b.rest, {.newton = {.residual_relative = 1e-8, .residual_absolute = 1e-12,
+                                                              .increment_vector = 1e-9, .increment_rotation = 1e-9}});
+    return std::pair(b.tip_displacement(r.state), b.tip_rotation(r.state));
+  };
+  const double bend = F * e / (2 * plain.bending_z), twist = F * e / plain.torsion;
+  // The force on the line is at -e from centres at +e. About z: M = e P, so the tip goes along +y; about y likewise, +z.
+  EXPECT_NEAR(tip({.elastic = {e, 0}}, {F, 0, 0}).first.y(), bend, 1e-4 * bend);
+  EXPECT_NEAR(tip({.elastic = {0, e}}, {F, 0, 0}).first.z(), bend, 1e-4 * bend);
+  // r x F about the shear centre: (-e along y) x (F along z) turns by -F e about x.
+  EXPECT_NEAR(tip({.shear = {e, 0}}, {0, 0, F}).second.x(), -twist, 1e-4 * twist);
+  EXPECT_NEAR(tip({.shear = {0, e}}, {0, F, 0}).second.x(), twist, 1e-4 * twist);
+}
+
 TEST(Elastica, TipForce) {
   struct Row {
     double load, theta, w, u;
