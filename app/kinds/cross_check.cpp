@@ -239,6 +239,7 @@ class CrossCheckJob final : public Job {
         const Axis& y = axes_[1];
         p.y_label = y.label;
         p.map_label = with_unit;
+        p.map_symmetric = true;
         for (const double v : x.values) p.map_x.push_back(v / x.si);
         for (const double v : y.values) p.map_y.push_back(v / y.si);
         for (std::size_t j = 0; j < y.values.size(); ++j)
