@@ -206,7 +206,7 @@ TEST(RightAngleCantilever, PeaksOfElbowAndTip) {
       EXPECT_NEAR(ze, 3.114, 0.03);
       EXPECT_NEAR(zt, 5.481, 0.03);
     }
-    if (i == 100) EXPECT_NEAR(scheme.ledger().kinetic + scheme.ledger().strain_total(), 114.87, 0.1);
+    if (i == 100) { EXPECT_NEAR(scheme.ledger().kinetic + scheme.ledger().strain_total(), 114.87, 0.1); }
     if (i == 500) {
       EXPECT_NEAR(ze, -3.100, 0.05);
       EXPECT_NEAR(zt, 4.459, 0.05);
@@ -399,8 +399,8 @@ TEST_P(SaintVenant, RigidBodyOnAClampedBar) {
     }
     if (parting != 0 || k % 10 == 0 || k % 10 == 9) continue;
     const double t = window * k;
-    if (t < 4) EXPECT_NEAR(force, mean([&](double x) { return sent(x) + sent(x - 2); }, t), 0.02 * row.held) << "at " << t;
-    if (t < 5) EXPECT_NEAR(reaction, mean([&](double x) { return 2 * sent(x - 1); }, t), 0.02 * row.held) << "at " << t;
+    if (t < 4) { EXPECT_NEAR(force, mean([&](double x) { return sent(x) + sent(x - 2); }, t), 0.02 * row.held) << "at " << t; }
+    if (t < 5) { EXPECT_NEAR(reaction, mean([&](double x) { return 2 * sent(x - 1); }, t), 0.02 * row.held) << "at " << t; }
     ++compared;
   }
   EXPECT_GE(compared, 20);
