@@ -13,6 +13,7 @@
 #include "models/registry.hpp"
 #include "post/impact_recorder.hpp"
 #include "post/launch_table.hpp"
+#include "post/patch_figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -98,6 +99,10 @@ class ImpactJob final : public Job {
         recorder.resume());
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
+    if (record_.vtk) {
+      const post::PatchHistory patch = post::read_patch(home / "vtk", models::encounter(blow_).ball_axes);
+      if (const std::string why = post::draw_patch(patch, home / "patch"); !why.empty()) out.say(why);
+    }
     return outcome;
   }
 

@@ -1,0 +1,29 @@
+/// The contact patch over time, along the line of slip.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "golf/vector.hpp"
+
+namespace hosel::post {
+
+/// Values at (time[i], position[j]) stand in [j * time.size() + i]; the material points lie on the ball's great circle
+/// through the first point of contact along the slip.
+struct PatchHistory {
+  std::vector<double> time;       ///< [s]
+  std::vector<double> position;   ///< arc from the first point of contact, along the slip positive [m]
+  std::vector<double> pressure;   ///< [Pa]
+  std::vector<double> traction;   ///< on the ball along the slip [Pa]
+  std::vector<double> slip;       ///< path slid so far [m]
+};
+
+/// Reads the frames of a patch series (`vtk`/patch/patch_*.vtp). `ball_axes`: from the ball's centre to the first point
+/// of contact, direction of slip, across both. Positions that touch, and the next on either side.
+PatchHistory read_patch(const std::filesystem::path& vtk, const Mat3& ball_axes);
+
+/// Pressure, traction and slip as maps, `stem`.png; as `draw`, a sentence where there is no picture.
+std::string draw_patch(const PatchHistory& patch, const std::filesystem::path& stem);
+
+}  // namespace hosel::post

@@ -1,0 +1,71 @@
+// The patch series of an oblique blow, read back and compared with what the contact reported.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "golf/units.hpp"
+#include "post/impact_recorder.hpp"
+#include "post/patch_figure.hpp"
+#include "tests/support/coarse_impact.hpp"
+
+namespace hosel::post {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(PatchSeries, ReadsBackWhatTheContactDid) {
+  Blow blow;
+  blow.club.head.mass = INFINITY;
+  blow.delivery.club_speed = 30;
+  blow.delivery.club_path = radians(30);
+  models::FeImpactOptions options = test::coarse_impact(2);
+  options.friction = 0.3;
+  const Mat3 axes = models::encounter(blow).ball_axes;
+  const fs::path dir = fs::path(testing::TempDir()) / "hosel_patch";
+  fs::remove_all(dir);
+  ImpactRecorder recorder(dir, blow, {.steps_per_frame = 2, .angles = 8}, "patch");
+  std::map<double, std::vector<fem::ContactPoint>> seen;
+  const models::FeImpactResult result = models::solve_free_body(blow, options, [&](const models::ImpactView& view) {
+                                          recorder(view);
+                                          seen[view.state.time] = view.contact.points(view.state);
+                                        }).result;
+  ASSERT_GT(result.peak_force, 1e3);
+  const PatchHistory patch = read_patch(dir / "vtk", axes);
+  ASSERT_GT(patch.time.size(), 20u);
+  ASSERT_GT(patch.position.size(), 6u);
+  EXPECT_TRUE(std::ranges::is_sorted(patch.position));
+  EXPECT_LT(patch.position.front(), -2e-3);  // the patch lies on both sides of the first point of contact
+  EXPECT_GT(patch.position.back(), 2e-3);
+
+  const std::size_t frames = patch.time.size();
+  double pull = 0, push = 0;
+  for (std::size_t i = 0; i < frames; ++i) {
+    ASSERT_TRUE(seen.contains(patch.time[i]));
+    for (std::size_t j = 0; j < patch.position.size(); ++j) {
+      const std::size_t k = j * frames + i;
+      // The contact's own point at this place: in front or behind, nearest the plane of slip.
+      const Vec3 there = blow.ball.radius * (std::cos(patch.position[j] / blow.ball.radius) * axes.col(0) +
+                                             std::sin(patch.position[j] / blow.ball.radius) * axes.col(1));
+      const auto& points = seen.at(patch.time[i]);
+      const auto& nearest = *std::ranges::min_element(points, {}, [&](const fem::ContactPoint& p) { return (p.reference - there).norm(); });
+      EXPECT_EQ(patch.pressure[k], nearest.pressure);
+      EXPECT_NEAR(patch.traction[k], nearest.traction.dot(axes.col(1)), 1e-9 * nearest.pressure);
+      EXPECT_EQ(patch.slip[k], nearest.slip);
+      EXPECT_LE(std::abs(patch.traction[k]), options.friction * patch.pressure[k] * (1 + 1e-9));
+      EXPECT_GE(patch.slip[k], patch.slip[i > 0 ? k - 1 : k]);
+      pull = std::max(pull, patch.traction[k]);
+      push = std::min(push, patch.traction[k]);
+    }
+  }
+  EXPECT_GT(pull, 1e6);
+  EXPECT_LT(push, -1e6);  // the traction reverses somewhere: the grip
+}
+
+TEST(PatchSeries, SaysWhereNothingTouched) {
+  EXPECT_FALSE(draw_patch({}, fs::path(testing::TempDir()) / "hosel_patch_none").empty());
+}
+
+}  // namespace
+}  // namespace hosel::post
