@@ -12,11 +12,11 @@
 namespace hosel::models {
 namespace {
 
-constexpr int kParameters = 3;
+/// Logarithms of the factors on long-term moduli, branch moduli and, the third if there is one, branch times.
+using Logs = std::vector<double>;
 
-/// Factors on long-term moduli, branch moduli and branch times.
-FeBall scaled(FeBall ball, const double* logs) {
-  const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = std::exp(logs[2]);
+FeBall scaled(FeBall ball, const Logs& logs) {
+  const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = logs.size() > 2 ? std::exp(logs[2]) : 1;
   for (BallLayer& layer : ball.layers) {
     auto* law = std::get_if<fem::Hyperelastic>(&layer.material.elastic);
     if (!law || layer.material.branches.empty())
@@ -34,14 +34,14 @@ FeBall scaled(FeBall ball, const double* logs) {
 /// about 1e-4 in e, so the step is large.
 class Residuals final : public ceres::CostFunction {
  public:
-  Residuals(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
+  Residuals(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target, int parameters,
             const std::function<void(int, double)>& progress)
       : options_(options), ball_(ball), target_(target), progress_(progress) {
     set_num_residuals(static_cast<int>(target.speeds.size()) + 1);
-    mutable_parameter_block_sizes()->push_back(kParameters);
+    mutable_parameter_block_sizes()->push_back(parameters);
   }
 
-  std::vector<NormalImpactPoint> points(const double* logs) const {
+  std::vector<NormalImpactPoint> points(const Logs& logs) const {
     FeImpactOptions o = options_;
     o.ball = scaled(options_.ball, logs);
     std::vector<NormalImpactPoint> out;
@@ -54,16 +54,18 @@ class Residuals final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
     try {
-      values(x[0], residuals);
+      const int parameters = parameter_block_sizes().front();
+      const Logs at(x[0], x[0] + parameters);
+      values(at, residuals);
       if (!jacobians || !jacobians[0]) return true;
       std::vector<double> moved(static_cast<std::size_t>(num_residuals()));
-      for (int p = 0; p < kParameters; ++p) {
-        double y[kParameters] = {x[0][0], x[0][1], x[0][2]};
+      for (int p = 0; p < parameters; ++p) {
+        Logs y = at;
         constexpr double h = 0.05;
-        y[p] += h;
+        y[static_cast<std::size_t>(p)] += h;
         values(y, moved.data());
         for (int i = 0; i < num_residuals(); ++i)
-          jacobians[0][i * kParameters + p] = (moved[static_cast<std::size_t>(i)] - residuals[i]) / h;
+          jacobians[0][i * parameters + p] = (moved[static_cast<std::size_t>(i)] - residuals[i]) / h;
       }
       return true;
     } catch (const solvers::NonConvergence&) {
@@ -74,7 +76,7 @@ class Residuals final : public ceres::CostFunction {
   int evaluations() const { return evaluations_; }
 
  private:
-  void values(const double* x, double* residuals) const {
+  void values(const Logs& x, double* residuals) const {
     const auto all = points(x);
     double cost = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -106,22 +108,23 @@ NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball
 }
 
 BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
-                               const std::function<void(int, double)>& progress) {
+                               bool hold_times, const std::function<void(int, double)>& progress) {
   if (std::find(target.speeds.begin(), target.speeds.end(), target.contact_speed) == target.speeds.end())
     throw std::invalid_argument("calibration: the speed of the contact time must be one of the speeds");
-  double logs[kParameters] = {0, 0, 0};
-  Residuals residuals(options, ball, target, progress);
+  const int parameters = hold_times ? 2 : 3;
+  Logs logs(static_cast<std::size_t>(parameters), 0.0);
+  Residuals residuals(options, ball, target, parameters, progress);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(ownership);
-  problem.AddResidualBlock(&residuals, nullptr, logs);
-  for (int p = 0; p < kParameters; ++p) {
-    problem.SetParameterLowerBound(logs, p, -3);
-    problem.SetParameterUpperBound(logs, p, 3);
+  problem.AddResidualBlock(&residuals, nullptr, logs.data());
+  for (int p = 0; p < parameters; ++p) {
+    problem.SetParameterLowerBound(logs.data(), p, -3);
+    problem.SetParameterUpperBound(logs.data(), p, 3);
   }
   ceres::Solver::Options solver;
   solver.max_num_iterations = 12;
-  solver.function_tolerance = 1e-3;
+  solver.function_tolerance = solver.parameter_tolerance = 1e-2;  // where the noise of e begins
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -133,12 +136,14 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
   const auto& branch0 = options.ball.layers.front().material.branches.front();
   out.names = {"long-term shear modulus [Pa]", "branch shear modulus [Pa]", "branch time [s]"};
   out.start = {law0.shear(), branch0.modulus, branch0.time};
-  for (int p = 0; p < kParameters; ++p) out.values.push_back(out.start[static_cast<std::size_t>(p)] * std::exp(logs[p]));
+  out.names.resize(logs.size());
+  out.start.resize(logs.size());
+  for (std::size_t p = 0; p < logs.size(); ++p) out.values.push_back(out.start[p] * std::exp(logs[p]));
   out.points = residuals.points(logs);
   const int rows = residuals.num_residuals();
   std::vector<double> r(static_cast<std::size_t>(rows));
-  Eigen::Matrix<double, Eigen::Dynamic, kParameters, Eigen::RowMajor> J(rows, kParameters);
-  const double* x = logs;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(rows, parameters);
+  const double* x = logs.data();
   double* jacobian = J.data();
   if (!residuals.Evaluate(&x, r.data(), &jacobian))
     throw solvers::NonConvergence("calibration: the impact does not converge at the fitted parameters");

@@ -31,8 +31,8 @@ struct NormalImpactPoint {
 
 struct BallCalibration {
   FeBall ball;
-  std::vector<std::string> names;      ///< of the parameters
-  std::vector<double> start, values;   ///< [Pa, Pa, s]
+  std::vector<std::string> names;      ///< of the parameters that were fitted
+  std::vector<double> start, values;   ///< of the first layer, in the units of the names
   Eigen::MatrixXd covariance;          ///< of log values, at the residuals' declared sigmas
   std::vector<NormalImpactPoint> points;
   double cost = 0;                     ///< half the sum of squared residuals over sigmas
@@ -44,10 +44,10 @@ struct BallCalibration {
 /// One normal impact on a wall.
 NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball, double speed);
 
-/// Fits, by Ceres in logarithms, the long-term modulus, the modulus and the time of the first branch of the
-/// first layer; the other layers and branches scale with them. `options.ball` is the start; options are
-/// those of the axisymmetric ball (harmonics = 0). `progress` hears of every evaluation.
+/// Fits, by Ceres in logarithms, factors on the long-term moduli, the branch moduli and, unless `hold_times`, the
+/// branch times of all layers. `options.ball` is the start; options are those of the axisymmetric ball
+/// (harmonics = 0). `progress` hears of every evaluation.
 BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
-                               const std::function<void(int evaluations, double cost)>& progress = {});
+                               bool hold_times, const std::function<void(int evaluations, double cost)>& progress = {});
 
 }  // namespace hosel::models

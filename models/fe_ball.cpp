@@ -30,18 +30,22 @@ double FeBall::instant_young() const {
 
 FeBall elastic_ball(std::string name, fem::Solid material) { return {std::move(name), {{1, std::move(material)}}}; }
 
-FeBall range_ball() {
-  // Shear moduli and times set by hand to a normal restitution near 0.86 - 0.0029 v over 20-50 m/s and a
-  // contact of 0.45 ms at 40 m/s on a rigid wall; bulk modulus of a filled rubber.
-  fem::Solid rubber{.elastic = fem::Hyperelastic{.c10 = 12.5e6, .bulk = 1.0e9},
-                    .branches = {{27e6, 2.0e-5}},
-                    .density = 1129};
-  return {"range-one-piece", {{1, rubber}}};
+namespace {
+fem::Solid rubber(double c10, double bulk, double density, double branch) {
+  return {.elastic = fem::Hyperelastic{.c10 = c10, .bulk = bulk}, .branches = {{branch, 1e-5}}, .density = density};
+}
+}  // namespace
+
+FeBall range_ball() { return {"range-one-piece", {{1, rubber(14.6827e6, 1e9, 1129, 56.2497e6)}}}; }
+
+FeBall two_piece_ball() {
+  return {"two-piece", {{0.91, rubber(13.3817e6, 1e9, 1150, 51.2032e6)}, {1, rubber(40.1452e6, 1.5e9, 960, 153.61e6)}}};
 }
 
 namespace {
 constexpr std::array kBalls = {
-    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, calibrated by cases/calibrate-range-ball", range_ball},
+    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, as cases/calibrate-range-ball finds it", range_ball},
+    NamedFeBall{"two-piece", "rubber core under a cover three times as stiff, as cases/calibrate-two-piece finds it", two_piece_ball},
 };
 }  // namespace
 

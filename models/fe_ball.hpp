@@ -36,7 +36,8 @@ struct NamedFeBall {
 /// Balls by name, each calibrated to normal restitution and contact time alone.
 std::span<const NamedFeBall> ball_library();
 
-/// The one-piece ball of the shipped cases: nearly incompressible neo-Hooke with Maxwell branches.
+/// Nearly incompressible neo-Hooke with one Maxwell branch in each layer.
 FeBall range_ball();
+FeBall two_piece_ball();
 
 }  // namespace hosel::models

@@ -38,13 +38,14 @@ class CalibrateBallJob final : public Job {
     target_.contact_speed = target.quantity("contact_speed", "mps", {1, 100}, target_.contact_speed);
     target_.contact_time = target.quantity("contact_time", "ms", Range::positive(), target_.contact_time);
     target_.contact_time_sigma = target.quantity("contact_time_sigma", "ms", Range::positive(), target_.contact_time_sigma);
+    if (auto fit = root.optional_table("fit")) hold_times_ = fit->flag("hold_branch_times", hold_times_);
     if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
   }
 
   void run(Output& out) override {
     Progress progress = out.progress("calibrating");
     const models::BallCalibration fit = models::calibrate_ball(
-        options_, ball_, target_, [&](int n, double cost) {
+        options_, ball_, target_, hold_times_, [&](int n, double cost) {
           progress.update(std::min(0.99, n / 40.0), fmt::format("{} evaluations, cost {:.3f}", n, cost));
         });
     progress.finish();
@@ -61,7 +62,8 @@ class CalibrateBallJob final : public Job {
     }
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
     std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
-    post::Series wanted{.label = "target", .style = "lines"}, got{.label = "ball", .style = "points"};
+    post::Series wanted{.label = "target and sigma"}, got{.label = "ball", .style = "points"};
+    post::Series time_wanted{.label = "target and sigma"}, time_got{.label = "ball", .style = "linespoints"};
     for (const auto& p : fit.points) {
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution, 1e3 * p.contact_time, 1e-3 * p.peak_force));
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
@@ -69,18 +71,27 @@ class CalibrateBallJob final : public Job {
                                    {"contact_time_s", p.contact_time}, {"peak_force_N", p.peak_force}});
       wanted.x.push_back(p.speed);
       wanted.y.push_back(p.target);
+      wanted.error.push_back(target_.restitution_sigma);
       got.x.push_back(p.speed);
       got.y.push_back(p.restitution);
+      time_got.x.push_back(p.speed);
+      time_got.y.push_back(1e3 * p.contact_time);
     }
+    time_wanted.x = {target_.contact_speed};
+    time_wanted.y = {1e3 * target_.contact_time};
+    time_wanted.error = {1e3 * target_.contact_time_sigma};
     out.write("fit.csv", csv);
     out.write("ball.toml", ball_file(fit));
     post::Figure figure;
-    figure.title = "normal restitution of the calibrated ball";
-    post::Panel panel;
-    panel.x_label = "impact speed [m/s]";
-    panel.y_label = "restitution";
-    panel.series = {wanted, got};
-    figure.panels.push_back(panel);
+    figure.title = "the calibrated ball on a rigid wall";
+    figure.columns = 2;
+    for (const auto& [label, series] : {std::pair{"restitution", std::vector{wanted, got}}, {"contact time [ms]", {time_wanted, time_got}}}) {
+      post::Panel panel;
+      panel.x_label = "impact speed [m/s]";
+      panel.y_label = label;
+      panel.series = series;
+      figure.panels.push_back(panel);
+    }
     if (const std::string why = post::draw(figure, out.path("fit")); !why.empty()) out.say(why);
     if (!fit.converged) out.say("the fit has not converged: " + fit.report);
     out.write_summary(summary);
@@ -90,7 +101,7 @@ class CalibrateBallJob final : public Job {
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
     std::string text = fmt::format(
-        "# Fitted to restitution {} {:+} v at {} m/s and a contact of {} ms at {} m/s on a rigid wall; no spin data.\n# {}\n",
+        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; no spin data.\n# {}\n",
         target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
         target_.contact_speed, fit.report);
     for (std::size_t p = 0; p < fit.names.size(); ++p)
@@ -98,7 +109,8 @@ class CalibrateBallJob final : public Job {
                           100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));
     text += "# covariance of their logarithms:";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
-    text += "\n";
+    text += fmt::format("\n{}\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", hold_times_ ? "# branch times were held" : "# branch times were fitted",
+                        ball_.mass, 1e3 * ball_.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
       const auto& law = std::get<fem::Hyperelastic>(layer.material.elastic);
       std::vector<double> moduli, times;
@@ -116,6 +128,7 @@ class CalibrateBallJob final : public Job {
   Ball ball_;
   models::FeImpactOptions options_;
   models::NormalImpactTarget target_;
+  bool hold_times_ = false;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "golf/units.hpp"
-#include "models/fe_impact.hpp"
+#include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 /// sqrt(penalty E / (R rho h)), and order is to be seen below it alone.
 FeImpactOptions resolved(int harmonics, int steps, bool friction, bool viscosity) {
   FeImpactOptions o;
+  o.ball = test::test_ball();
   o.harmonics = harmonics;
   o.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
   o.penalty = 50;
