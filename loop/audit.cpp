@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -23,6 +25,7 @@ struct Source {
   Eigen::VectorXd x;  ///< header's unit; NaN where missing
   double resolution;
   double spread;
+  bool fine;  ///< enough different values to show a formula with free numbers
 };
 
 double evaluate(const Feature& f, const std::vector<Source>& s, Eigen::Index i) {
@@ -43,8 +46,8 @@ struct Formula {
   std::set<int> from;      ///< sources
   double residual = 0;     ///< root mean square on rows that were not fitted, without the worst tenth
   double tolerance = 0;    ///< what rounding of all columns allows
-  int parameters = 0;
   int rows = 0;
+  double cost = 0;         ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
 };
 
 /// Root mean square of all but the worst tenth: a few bad rows must not hide an identity.
@@ -65,7 +68,7 @@ class Audit {
     for (std::size_t i = 0; i < shots.rows(); i += step) rows.push_back(i);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
-      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution / c.si, 0};
+      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution / c.si, 0, false};
       std::vector<double> seen;
       for (std::size_t k = 0; k < rows.size(); ++k) {
         s.x[std::ptrdiff_t(k)] = c.value[rows[k]] / c.si;
@@ -73,10 +76,11 @@ class Audit {
       }
       if (seen.size() < 12) continue;
       std::ranges::sort(seen);
-      if (std::ranges::distance(seen.begin(), std::ranges::unique(seen).begin()) < 8) continue;
-      std::ranges::sort(seen);
+      const std::set<double> different(seen.begin(), seen.end());
+      if (different.size() < 4) continue;
       s.spread = seen[std::size_t(0.9 * double(seen.size() - 1))] - seen[std::size_t(0.1 * double(seen.size() - 1))];
       if (!(s.spread > 0)) continue;
+      s.fine = different.size() >= 8;
       sources_.push_back(std::move(s));
     }
   }
@@ -84,45 +88,67 @@ class Audit {
   std::vector<DerivedColumn> run() {
     std::vector<DerivedColumn> found;
     std::set<int> gone;
-    // Formulas of the field first; then, among columns tied by an unknown formula, what an instrument is likely
-    // to compute: unknown columns, inputs (the loft before the others), spin, the rest.
-    for (const bool known : {true, false}) {
-      std::vector<int> order(sources_.size());
-      std::iota(order.begin(), order.end(), 0);
-      std::ranges::stable_sort(order, {}, [&](int k) {
-        const Column& c = *sources_[std::size_t(k)].column;
-        if (c.role == Role::other) return 0;
-        if (known && (c.stem == "spin_rate" || c.stem == "spin_axis")) return 0;  // magnitudes before components
-        if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
-        return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
-      });
-      for (const int target : order) {
+    const auto accept = [&](int target, const Formula& f) {
+      const Source& y = sources_[std::size_t(target)];
+      DerivedColumn d;
+      d.column = y.column->name;
+      for (const int k : f.from) d.from.push_back(sources_[std::size_t(k)].column->name);
+      d.formula = f.text;
+      d.residual_sd = f.residual;
+      d.recording_resolution = y.resolution;
+      d.rows = f.rows;
+      d.input = y.column->role == Role::input;
+      found.push_back(d);
+      gone.insert(target);
+    };
+    // Formulas of the field first, magnitudes before components.
+    for (const bool component : {false, true})
+      for (int target = 0; target < int(sources_.size()); ++target) {
         const Source& y = sources_[std::size_t(target)];
-        // Coarse columns cannot show a formula.
-        if (gone.contains(target) || y.spread < 12 * std::max(y.resolution, 1e-12)) continue;
-        std::vector<int> use;
-        for (int k = 0; k < int(sources_.size()); ++k)
-          if (k != target && !gone.contains(k)) use.push_back(k);
-        Formula best;
-        if (!(known ? identity(target, use, best) : search(target, use, best))) continue;
-        DerivedColumn d;
-        d.column = y.column->name;
-        for (const int k : best.from) d.from.push_back(sources_[std::size_t(k)].column->name);
-        d.formula = best.text;
-        d.residual_sd = best.residual;
-        d.recording_resolution = y.resolution;
-        d.rows = best.rows;
-        d.input = y.column->role == Role::input;
-        found.push_back(d);
-        gone.insert(target);
+        const bool part = y.column->stem == "backspin" || y.column->stem == "sidespin";
+        if (part != component || y.spread < 3 * y.resolution) continue;
+        Formula f;
+        if (identity(target, sources_for(target, gone, false), f)) accept(target, f);
       }
+    // Then the likeliest unknown formula over all columns, again and again: a relation can be solved for any column in it.
+    std::map<int, Formula> best;
+    std::set<int> stale;
+    for (int k = 0; k < int(sources_.size()); ++k) stale.insert(k);
+    for (;;) {
+      for (const int target : stale) {
+        const Source& y = sources_[std::size_t(target)];
+        best.erase(target);
+        // Coarse columns cannot show a formula with free numbers.
+        if (gone.contains(target) || !y.fine || y.spread < 12 * y.resolution) continue;
+        if (Formula f; search(target, sources_for(target, gone, true), f)) best[target] = f;
+      }
+      if (best.empty()) return found;
+      const auto [target, formula] = *std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
+      accept(target, formula);
+      stale = {target};
+      for (const auto& [other, f] : best)
+        if (f.from.contains(target)) stale.insert(other);
     }
-    return found;
   }
 
  private:
   const Ball ball_;
   std::vector<Source> sources_;
+
+  std::vector<int> sources_for(int target, const std::set<int>& gone, bool fine) const {
+    std::vector<int> use;
+    for (int k = 0; k < int(sources_.size()); ++k)
+      if (k != target && !gone.contains(k) && (!fine || sources_[std::size_t(k)].fine)) use.push_back(k);
+    return use;
+  }
+
+  /// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
+  int rank(int k) const {
+    const Column& c = *sources_[std::size_t(k)].column;
+    if (c.role == Role::other) return 0;
+    if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
+    return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
+  }
 
   /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
   bool divides(int k) const {
@@ -167,10 +193,9 @@ class Audit {
     // The typical row: a few rows next to a singularity of f must not excuse the others.
     std::ranges::nth_element(wobbles, wobbles.begin() + std::ptrdiff_t(wobbles.size() / 2));
     out.tolerance = std::sqrt(wobbles[wobbles.size() / 2]);
-    out.parameters = parameters;
     out.from = from;
-    // Within rounding, and rounding itself far below how the column varies.
-    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * 12 < y.spread;
+    // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
+    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * (parameters ? 12 : 6) < y.spread;
   }
 
   std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
@@ -212,11 +237,18 @@ class Audit {
     if (y.stem == "sidespin" && rate >= 0 && axis >= 0 &&
         attempt({rate, axis}, "spin_rate sin(spin_axis)", [&](V x) { return si(rate, x) * std::sin(si(axis, x)); }))
       return true;
-    // Distance of the strike from the face centre.
-    const int toe = of("impact_toe", use), high = of("impact_high", use);
-    if (y.role == Role::other && toe >= 0 && high >= 0 &&
-        attempt({toe, high}, "hypot(impact_toe, impact_high)", [&](V x) { return std::hypot(si(toe, x), si(high, x)); }))
-      return true;
+    if (y.role == Role::other) {
+      // What monitors and players compute from two columns.
+      const auto pair = [&](std::string_view a, std::string_view b, std::string text, auto f) {
+        const int j = of(a, use), k = of(b, use);
+        return j >= 0 && k >= 0 && attempt({j, k}, text, [&](V x) { return f(si(j, x), si(k, x)); });
+      };
+      if (pair("impact_toe", "impact_high", "hypot(impact_toe, impact_high)", [](double a, double b) { return std::hypot(a, b); }) ||
+          pair("ball_speed", "club_speed", "ball_speed / club_speed: the smash factor", std::divides{}) ||
+          pair("dynamic_loft", "attack_angle", "dynamic_loft - attack_angle: the spin loft", std::minus{}) ||
+          pair("face_angle", "club_path", "face_angle - club_path: the face to the path", std::minus{}))
+        return true;
+    }
     const int spin = back >= 0 ? back : rate;
     if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
       const double arm = ball_.inertia_factor * ball_.radius;
@@ -309,7 +341,16 @@ class Audit {
         out.text = fmt::format("{:.5g}", c[0]);
         for (std::ptrdiff_t j = 1; j < p; ++j) out.text += fmt::format(" {:+.5g} * {}", c[j], loop::name(features[std::size_t(j - 1)], sources_));
       }
-      if (!found || out.parameters < best.parameters || (out.parameters == best.parameters && out.residual < best.residual)) best = out;
+      // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
+      // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
+      // sees. Each counts as e^3 times as likely. A relation solved for another column of it than the computed one
+      // misses that column by more than its own last digit: the last term.
+      const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) { return sources_[std::size_t(k)].column->role == Role::output; });
+      const auto composite = std::ranges::count_if(features, [](const Feature& g) { return g.b >= 0; });
+      const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
+      out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 + 2 * std::log(std::max(1.0, out.residual / own))) +
+                 6 * double(p + composite - seen);
+      if (!found || out.cost < best.cost) best = out;
       found = true;
       return true;
     };

@@ -20,6 +20,134 @@ const Candidate* find(const Selection& s, std::vector<std::string> effects) {
   return nullptr;
 }
 
+/// Two sets of effects that differ in one name of a tie.
+struct Rivals {
+  const Candidate *a = nullptr, *b = nullptr;
+  std::string one, two;  ///< the names in which they differ
+};
+
+std::vector<Rivals> rivals(const Selection& s) {
+  std::vector<Rivals> all;
+  for (std::size_t t = 0; t < s.ties.size(); ++t) {
+    const auto with = [&](const std::string& name) {
+      std::vector<std::string> names = s.adopted;
+      for (std::size_t k = 0; k < s.ties.size(); ++k) names.push_back(k == t ? name : s.ties[k].front());
+      return find(s, names);
+    };
+    for (std::size_t i = 0; i < s.ties[t].size(); ++i)
+      for (std::size_t j = i + 1; j < s.ties[t].size(); ++j) {
+        const Rivals r{with(s.ties[t][i]), with(s.ties[t][j]), s.ties[t][i], s.ties[t][j]};
+        if (r.a && r.b) all.push_back(r);
+      }
+  }
+  return all;
+}
+
+/// What a club can do: what was recorded, a quarter wider on each side.
+struct Box {
+  std::vector<int> input;
+  std::vector<double> low, high;
+  std::vector<const Column*> column;
+
+  Box(const Shots& shots, const Problem& problem, const std::vector<int>& rows) {
+    for (int k = 0; k < kInputs; ++k) {
+      const Column* col = shots.find_stem(stem(Input(k)));
+      if (!col || k == int(Input::head_mass)) continue;
+      double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+      for (const int i : rows) {
+        const double x = get(problem.trial(i).blow, Input(k));
+        lo = std::min(lo, x);
+        hi = std::max(hi, x);
+      }
+      double wide = 0.25 * (hi - lo);
+      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) wide = std::max(wide, 0.008);
+      if (k == int(Input::club_speed)) wide = std::max(wide, 0.15 * hi);
+      lo -= wide;
+      hi += wide;
+      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) {
+        lo = std::max(lo, -0.03);
+        hi = std::min(hi, 0.03);
+      }
+      if (k == int(Input::dynamic_loft)) lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
+      if (k == int(Input::club_speed)) lo = std::max(lo, 10.0);
+      input.push_back(k);
+      low.push_back(lo);
+      high.push_back(hi);
+      column.push_back(col);
+    }
+  }
+
+  /// Corners, edges and a random inside, always the same.
+  std::vector<Trial> sites(Trial t) const {
+    std::mt19937_64 random(20240607);
+    std::vector<Trial> all;
+    t.order = 0.5;
+    for (int s = 0; s < 384; ++s) {
+      for (std::size_t k = 0; k < input.size(); ++k) {
+        double u = double(random() >> 11) * 0x1p-53;
+        if (s % 2 == 0) u = u < 0.4 ? 0 : u > 0.6 ? 1 : 0.5;
+        set(t.blow, Input(input[k]), low[k] + u * (high[k] - low[k]));
+      }
+      all.push_back(t);
+    }
+    return all;
+  }
+};
+
+/// How far two rivals are apart over some shots, in noise units, the second free to follow the first.
+class Separation {
+ public:
+  Separation(const Problem& problem, const Rivals& r, const Eigen::VectorXd& noise)
+      : problem_(problem), r_(r), noise_(noise), parameters_(r.b->fit.model.parameters()) {
+    const auto n = std::ptrdiff_t(parameters_.size());
+    G_ = 1e-6 * Eigen::MatrixXd::Identity(n, n);
+    g_ = Eigen::VectorXd::Zero(n);
+  }
+
+  struct Site {
+    Eigen::VectorXd d;  ///< difference of the rivals
+    Eigen::MatrixXd J;  ///< of the second by its parameters
+  };
+  /// False where the blow cannot happen.
+  bool look(const Trial& t, int shot, Site& out) const {
+    const int m = problem_.width();
+    const Fit &a = r_.a->fit, &b = r_.b->fit;
+    Eigen::VectorXd fa(m), fb(m), up(m), down(m);
+    if (!problem_.predict(t, shot, a.model, a.p.data(), fa.data()) || !problem_.predict(t, shot, b.model, b.p.data(), fb.data())) return false;
+    out.d = (fa - fb).cwiseQuotient(noise_);
+    out.J.resize(m, g_.size());
+    Eigen::VectorXd p = b.p;
+    for (std::ptrdiff_t k = 0; k < p.size(); ++k) {
+      const double h = 1e-3 * parameters_[std::size_t(k)]->scale, at = p[k];
+      p[k] = at + h;
+      const bool good = problem_.predict(t, shot, b.model, p.data(), up.data());
+      p[k] = at - h;
+      if (!good || !problem_.predict(t, shot, b.model, p.data(), down.data())) return false;
+      p[k] = at;
+      out.J.col(k) = (up - down).cwiseQuotient(noise_) / 2e-3;
+    }
+    return true;
+  }
+  void add(const Site& s) {
+    G_ += s.J.transpose() * s.J;
+    g_ += s.J.transpose() * s.d;
+    dd_ += s.d.squaredNorm();
+  }
+  double squared() const { return squared(G_, g_, dd_); }
+  double squared_with(const Site& s) const { return squared(G_ + s.J.transpose() * s.J, g_ + s.J.transpose() * s.d, dd_ + s.d.squaredNorm()); }
+
+ private:
+  const Problem& problem_;
+  const Rivals& r_;
+  const Eigen::VectorXd& noise_;
+  std::vector<const Parameter*> parameters_;
+  Eigen::MatrixXd G_;
+  Eigen::VectorXd g_;
+  double dd_ = 0;
+
+  static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) { return std::max(0.0, dd - g.dot(G.ldlt().solve(g))); }
+};
+
 }  // namespace
 
 NextExperiment design(const LoopCase& c, const Problem& problem, const std::vector<int>& rows, const Selection& selection,
@@ -30,178 +158,68 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
                             unexplained.front().regressor, unexplained.front().channel);
     return next;
   }
-  if (verdict != Verdict::ambiguous || selection.ties.empty()) {
+  if (verdict != Verdict::ambiguous) {
     next.text = verdict == Verdict::insufficient
                     ? "more shots of the same kind: minimum_detectable says how large an effect these could have shown"
                     : "nothing is tied; shots at the edges of the recorded range would narrow the parameters most";
     if (verdict == Verdict::noise_contradicted) next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
     return next;
   }
-  // Two rivals: the best set and the best set with another member of the first tie.
-  const std::vector<std::string>& tie = selection.ties.front();
-  std::vector<std::string> one = selection.adopted, two = selection.adopted;
-  one.push_back(tie[0]);
-  two.push_back(tie[1]);
-  for (std::size_t k = 1; k < selection.ties.size(); ++k) {
-    one.push_back(selection.ties[k][0]);
-    two.push_back(selection.ties[k][0]);
-  }
-  const Candidate *a = find(selection, one), *b = find(selection, two);
-  if (!a || !b) {
-    for (const Candidate& k : selection.candidates)
-      if (int(k.effects.size()) == selection.level) {
-        if (!a) a = &k;
-        else if (&k != a) {
-          b = &k;
-          break;
-        }
-      }
-  }
-  if (!a || !b || a == b) {
-    next.text = "no design found";
-    return next;
-  }
 
-  const int m = problem.width();
-  // The box: what was recorded, a quarter wider on each side, within what a club can do.
-  std::vector<int> free;
-  std::vector<double> low, high;
-  std::vector<const Column*> column;
-  for (int k = 0; k < kInputs; ++k) {
-    const Column* col = c.shots.find_stem(stem(Input(k)));
-    if (!col || k == int(Input::head_mass)) continue;
-    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const int i : rows) {
-      const double x = get(problem.trial(i).blow, Input(k));
-      lo = std::min(lo, x);
-      hi = std::max(hi, x);
-    }
-    double wide = 0.25 * (hi - lo);
-    if (k == int(Input::impact_toe) || k == int(Input::impact_high)) wide = std::max(wide, 0.008);
-    if (k == int(Input::club_speed)) wide = std::max(wide, 0.15 * hi);
-    lo -= wide;
-    hi += wide;
-    if (k == int(Input::impact_toe) || k == int(Input::impact_high)) {
-      lo = std::max(lo, -0.03);
-      hi = std::min(hi, 0.03);
-    }
-    if (k == int(Input::dynamic_loft)) lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
-    if (k == int(Input::club_speed)) lo = std::max(lo, 10.0);
-    free.push_back(k);
-    low.push_back(lo);
-    high.push_back(hi);
-    column.push_back(col);
-  }
-  // Candidate shots: corners and a fixed random sample of the box.
-  std::mt19937_64 random(20240607);
-  std::vector<Trial> sites;
-  const Trial middle = problem.trial(rows[rows.size() / 2]);
-  for (int s = 0; s < 384; ++s) {
-    Trial t = middle;
-    t.order = 0.5;
-    for (std::size_t k = 0; k < free.size(); ++k) {
-      double u = double(random() >> 11) * 0x1p-53;
-      if (s % 2 == 0) u = u < 0.4 ? 0 : u > 0.6 ? 1 : 0.5;
-      set(t.blow, Input(free[k]), low[k] + u * (high[k] - low[k]));
-    }
-    sites.push_back(t);
-  }
-  // Whitened difference of the rivals and derivatives by the second's parameters, which may follow the first.
-  const auto parameters = b->fit.model.parameters();
-  const auto nb = std::ptrdiff_t(parameters.size());
-  Eigen::VectorXd noise(m);
-  for (int ch = 0; ch < m; ++ch) {
+  const Box box(c.shots, problem, rows);
+  const std::vector<Trial> sites = box.sites(problem.trial(rows[rows.size() / 2]));
+  Eigen::VectorXd noise(problem.width());
+  for (int ch = 0; ch < noise.size(); ++ch) {
     double sum = 0;
     for (const int i : rows) sum += problem.sigma(i, ch);
     noise[ch] = sum / double(rows.size());
   }
-  struct Site {
-    Eigen::VectorXd d;
-    Eigen::MatrixXd J;
-  };
-  const auto look = [&](const Trial& t, int shot, Site& out) {
-    Eigen::VectorXd fa(m), fb(m), up(m), down(m);
-    if (!problem.predict(t, shot, a->fit.model, a->fit.p.data(), fa.data()) || !problem.predict(t, shot, b->fit.model, b->fit.p.data(), fb.data()))
-      return false;
-    out.d = (fa - fb).cwiseQuotient(noise);
-    out.J.resize(m, nb);
-    Eigen::VectorXd p = b->fit.p;
-    for (std::ptrdiff_t k = 0; k < nb; ++k) {
-      const double h = 1e-3 * parameters[std::size_t(k)]->scale, at = p[k];
-      p[k] = at + h;
-      const bool good = problem.predict(t, shot, b->fit.model, p.data(), up.data());
-      p[k] = at - h;
-      if (!good || !problem.predict(t, shot, b->fit.model, p.data(), down.data())) return false;
-      p[k] = at;
-      out.J.col(k) = (up - down).cwiseQuotient(noise) / 2e-3;
-    }
-    return true;
-  };
-  Eigen::MatrixXd G = 1e-6 * Eigen::MatrixXd::Identity(nb, nb);
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(nb);
-  double dd = 0;
-  const auto add = [&](const Site& s) {
-    G += s.J.transpose() * s.J;
-    g += s.J.transpose() * s.d;
-    dd += s.d.squaredNorm();
-  };
-  const auto separation = [&](const Eigen::MatrixXd& GG, const Eigen::VectorXd& gg, double ddd) {
-    return std::max(0.0, ddd - gg.dot(GG.ldlt().solve(gg)));
-  };
-  for (const int i : rows) {
-    Site s;
-    if (look(problem.trial(i), i, s)) add(s);
-  }
-  next.separation_before = std::sqrt(separation(G, g, dd));
-  std::vector<Site> possible;
-  std::vector<std::size_t> at;
-  for (std::size_t k = 0; k < sites.size(); ++k) {
-    Site s;
-    if (look(sites[k], -1, s)) {
-      possible.push_back(s);
-      at.push_back(k);
-    }
-  }
   // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
   constexpr double wanted = 5.5 * 5.5;
-  const int most = std::max(6, int(rows.size()) / 2);
-  double now = separation(G, g, dd);
-  std::vector<std::size_t> chosen;
-  while (now < wanted && int(chosen.size()) < most && !possible.empty()) {
-    double best = -1;
-    std::size_t which = 0;
-    for (std::size_t k = 0; k < possible.size(); ++k) {
-      const Site& s = possible[k];
-      const double value = separation(G + s.J.transpose() * s.J, g + s.J.transpose() * s.d, dd + s.d.squaredNorm());
-      if (value > best) {
-        best = value;
-        which = k;
-      }
+  const std::size_t most = std::max<std::size_t>(6, rows.size() / 2);
+  std::vector<std::size_t> chosen;  // for all pairs together
+  std::vector<std::string> sentences, sensors;
+  for (const Rivals& r : rivals(selection)) {
+    Separation apart(problem, r, noise);
+    Separation::Site site;
+    for (const int i : rows)
+      if (apart.look(problem.trial(i), i, site)) apart.add(site);
+    const double before = std::sqrt(apart.squared());
+    for (const std::size_t k : chosen)
+      if (apart.look(sites[k], -1, site)) apart.add(site);
+    std::vector<std::pair<std::size_t, Separation::Site>> possible;
+    for (std::size_t k = 0; k < sites.size(); ++k)
+      if (apart.look(sites[k], -1, site)) possible.emplace_back(k, site);
+    std::vector<std::size_t> more;
+    while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
+      const auto& best = *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
+      apart.add(best.second);
+      more.push_back(best.first);
     }
-    add(possible[which]);
-    chosen.push_back(at[which]);
-    now = separation(G, g, dd);
+    const double after = std::sqrt(apart.squared());
+    if (apart.squared() < 0.8 * wanted) {
+      std::string sensor;
+      for (const std::string& name : {r.one, r.two})
+        if (const EffectEntry* e = find_effect(name)) {
+          const std::string s(e->sensor);
+          if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
+          if (!std::ranges::count(sensors, s)) sensors.push_back(s);
+        }
+      sentences.push_back(fmt::format("no number of shots of this kind separates {} and {} ({:.1f} noise units after {} designed shots, 4.8 are needed): measure {}", r.one, r.two,
+                                      after, more.size(), sensor));
+    } else {
+      chosen.insert(chosen.end(), more.begin(), more.end());
+      sentences.push_back(fmt::format("{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)", chosen.size(), r.one, r.two, before, after));
+    }
   }
-  next.separation_after = std::sqrt(now);
   for (const std::size_t k : chosen) {
     DesignedShot shot;
-    for (std::size_t j = 0; j < free.size(); ++j)
-      shot.inputs.emplace_back(column[j]->name, get(sites[k].blow, Input(free[j])) / column[j]->si);
+    for (std::size_t j = 0; j < box.input.size(); ++j)
+      shot.inputs.emplace_back(box.column[j]->name, get(sites[k].blow, Input(box.input[j])) / box.column[j]->si);
     next.shots.push_back(shot);
   }
-  const auto tied = fmt::format("{} and {}", fmt::join(a->effects, " + "), fmt::join(b->effects, " + "));
-  if (now < 0.8 * wanted) {
-    const EffectEntry *ea = find_effect(tie[0]), *eb = find_effect(tie[1]);
-    std::string sensor = ea ? std::string(ea->sensor) : "";
-    if (eb && eb->sensor != (ea ? ea->sensor : "")) sensor += (sensor.empty() ? "" : "; or ") + std::string(eb->sensor);
-    next.sensor = sensor;
-    next.text = fmt::format("no number of shots of this kind separates {} ({:.1f} noise units after {} designed shots, 4.8 are needed): measure {}",
-                            tied, next.separation_after, chosen.size(), sensor);
-    next.shots.clear();
-  } else {
-    next.text = fmt::format("{} shots at these inputs separate {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)", chosen.size(), tied,
-                            next.separation_before, next.separation_after);
-  }
+  if (!sensors.empty()) next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
+  next.text = sentences.empty() ? "no design found" : fmt::format("{}", fmt::join(sentences, ". "));
   return next;
 }
 

@@ -128,7 +128,7 @@ std::vector<Eigen::VectorXd> starts(const Model& model) {
     const int n = int(f->parameters.size());
     const std::size_t known = all.size();
     for (const auto& s : f->starts)
-      for (std::size_t i = 0; i < known && all.size() < 24; ++i) {
+      for (std::size_t i = 0; i < known && all.size() < 128; ++i) {
         Eigen::VectorXd p = all[i];
         p.segment(at, n) = Eigen::Map<const Eigen::VectorXd>(s.data(), n);
         all.push_back(p);

@@ -44,7 +44,7 @@ double deviance(const Eigen::VectorXd& whitened, int width, const Loss& loss);
 /// which sees far, then with the loss itself; the best. Starts in SI; only the `most` of least deviance are followed.
 Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& starts,
         const Loss& loss, std::size_t most = 2);
-/// All combinations of the forms' own starting points, zero first, at most 24.
+/// All combinations of the forms' own starting points, zero first, at most 128.
 std::vector<Eigen::VectorXd> starts(const Model& model);
 
 /// Standard deviations of the parameters [SI] from the whitened Jacobian; infinite along null vectors.

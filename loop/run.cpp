@@ -103,6 +103,15 @@ struct Rows {
 /// Whole clusters or single rows, by a seeded shuffle of their names in order of appearance.
 Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of, const std::vector<int>& usable,
                 std::vector<std::string>& notes) {
+  // Thresholds show at the most oblique shots only, so these are never held out: beyond them nothing would be learnt.
+  std::vector<double> oblique;
+  for (const int i : usable) {
+    Blow blow = problem.trial(i).blow;
+    if (!c.head_turns) blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
+    const models::ContactGeometry g = models::contact_geometry(blow);
+    const double approach = g.approach.dot(g.normal);
+    oblique.push_back((g.approach - approach * g.normal).norm() / approach);
+  }
   std::vector<int> group(usable.size());
   int count = 0;
   if (!c.split.by.empty()) {
@@ -117,15 +126,9 @@ Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int
     count = missing;
   } else {
     // Single rows: of every three (at one third) neighbours in obliquity one is held out, so that both sets reach
-    // over the whole range, where thresholds show.
+    // over the whole range.
     std::vector<std::size_t> order(usable.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
-    std::vector<double> oblique;
-    for (const int i : usable) {
-      const models::ContactGeometry g = models::contact_geometry(problem.trial(i).blow);
-      const double approach = g.approach.dot(g.normal);
-      oblique.push_back((g.approach - approach * g.normal).norm() / approach);
-    }
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return oblique[i]; });
     std::mt19937_64 random(c.split.seed);
     const double fraction = c.split.holdout_fraction;
@@ -135,7 +138,7 @@ Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int
     for (std::size_t k = 0; block && k < order.size(); k += block) {
       const std::size_t size = std::min(block, order.size() - k);
       if (size < block && double(random() >> 11) * 0x1p-53 > double(size) * fraction) continue;
-      // One of the block, or as many as the fraction asks for; never the outermost, beyond which nothing would be learnt.
+      // One of the block, or as many as the fraction asks for.
       const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
       for (std::size_t t = 0; t < take; ++t) {
         const std::size_t which = k + (random() % size);
@@ -151,20 +154,20 @@ Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int
   std::vector<int> order;
   for (int g = 0; g < count; ++g)
     if (members[std::size_t(g)]) order.push_back(g);
+  if (!usable.empty()) std::erase(order, group[std::size_t(std::ranges::max_element(oblique) - oblique.begin())]);
   std::mt19937_64 random(c.split.seed);
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
   std::set<int> held;
   const double wanted = c.split.holdout_fraction * double(usable.size());
   double have = 0;
   for (const int g : order) {
-    if (held.size() + 1 >= order.size()) break;  // something must be left to learn from
     const double more = members[std::size_t(g)];
     if (have + more > wanted + 0.5 * more) continue;
     held.insert(g);
     have += more;
     if (have >= wanted) break;
   }
-  if (held.empty() && c.split.holdout_fraction > 0 && order.size() > 1) notes.push_back("no holdout could be split off");
+  if (held.empty() && c.split.holdout_fraction > 0) notes.push_back("no holdout could be split off");
   Rows rows;
   for (std::size_t i = 0; i < usable.size(); ++i) (held.contains(group[i]) ? rows.holdout : rows.train).push_back(usable[i]);
   return rows;
@@ -599,9 +602,17 @@ class Loop {
       Fit& chosen = result.selection.chosen;
       if (chosen.size() > 0) chosen = fit(*problem_, rows_.train, chosen.model, {chosen.p}, loss_);
     }
-    // The holdout is read here, once, after the verdict.
+    // The holdout is read here, once: what was chosen must not fail there.
     const Fit& base = s.base;
-    const bool shown = result.verdict != Verdict::unexplained && result.verdict != Verdict::insufficient && s.level > 0;
+    const bool offered = result.verdict != Verdict::unexplained && result.verdict != Verdict::insufficient && s.level > 0;
+    const bool refuted = offered && held_out(s.chosen) > held_out(base) + case_.rules.holdout_loss;
+    if (refuted) {
+      result.notes.push_back(fmt::format("{} explained the training shots and not those held out: not adopted", fmt::join(names_of(s.chosen), " and ")));
+      if (result.verdict != Verdict::noise_contradicted) result.verdict = Verdict::insufficient;
+      result.adopted.clear();
+      result.ties.clear();
+    }
+    const bool shown = offered && !refuted;
     const Fit& after = shown ? s.chosen : base;
     if (rows_.train.size() >= 4) {
       const Eigen::MatrixXd rb = problem_->residuals(base.model, base.p.data()), ra = problem_->residuals(after.model, after.p.data());
@@ -642,6 +653,15 @@ class Loop {
     } else {
       result.next.text = "more shots";
     }
+  }
+
+  /// Deviance of the held-out rows.
+  double held_out(const Fit& f) const { return deviance(whitened(*problem_, rows_.holdout, f.model, f.p), problem_->width(), loss_); }
+
+  std::vector<std::string> names_of(const Fit& f) const {
+    std::vector<std::string> names;
+    for (std::size_t k = base_forms_.size(); k < f.model.forms.size(); ++k) names.push_back(f.model.forms[k]->effect);
+    return names;
   }
 
   /// Findings numbered 1, 2, ... in order of rows.

@@ -72,7 +72,6 @@ struct NextExperiment {
   std::string text;
   std::vector<DesignedShot> shots;
   std::optional<std::string> sensor;
-  double separation_before = 0, separation_after = 0;  ///< a, in noise units
 };
 
 struct ScoredCandidate {

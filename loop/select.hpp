@@ -17,6 +17,7 @@ struct Rules {
   double further_gain = 16;    ///< least fall of the criterion for one more effect
   double parameter_cost = 4;   ///< criterion = deviance + cost * parameters
   double tie = 7;              ///< candidates within this of the best criterion tie with it
+  double holdout_loss = 4;     ///< the held-out deviance must not rise by more
   double remaining = 0.005;    ///< level of the test for what is left
   double remaining_signal = 4.9;  ///< or any regressor with this signal, where the noise is declared
   int flips = 999;

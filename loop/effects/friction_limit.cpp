@@ -9,7 +9,9 @@ namespace hosel::loop::forms {
 std::vector<Form> friction_limit(const Setting&) {
   // 1 / mu, so that zero is the base model; 12 is mu = 0.083, a wet face.
   const Parameter slipperiness{"inverse_friction", "1", 1, 0, 12, 0.5};
-  const std::vector<std::vector<double>> starts = {{1.5}, {2}, {2.5}, {3}, {3.5}, {4}, {4.5}, {5}, {6}, {7}, {8.5}, {10}};
+  // The limit may reach one shot alone: then only starts a few per cent apart come near it.
+  std::vector<std::vector<double>> starts;
+  for (double x = 1.4; x < 11.5; x *= 1.025) starts.push_back({x});
   Form coulomb{.effect = "friction-limit", .what = "Coulomb limit of the impulse", .parameters = {slipperiness}, .starts = starts};
   coulomb.before = [](std::span<const double> p, Trial& t) {
     if (p[0] > 0) t.blow.contact.friction = std::min(t.blow.contact.friction, 1 / p[0]);

@@ -120,7 +120,12 @@ bool HistoryProblem::solve(const Model& model, const double* p, double window, s
       Eigen::MatrixXd U(size, std::ptrdiff_t(a.unknown.size()));
       for (std::size_t k = 0; k < a.unknown.size(); ++k) whiten(record, a.unknown[k], true, window, U.col(std::ptrdiff_t(k)).data());
       Eigen::VectorXd norm = U.colwise().norm();
-      for (std::ptrdiff_t k = 0; k < U.cols(); ++k) U.col(k) /= norm[k] > 0 ? norm[k] : (norm[k] = 1);
+      // What the channels show of a mode of the other plane is round-off, and no unknown.
+      const double faint = 1e-6 * norm.maxCoeff();
+      for (std::ptrdiff_t k = 0; k < U.cols(); ++k) {
+        if (norm[k] > faint) U.col(k) /= norm[k];
+        else U.col(k).setZero(), norm[k] = 1;
+      }
       // A whiff of a ridge: modes in two planes with one frequency look alike in one channel.
       Eigen::MatrixXd G = U.transpose() * U;
       G.diagonal().array() += 1e-8;
@@ -186,15 +191,25 @@ std::pair<double, int> HistoryProblem::holdout_score(const Model& model, const d
 
 Eigen::MatrixXd HistoryProblem::jacobian(const Model& model, const Eigen::VectorXd& at) const {
   const auto parameters = model.parameters();
-  Eigen::VectorXd p = at, z, up;
+  Eigen::VectorXd p = at, one, two, z;
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(readings_, model.size());
-  if (!whitened(model, p.data(), kWhole, z)) return J;
   for (std::ptrdiff_t k = 0; k < J.cols(); ++k) {
     const Parameter& q = *parameters[std::size_t(k)];
-    const double h = at[k] + Cost::kStep * q.scale > q.max ? -Cost::kStep * q.scale : Cost::kStep * q.scale;
-    p[k] = at[k] + h;
-    if (whitened(model, p.data(), kWhole, up)) J.col(k) = (up - z) * (q.scale / h);
-    p[k] = at[k];
+    const double step = Cost::kStep * q.scale;
+    const auto look = [&](double steps, Eigen::VectorXd& out) {
+      p[k] = at[k] + steps * step;
+      const bool good = whitened(model, p.data(), kWhole, out);
+      p[k] = at[k];
+      return good;
+    };
+    // Of second order: central inside the plausible range, one-sided at its edge, where the model has no answer beyond.
+    const bool low = at[k] - step < q.min, high = at[k] + step > q.max;
+    const double side = high ? -1 : 1;
+    if (low || high) {
+      if (look(0, z) && look(side, one) && look(2 * side, two)) J.col(k) = side * (4 * one - 3 * z - two) / (2 * Cost::kStep);
+    } else if (look(1, one) && look(-1, two)) {
+      J.col(k) = (one - two) / (2 * Cost::kStep);
+    }
   }
   return J;
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "designs.hpp"
 #include "files.hpp"
 
 namespace examination {
@@ -118,62 +119,6 @@ double oracle_ratio(const Set& set, const Json& report, const fs::path& residual
       if (reported.at("name") == ch.header) loop += n * std::pow(reported.at("after").at("holdout_rmse").get<double>() / ch.noise_sd, 2);
   }
   return std::sqrt(loop / best);
-}
-
-/// A shot that the report asks for: named inputs, the rest as the session's mean.
-Swing designed_swing(const Session& s, const Json& shot) {
-  Swing mean;
-  for (const Column& c : s.inputs) {
-    double sum = 0;
-    for (const Swing& w : s.swings) sum += w.*c.member;
-    mean.*c.member = sum / s.shots();
-  }
-  const std::map<std::string, double> units{{"mps", 1}, {"kmh", 1 / 3.6}, {"mph", 0.44704}, {"deg", M_PI / 180},
-                                            {"rad", 1}, {"mm", 1e-3}, {"m", 1}};
-  for (const auto& [name, value] : shot.items()) {
-    const auto cut = name.rfind('_');
-    for (const Column& c : s.inputs)
-      if (value.is_number() && c.header.substr(0, c.header.rfind('_')) == name.substr(0, cut))
-        mean.*c.member = value.get<double>() * units.at(name.substr(cut + 1));
-  }
-  return mean;
-}
-
-struct Design {
-  double ordinary, designed;  ///< further shots until truth and rival are 4.8 apart
-};
-
-/// What the designed shots are worth: further shots until a = 4.8, ordinary ones (a grows as the root of their
-/// number) against designed ones, every shot used.
-std::optional<Design> design_worth(const Set& set, const std::string& rival, const Json& shots) {
-  const Form* other = nullptr;
-  for (const Form& f : natural_forms())
-    if (f.effect == rival) other = &f;
-  if (!other || shots.empty()) return std::nullopt;
-  const auto apart = [&](const Session& s) {
-    Truth t = base_truth(s);
-    set.hidden[0].apply(t, set.value[0]);
-    std::vector<int> rows(static_cast<std::size_t>(s.shots()));
-    std::iota(rows.begin(), rows.end(), 0);
-    return fit(s, s.swings, {other}, predict(s, s.swings, t), whitening(s, s.swings), rows).distance;
-  };
-  const double a = apart(set.session);
-  const double ordinary = set.shots * (std::pow(4.8 / a, 2) - 1);
-  Session s = set.session;
-  double last = a * a;
-  int added = 0;
-  while (added < 4000) {
-    const int batch = std::max(static_cast<int>(shots.size()), added);
-    for (int k = 0; k < batch; ++k) {
-      s.swings.push_back(designed_swing(set.session, shots[static_cast<std::size_t>(k) % shots.size()]));
-      s.head_mass_kg.push_back(set.session.head_mass_kg[0]);
-    }
-    const double now = std::pow(apart(s), 2);
-    if (now >= 4.8 * 4.8) return Design{ordinary, added + batch * (4.8 * 4.8 - last) / (now - last)};
-    last = now;
-    added += batch;
-  }
-  return Design{ordinary, std::numeric_limits<double>::infinity()};
 }
 
 /// The true value of a reported parameter, where the report's form is the true one: by effect, name and unit.
@@ -382,7 +327,7 @@ Json score_sets(const fs::path& dir) {
 
   // Held-out error against the oracle, and the listing of what went wrong.
   std::vector<double> ratios;
-  int designs = 0, good_designs = 0, compared = 0, held = 0;
+  int separable = 0, good_designs = 0, inseparable = 0, good_sensors = 0, compared = 0, held = 0;
   Json sets = Json::array();
   std::vector<double> seconds;
   for (const Outcome& o : outcomes) {
@@ -427,24 +372,23 @@ Json score_sets(const fs::path& dir) {
         for (const auto& m : members)
           if (m != *o.truth.begin() && (rival.empty() || m == o.key["rival"])) rival = m;
       }
-      const Json& next = o.report["next_experiment"];
-      if (!rival.empty() && next.is_object() && next.contains("shots") && !next["shots"].empty()) {
+      if (!rival.empty()) {
         try {
-          const Set set = make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]);
-          if (const auto d = design_worth(set, rival, next["shots"])) {
-            entry["design"] = {{"rival", rival}, {"ordinary", d->ordinary}, {"designed", d->designed}};
-            ++designs;
-            good_designs += d->designed <= d->ordinary / 3;
-          }
+          const Answer a = judge_answer(make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]), rival, o.report["next_experiment"]);
+          entry["next_experiment"] = {{"rival", rival}, {"separable", a.separable}, {"ordinary", a.ordinary}, {"designed", a.designed}, {"sensor", a.sensor}};
+          (a.separable ? separable : inseparable) += 1;
+          if (a.separable) good_designs += a.designed <= a.ordinary / 3;
+          else good_sensors += a.sensor;
         } catch (const std::exception& e) {
-          entry["design_trouble"] = e.what();
+          entry["next_experiment_trouble"] = e.what();
         }
       }
     }
     sets.push_back(entry);
   }
   if (compared) lines.push_back({"one-effect", "95 % interval holds the truth", held, compared, 0.92, false});
-  if (designs) lines.push_back({"confounded", "design worth 3 ordinary shots", good_designs, designs, 0.8, false});
+  if (separable) lines.push_back({"confounded", "separable: a third of the shots", good_designs, separable, 0.8, false});
+  if (inseparable) lines.push_back({"confounded", "inseparable: quantity named", good_sensors, inseparable, 1, false});
 
   fmt::print("{:<20} {:<34} {:>11} {:>8}  {:<16} {}\n", "stratum", "what", "sets", "share", "95 % interval", "goal");
   Json table = Json::array();

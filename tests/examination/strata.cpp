@@ -104,6 +104,14 @@ std::optional<std::vector<double>> scaled(const Geometry& g, const Form& f, doub
   return x;
 }
 
+/// The form with starts about the truth: a limit that one or two shots feel is found from nearby only.
+Form known(Form f, const std::vector<double>& truth) {
+  if (f.starts.empty()) return f;
+  f.starts.clear();
+  for (const double factor : {0.92, 0.94, 0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04, 1.06, 1.08}) f.starts.push_back(factor * truth[0]);
+  return f;
+}
+
 struct Rival {
   std::string effect;
   double distance = std::numeric_limits<double>::infinity();
@@ -571,10 +579,11 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
       x.push_back(*found);
     }
     outputs = g.outputs({*a, *b}, x);
+    const Form known_a = known(*a, x[0]), known_b = known(*b, x[1]);
     Json distances = Json::array();
     const bool law = a->effect == "restitution-law" || b->effect == "restitution-law";
     const std::vector<const Form*> nuisance = law ? std::vector<const Form*>{} : std::vector<const Form*>{&calibration()};
-    for (const auto& [kept, dropped] : {std::pair{a, b}, std::pair{b, a}}) {
+    for (const auto& [kept, dropped] : {std::pair{&known_a, b}, std::pair{&known_b, a}}) {
       std::vector<const Form*> alone{kept};
       alone.insert(alone.end(), nuisance.begin(), nuisance.end());
       if (g.distance(outputs, alone) < 4.8) throw Redraw{};
@@ -584,7 +593,7 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     }
     const Rival single = nearest(g, outputs, {a->effect, b->effect}, nuisance, {}, 4.8);
     if (single.distance < 4.8) throw Redraw{};
-    set.hidden = {*a, *b};
+    set.hidden = {known_a, known_b};
     set.value = x;
     key["s"] = 8;
     key["a"] = std::min(distances[0]["a"].get<double>(), distances[1]["a"].get<double>());

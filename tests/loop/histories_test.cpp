@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include "golf/shaft_library.hpp"
 #include "loop/history/bench_history.hpp"
@@ -218,6 +220,105 @@ TEST(Histories, ZeroParametersAreTheBaseBitForBit) {
       EXPECT_EQ((zero[0].value - base[0].value).cwiseAbs().maxCoeff(), 0.0) << e.name;
       EXPECT_EQ(rig.gain[0] + rig.gain[1] + rig.offset[0] + rig.offset[1], 0.0);
     }
+}
+
+/// A club with its head on a bench that turns, released by a load in both planes and a twist: every effect acts.
+struct Turning {
+  std::vector<HistoryForm> forms;
+  std::map<const Form*, const HistoryForm*> known;
+  std::unique_ptr<BenchHistory> model;
+  std::unique_ptr<HistoryProblem> problem;
+
+  explicit Turning(Start start) {
+    Club club;
+    club.shaft = composite_shaft({{0, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}, {kLength, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}});
+    club.shaft->damping_time = kDamping;
+    club.head = {.mass = 0.2, .cg = Vec3(-0.02, 0.004, 0.006), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    HistorySetting setting;
+    setting.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3, .noise = 0.2}, {.name = "droop_mm", .reading = Reading::droop, .arc_length = kLength, .si = 1e-3, .noise = 0.2},
+                        {.name = "twist_deg", .reading = Reading::twist, .arc_length = kLength, .si = kRadPerDeg, .noise = 0.05}};
+    HistoryRecord record{.name = "tip.csv"};
+    for (int i = 0; i < 300; ++i) record.times.push_back(0.004 * i);
+    record.measured = Eigen::MatrixXd::Zero(300, 3);
+    record.train.assign(300, 1);
+    // What is left of it by a start that is fitted: the declared club's own record, shifted a little in time.
+    BenchRecord drive{.times = record.times, .rotation_rate = 6};
+    const models::BenchOptions options{.hub = 0.2};
+    const BenchStart release{.kind = Start::release, .at = -0.1, .force = Vec3(3, 2, 0), .moment = Vec3(0, 0, 0.3)};
+    std::vector<Answer> as_declared;
+    Rig late(3);
+    late.club.bending = -0.1;
+    EXPECT_TRUE(BenchHistory(club, true, options, release, {drive}, setting.channels).answer(late, as_declared));
+    for (int c = 0; c < 3; ++c) record.measured.col(c) = as_declared.front().value.col(c) / setting.channels[std::size_t(c)].si;
+    model = std::make_unique<BenchHistory>(club, true, options, start == Start::release ? release : BenchStart{.kind = start}, std::vector{drive}, setting.channels);
+    std::tie(setting.frequency, setting.ratio) = model->first_mode();
+    setting.driven = start != Start::unknown;
+    setting.head = setting.turning = true;
+    setting.compliance = kLength / kStiffness;
+    for (const HistoryEffect& e : history_effects())
+      for (HistoryForm& f : e.forms(setting)) forms.push_back(std::move(f));
+    for (const HistoryForm& f : forms) known[&f.form] = &f;
+    problem = std::make_unique<HistoryProblem>(*model, std::vector{record}, setting.channels, known);
+  }
+};
+
+TEST(Histories, DerivativesAgreeWithFinerDifferences) {
+  constexpr double kFine = 2.5e-4;  // of a scale: modes of the two planes that nearly meet bend a column within a few thousandths
+  for (const Start start : {Start::release, Start::unknown}) {
+    const Turning t(start);
+    ASSERT_GT(t.forms.size(), 20U);
+    std::set<std::string> acting, every;
+    for (const HistoryForm& f : t.forms) {
+      every.insert(f.form.effect);
+      const Model m{{&f.form}};
+      for (int k = 0; k < m.size(); ++k) {
+        const Parameter& q = f.form.parameters[std::size_t(k)];
+        // Inside the plausible range, and at its edge, where the base is.
+        for (const double place : {0.3, 0.0}) {
+          Eigen::VectorXd p = Eigen::VectorXd::Constant(m.size(), 0);
+          p[k] = place * q.scale;
+          const auto at = [&](double steps) {
+            Eigen::VectorXd x = p, z;
+            x[k] += steps * kFine * q.scale;
+            EXPECT_TRUE(t.problem->whitened(m, x.data(), kWhole, z));
+            return z;
+          };
+          // Of fourth order; one-sided where zero is the least value.
+          const bool edge = p[k] - 2 * kFine * q.scale < q.min;
+          const Eigen::VectorXd reference = edge ? Eigen::VectorXd((-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * kFine))
+                                                 : Eigen::VectorXd((8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * kFine));
+          const Eigen::VectorXd column = t.problem->jacobian(m, p).col(k);
+          if (reference.norm() > 1e-3) acting.insert(f.form.effect);
+          EXPECT_LT((column - reference).norm(), 1e-4 * (reference.norm() + 1e-3))
+              << f.form.effect << ", " << f.form.what << ", parameter " << k << " at " << place << " scales, start " << int(start) << ", norm " << reference.norm();
+        }
+      }
+    }
+    EXPECT_EQ(acting, every) << "start " << int(start);
+  }
+}
+
+TEST(Histories, AModeThatNoChannelShowsIsNoUnknown) {
+  // The droop plane moves alone when only its clamp yields: nothing that a lead channel reads may follow.
+  const Bench b = bench({.stiffness = 1.02}, true, Start::unknown);
+  std::map<const Form*, const HistoryForm*> known;
+  const HistoryForm droop = [&] {
+    for (const HistoryEffect& e : history_effects())
+      for (const HistoryForm& f : e.forms(b.c.setting))
+        if (f.form.what == "in the droop plane") return f;
+    return HistoryForm{};
+  }();
+  ASSERT_EQ(droop.form.effect, "clamp-compliance");
+  known[&droop.form] = &droop;
+  std::vector<HistoryRecord> records = b.c.records;
+  for (HistoryRecord& r : records) r.train.assign(r.times.size(), 1);
+  const HistoryProblem problem(*b.model, records, b.c.setting.channels, known);
+  Eigen::VectorXd rigid, yields;
+  const double p = droop.form.parameters[0].scale;
+  ASSERT_TRUE(problem.whitened(Model{}, nullptr, kWhole, rigid));
+  ASSERT_TRUE(problem.whitened(Model{{&droop.form}}, &p, kWhole, yields));
+  EXPECT_GT(rigid.norm(), 10);  // there is a residual to be taken up
+  EXPECT_LT((yields - rigid).norm(), 1e-4 * rigid.norm());
 }
 
 TEST(Histories, ASpikeIsFlaggedAndDoesNoHarm) {

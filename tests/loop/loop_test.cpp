@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include "loop/report.hpp"
@@ -120,6 +121,60 @@ TEST_F(Loop, AComputedColumnIsFound) {
   ASSERT_EQ(r.derived.size(), 1U);
   EXPECT_EQ(r.derived[0].column, "spin_rate_rpm");
   EXPECT_EQ(r.channels.size(), 5U);
+}
+
+/// Shots with a face angle that the instrument computed from azimuth and path, and a smash factor of two decimals.
+std::string with_computed_columns(int shots) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> gauss;
+  std::string text = "club_speed_mps,club_path_deg,face_angle_deg,dynamic_loft_deg,smash_factor,ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm\n";
+  for (int i = 0; i < shots; ++i) {
+    const auto tenth = [](double x) { return std::round(10 * x) / 10; };
+    const double club = tenth(45 + 3 * gauss(random)), path = tenth(3 * gauss(random)), azimuth = tenth(2 * gauss(random)), loft = tenth(14 + 2 * gauss(random));
+    const double ball = tenth(club * (1.4 + 0.015 * gauss(random))), launch = tenth(0.8 * loft + 0.3 * gauss(random));
+    char line[256];
+    std::snprintf(line, sizeof line, "%.1f,%.1f,%.1f,%.1f,%.2f,%.1f,%.1f,%.1f,%.0f\n", club, path, (azimuth - 0.18 * path) / 0.82, loft, ball / club, ball, launch, azimuth,
+                  2500 + 150 * gauss(random));
+    text += line;
+  }
+  return text;
+}
+
+TEST_F(Loop, ARelationIsSolvedForTheColumnThatWasComputed) {
+  for (const int n : {40, 120}) {
+    std::map<std::string, std::set<std::string>> found;
+    for (const DerivedColumn& d : audit(shots(with_computed_columns(n)), {})) found[d.column] = {d.from.begin(), d.from.end()};
+    ASSERT_EQ(found.size(), 2U) << n;
+    EXPECT_EQ(found["face_angle_deg"], (std::set<std::string>{"azimuth_deg", "club_path_deg"})) << n;
+    EXPECT_EQ(found["smash_factor"], (std::set<std::string>{"ball_speed_mps", "club_speed_mps"})) << n;
+  }
+}
+
+TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
+  // Loft rises from club to club, and the last club alone slides.
+  std::string text = "club," + csv({.shots = 0});
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  for (int i = 0; i < 60; ++i) {
+    Blow b;
+    b.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    b.delivery = {.club_speed = 35 + gauss(random), .dynamic_loft = radians(20 + 8 * (i / 12) + gauss(random))};
+    b.contact.friction = 0.18;
+    const Launch l = model->launch(b);
+    char line[512];
+    std::snprintf(line, sizeof line, "c%d,%d,%.2f,0,0,0,%.2f,0,0,50,%.2f,%.2f,0,%.0f,0\n", i / 12, i + 1, b.delivery.club_speed, degrees(b.delivery.dynamic_loft),
+                  l.ball_speed() + 0.25 * gauss(random), degrees(l.launch_angle()) + 0.2 * gauss(random), rpm(l.backspin()) + 60 * gauss(random));
+    text += line;
+  }
+  for (unsigned long seed = 1; seed <= 6; ++seed) {
+    LoopCase c = case_of(text);
+    c.split = {.seed = seed, .by = "club"};
+    const LoopResult r = run(c);
+    EXPECT_GT(r.holdout, 0);
+    EXPECT_EQ(r.adopted, std::vector<std::string>{"friction-limit"}) << "seed " << seed;
+    for (const UsedShot& u : r.shots)
+      if (u.row >= 48) EXPECT_FALSE(u.holdout) << "seed " << seed << ", row " << u.row;
+  }
 }
 
 TEST_F(Loop, TheSameReportTwice) {
