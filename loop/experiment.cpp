@@ -176,7 +176,7 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
   }
   // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
   constexpr double wanted = 5.5 * 5.5;
-  const std::size_t most = std::max<std::size_t>(6, rows.size() / 2);
+  const std::size_t most = std::max<std::size_t>(12, rows.size() * 3 / 2);  // the session once more
   std::vector<std::size_t> chosen;  // for all pairs together
   std::vector<std::string> sentences, sensors;
   for (const Rivals& r : rivals(selection)) {
@@ -205,7 +205,7 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
           if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
           if (!std::ranges::count(sensors, s)) sensors.push_back(s);
         }
-      sentences.push_back(fmt::format("no number of shots of this kind separates {} and {} ({:.1f} noise units after {} designed shots, 4.8 are needed): measure {}", r.one, r.two,
+      sentences.push_back(fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units after {} designed shots, 4.8 are needed): measure {}", r.one, r.two,
                                       after, more.size(), sensor));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());

@@ -428,9 +428,20 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   }
 
   if (level && s.clean) {
+    // An effect that is a little rare in all its forms may be second for that, but is not out of the tie for it.
+    const auto likelihood = [&](const Candidate& c) {
+      double value = c.criterion;
+      for (const std::string& e : c.effects) {
+        double usual = std::numeric_limits<double>::infinity();
+        for (const Form* f : candidates)
+          if (f->effect == e) usual = std::min(usual, f->rarity);
+        if (usual <= rules.parameter_cost) value -= usual;
+      }
+      return value;
+    };
     std::vector<const Candidate*> tied;
     for (const Candidate& c : *level)
-      if (c.criterion <= level->front().criterion + rules.tie) tied.push_back(&c);
+      if (likelihood(c) <= likelihood(level->front()) + rules.tie) tied.push_back(&c);
     ties_of(tied, s);
     // Many sets without a name in common: the data do not name anything.
     s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;

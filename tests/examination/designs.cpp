@@ -99,7 +99,7 @@ Answer judge_answer(const Set& set, const std::string& rival, const Json& next) 
   const bool asks = next.contains("shots") && !next["shots"].empty();
   a.designed = asks ? shots_needed(set, *other, next["shots"]) : std::numeric_limits<double>::infinity();
   a.sensor = next.contains("sensor") && next["sensor"].is_string() && !next["sensor"].get<std::string>().empty();
-  a.separable = a.designed <= set.shots || box_parts(set, *other);
+  a.separable = a.designed <= a.ordinary / 3 || box_parts(set, *other);
   return a;
 }
 
