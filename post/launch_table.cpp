@@ -37,9 +37,11 @@ std::string channel_names() {
 }
 
 std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured) {
+  std::size_t width = 17;
+  for (const LaunchColumn& c : columns) width = std::max(width, c.title.size() + 2);
   std::string text = fmt::format("{:<18}", "");
-  for (const LaunchColumn& c : columns) text += fmt::format("{:>17}", c.title);
-  if (!measured.empty()) text += fmt::format("{:>17}", "measured");
+  for (const LaunchColumn& c : columns) text += fmt::format("{:>{}}", c.title, width);
+  if (!measured.empty()) text += fmt::format("{:>{}}", "measured", width);
   for (const Channel& channel : kChannels) {
     text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
@@ -47,11 +49,11 @@ std::string launch_table(const std::vector<LaunchColumn>& columns, const Measure
       // Without spin its axis has no direction.
       if (channel.name == "spin_axis" && rpm(c.launch.spin_rate()) < 0.5) shown = 0;
       if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
-      text += fmt::format("{:>17.{}f}", shown, channel.decimals);
+      text += fmt::format("{:>{}.{}f}", shown, width, channel.decimals);
     }
     if (measured.empty()) continue;
     const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);
-    text += it == measured.end() ? fmt::format("{:>17}", "-") : fmt::format("{:>17.{}f}", it->second / channel.si, channel.decimals);
+    text += it == measured.end() ? fmt::format("{:>{}}", "-", width) : fmt::format("{:>{}.{}f}", it->second / channel.si, width, channel.decimals);
   }
   return text;
 }

@@ -86,7 +86,7 @@ class LoadedClubJob final : public Job {
     for (const post::Channel& c : post::channels()) table += fmt::format(",{}_{}", c.name, c.unit);
     table += ",head_speed_mps,head_rotation_rad_per_s,hosel_impulse_x_N_s,hosel_impulse_y_N_s,hosel_impulse_z_N_s,hosel_moment_impulse_x_N_m_s,"
              "hosel_moment_impulse_y_N_m_s,hosel_moment_impulse_z_N_m_s\n";
-    post::Figure figure{.columns = 2}, waves{.columns = 2};
+    post::Figure figure{.columns = 2, .panel_width = 840}, waves{.columns = 2, .panel_width = 840};
     const double back = axial_return();
     summary["axial_wave_back_from_the_grip_ms"] = 1e3 * back;
     for (std::size_t k = 0; k < toe_.size(); ++k) {
@@ -105,7 +105,8 @@ class LoadedClubJob final : public Job {
         for (const post::Channel& c : post::channels()) table += fmt::format(",{:.9g}", (a.launch.*c.value)() / c.si);
         const fem::Wrench impulse = a.hosel.impulse();
         table += fmt::format(",{:.9g},{:.9g}", a.launch.head_velocity.norm(), a.launch.head_spin.norm());
-        for (const Vec3& v : {impulse.force, impulse.moment}) table += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x(), v.y(), v.z());
+        for (const Vec3& v : {impulse.force, impulse.moment})  // empty where no shaft was meshed
+          table += a.hosel.times.empty() ? ",,," : fmt::format(",{:.6g},{:.6g},{:.6g}", v.x(), v.y(), v.z());
         table += "\n";
         point["clubs"][a.name] = post::to_json(a.launch);
         if (!a.hosel.times.empty())
@@ -229,7 +230,7 @@ class LoadedClubJob final : public Job {
   /// Loaded: lines; at rest: points.
   static post::Panel panel(const Answer& loaded, const Answer& at_rest, const std::string& at, bool force) {
     post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"), .x_label = "time [ms]",
-                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]", .key = "bottom right"};
+                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]", .key = "outside right"};
     for (const Answer* a : {&loaded, &at_rest})
       for (int c = 0; c < 3; ++c) {
         post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"), .style = a == &loaded ? "lines" : "points"};
@@ -257,7 +258,7 @@ class LoadedClubJob final : public Job {
   /// What a clamped or a free grip changes in the hosel's force against the forced one, along the shaft and across.
   post::Panel grip_panel(const std::vector<Answer>& answers, const std::string& at, double back) const {
     post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back), .x_label = "time [ms]",
-                  .y_label = "force at the hosel, change [N]", .key = "bottom left"};
+                  .y_label = "force at the hosel, change [N]", .key = "outside right"};
     const models::HoselHistory& forced = find(answers, "club loaded").hosel;
     const Vec3 axis = blow_.club.geometry.shaft_axis.normalized();
     for (const auto& [name, label] : {std::pair{"club loaded, clamped", "clamped"}, {"club loaded, free", "free"}}) {

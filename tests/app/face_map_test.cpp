@@ -246,6 +246,16 @@ TEST(FaceMap, AnImpactPointInTheDeliveryIsRefused) {
   EXPECT_FALSE(fs::exists(dir / "out"));
 }
 
+TEST(FaceMap, ANameWithACommaStaysOneCell) {
+  const fs::path dir = fresh_directory("face_map_comma");
+  std::string text = kMap;
+  text.replace(text.find("\"heavier\""), 9, "\"heavier, 2.5 g\"");
+  write(dir / "case" / "case.toml", text);
+  const Outcome outcome = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_NE(content(dir / "out" / "differences.csv").find("\n\"heavier, 2.5 g\",-37.5,-18.75,"), std::string::npos);
+}
+
 TEST(FaceMap, AVariantsMisspeltKeyIsAnError) {
   const fs::path dir = fresh_directory("face_map_variant");
   std::string text = kMap;
