@@ -91,23 +91,24 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
       }
       plots += fmt::format(
           "set palette defined ({})\nset size {}\n"
-          "set cblabel {}\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\n"
-          "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
-          "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
-          "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n"
-          "set pm3d map interpolate 3,3\n"
-          "splot ${} with pm3d nocontour notitle, ${} with lines nosurface lc rgb '#303030' lw 1 notitle",
+          "set cblabel {}\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\n",
           p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
                           : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
           p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
-          p.map_y.front(), p.map_y.back(), name, name);
+          p.map_y.front(), p.map_y.back());
+      if (p.map_contours)
+        plots += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
+                 "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
+                 "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
+      plots += "set pm3d map interpolate 3,3\nsplot $" + name + " with pm3d nocontour notitle";
+      if (p.map_contours) plots += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
       for (std::size_t i = 0; i < p.series.size(); ++i) {
         const std::string mark = fmt::format("s{}_{}", k, i);
         s += data_block(mark, p.series[i]);
         plots += ", $" + mark + " using 1:2:(0) with " + p.series[i].style + " lc rgb '#000000' nocontour " +
                  (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
       }
-      plots += ", $" + name + " with labels boxed nosurface notitle";
+      if (p.map_contours) plots += ", $" + name + " with labels boxed nosurface notitle";
       plots += "\nunset contour\nunset pm3d\nset size noratio\nset autoscale xy\n";
       continue;
     }

@@ -28,6 +28,7 @@ struct Panel {
   std::string map_label = {};        ///< of the colour bar, with unit
   bool map_symmetric = false;        ///< colours diverge from zero, as far to either side: for differences
   bool map_equal_axes = false;       ///< one unit is as long in x as in y
+  bool map_contours = true;          ///< lines with their values: for smooth fields
 };
 
 struct Figure {

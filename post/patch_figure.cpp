@@ -92,6 +92,7 @@ std::string draw_patch(const PatchHistory& patch, const fs::path& stem) {
     p.y_label = "place on the ball [mm]";
     p.map_label = label;
     p.map_symmetric = symmetric;
+    p.map_contours = false;
     for (const double t : patch.time) p.map_x.push_back(1e3 * t);
     for (const double x : patch.position) p.map_y.push_back(1e3 * x);
     for (const double v : values) p.map.push_back(v / unit);
