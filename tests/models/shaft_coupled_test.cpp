@@ -156,6 +156,14 @@ TEST(ShaftCoupled, BothIntegratorsAgree) {
   EXPECT_LT((a.launch.spin - c.launch.spin).norm(), 1e-5 * c.launch.spin_rate());
 }
 
+TEST(ShaftCoupled, RefusesCentreOffsetsAfterTheSameClubWithout) {
+  // The condensed shaft is kept for the next blow of the same club: offsets make it another club.
+  Blow b = driver();
+  ASSERT_GT(ShaftCoupled().launch(b).ball_speed(), 50);
+  for (ShaftStation& s : b.club.shaft->stations) s.centres.mass = {0.001, 0};
+  EXPECT_THROW(ShaftCoupled().launch(b), std::invalid_argument);
+}
+
 TEST(ShaftCoupled, ConvergedInFunctionsAndModes) {
   const Blow b = driver();
   const VolumetricOptions fine{Integrator::rosenbrock, 1e-8};
