@@ -170,13 +170,20 @@ class Audit {
   template <class F>
   bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f, Formula& out) const {
     const Source& y = sources_[std::size_t(target)];
+    if (rows.empty()) return false;
     std::vector<double> residual;
     std::vector<double> wobbles;
     std::vector<double> x(sources_.size());
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
-      const double value = f(x);
-      residual.push_back(y.x[i] - value);
+      residual.push_back(y.x[i] - f(x));
+    }
+    out.residual = trimmed_rms(std::move(residual));
+    // More than the largest tolerance below allows: most formulas end here.
+    const double finer = parameters ? 12 : 6;
+    if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
+    for (const Eigen::Index i : rows) {
+      for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
       double wobble = y.resolution * y.resolution / 12;
       for (const int k : from) {
         const double h = 0.5 * sources_[std::size_t(k)].resolution, at = x[std::size_t(k)];
@@ -188,14 +195,12 @@ class Audit {
       }
       wobbles.push_back(wobble);
     }
-    if (rows.empty()) return false;
-    out.residual = trimmed_rms(residual);
     // The typical row: a few rows next to a singularity of f must not excuse the others.
     std::ranges::nth_element(wobbles, wobbles.begin() + std::ptrdiff_t(wobbles.size() / 2));
     out.tolerance = std::sqrt(wobbles[wobbles.size() / 2]);
     out.from = from;
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
-    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * (parameters ? 12 : 6) < y.spread;
+    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * finer < y.spread;
   }
 
   std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
@@ -275,9 +280,10 @@ class Audit {
       // Rows that repeat (one value per cluster) count once.
       std::set<std::vector<double>> distinct;
       for (const Eigen::Index i : rows) {
+        if (std::ptrdiff_t(distinct.size()) == 8 + 4 * p) break;
         std::vector<double> key;
         for (const int k : from) key.push_back(sources_[std::size_t(k)].x[i]);
-        distinct.insert(key);
+        distinct.insert(std::move(key));
       }
       if (std::ptrdiff_t(distinct.size()) < 8 + 4 * p) return false;
       const auto transform = [&](double x) { return logarithmic ? std::log(std::abs(x)) : x; };
@@ -305,8 +311,14 @@ class Audit {
         std::vector<double> size(r.data(), r.data() + n);
         std::ranges::nth_element(size, size.begin() + n / 2);
         const double fence = 4 * std::max(size[std::size_t(n / 2)], 1e-14);
-        for (std::ptrdiff_t i = 0; i < n; ++i) weight[i] = r[i] < fence ? 1 : 0;
+        bool settled = true;
+        for (std::ptrdiff_t i = 0; i < n; ++i) {
+          const double w = r[i] < fence ? 1 : 0;
+          settled = settled && w == weight[i];
+          weight[i] = w;
+        }
         if (weight.sum() < double(2 * p)) return false;
+        if (settled) break;
       }
       c = c.cwiseQuotient(unit);
       Formula out;
