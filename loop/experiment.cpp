@@ -94,11 +94,39 @@ struct Box {
   }
 };
 
-/// How far two rivals are apart over some shots, in noise units, the second free to follow the first.
+/// A set of effects as fitted, and with the widest of the usual forms of one of its names: that name is out only where
+/// none of them fits.
+std::vector<Fit> family(const Problem& problem, const std::vector<int>& rows, const Fit& as_fitted, const std::string& name,
+                        const std::vector<const Form*>& forms, const Loss& loss) {
+  std::vector<Fit> all = {as_fitted};
+  double usual = std::numeric_limits<double>::infinity();
+  std::size_t widest = 0;
+  for (const Form* f : forms)
+    if (f->effect == name) usual = std::min(usual, f->rarity);
+  for (const Form* f : forms)
+    if (f->effect == name && f->rarity <= usual) widest = std::max(widest, f->parameters.size());
+  for (const Form* f : forms) {
+    if (f->effect != name || f->rarity > usual || f->parameters.size() < widest || std::ranges::count(as_fitted.model.forms, f)) continue;
+    Model m;
+    std::vector<double> start;
+    std::ptrdiff_t at = 0;
+    for (const Form* old : as_fitted.model.forms) {
+      const auto n = std::ptrdiff_t(old->parameters.size());
+      m.forms.push_back(old->effect == name ? f : old);
+      if (old->effect == name) start.resize(start.size() + f->parameters.size());
+      else start.insert(start.end(), as_fitted.p.data() + at, as_fitted.p.data() + at + n);
+      at += n;
+    }
+    all.push_back(fit(problem, rows, m, {Eigen::Map<const Eigen::VectorXd>(start.data(), std::ptrdiff_t(start.size()))}, loss));
+  }
+  return all;
+}
+
+/// How far one set of effects is from another over some shots, in noise units, the second free to follow the first.
 class Separation {
  public:
-  Separation(const Problem& problem, const Rivals& r, const Eigen::VectorXd& noise)
-      : problem_(problem), r_(r), noise_(noise), parameters_(r.b->fit.model.parameters()) {
+  Separation(const Problem& problem, const Fit& truth, const Fit& rival, const Eigen::VectorXd& noise)
+      : problem_(problem), truth_(truth), rival_(rival), noise_(noise), parameters_(rival.model.parameters()) {
     const auto n = std::ptrdiff_t(parameters_.size());
     G_ = 1e-6 * Eigen::MatrixXd::Identity(n, n);
     g_ = Eigen::VectorXd::Zero(n);
@@ -111,7 +139,7 @@ class Separation {
   /// False where the blow cannot happen.
   bool look(const Trial& t, int shot, Site& out) const {
     const int m = problem_.width();
-    const Fit &a = r_.a->fit, &b = r_.b->fit;
+    const Fit &a = truth_, &b = rival_;
     Eigen::VectorXd fa(m), fb(m), up(m), down(m);
     if (!problem_.predict(t, shot, a.model, a.p.data(), fa.data()) || !problem_.predict(t, shot, b.model, b.p.data(), fb.data())) return false;
     out.d = (fa - fb).cwiseQuotient(noise_);
@@ -138,7 +166,7 @@ class Separation {
 
  private:
   const Problem& problem_;
-  const Rivals& r_;
+  const Fit &truth_, &rival_;
   const Eigen::VectorXd& noise_;
   std::vector<const Parameter*> parameters_;
   Eigen::MatrixXd G_;
@@ -148,10 +176,42 @@ class Separation {
   static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) { return std::max(0.0, dd - g.dot(G.ldlt().solve(g))); }
 };
 
+/// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
+class Contest {
+ public:
+  Contest(const Problem& problem, const std::vector<Fit>& one, const std::vector<Fit>& two, const Eigen::VectorXd& noise) {
+    for (const Fit& f : two) each_.emplace_back(problem, one.front(), f, noise);
+    for (const Fit& f : one) each_.emplace_back(problem, two.front(), f, noise);
+  }
+  using Site = std::vector<Separation::Site>;
+  bool look(const Trial& t, int shot, Site& out) const {
+    out.resize(each_.size());
+    for (std::size_t k = 0; k < each_.size(); ++k)
+      if (!each_[k].look(t, shot, out[k])) return false;
+    return true;
+  }
+  void add(const Site& s) {
+    for (std::size_t k = 0; k < each_.size(); ++k) each_[k].add(s[k]);
+  }
+  double squared() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Separation& e : each_) least = std::min(least, e.squared());
+    return least;
+  }
+  double squared_with(const Site& s) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < each_.size(); ++k) least = std::min(least, each_[k].squared_with(s[k]));
+    return least;
+  }
+
+ private:
+  std::vector<Separation> each_;
+};
+
 }  // namespace
 
 NextExperiment design(const LoopCase& c, const Problem& problem, const std::vector<int>& rows, const Selection& selection,
-                      const std::vector<Location>& unexplained, Verdict verdict) {
+                      const std::vector<const Form*>& forms, const Loss& loss, const std::vector<Location>& unexplained, Verdict verdict) {
   NextExperiment next;
   if (verdict == Verdict::unexplained && !unexplained.empty()) {
     next.text = fmt::format("vary {} on purpose with everything else held, and repeat each setting: {} follows it in a way that no candidate explains",
@@ -177,19 +237,23 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
   // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
   constexpr double wanted = 5.5 * 5.5;
   const std::size_t most = std::max<std::size_t>(12, rows.size() * 3 / 2);  // the session once more
-  std::vector<std::size_t> chosen;  // for all pairs together
+  std::vector<std::size_t> chosen;   // for all pairs together
+  std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
   std::vector<std::string> sentences, sensors;
   for (const Rivals& r : rivals(selection)) {
-    Separation apart(problem, r, noise);
-    Separation::Site site;
+    const std::vector<Fit> one = family(problem, rows, r.a->fit, r.one, forms, loss), two = family(problem, rows, r.b->fit, r.two, forms, loss);
+    Contest apart(problem, one, two, noise);
+    Contest::Site site;
     for (const int i : rows)
       if (apart.look(problem.trial(i), i, site)) apart.add(site);
     const double before = std::sqrt(apart.squared());
-    for (const std::size_t k : chosen)
-      if (apart.look(sites[k], -1, site)) apart.add(site);
-    std::vector<std::pair<std::size_t, Separation::Site>> possible;
+    std::vector<std::pair<std::size_t, Contest::Site>> possible;
     for (std::size_t k = 0; k < sites.size(); ++k)
-      if (apart.look(sites[k], -1, site)) possible.emplace_back(k, site);
+      if (apart.look(sites[k], -1, site)) {
+        for (const std::size_t known : chosen)
+          if (known == k) apart.add(site);
+        possible.emplace_back(k, site);
+      }
     std::vector<std::size_t> more;
     while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
       const auto& best = *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
@@ -205,13 +269,15 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
           if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
           if (!std::ranges::count(sensors, s)) sensors.push_back(s);
         }
-      sentences.push_back(fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units after {} designed shots, 4.8 are needed): measure {}", r.one, r.two,
-                                      after, more.size(), sensor));
+      if (after > before + 1 && partial.empty()) partial = more;
+      sentences.push_back(fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units now, {:.1f} after {} designed shots, 4.8 are needed): measure {}",
+                                      r.one, r.two, before, after, more.size(), sensor));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
       sentences.push_back(fmt::format("{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)", chosen.size(), r.one, r.two, before, after));
     }
   }
+  if (chosen.empty()) chosen = partial;
   for (const std::size_t k : chosen) {
     DesignedShot shot;
     for (std::size_t j = 0; j < box.input.size(); ++j)

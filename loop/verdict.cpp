@@ -129,6 +129,16 @@ Location place(const Study& study, const Finding& f) {
   return l;
 }
 
+/// Kurtosis of n values in its standard deviations from that of a normal sample (Anscombe & Glynn 1983).
+double kurtosis_deviation(double kurtosis, double n) {
+  const double mean = 3 * (n - 1) / (n + 1), variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
+  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) * std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
+  const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
+  const double stretch = 1 + (kurtosis - mean) / std::sqrt(variance) * std::sqrt(2 / (a - 4));
+  if (stretch <= 0) return -std::numeric_limits<double>::infinity();
+  return (1 - 2 / (9 * a) - std::cbrt((1 - 2 / a) / stretch)) / std::sqrt(2 / (9 * a));
+}
+
 /// What scatter alone does not do, where a channel's scatter contradicts its declared noise or many shots are far
 /// off: it follows a regressor at a level that would not count alone, it has two heads, or it strikes a share of
 /// the shots that is no exception.
@@ -155,7 +165,7 @@ bool shape_remains(Study& study) {
         fourth += d * d * d * d / n;
       }
     // Two heads: kurtosis below that of a normal sample by 2.5 of its own standard deviations.
-    if (n > 20 && fourth / (second * second) < 3 - 2.5 * std::sqrt(24 / n)) {
+    if (n > 12 && kurtosis_deviation(fourth / (second * second), n) < -2.5) {
       study.result.unexplained.push_back({name, "", "two heads in the distribution: a mixture"});
       return true;
     }
@@ -282,7 +292,7 @@ void conclude(Study& study) {
     study.result.likeness = alike(*study.problem, thinned(study.rows.train), after, study.candidate_forms);
     study.result.balance_before = balance(*study.problem, study.rows.train, base.model, base.p.data());
     study.result.balance_after = balance(*study.problem, study.rows.train, after.model, after.p.data());
-    study.result.next = design(study.loop_case, *study.problem, thinned(study.rows.train), s, study.result.unexplained, study.result.verdict);
+    study.result.next = design(study.loop_case, *study.problem, thinned(study.rows.train), s, study.candidate_forms, study.loss, study.result.unexplained, study.result.verdict);
     std::vector<int> all = study.rows.train;
     all.insert(all.end(), study.rows.holdout.begin(), study.rows.holdout.end());
     std::ranges::sort(all);
