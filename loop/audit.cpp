@@ -333,7 +333,8 @@ class Audit {
         }
         return logarithmic ? std::exp(sum) : sum;
       };
-      if (!judge(target, from, int(p), judged, f, out)) return false;
+      // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
+      if (Formula again; !judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {
         double lo = std::numeric_limits<double>::infinity(), hi = -lo;

@@ -376,7 +376,9 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   };
   const auto jacobian = [&](const Fit& f) { return whitened_jacobian(problem, rows, f.model, f.p); };
 
-  const Fit& near = search.singles.empty() ? search.base_fit : search.singles.front().fit;
+  // Without an effect worth a name its residual is noise with the likeliest part taken out: such flips find too much.
+  const bool effect = !search.singles.empty() && search.base_fit.deviance - search.singles.front().fit.deviance > rules.gain;
+  const Fit& near = effect ? search.singles.front().fit : search.base_fit;
   const Eigen::VectorXd scatter = whitened(problem, rows, near.model, near.p);
   s.before = structure(problem, rows, search.z0, scatter, weights(scatter), jacobian(search.base_fit), regressors, search.directions(), {},
                        rules.flips, rules.seed);
@@ -394,7 +396,7 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   };
 
   const std::vector<Candidate>* level = nullptr;
-  if (!search.singles.empty() && s.structured && search.base_fit.deviance - search.singles.front().fit.deviance > rules.gain) {
+  if (effect && s.structured) {
     search.fit_pairs();
     level = &search.singles;
     s.level = 1;
