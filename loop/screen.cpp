@@ -162,6 +162,7 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
       if (members.size() < 3 || bad.size() * 2 <= members.size()) continue;
       std::map<std::string, int> votes;
       for (const std::size_t b : bad) ++votes[flags[b].column];
+      const bool one_slip = std::ranges::count_if(bad, [&](std::size_t b) { return flags[b].slip; }) * 2 > std::ptrdiff_t(members.size());
       const std::string column = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
       // The most telling reason: a slip before a value that cannot be.
       std::string reason;
@@ -180,9 +181,10 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
           f.column = column;
           f.reason = said;
           f.slip = true;
+          f.cluster = one_slip;
         } else {
           const int shot = shot_of.at(row);
-          flags.push_back({shot, row, column, said, finding, Row(problem, fit, shot).distance({}, {}), true});
+          flags.push_back({shot, row, column, said, finding, Row(problem, fit, shot).distance({}, {}), true, one_slip});
           flag_of[row] = flags.size() - 1;
         }
       }

@@ -16,6 +16,7 @@ struct RowFlag {
   int finding = 0;
   double distance = 0;  ///< squared Mahalanobis distance
   bool slip = true;     ///< a slip of the record explains it; else only that nothing explains it is known
+  bool cluster = false; ///< one slip explains most of its cluster
 };
 
 struct Screening {

@@ -219,7 +219,12 @@ void Study::work() {
   for (int pass = 0; pass < 4; ++pass) {
     select(pass > 0);
     const Fit& at = result.selection.chosen;
-    const Screening screening = screen(*problem, loop_case.shots, inputs.row_of, uses, at, result.selection.clean, early);
+    Screening screening = screen(*problem, loop_case.shots, inputs.row_of, uses, at, result.selection.clean, early);
+    // A drift can follow a club that recorded something else: what leaves structure must not hide such a club.
+    if (!result.selection.clean && result.selection.level > 0 && std::ranges::none_of(screening.flags, &RowFlag::cluster)) {
+      Screening bare = screen(*problem, loop_case.shots, inputs.row_of, uses, result.selection.base, false, early);
+      if (std::ranges::any_of(bare.flags, &RowFlag::cluster)) screening = std::move(bare);
+    }
     flags = screening.flags;
     widespread = screening.widespread;
     std::set<int> now;
