@@ -7,15 +7,15 @@
 namespace hosel::models {
 namespace {
 
-/// Linear elastic, E = 100 MPa, nu = 0.49, a/R = 0.079: some eight elements across the patch's radius, of even size out
-/// to beyond its edge, where stick turns to slip.
+/// Linear elastic, E = 100 MPa, nu = 0.49, a/R = 0.079: some eight elements across the patch's radius and five below it
+/// to that depth, of even size out to beyond its edge, where stick turns to slip.
 FeImpactOptions small_contact() {
   FeImpactOptions o;
   o.ball = elastic_ball("sphere", {.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129});
   o.friction = 0.1;
   o.harmonics = 2;
-  o.mesh = {.sector = 10, .rings = 9, .pole = .09, .far = 6, .skin = .08, .core = .4};
-  o.penalty = 3000;
+  o.mesh = {.sector = 10, .rings = 12, .pole = .11, .far = 6, .skin = .05, .core = .4};
+  o.penalty = 1600;
   o.tangential_penalty = 1;
   o.steps_per_contact = 60;
   o.newton_relative = 1e-5;
