@@ -255,7 +255,7 @@ void Oblique(benchmark::State& state) {
   const int n = int(state.range(0));
   const mesh::MeridianOptions mesh{.sector = n, .rings = n, .pole = 0.5, .skin = 0.5, .core = 0.4};
   report(state, {.nu = 0.3, .v_n = 10 * std::cos(radians(25)), .v_t = 10 * std::sin(radians(25)), .friction = 0.3, .finite = true, .mesh = mesh,
-                 .sectors = 4 * n, .span = kPi, .duration = 0.95e-3, .steps = 120}, mesh, 2, 20 * n, n == 2 ? 200 : 500);
+                 .sectors = 4 * n, .span = kPi, .duration = 0.95e-3, .steps = 120}, mesh, n == 2 ? 2 : 3, n == 2 ? 40 : 80, n == 2 ? 200 : 500);
 }
 BENCHMARK(Oblique)->Arg(2)->Arg(3)->ArgName("elements_per_45_degrees")->Iterations(1)->Unit(benchmark::kSecond);
 
