@@ -63,19 +63,27 @@ Errors errors(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
   return out;
 }
 
+/// A fit may move what it cannot explain into a channel that the base leaves clean: the place is where something
+/// remains both before and after it, else where it was before.
 void locate(HistoryStudy& study) {
-  const auto add = [&](const std::vector<HistoryFinding>& from) {
-    // An oscillation says more than the band it lies in.
-    std::vector<HistoryFinding> told = from;
-    std::ranges::stable_partition(told, [](const HistoryFinding& f) { return f.kind == "oscillation"; });
-    for (const HistoryFinding& f : told) {
-      if (f.p_adjusted > HistoryStudy::kRemaining) continue;
-      const std::string& channel = study.result.channel_names[std::size_t(f.channel)];
-      if (std::ranges::any_of(study.result.unexplained, [&](const Location& l) { return l.channel == channel; })) continue;
-      study.result.unexplained.push_back({channel, "time_s", f.kind + (f.detail.empty() ? "" : " " + f.detail)});
-    }
-  };
-  add(study.after);
+  const auto shows = [](const HistoryFinding& f) { return f.p_adjusted <= HistoryStudy::kRemaining; };
+  std::set<int> clean_before, both;
+  for (int c = 0; c < study.problem->width(); ++c) clean_before.insert(c);
+  for (const HistoryFinding& f : study.before)
+    if (shows(f)) clean_before.erase(f.channel);
+  for (const HistoryFinding& f : study.after)
+    if (shows(f) && !clean_before.contains(f.channel)) both.insert(f.channel);
+  std::vector<HistoryFinding> told;
+  const bool moved = both.empty() && int(clean_before.size()) < study.problem->width();
+  for (const HistoryFinding& f : moved ? study.before : study.after)
+    if (shows(f) && (moved || both.empty() || both.contains(f.channel))) told.push_back(f);
+  // An oscillation says more than the band it lies in.
+  std::ranges::stable_partition(told, [](const HistoryFinding& f) { return f.kind == "oscillation"; });
+  for (const HistoryFinding& f : told) {
+    const std::string& channel = study.result.channel_names[std::size_t(f.channel)];
+    if (std::ranges::any_of(study.result.unexplained, [&](const Location& l) { return l.channel == channel; })) continue;
+    study.result.unexplained.push_back({channel, "time_s", f.kind + (f.detail.empty() ? "" : " " + f.detail)});
+  }
 }
 
 /// The size at which the deviance would fall by what a first effect needs.

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "files.hpp"
+#include "records.hpp"
 
 namespace examination {
 namespace {
@@ -96,8 +97,12 @@ int main(int argc, char** argv) {
   all_command->add_option("--seed", seed)->required();
   all_command->add_option("--scale", scale, "share of the full numbers of sets")->capture_default_str();
   all_command->add_option("--out", dir)->required();
+  auto* records_command = app.add_subcommand("records", "make, run and score time histories");
+  records_command->add_option("--seed", seed)->required();
+  records_command->add_option("--sets", sets, "per stratum")->capture_default_str();
+  records_command->add_option("--out", dir)->required();
   for (auto* c : {run_command, score_command}) c->add_option("--dir", dir)->required();
-  for (auto* c : {run_command, all_command}) {
+  for (auto* c : {run_command, all_command, records_command}) {
     c->add_option("--hosel", hosel)->capture_default_str();
     c->add_option("--jobs", jobs)->capture_default_str();
     c->add_option("--limit", limit, "seconds per set")->capture_default_str();
@@ -109,6 +114,11 @@ int main(int argc, char** argv) {
     if (*make_command) make(seed, stratum, sets, shots, dir);
     if (*run_command) run_sets(dir, hosel, jobs, limit);
     if (*score_command) score_sets(dir);
+    if (*records_command) {
+      make_records(seed, sets, dir);
+      run_sets(dir, hosel, jobs, limit);
+      score_records(dir);
+    }
     if (*all_command) {
       for (const auto& [name, full] : strata())
         make(seed, name, std::max(1, static_cast<int>(std::lround(scale * full))), shots, dir);
