@@ -11,6 +11,8 @@
 #include <numeric>
 #include <set>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -196,8 +198,7 @@ class Audit {
       wobbles.push_back(wobble);
     }
     // The typical row: a few rows next to a singularity of f must not excuse the others.
-    std::ranges::nth_element(wobbles, wobbles.begin() + std::ptrdiff_t(wobbles.size() / 2));
-    out.tolerance = std::sqrt(wobbles[wobbles.size() / 2]);
+    out.tolerance = std::sqrt(median(std::move(wobbles)));
     out.from = from;
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
     return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * finer < y.spread;
@@ -308,9 +309,7 @@ class Audit {
         c = (G + 1e-13 * Eigen::MatrixXd::Identity(p, p)).ldlt().solve(A.transpose() * weight.asDiagonal() * b);
         // Redescending: a tenth of the rows may be bad.
         const Eigen::VectorXd r = (b - A * c).cwiseAbs();
-        std::vector<double> size(r.data(), r.data() + n);
-        std::ranges::nth_element(size, size.begin() + n / 2);
-        const double fence = 4 * std::max(size[std::size_t(n / 2)], 1e-14);
+        const double fence = 4 * std::max(median(std::vector<double>(r.data(), r.data() + n)), 1e-14);
         bool settled = true;
         for (std::ptrdiff_t i = 0; i < n; ++i) {
           const double w = r[i] < fence ? 1 : 0;

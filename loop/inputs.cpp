@@ -7,15 +7,10 @@
 #include <array>
 #include <cmath>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
 namespace {
-
-double median(std::vector<double> x) {
-  if (x.empty()) return 0;
-  const auto mid = x.begin() + std::ptrdiff_t(x.size() / 2);
-  std::nth_element(x.begin(), mid, x.end());
-  return *mid;
-}
 
 struct Allowed {
   double min, max;

@@ -4,17 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
-namespace {
-
-double median(std::vector<double> x) {
-  if (x.empty()) return 0;
-  const auto mid = x.begin() + std::ptrdiff_t(x.size() / 2);
-  std::nth_element(x.begin(), mid, x.end());
-  return *mid;
-}
-
-}  // namespace
 
 double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals) {
   std::vector<int> seen;

@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -88,11 +90,6 @@ class Row {
   Trial trial_;
   bool predicted_ = false;
 };
-
-double median(std::vector<double> x) {
-  std::ranges::nth_element(x, x.begin() + std::ptrdiff_t(x.size() / 2));
-  return x[x.size() / 2];
-}
 
 /// The column whose values stand in column `u` over these rows, and not over the others: "" where none.
 std::string copied_from(const Shots& shots, const Column& u, const std::vector<int>& rows) {

@@ -8,6 +8,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -22,12 +24,6 @@ std::vector<double> periodogram(std::vector<double> x, double n) {
   std::vector<double> out;
   for (std::size_t k = 1; k < size / 2; ++k) out.push_back(std::norm(spectrum[k]) / n);
   return out;
-}
-
-double median(std::vector<double> x) {
-  const auto mid = x.begin() + std::ptrdiff_t(x.size() / 2);
-  std::nth_element(x.begin(), mid, x.end());
-  return *mid;
 }
 
 double tail(double chi2, double dof) {

@@ -7,15 +7,10 @@
 #include <map>
 #include <random>
 
+#include "loop/median.hpp"
+
 namespace hosel::loop {
 namespace {
-
-double median(std::vector<double> x) {
-  if (x.empty()) return 0;
-  const auto mid = x.begin() + std::ptrdiff_t(x.size() / 2);
-  std::nth_element(x.begin(), mid, x.end());
-  return *mid;
-}
 
 /// Scatter of a channel by third differences, which a smooth motion leaves small: a first idea of the noise.
 double rough_noise(const std::vector<HistoryRecord>& records, int channel) {
