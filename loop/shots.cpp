@@ -77,7 +77,6 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   Column c;
   c.name = header;
   const auto input_of = [](std::string_view s) { return std::ranges::find(kInputStems, s) - kInputStems.begin(); };
-  const auto output_of = [](std::string_view s) { return std::ranges::find(kOutputStems, s) - kOutputStems.begin(); };
   const SplitName split = split_unit(header);
   c.stem = split.stem;
   if (split.unit && split.unit->dimension != Dimension::percent) c.si = split.unit->si;
@@ -89,9 +88,9 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   } else if (const auto i = input_of(c.stem); i < kInputs) {
     c.role = Role::input;
     wanted = kInputDimensions[std::size_t(i)];
-  } else if (const auto o = output_of(c.stem); std::size_t(o) < kOutputStems.size()) {
+  } else if (const auto o = output_of(c.stem)) {
     c.role = Role::output;
-    wanted = kOutputDimensions[std::size_t(o)];
+    wanted = kOutputDimensions[std::size_t(*o)];
   }
   if (wanted && (!split.unit || split.unit->dimension != *wanted))
     throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
@@ -128,6 +127,11 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
 
 std::string_view stem(Input input) { return kInputStems[std::size_t(input)]; }
 std::string_view stem(Output output) { return kOutputStems[std::size_t(output)]; }
+
+std::optional<Output> output_of(std::string_view stem) {
+  const auto at = std::ranges::find(kOutputStems, stem);
+  return at == kOutputStems.end() ? std::nullopt : std::optional(Output(at - kOutputStems.begin()));
+}
 
 double get(const Blow& b, Input input) {
   switch (input) {

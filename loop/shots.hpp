@@ -25,6 +25,7 @@ void set(Blow& blow, Input input, double value);      ///< SI
 /// What a launch monitor reports.
 enum class Output { ball_speed, launch_angle, azimuth, backspin, sidespin, spin_rate, spin_axis };
 std::string_view stem(Output output);
+std::optional<Output> output_of(std::string_view stem);  ///< the output that a column of this stem records
 double get(const Launch& launch, Output output);      ///< SI
 
 struct Column {

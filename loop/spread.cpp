@@ -40,10 +40,4 @@ std::vector<Delivery> spread(const Shots& shots, int points, unsigned long seed)
   return out;
 }
 
-std::optional<Output> output_of(std::string_view name) {
-  for (int k = 0; k <= int(Output::spin_axis); ++k)
-    if (stem(Output(k)) == name) return Output(k);
-  return {};
-}
-
 }  // namespace hosel::loop

@@ -11,7 +11,4 @@ namespace hosel::loop {
 /// column are zero. Throws DataError where the shots have no usable club_speed or dynamic_loft.
 std::vector<Delivery> spread(const Shots& shots, int points, unsigned long seed);
 
-/// The output that a column of this stem records.
-std::optional<Output> output_of(std::string_view stem);
-
 }  // namespace hosel::loop
