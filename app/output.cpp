@@ -144,4 +144,9 @@ void Output::write_json(std::string_view name, const nlohmann::json& content) co
 
 void Output::write_summary(const nlohmann::json& summary) const { write_json("summary.json", summary); }
 
+void Output::skip(const fs::path& missing) {
+  say(fmt::format("SKIPPED: {} is not there; HOSEL_DATA names the folder of measured files", missing.string()));
+  write_summary({{"skipped", missing.string()}});
+}
+
 }  // namespace hosel::app

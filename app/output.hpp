@@ -58,6 +58,8 @@ class Output {
   void write_json(std::string_view name, const nlohmann::json& content) const;
   /// `summary.json` marks the run as finished.
   void write_summary(const nlohmann::json& summary) const;
+  /// Finishes a run whose measured data are not there.
+  void skip(const std::filesystem::path& missing);
 
  private:
   struct State;

@@ -76,11 +76,7 @@ class ClubsJob final : public Job {
 
   void run(Output& out) override {
     for (const auto& f : {shots_file_, clubs_file_})
-      if (!std::filesystem::exists(f)) {
-        out.say(fmt::format("SKIPPED: {} is not there (HOSEL_DATA names the folder of measured data)", f.string()));
-        out.write_summary({{"skipped", f.string()}});
-        return;
-      }
+      if (!std::filesystem::exists(f)) return out.skip(f);
     const auto model = models::find(model_)->make({});
     std::vector<ClubRow> clubs = read_rows(out);
     nlohmann::json summary;

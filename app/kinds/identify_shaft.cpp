@@ -104,19 +104,13 @@ class IdentifyJob final : public Job {
     if (r.shortened_steps > 0)
       out.say(fmt::format("{} steps did not converge at their full length: shorten solution.step, or the interval says too little", r.shortened_steps));
   }
-  static void skip(Output& out, const std::filesystem::path& file) {
-    const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", file.filename().string());
-    out.say(why);
-    out.write_summary({{"skipped", why}});
-  }
-
   void recorded(Output& out) {
     std::vector<models::GripMotion> motions;
     motions.reserve(swings_.size());
     std::vector<models::MeasuredSwing> measured;
     for (const Recorded& r : swings_) {
-      if (!r.motion.present) return skip(out, r.motion.file);
-      if (!std::filesystem::exists(r.deflection)) return skip(out, r.deflection);
+      if (!r.motion.present) return out.skip(r.motion.file);
+      if (!std::filesystem::exists(r.deflection)) return out.skip(r.deflection);
       const loop::Sheet sheet = read_sheet(r.deflection);
       motions.emplace_back(r.motion.track, r.motion.smoothing);
       models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); }, .begin = r.motion.begin, .end = r.motion.end, .train = r.train};
@@ -143,7 +137,7 @@ class IdentifyJob final : public Job {
   }
 
   void markers(Output& out) {
-    if (!std::filesystem::exists(file_)) return skip(out, file_);
+    if (!std::filesystem::exists(file_)) return out.skip(file_);
     const loop::Sheet sheet = read_sheet(file_);
     models::MarkerTrack track;
     track.times = numbers(sheet, "time_s");

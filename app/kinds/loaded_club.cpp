@@ -61,12 +61,7 @@ class LoadedClubJob final : public Job {
   }
 
   void run(Output& out) override {
-    if (!motion_.present) {
-      const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", motion_.file.filename().string());
-      out.say(why);
-      out.write_summary({{"skipped", why}});
-      return;
-    }
+    if (!motion_.present) return out.skip(motion_.file);
     // A delivery knows no lie: the swing's own is taken into the description of the club.
     const double lie = swing_to_end(blow_.club, swing_.gravity).lie;
     const Club club = models::turned_about_normal(blow_.club, lie);

@@ -82,9 +82,7 @@ class LoopJob final : public Job {
 
     Table data = root.table("data");
     const auto path = data.data_file("shots");
-    if (!std::filesystem::exists(path)) {
-      skipped_ = path.string();
-    }
+    if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
         case_.shots = loop::read_shots(loop::read_csv(path));
@@ -120,11 +118,7 @@ class LoopJob final : public Job {
   }
 
   void run(Output& out) override {
-    if (!skipped_.empty()) {
-      out.say(fmt::format("SKIPPED: {} is not there; name the folder of the measured files in HOSEL_DATA", skipped_));
-      out.write_summary({{"skipped", skipped_}});
-      return;
-    }
+    if (!skipped_.empty()) return out.skip(skipped_);
     loop::LoopResult result;
     try {
       if (points_ > 0) build_surrogate(out);
@@ -195,7 +189,7 @@ class LoopJob final : public Job {
 
   loop::LoopCase case_;
   std::unique_ptr<models::ImpactModel> model_;
-  std::string skipped_;
+  std::filesystem::path skipped_;
   int points_ = 0;  ///< of the surrogate; 0: none
   unsigned long surface_seed_ = 1;
 };

@@ -52,11 +52,7 @@ class HistoryJob final : public Job {
   }
 
   void run(Output& out) override {
-    if (!skipped_.empty()) {
-      out.say(fmt::format("SKIPPED: {} is not there; name the folder of the measured files in HOSEL_DATA", skipped_));
-      out.write_summary({{"skipped", skipped_}});
-      return;
-    }
+    if (!skipped_.empty()) return out.skip(skipped_);
     loop::LoopResult result;
     try {
       result = loop::run(case_);
@@ -78,7 +74,7 @@ class HistoryJob final : public Job {
     std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
     for (const auto& f : files) {
       if (!std::filesystem::exists(f)) {
-        skipped_ = f.string();
+        skipped_ = f;
         break;
       }
       Series s = read_series(f, sensors ? &*sensors : nullptr, club_.shaft->length(), clamp, most, case_.notes);
@@ -167,7 +163,7 @@ class HistoryJob final : public Job {
     const MotionInput motion = read_motion(table);
     const models::SwingOptions options = read_swing_options(root);
     std::vector<loop::BenchRecord> records = read_records(root, 0, kMostSamples);
-    if (!motion.present) skipped_ = motion.file.string();
+    if (!motion.present) skipped_ = motion.file;
     if (!skipped_.empty()) return;
     for (const loop::HistoryChannel& c : case_.setting.channels)
       if (c.reading == loop::Reading::strain_lead || c.reading == loop::Reading::strain_droop || c.order > 0)
@@ -191,7 +187,7 @@ class HistoryJob final : public Job {
   Club club_;
   loop::HistoryCase case_;
   std::unique_ptr<loop::HistoryModel> model_;
-  std::string skipped_;
+  std::filesystem::path skipped_;
 };
 
 }  // namespace

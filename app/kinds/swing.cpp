@@ -25,13 +25,8 @@ class SwingJob final : public Job {
   }
 
   void run(Output& out) override {
+    if (!motion_.present) return out.skip(motion_.file);
     nlohmann::json summary;
-    if (!motion_.present) {
-      const std::string why = fmt::format("SKIPPED: {} is not there (set HOSEL_DATA to the folder of measured data)", motion_.file.filename().string());
-      out.say(why);
-      out.write_summary({{"skipped", why}});
-      return;
-    }
     const models::GripMotion grip(motion_.track, motion_.smoothing);
     const fem::Motion motion = [&](double t) { return grip.at(t); };
     models::Swing swing(club_, options_, make_drive(grip_, motion_, motion));

@@ -119,11 +119,7 @@ class TuneJob final : public Job {
   }
 
   void run(Output& out) override {
-    if (!std::filesystem::exists(shots_file_)) {
-      out.say(fmt::format("SKIPPED: the measured shots {} are not there (HOSEL_DATA names their folder)", shots_file_.string()));
-      out.write_summary({{"skipped", shots_file_.string()}});
-      return;
-    }
+    if (!std::filesystem::exists(shots_file_)) return out.skip(shots_file_);
     read_data(out);
     const auto residuals = [this](const Eigen::VectorXd& p, Eigen::VectorXd& r) { return whitened(train_, p, r); };
     const int width = static_cast<int>(channels_.size());
