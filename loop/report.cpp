@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "post/csv.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -141,7 +143,7 @@ std::string residuals_csv(const LoopResult& r) {
   out += '\n';
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
   for (const UsedShot& u : r.shots) {
-    out += u.id + (u.holdout ? ",holdout" : ",train");
+    out += post::csv_cell(u.id) + (u.holdout ? ",holdout" : ",train");
     for (std::size_t c = 0; c < r.channels.size(); ++c) out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
     out += '\n';
   }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "golf/units.hpp"
+#include "post/csv.hpp"
 #include "post/launch_table.hpp"
 
 namespace hosel::post {
@@ -34,14 +35,6 @@ bool nowhere(const std::vector<double>& v) {
   return std::ranges::none_of(v, [](double x) { return std::isfinite(x); });
 }
 
-/// A title as a cell of RFC 4180: in quotes where it holds a comma or a quote.
-std::string cell(const std::string& title) {
-  if (title.find_first_of(",\"") == std::string::npos) return title;
-  std::string out = "\"";
-  for (const char c : title) out.append(c == '"' ? 2 : 1, c);
-  return out + '"';
-}
-
 using Column = std::function<std::vector<double>(const FaceMap&, const MapQuantity&)>;
 
 std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, const Column& column) {
@@ -52,7 +45,7 @@ std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, c
     std::vector<std::vector<double>> columns;
     for (const MapQuantity& q : map_quantities()) columns.push_back(column(*map, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
-      out += fmt::format("{},{:.6g},{:.6g}", cell(map->title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
+      out += fmt::format("{},{:.6g},{:.6g}", csv_cell(map->title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
       for (const auto& c : columns)
         out += c.empty() || !std::isfinite(c[p]) ? std::string(",") : fmt::format(",{:.9g}", c[p]);
       out += '\n';

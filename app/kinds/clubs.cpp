@@ -14,6 +14,7 @@
 #include "golf/units.hpp"
 #include "loop/shots.hpp"
 #include "models/registry.hpp"
+#include "post/csv.hpp"
 #include "post/figure.hpp"
 
 namespace hosel::app {
@@ -128,7 +129,7 @@ class ClubsJob final : public Job {
       const std::array<double, 3> m = {c.spin, c.launch, c.speed};
       out.say(fmt::format("{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}%", c.name, c.mean[0], m[0],
                           c.mean[1], 100 * (m[0] / c.mean[1] - 1), m[1], c.mean[2], m[1] - c.mean[2], m[2], c.mean[3], 100 * (m[2] / c.mean[3] - 1)));
-      csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", c.name, c.mean[0], m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
+      csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", post::csv_cell(c.name), c.mean[0], m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
       ratio += m[0] / c.mean[1] / static_cast<double>(clubs.size());
       for (int k = 0; k < 3; ++k) {
         const double d = m[k] - c.mean[k + 1];

@@ -14,6 +14,7 @@
 #include "models/fe_full_club.hpp"
 #include "models/hosel_load.hpp"
 #include "models/shaft_coupled.hpp"
+#include "post/csv.hpp"
 #include "post/figure.hpp"
 #include "post/launch_table.hpp"
 
@@ -96,7 +97,7 @@ class LoadedClubJob final : public Job {
       nlohmann::json point = {{"impact_toe_mm", 1e3 * toe_[k]}, {"impact_high_mm", 1e3 * high_[k]}};
       for (const Answer& a : answers) {
         columns.push_back({a.name, a.launch});
-        table += fmt::format("{:g},{:g},\"{}\"", 1e3 * toe_[k], 1e3 * high_[k], a.name);
+        table += fmt::format("{:g},{:g},{}", 1e3 * toe_[k], 1e3 * high_[k], post::csv_cell(a.name));
         for (const post::Channel& c : post::channels()) table += fmt::format(",{:.9g}", (a.launch.*c.value)() / c.si);
         const fem::Wrench impulse = a.hosel.impulse();
         table += fmt::format(",{:.9g},{:.9g}", a.launch.head_velocity.norm(), a.launch.head_spin.norm());

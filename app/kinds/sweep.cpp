@@ -12,6 +12,7 @@
 #include "app/cases.hpp"
 #include "app/sweep.hpp"
 #include "app/sweep_store.hpp"
+#include "post/csv.hpp"
 #include "post/figure.hpp"
 
 namespace hosel::app {
@@ -120,7 +121,7 @@ class SweepJob final : public PointJob {
     json summary = {{"points", size_}, {"failed", 0}};
     for (std::size_t i = 0; i < points.size(); ++i) {
       csv += std::to_string(i);
-      for (std::size_t p = 0; p < parameters_.size(); ++p) csv += "," + plain(value(p, i));
+      for (std::size_t p = 0; p < parameters_.size(); ++p) csv += "," + post::csv_cell(plain(value(p, i)));
       const bool failed = points[i].contains("error");
       for (const std::string& c : columns) {
         csv += ",";
@@ -128,9 +129,7 @@ class SweepJob final : public PointJob {
         if (!points[i].contains(c)) throw InputError(fmt::format("record: point {} has no number '{}' in its summary", i, c));
         csv += points[i][c].dump();
       }
-      std::string why = failed ? points[i]["error"].get<std::string>() : "";
-      std::ranges::replace(why, ',', ';');
-      csv += "," + why + "\n";
+      csv += "," + (failed ? post::csv_cell(points[i]["error"].get<std::string>()) : "") + "\n";
       if (failed) summary["failed"] = summary["failed"].get<int>() + 1;
     }
     out.write("sweep.csv", csv);

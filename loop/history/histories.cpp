@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "loop/history/verdict.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::loop {
 
@@ -43,7 +44,7 @@ std::string history_residuals_csv(const HistoryCase& c, const LoopResult& r) {
   for (const HistoryRecord& record : c.records)
     for (std::size_t i = 0; i < record.times.size() && row < r.shots.size(); ++i, ++row) {
       const UsedShot& u = r.shots[row];
-      out += fmt::format("{},{:.9g},{}", record.name, record.times[i], u.holdout ? "holdout" : "train");
+      out += fmt::format("{},{:.9g},{}", post::csv_cell(record.name), record.times[i], u.holdout ? "holdout" : "train");
       for (std::size_t k = 0; k < u.measured.size(); ++k) out += cell(u.measured[k]) + cell(u.measured[k] + u.before[k]) + cell(u.measured[k] + u.after[k]);
       out += '\n';
     }
