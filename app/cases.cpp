@@ -4,7 +4,13 @@
 
 #include <algorithm>
 
+#include "app/job.hpp"
+#include "app/read_solid.hpp"
 #include "app/reader.hpp"
+#include "golf/shaft_library.hpp"
+#include "loop/effect.hpp"
+#include "loop/history/rig.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -53,6 +59,20 @@ void copy_case(const std::string& from, const fs::path& to) {
   fs::copy(fs::is_directory(source) ? source : source.parent_path(), to, fs::copy_options::recursive);
 }
 
-std::vector<ListSection> more_lists() { return {{"cases", shipped()}}; }
+std::vector<ListSection> everything() {
+  const auto entries = [](const auto& named) {
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const auto& n : named) out.emplace_back(n.name, n.what);
+    return out;
+  };
+  return {{"kinds", entries(kinds())},
+          {"models", entries(models::registry())},
+          {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
+          {"balls (ball.model)", entries(models::ball_library())},
+          {"shafts (shaft.name)", entries(shaft_library())},
+          {"effects on shots", entries(loop::effects())},
+          {"effects on histories", entries(loop::history_effects())},
+          {"cases", shipped()}};
+}
 
 }  // namespace hosel::app

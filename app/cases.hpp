@@ -18,7 +18,7 @@ struct ListSection {
   std::string title;
   std::vector<std::pair<std::string, std::string>> entries;
 };
-/// Beyond kinds and models: materials, effects, balls, shafts, cases.
-std::vector<ListSection> more_lists();
+/// Kinds, models, materials, balls, shafts, effects, cases.
+std::vector<ListSection> everything();
 
 }  // namespace hosel::app

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "app/cases.hpp"
 #include "app/job.hpp"
 #include "app/sweep.hpp"
-#include "models/registry.hpp"
 #include "solvers/errors.hpp"
 
 namespace {
@@ -39,13 +39,11 @@ void check(const Arguments& a) {
 }
 
 void list() {
-  fmt::print("kinds\n");
-  for (const auto& k : app::kinds()) fmt::print("  {:<20} {}\n", k.name, k.what);
-  fmt::print("models\n");
-  for (const auto& m : models::registry()) fmt::print("  {:<20} {}\n", m.name, m.what);
-  for (const auto& section : app::more_lists()) {
+  for (const auto& section : app::everything()) {
+    std::size_t width = 0;
+    for (const auto& [name, what] : section.entries) width = std::max(width, name.size());
     fmt::print("{}\n", section.title);
-    for (const auto& [name, what] : section.entries) fmt::print("  {:<20} {}\n", name, what);
+    for (const auto& [name, what] : section.entries) fmt::print("  {:<{}}  {}\n", name, width, what);
   }
 }
 
@@ -69,7 +67,7 @@ int main(int argc, char** argv) {
   CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");
   add_case(check_command);
   check_command->callback([&] { check(a); });
-  cli.add_subcommand("list", "the kinds, models, materials, effects and cases there are")->callback(list);
+  cli.add_subcommand("list", "the kinds, models, materials, balls, shafts, effects and cases there are")->callback(list);
   CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another");
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();

@@ -1,13 +1,30 @@
 #include "app/read_solid.hpp"
 
+#include <array>
+
 namespace hosel::app {
+namespace {
+
+constexpr std::array kLaws = {
+    NamedLaw{"neo-hooke", "c10 and bulk modulus, or Young's modulus and Poisson's ratio"},
+    NamedLaw{"mooney-rivlin", "c10, c01 and bulk modulus"},
+    NamedLaw{"yeoh", "c10, c20, c30 and bulk modulus"},
+    NamedLaw{"ogden", "moduli and exponents of principal stretches, and bulk modulus"},
+    NamedLaw{"st-venant-kirchhoff", "Green's strain, linear: Young's modulus and Poisson's ratio"},
+    NamedLaw{"linear", "small strain: Young's modulus and Poisson's ratio"},
+};
+
+}  // namespace
+
+std::span<const NamedLaw> solid_laws() { return kLaws; }
 
 fem::Solid read_solid(Table table) {
   const Range positive = Range::positive(), some = Range::non_negative();
   fem::Solid solid;
   solid.density = table.quantity("density", "kg_per_m3", positive, 1129.0);
-  const std::string law = table.choice(
-      "law", {"neo-hooke", "mooney-rivlin", "yeoh", "ogden", "st-venant-kirchhoff", "linear"}, "neo-hooke");
+  std::vector<std::string> laws;
+  for (const NamedLaw& l : kLaws) laws.emplace_back(l.name);
+  const std::string law = table.choice("law", laws, "neo-hooke");
   if (law == "mooney-rivlin" || law == "yeoh" || (law == "neo-hooke" && table.has_quantity("c10"))) {
     fem::Hyperelastic h;
     h.c10 = table.quantity("c10", "MPa", positive);

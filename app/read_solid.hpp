@@ -1,16 +1,24 @@
 /// Solid materials and deformable balls from a case's tables.
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "app/reader.hpp"
 #include "models/fe_ball.hpp"
 
 namespace hosel::app {
 
-/// `law = "neo-hooke" | "mooney-rivlin" | "yeoh" | "st-venant-kirchhoff" | "linear"` with its moduli, and
-/// `branch_moduli_MPa`, `branch_times_ms` of the relaxation.
+struct NamedLaw {
+  std::string_view name;
+  std::string_view what;  ///< one sentence for `hosel list`
+};
+std::span<const NamedLaw> solid_laws();
+
+/// `law` with its moduli, and `branch_moduli_MPa`, `branch_times_ms` of the relaxation.
 fem::Solid read_solid(Table table);
 
-/// `[ball]`: either `ball = "name"` of the library or `[[ball.layers]]` from the inside, each a material
+/// `[ball]`: either `model = "name"` of the library or `[[ball.layers]]` from the inside, each a material
 /// with `radius_fraction`. `standard` where neither stands.
 models::FeBall read_fe_ball(Table table, const models::FeBall& standard);
 
