@@ -121,13 +121,13 @@ double HistoryStudy::estimate_noise(const Fit& at) {
   double change = 0;
   for (int c = 0; c < problem->width(); ++c) {
     const HistoryChannel ch = problem->channels()[std::size_t(c)];
-    Colour found = colour(*problem, e, c, false);
-    if (found.rho < 0.06) found = colour(*problem, e, c, true);
+    Colour noise = colour(*problem, e, c, false);
+    if (noise.rho < 0.06) noise = colour(*problem, e, c, true);
     const bool trusted = ch.declared && !std::ranges::count(contradicted, ch.name);
-    double sigma = trusted ? declared_noise[std::size_t(c)] : found.sigma;
+    double sigma = trusted ? declared_noise[std::size_t(c)] : noise.sigma;
     sigma = std::max({sigma, ch.resolution / std::sqrt(12.0), 1e-9});
-    change = std::max({change, std::abs(std::log(sigma / ch.noise)), std::abs(found.rho - ch.colour)});
-    problem->set_noise(c, sigma, found.rho);
+    change = std::max({change, std::abs(std::log(sigma / ch.noise)), std::abs(noise.rho - ch.colour)});
+    problem->set_noise(c, sigma, noise.rho);
   }
   return change;
 }
@@ -187,10 +187,10 @@ void HistoryStudy::contradict(const Fit& at) {
   for (int c = 0; c < problem->width(); ++c) {
     const HistoryChannel& ch = problem->channels()[std::size_t(c)];
     if (!ch.declared || std::ranges::count(contradicted, ch.name)) continue;
-    const Colour found = colour(*problem, e, c, ch.colour == 0);
+    const Colour noise = colour(*problem, e, c, ch.colour == 0);
     double n = 0;
     for (const Eigen::MatrixXd& r : e) n += double(r.rows());
-    const double ratio = found.sigma / declared_noise[std::size_t(c)], error = 2 / std::sqrt(n);
+    const double ratio = noise.sigma / declared_noise[std::size_t(c)], error = 2 / std::sqrt(n);
     if (std::abs(std::log(ratio)) > 4.2 * error && (ratio > 1.25 || ratio < 0.8)) contradicted.push_back(ch.name);
   }
 }

@@ -223,7 +223,9 @@ inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
   bool saw = false;
   for (const auto& e : s["differences"]) {
     if (e["channel"] != "backspin") continue;
-    if (e["model"] == "stick-slip") EXPECT_LT(std::abs(e["largest"].get<double>()), 1e-6);  // one and the same on the centre line
+    if (e["model"] == "stick-slip") {
+      EXPECT_LT(std::abs(e["largest"].get<double>()), 1e-6);  // one and the same on the centre line
+    }
     if (e["model"] == "volumetric") {
       saw = true;
       EXPECT_GT(std::abs(e["largest"].get<double>()), 50);
