@@ -113,9 +113,11 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
       continue;
     }
     std::string plot;
+    bool marks = false;
     for (std::size_t i = 0; i < p.series.size(); ++i) {
       const Series& c = p.series[i];
       if (c.x.empty()) continue;
+      marks = marks || !c.error.empty() || c.style.find("points") != std::string::npos;
       const std::string name = fmt::format("s{}_{}", k, i);
       s += data_block(name, c);
       const std::string title = c.label.empty() ? "notitle" : "title " + literal(c.label);
@@ -127,7 +129,8 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
       plot += title;
     }
     plots += plot.empty() ? "set xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\nset autoscale xy\n"
-                          : "plot " + plot + "\n";
+                          // Marks and their bars stay clear of the frame.
+                          : (marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n" : "unset offsets\n") + std::string("plot ") + plot + "\n";
   }
   std::string head = fmt::format(
       "set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n"

@@ -62,8 +62,9 @@ class CalibrateBallJob final : public Job {
     }
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
     std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
-    post::Series wanted{.label = "target and sigma"}, got{.label = "ball", .style = "points"};
-    post::Series time_wanted{.label = "target and sigma"}, time_got{.label = "ball", .style = "linespoints"};
+    post::Series wanted{.label = "target, one standard deviation"}, got{.label = "ball", .style = "points"};
+    post::Series law{.label = fmt::format("{:g} {} {:g} v", target_.restitution, target_.restitution_slope < 0 ? '-' : '+', std::abs(target_.restitution_slope))};
+    post::Series time_wanted{.label = "target, one standard deviation"}, time_got{.label = "ball", .style = "linespoints"};
     for (const auto& p : fit.points) {
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution, 1e3 * p.contact_time, 1e-3 * p.peak_force));
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
@@ -72,6 +73,8 @@ class CalibrateBallJob final : public Job {
       wanted.x.push_back(p.speed);
       wanted.y.push_back(p.target);
       wanted.error.push_back(target_.restitution_sigma);
+      law.x.push_back(p.speed);
+      law.y.push_back(p.target);
       got.x.push_back(p.speed);
       got.y.push_back(p.restitution);
       time_got.x.push_back(p.speed);
@@ -85,7 +88,7 @@ class CalibrateBallJob final : public Job {
     post::Figure figure;
     figure.title = "the calibrated ball on a rigid wall";
     figure.columns = 2;
-    for (const auto& [label, series] : {std::pair{"restitution", std::vector{wanted, got}}, {"contact time [ms]", {time_wanted, time_got}}}) {
+    for (const auto& [label, series] : {std::pair{"restitution", std::vector{wanted, got, law}}, {"contact time [ms]", {time_wanted, time_got}}}) {
       post::Panel panel;
       panel.x_label = "impact speed [m/s]";
       panel.y_label = label;
