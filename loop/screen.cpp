@@ -114,29 +114,6 @@ std::string copied_from(const Shots& shots, const Column& u, const std::vector<i
   return best;
 }
 
-/// Probability that rows drawn at random lie as near to one end of the base's prediction of a channel as the flagged.
-template <class F>
-double one_sided(const Problem& problem, int channel, const std::vector<RowFlag>& flags, F&& counts) {
-  std::vector<std::pair<double, int>> order;
-  std::vector<double> out(std::size_t(problem.width()));
-  for (int i = 0; i < problem.shots(); ++i)
-    if (problem.predict(i, Model{}, nullptr, out.data())) order.emplace_back(out[std::size_t(channel)], i);
-  std::ranges::sort(order);
-  const auto n = order.size();
-  std::size_t k = 0, first = n, last = 0;
-  for (std::size_t r = 0; r < n; ++r)
-    if (std::ranges::any_of(flags, [&](const RowFlag& f) { return f.shot == order[r].second && counts(f); })) {
-      ++k;
-      first = std::min(first, r);
-      last = r;
-    }
-  if (!k) return 1;
-  // All k among the outermost: one over the number of ways, for either end.
-  double p = 2;
-  for (std::size_t j = 0; j < k; ++j) p *= double(std::min(last + 1, n - first) - j) / double(n - j);
-  return std::min(1.0, p);
-}
-
 /// One cause, one finding: a cluster most of whose rows are flagged. Its other shots are flagged too.
 void gather_clusters(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const Fit& fit, std::vector<RowFlag>& flags) {
   int finding = 0;
@@ -305,17 +282,6 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
   if (double(std::ranges::count_if(flags, single)) > std::max(3.0, 0.08 * n)) {
     const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(problem.width()), 2e-4));
     std::erase_if(flags, [&](const RowFlag& f) { return single(f) && f.distance < plain; });
-  }
-  // Exceptions fall anywhere: where they sit together at one end of what the base says of their channel, the rule is wrong.
-  for (int c = 0; c < problem.width(); ++c) {
-    const std::string& channel = problem.channels()[std::size_t(c)].name;
-    const auto here = [&](const RowFlag& f) { return f.shot >= 0 && of_finding[f.finding] == 1 && f.column == channel; };
-    const auto k = std::ranges::count_if(flags, here);
-    if (k < 2 || !std::ranges::any_of(flags, [&](const RowFlag& f) { return here(f) && !f.slip; })) continue;
-    if (one_sided(problem, c, flags, here) < 0.005) {
-      std::erase_if(flags, here);
-      screening.widespread = channel;
-    }
   }
   // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.
   std::map<std::string, int> unreasoned;

@@ -22,8 +22,7 @@ struct RowFlag {
 struct Screening {
   std::vector<RowFlag> flags;  ///< by row
   /// Channel in which so many shots are far off, without a slip that would bring them back, that they are no
-  /// exceptions, or that lie together at one end of what the base predicts: then they are not flagged, and the
-  /// residual is to be explained. Empty: none.
+  /// exceptions: then they are not flagged, and the residual is to be explained. Empty: none.
   std::string widespread;
 };
 
