@@ -3,6 +3,7 @@
 // more per line: so few sets can show a broken loop, not grade a good one.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 nlohmann::json examine(const std::vector<std::pair<std::string, int>>& strata, const std::string& name) {
-  const fs::path dir = fs::temp_directory_path() / ("hosel-examination-" + name);
+  const fs::path dir = fs::temp_directory_path() / ("hosel-examination-" + name + "-" + std::to_string(getpid()));
   fs::remove_all(dir);
   const std::string program = "'" EXAMINATION_COMMAND "' ";
   for (const auto& [stratum, sets] : strata) {

@@ -1,5 +1,6 @@
 // The whole loop on small sets made here with the closed form, and on broken input.
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <tbb/global_control.h>
 
 #include <filesystem>
@@ -61,9 +62,12 @@ class Loop : public testing::Test {
  protected:
   Loop() : model(models::find("rigid-eccentric")->make({})) {}
   Shots shots(const std::string& text) {
-    const fs::path file = fs::path(testing::TempDir()) / "hosel_loop_test.csv";
+    // Tests run side by side, each in a process of its own.
+    const fs::path file = fs::path(testing::TempDir()) / ("hosel_loop_test_" + std::to_string(getpid()) + ".csv");
     std::ofstream(file, std::ios::binary) << text;
-    return read_shots(read_csv(file));
+    Shots out = read_shots(read_csv(file));
+    fs::remove(file);
+    return out;
   }
   LoopCase case_of(const std::string& text) {
     LoopCase c;
