@@ -15,8 +15,7 @@
 #include <optional>
 #include <sstream>
 
-#include "golf/units.hpp"
-#include "models/fe_impact.hpp"
+#include "tests/support/elastic_sphere.hpp"
 
 namespace {
 using namespace hosel;
@@ -203,17 +202,9 @@ Answer hosel(const Impact& impact, const mesh::MeridianOptions& mesh, int harmon
   o.steps_per_contact = steps;
   o.penalty = penalty;
   o.newton_relative = 1e-5;
-  Blow blow;
-  blow.ball = {.mass = kMass, .radius = kRadius};
-  blow.club.head.mass = INFINITY;
-  blow.delivery.club_speed = std::hypot(impact.v_n, impact.v_t);
-  blow.delivery.club_path = std::atan2(impact.v_t, impact.v_n);
-  const Encounter e = encounter(blow);
-  const Vec3 along = e.ball_axes.col(1);
   const double before = cpu_seconds(RUSAGE_SELF);
-  const FeImpactResult r = solve_free_body(blow, o).result;
-  return {r.ball_velocity.dot(e.normal), -r.ball_velocity.dot(along), -kRadius * r.ball_spin.dot(e.normal.cross(along)), r.peak_force,
-          cpu_seconds(RUSAGE_SELF) - before};
+  const test::Bounce b = test::bounce(o, impact.v_n, impact.v_t);
+  return {b.v_n, b.v_t, b.rim, b.peak_force, cpu_seconds(RUSAGE_SELF) - before};
 }
 
 void report(benchmark::State& state, const Impact& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps, double penalty) {
