@@ -1,16 +1,16 @@
-#include "app/cases.hpp"
+#include "hosel/app/cases.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "app/job.hpp"
-#include "app/read_solid.hpp"
-#include "app/reader.hpp"
-#include "golf/shaft_library.hpp"
-#include "loop/effect.hpp"
-#include "loop/history/rig.hpp"
-#include "models/registry.hpp"
+#include "hosel/app/job.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/loop/effect.hpp"
+#include "hosel/loop/history/rig.hpp"
+#include "hosel/models/registry.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -28,9 +28,7 @@ std::vector<std::pair<std::string, std::string>> shipped() {
       std::string title;
       try {
         title = CaseFile(entry.path()).root().text("title", "");
-      } catch (const InputError& error) {
-        title = fmt::format("(unreadable: {})", error.what());
-      }
+      } catch (const InputError& error) { title = fmt::format("(unreadable: {})", error.what()); }
       out.emplace_back(entry.path().filename().string(), title);
     }
     if (!out.empty()) break;
@@ -48,8 +46,9 @@ fs::path find_case(const std::string& named) {
   std::vector<std::string> names;
   for (const auto& [name, title] : shipped()) names.push_back(name);
   const std::string near = nearest(named, names);
-  throw InputError(fmt::format("{}: no such case{}", named,
-                               near.empty() ? "; `hosel list` shows the shipped ones" : "; did you mean '" + near + "'?"));
+  throw InputError(
+      fmt::format("{}: no such case{}", named,
+                  near.empty() ? "; `hosel list` shows the shipped ones" : "; did you mean '" + near + "'?"));
 }
 
 void copy_case(const std::string& from, const fs::path& to) {

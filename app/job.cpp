@@ -1,22 +1,22 @@
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 #include <array>
 
-#include "app/kinds/calibrate_ball.hpp"
-#include "app/kinds/clubs.hpp"
-#include "app/kinds/cross_check.hpp"
-#include "app/kinds/curves.hpp"
-#include "app/kinds/face_map.hpp"
-#include "app/kinds/identify_shaft.hpp"
-#include "app/kinds/loaded_club.hpp"
-#include "app/kinds/impact.hpp"
-#include "app/kinds/material_point.hpp"
-#include "app/kinds/modes.hpp"
-#include "app/kinds/shaft_modes.hpp"
-#include "app/kinds/sweep.hpp"
-#include "app/kinds/swing.hpp"
-#include "app/kinds/tune.hpp"
-#include "app/kinds/loop.hpp"
+#include "hosel/app/kinds/calibrate_ball.hpp"
+#include "hosel/app/kinds/clubs.hpp"
+#include "hosel/app/kinds/cross_check.hpp"
+#include "hosel/app/kinds/curves.hpp"
+#include "hosel/app/kinds/face_map.hpp"
+#include "hosel/app/kinds/identify_shaft.hpp"
+#include "hosel/app/kinds/impact.hpp"
+#include "hosel/app/kinds/loaded_club.hpp"
+#include "hosel/app/kinds/loop.hpp"
+#include "hosel/app/kinds/material_point.hpp"
+#include "hosel/app/kinds/modes.hpp"
+#include "hosel/app/kinds/shaft_modes.hpp"
+#include "hosel/app/kinds/sweep.hpp"
+#include "hosel/app/kinds/swing.hpp"
+#include "hosel/app/kinds/tune.hpp"
 
 namespace hosel::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "app/cases.hpp"
-#include "app/job.hpp"
-#include "app/sweep.hpp"
-#include "solvers/errors.hpp"
+#include "hosel/app/cases.hpp"
+#include "hosel/app/job.hpp"
+#include "hosel/app/sweep.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace {
 
@@ -25,9 +25,9 @@ void run(const Arguments& a) {
   const auto where = app::find_case(a.case_dir);
   app::CaseFile file(where, a.sets);
   const auto job = app::read_job(file);
-  const std::filesystem::path out =
-      a.out.empty() ? std::filesystem::path("out") / std::filesystem::canonical(file.directory()).filename()
-                    : std::filesystem::path(a.out);
+  const std::filesystem::path out = a.out.empty() ? std::filesystem::path("out") /
+                                                        std::filesystem::canonical(file.directory()).filename()
+                                                  : std::filesystem::path(a.out);
   app::Output output({.directory = out, .force = a.force, .quiet = a.quiet, .log = a.log}, file.resolved());
   job->run(output);
 }
@@ -67,7 +67,8 @@ int main(int argc, char** argv) {
   CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");
   add_case(check_command);
   check_command->callback([&] { check(a); });
-  cli.add_subcommand("list", "the kinds, models, materials, balls, shafts, effects and cases there are")->callback(list);
+  cli.add_subcommand("list", "the kinds, models, materials, balls, shafts, effects and cases there are")
+      ->callback(list);
   CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another");
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
@@ -83,7 +84,8 @@ int main(int argc, char** argv) {
   add_case(plan);
   plan->add_option("--out", a.out, "directory for the plan and its points")->required();
   plan->add_flag("--force", a.force, "discard what lies there");
-  plan->callback([&] { app::sweep_plan(a.case_dir, a.sets, {.directory = a.out, .force = a.force, .quiet = a.quiet}); });
+  plan->callback(
+      [&] { app::sweep_plan(a.case_dir, a.sets, {.directory = a.out, .force = a.force, .quiet = a.quiet}); });
   CLI::App* shard = sweep->add_subcommand("run", "compute the missing points of one shard");
   add_directory(shard);
   shard->add_option("--shard", a.shard, "k/n: the k-th of n shares (default 1/1)");
@@ -99,9 +101,7 @@ int main(int argc, char** argv) {
   try {
     cli.parse(argc, argv);
     return 0;
-  } catch (const CLI::CallForHelp& e) {
-    return cli.exit(e);
-  } catch (const CLI::ParseError& e) {
+  } catch (const CLI::CallForHelp& e) { return cli.exit(e); } catch (const CLI::ParseError& e) {
     cli.exit(e);
     return e.get_exit_code() == 0 ? 0 : 2;
   } catch (const app::InputError& e) {

@@ -1,4 +1,4 @@
-#include "app/output.hpp"
+#include "hosel/app/output.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/basic_file_sink.h>
@@ -11,7 +11,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "app/reader.hpp"
+#include "hosel/app/reader.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -39,7 +39,8 @@ Progress::~Progress() {
 namespace {
 std::string clock_text(double seconds) {
   const long s = std::lround(seconds);
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 }  // namespace
 
@@ -88,7 +89,8 @@ Output::Output(OutputOptions options, std::string_view resolved) : state_(std::m
   state_->options = std::move(options);
   const fs::path& out = directory();
   if (fs::exists(out / "summary.json") && !state_->options.force)
-    throw InputError(fmt::format("{}: a finished run lies here; name another --out or overwrite it with --force", out.string()));
+    throw InputError(
+        fmt::format("{}: a finished run lies here; name another --out or overwrite it with --force", out.string()));
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));

@@ -16,7 +16,7 @@ struct OutputOptions {
   std::filesystem::path directory;  ///< OUT
   bool force = false;               ///< overwrite a finished run
   bool quiet = false;
-  std::filesystem::path log = {};   ///< besides OUT/log.txt
+  std::filesystem::path log = {};  ///< besides OUT/log.txt
 };
 
 /// Progress of one long piece of work: a bar with time to go on a terminal, plain lines elsewhere.
@@ -44,7 +44,7 @@ class Output {
 
   const std::filesystem::path& directory() const;
   std::filesystem::path path(std::string_view name) const;  ///< OUT/name, parent folders made
-  const std::string& resolved_case() const;  ///< as written to `case.resolved.toml`
+  const std::string& resolved_case() const;                 ///< as written to `case.resolved.toml`
   bool quiet() const;
   bool force() const;  ///< what an unfinished run left is to be discarded
 

@@ -1,12 +1,12 @@
-#include "app/read_blow.hpp"
+#include "hosel/app/read_blow.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/read_shaft.hpp"
-#include "models/registry.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/models/registry.hpp"
 
 namespace hosel::app {
 namespace {

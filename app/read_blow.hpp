@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/reader.hpp"
-#include "golf/blow.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/golf/blow.hpp"
 
 namespace hosel::app {
 

@@ -1,9 +1,9 @@
-#include "app/read_options.hpp"
+#include "hosel/app/read_options.hpp"
 
 #include <algorithm>
 
-#include "app/read_solid.hpp"
-#include "app/read_swing.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/app/read_swing.hpp"
 
 namespace hosel::app {
 namespace {
@@ -48,7 +48,10 @@ models::FeImpactOptions read_fe(Table root) {
 void read_grip(Table& t, models::ShaftMount& mount) {
   using models::Grip;
   const std::string hold = t.choice("hold", {"clamped", "free", "forced", "hands"}, "clamped");
-  mount.grip = hold == "free" ? Grip::free : hold == "forced" ? Grip::forced : hold == "hands" ? Grip::hands : Grip::clamped;
+  mount.grip = hold == "free"     ? Grip::free
+               : hold == "forced" ? Grip::forced
+               : hold == "hands"  ? Grip::hands
+                                  : Grip::clamped;
   mount.elements = int(t.integer("elements", 2, 1000, mount.elements));
   if (mount.grip == Grip::hands) mount.hands = read_springs(t);
   if (t.has_quantity("force") || t.has_quantity("moment"))
@@ -79,8 +82,10 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
     law.friction = t->number("friction", Range::non_negative(), law.friction);
     law.damping = t->quantity("damping", "s_per_m", Range::non_negative(), law.damping);
-    options.hertz_maw_solution.springs = static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
-    options.hertz_maw_solution.steps = static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
+    options.hertz_maw_solution.springs =
+        static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
+    options.hertz_maw_solution.steps =
+        static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
   }
   const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
   if (asked("shaft-coupled"))

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/reader.hpp"
-#include "models/options.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/models/options.hpp"
 
 namespace hosel::app {
 

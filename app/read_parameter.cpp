@@ -1,4 +1,4 @@
-#include "app/read_parameter.hpp"
+#include "hosel/app/read_parameter.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,8 @@ Axis read_axis(Table table) {
   } else {
     const double from = one("from"), to = one("to");
     const long count = table.integer("count", 2, 100000);
-    for (long i = 0; i < count; ++i) axis.values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
+    for (long i = 0; i < count; ++i)
+      axis.values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
   }
   return axis;
 }

@@ -1,4 +1,4 @@
-#include "app/read_series.hpp"
+#include "hosel/app/read_series.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "app/read_swing.hpp"
+#include "hosel/app/read_swing.hpp"
 
 namespace hosel::app {
 namespace {
@@ -25,7 +25,8 @@ std::vector<double> values(const loop::Sheet& sheet, std::size_t c, bool gaps) {
         throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], sheet.names[c], cell));
     }
     if (!std::isfinite(x)) {
-      if (!gaps) throw InputError(fmt::format("{}:{}: {} may have no empty cell", sheet.file, sheet.lines[r], sheet.names[c]));
+      if (!gaps)
+        throw InputError(fmt::format("{}:{}: {} may have no empty cell", sheet.file, sheet.lines[r], sheet.names[c]));
       x = kNaN;
     }
     out.push_back(x);
@@ -60,9 +61,14 @@ std::optional<Meaning> meaning(const std::string& name) {
   }
   const SplitName split = split_unit(name);
   if (!split.unit) return {};
-  const auto is = [&](std::string_view stem) { return split.stem == stem || split.stem.starts_with(std::string(stem) + "_"); };
+  const auto is = [&](std::string_view stem) {
+    return split.stem == stem || split.stem.starts_with(std::string(stem) + "_");
+  };
   const bool turn = is("twist");
-  const Reading reading = turn ? Reading::twist : is("droop") ? Reading::droop : is("shortening") ? Reading::shortening : Reading::lead;
+  const Reading reading = turn               ? Reading::twist
+                          : is("droop")      ? Reading::droop
+                          : is("shortening") ? Reading::shortening
+                                             : Reading::lead;
   if (!turn && !is("lead") && !is("droop") && !is("shortening")) return {};
   const Dimension d = split.unit->dimension;
   if (d == (turn ? Dimension::angle : Dimension::length)) return Meaning{reading, 0, split.unit->si};
@@ -73,7 +79,8 @@ std::optional<Meaning> meaning(const std::string& name) {
 
 }  // namespace
 
-Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most, std::vector<std::string>& notes) {
+Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most,
+                   std::vector<std::string>& notes) {
   const loop::Sheet sheet = read_sheet(file);
   Series out;
   out.record.name = file.filename().string();
@@ -90,7 +97,8 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     const auto driven = [&](std::string_view stem, Dimension dimension, Eigen::MatrixXd& into) {
       static constexpr std::string_view axes[] = {"lead", "droop", "axial"};
       for (int a = 0; a < 3; ++a) {
-        if (split.stem != fmt::format("{}_{}", stem, axes[a]) || !split.unit || split.unit->dimension != dimension) continue;
+        if (split.stem != fmt::format("{}_{}", stem, axes[a]) || !split.unit || split.unit->dimension != dimension)
+          continue;
         const std::vector<double> x = values(sheet, c, false);
         if (into.size() == 0) into = Eigen::MatrixXd::Zero(std::ptrdiff_t(x.size()), 3);
         for (std::size_t i = 0; i < x.size(); ++i) into(std::ptrdiff_t(i), a) = x[i] * split.unit->si;
@@ -98,10 +106,13 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
       }
       return false;
     };
-    if (driven("clamp", Dimension::acceleration, out.drive.acceleration) || driven("force", Dimension::force, out.drive.force)) continue;
+    if (driven("clamp", Dimension::acceleration, out.drive.acceleration) ||
+        driven("force", Dimension::force, out.drive.force))
+      continue;
     const std::optional<Meaning> m = meaning(name);
     if (!m) {
-      notes.push_back(fmt::format("{}: column '{}' is no channel that the model knows, and is not used", out.record.name, name));
+      notes.push_back(
+          fmt::format("{}: column '{}' is no channel that the model knows, and is not used", out.record.name, name));
       continue;
     }
     loop::HistoryChannel channel{.name = name, .reading = m->reading, .order = m->order, .si = m->si};
@@ -110,20 +121,31 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     if (sensors && sensors->has(name)) {
       Table place = sensors->table(name);
       channel.arc_length = place.quantity("arc_length", "mm", Range::non_negative(), channel.arc_length);
-      if (strain) channel.reading = place.choice("axis", {"lead", "droop"}, m->reading == loop::Reading::strain_droop ? "droop" : "lead") == "droop" ? loop::Reading::strain_droop : loop::Reading::strain_lead;
-      if (channel.arc_length < clamp || channel.arc_length > tip + 1e-9) place.fail("arc_length", "the sensor is not on the free shaft");
+      if (strain)
+        channel.reading = place.choice("axis", {"lead", "droop"},
+                                       m->reading == loop::Reading::strain_droop ? "droop" : "lead") == "droop"
+                              ? loop::Reading::strain_droop
+                              : loop::Reading::strain_lead;
+      if (channel.arc_length < clamp || channel.arc_length > tip + 1e-9)
+        place.fail("arc_length", "the sensor is not on the free shaft");
     }
     channel.resolution = recording_step(sheet.columns[c]);
     out.channels.push_back(channel);
     measured.push_back(values(sheet, c, true));
   }
-  if (times.empty()) throw InputError(fmt::format("{}:1: a column time_s (or another unit of time) is needed, with at least one row", sheet.file));
+  if (times.empty())
+    throw InputError(
+        fmt::format("{}:1: a column time_s (or another unit of time) is needed, with at least one row", sheet.file));
   for (std::size_t i = 1; i < times.size(); ++i)
-    if (!(times[i] > times[i - 1])) throw InputError(fmt::format("{}:{}: time does not go on", sheet.file, sheet.lines[i]));
-  if (measured.empty()) throw InputError(fmt::format("{}:1: no measured channel (lead_*, droop_*, shortening_*, twist_*, strain_*)", sheet.file));
+    if (!(times[i] > times[i - 1]))
+      throw InputError(fmt::format("{}:{}: time does not go on", sheet.file, sheet.lines[i]));
+  if (measured.empty())
+    throw InputError(
+        fmt::format("{}:1: no measured channel (lead_*, droop_*, shortening_*, twist_*, strain_*)", sheet.file));
 
   const std::size_t stride = (times.size() + most - 1) / most;
-  if (stride > 1) notes.push_back(fmt::format("{}: every {}th of {} samples is used", out.record.name, stride, times.size()));
+  if (stride > 1)
+    notes.push_back(fmt::format("{}: every {}th of {} samples is used", out.record.name, stride, times.size()));
   const auto thin = [&](Eigen::MatrixXd& m) {
     if (stride <= 1 || m.size() == 0) return;
     Eigen::MatrixXd some(std::ptrdiff_t((times.size() + stride - 1) / stride), m.cols());
@@ -131,7 +153,9 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     m = some;
   };
   out.record.measured.resize(std::ptrdiff_t(times.size()), std::ptrdiff_t(measured.size()));
-  for (std::size_t k = 0; k < measured.size(); ++k) out.record.measured.col(std::ptrdiff_t(k)) = Eigen::Map<const Eigen::VectorXd>(measured[k].data(), std::ptrdiff_t(times.size()));
+  for (std::size_t k = 0; k < measured.size(); ++k)
+    out.record.measured.col(std::ptrdiff_t(k)) =
+        Eigen::Map<const Eigen::VectorXd>(measured[k].data(), std::ptrdiff_t(times.size()));
   thin(out.record.measured);
   thin(out.drive.acceleration);
   thin(out.drive.force);

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "app/reader.hpp"
-#include "loop/history/bench_history.hpp"
-#include "loop/history/histories.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/loop/history/bench_history.hpp"
+#include "hosel/loop/history/histories.hpp"
 
 namespace hosel::app {
 
@@ -21,6 +21,7 @@ struct Series {
 /// length or angle, of its rate (mps, deg_per_s) or its acceleration (m_per_s2); strain is a plain number, or
 /// millionths as `_um_per_m`. `sensors` says where each is read and along which axis; without it motions are the
 /// hosel's and strain is that at the clamp. Long records are thinned to `most` samples. Throws InputError.
-Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most, std::vector<std::string>& notes);
+Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most,
+                   std::vector<std::string>& notes);
 
 }  // namespace hosel::app

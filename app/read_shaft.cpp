@@ -1,9 +1,9 @@
-#include "app/read_shaft.hpp"
+#include "hosel/app/read_shaft.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "golf/shaft_library.hpp"
+#include "hosel/golf/shaft_library.hpp"
 
 namespace hosel::app {
 namespace {
@@ -51,7 +51,8 @@ Shaft by_tube(Table table) {
   std::vector<ShaftLayer> layers;
   for (Table layer : table.tables("layer"))
     layers.push_back({layer.number("share", Range::fraction(), 1.0), layer.quantity("E", "GPa", Range::positive()),
-                      layer.quantity("G", "GPa", Range::positive()), layer.quantity("density", "kg_per_m3", Range::positive())});
+                      layer.quantity("G", "GPa", Range::positive()),
+                      layer.quantity("density", "kg_per_m3", Range::positive())});
   if (layers.empty()) table.fail("layer", "a tube needs at least one [[shaft.tube.layer]]");
   const double kappa = table.number("shear_factor", {0, 1, true});
   return tube_shaft(tube, layers, kappa);
@@ -83,19 +84,12 @@ void read_offsets(Table table, Shaft& shaft) {
 Shaft read_shaft(Table table) {
   Shaft shaft;
   try {
-    if (table.has("name"))
-      shaft = by_name(table);
-    else if (auto stations = table.optional_table("table"))
-      shaft = by_stations(*stations);
-    else if (auto polynomial = table.optional_table("polynomial"))
-      shaft = by_polynomials(*polynomial);
-    else if (auto tube = table.optional_table("tube"))
-      shaft = by_tube(*tube);
-    else
-      table.fail("name", "say which shaft: `name`, or a table `table`, `polynomial` or `tube`");
-  } catch (const std::invalid_argument& e) {
-    table.fail("", e.what());
-  }
+    if (table.has("name")) shaft = by_name(table);
+    else if (auto stations = table.optional_table("table")) shaft = by_stations(*stations);
+    else if (auto polynomial = table.optional_table("polynomial")) shaft = by_polynomials(*polynomial);
+    else if (auto tube = table.optional_table("tube")) shaft = by_tube(*tube);
+    else table.fail("name", "say which shaft: `name`, or a table `table`, `polynomial` or `tube`");
+  } catch (const std::invalid_argument& e) { table.fail("", e.what()); }
   shaft = scaled(std::move(shaft), table.number("bending_scale", Range::positive(), 1.0),
                  table.number("torsion_scale", Range::positive(), 1.0));
   const double mass_scale = table.number("mass_scale", Range::positive(), 1.0);
@@ -118,7 +112,8 @@ ClubGeometry read_club_geometry(Table table) {
   ClubGeometry g;
   g.hosel = table.vector("position", "mm", standard.hosel);
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
-  const double lie = table.quantity("lie", "deg", {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
+  const double lie =
+      table.quantity("lie", "deg", {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
   const double lean = table.quantity("lean", "deg", {-kPi / 4, kPi / 4}, 0);
   g.shaft_axis = Vec3(std::sin(lean) * std::sin(lie), std::cos(lie), std::cos(lean) * std::sin(lie));
   return g;

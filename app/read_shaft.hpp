@@ -1,8 +1,8 @@
 /// The shaft and how the head hangs on it, as tables of a case file.
 #pragma once
 
-#include "app/reader.hpp"
-#include "golf/blow.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/golf/blow.hpp"
 
 namespace hosel::app {
 

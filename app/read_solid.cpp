@@ -1,4 +1,4 @@
-#include "app/read_solid.hpp"
+#include "hosel/app/read_solid.hpp"
 
 #include <array>
 
@@ -42,8 +42,7 @@ fem::Solid read_solid(Table table) {
     for (std::size_t i = 0; i < moduli.size(); ++i) o.powers.push_back({moduli[i], exponents[i]});
     solid.elastic = o;
   } else {
-    const auto lame = fem::Lame::of(table.quantity("young", "MPa", positive),
-                                    table.number("poisson", {-0.9, 0.49999}));
+    const auto lame = fem::Lame::of(table.quantity("young", "MPa", positive), table.number("poisson", {-0.9, 0.49999}));
     if (law == "neo-hooke") solid.elastic = fem::Hyperelastic::neo_hooke(lame);
     if (law == "st-venant-kirchhoff") solid.elastic = fem::StVenantKirchhoff{lame};
     if (law == "linear") solid.elastic = fem::LinearElastic{lame};
@@ -68,7 +67,8 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
   }
   models::FeBall ball{"case", {}};
   for (Table& layer : layers) {
-    const double radius = layer.number("radius_fraction", {0.05, 1}, &layer == &layers.back() ? std::optional<double>(1.0) : std::nullopt);
+    const double radius = layer.number("radius_fraction", {0.05, 1},
+                                       &layer == &layers.back() ? std::optional<double>(1.0) : std::nullopt);
     ball.layers.push_back({radius, read_solid(layer)});
   }
   if (const auto faults = ball.faults(); !faults.empty()) table.fail("layers", faults.front());

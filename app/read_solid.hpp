@@ -4,8 +4,8 @@
 #include <span>
 #include <string_view>
 
-#include "app/reader.hpp"
-#include "models/fe_ball.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/models/fe_ball.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "app/read_swing.hpp"
+#include "hosel/app/read_swing.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "loop/csv.hpp"
+#include "hosel/loop/csv.hpp"
 
 namespace hosel::app {
 namespace {
@@ -26,7 +26,8 @@ std::vector<double> column(const loop::Sheet& sheet, std::string_view stem, Dime
       double x = 0;
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
       if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
-        throw InputError(fmt::format("{}:{}: {} '{}' is no number (a motion may have no empty cells)", sheet.file, sheet.lines[r], sheet.names[c], cell));
+        throw InputError(fmt::format("{}:{}: {} '{}' is no number (a motion may have no empty cells)", sheet.file,
+                                     sheet.lines[r], sheet.names[c], cell));
       out.push_back(unit_needed ? x * split.unit->si : x);
     }
     return out;
@@ -35,7 +36,8 @@ std::vector<double> column(const loop::Sheet& sheet, std::string_view stem, Dime
 }
 
 bool has(const loop::Sheet& sheet, std::string_view stem) {
-  return std::ranges::any_of(sheet.names, [&](const std::string& n) { return n == stem || split_unit(n).stem == stem; });
+  return std::ranges::any_of(sheet.names,
+                             [&](const std::string& n) { return n == stem || split_unit(n).stem == stem; });
 }
 
 }  // namespace
@@ -43,9 +45,7 @@ bool has(const loop::Sheet& sheet, std::string_view stem) {
 loop::Sheet read_sheet(const std::filesystem::path& file) {
   try {
     return loop::read_csv(file);
-  } catch (const loop::DataError& e) {
-    throw InputError(e.what());
-  }
+  } catch (const loop::DataError& e) { throw InputError(e.what()); }
 }
 
 MotionInput read_motion(Table table) {
@@ -76,8 +76,9 @@ MotionInput read_motion(Table table) {
                c = column(sheet, "grip_c", Dimension::angle, true);
     for (std::size_t i = 0; i < n; ++i) {
       if (std::abs(std::cos(b[i])) < 0.01)
-        throw InputError(fmt::format("{}:{}: the Y-X-Z Euler angles are at gimbal lock (grip_b within 0.6 deg of 90 deg): give rotation columns",
-                                     sheet.file, sheet.lines[i]));
+        throw InputError(fmt::format(
+            "{}:{}: the Y-X-Z Euler angles are at gimbal lock (grip_b within 0.6 deg of 90 deg): give rotation columns",
+            sheet.file, sheet.lines[i]));
       track.attitudes.push_back(models::from_yxz(a[i], b[i], c[i]));
     }
   } else {
@@ -96,7 +97,8 @@ MotionInput read_motion(Table table) {
   }
   const Eigen::Quaterniond about(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
   for (Eigen::Quaterniond& q : track.attitudes) q = q * about;
-  if (const auto wrong = track.faults(gap); !wrong.empty()) throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
+  if (const auto wrong = track.faults(gap); !wrong.empty())
+    throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
   if (!span) {
     in.begin = track.times.front();
     in.end = track.times.back();
@@ -144,9 +146,11 @@ models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem
     parts[3 + c] = column(sheet, fmt::format("moment_{}", "xyz"[c]), Dimension::moment, true);
   }
   for (std::size_t i = 1; i < times.size(); ++i)
-    if (!(times[i] > times[i - 1])) throw InputError(fmt::format("{}:{}: time goes backwards or stands still", sheet.file, sheet.lines[i]));
+    if (!(times[i] > times[i - 1]))
+      throw InputError(fmt::format("{}:{}: time goes backwards or stands still", sheet.file, sheet.lines[i]));
   if (times.size() < 2 || times.front() > span.begin + 1e-9 || times.back() < span.end - 1e-9)
-    throw InputError(fmt::format("{}: the wrench does not cover the motion, {:g} to {:g} s", sheet.file, span.begin, span.end));
+    throw InputError(
+        fmt::format("{}: the wrench does not cover the motion, {:g} to {:g} s", sheet.file, span.begin, span.end));
   drive.wrench = [times, parts, motion = drive.motion](double t) {
     const auto after = std::ranges::upper_bound(times, t);
     const auto k = std::clamp<std::ptrdiff_t>(after - times.begin(), 1, std::ssize(times) - 1);
@@ -172,7 +176,10 @@ models::SwingOptions read_swing_options(Table root) {
   if (auto t = root.optional_table("joint")) {
     const std::string kind = t->choice("kind", {"rigid", "hinge", "spring", "none"}, "rigid");
     using models::HeadJoint;
-    o.joint = kind == "hinge" ? HeadJoint::hinge : kind == "spring" ? HeadJoint::spring : kind == "none" ? HeadJoint::none : HeadJoint::rigid;
+    o.joint = kind == "hinge"    ? HeadJoint::hinge
+              : kind == "spring" ? HeadJoint::spring
+              : kind == "none"   ? HeadJoint::none
+                                 : HeadJoint::rigid;
     if (o.joint == HeadJoint::hinge) {
       const auto axis = t->numbers("axis", 3);
       o.hinge_axis = Vec3(axis[0], axis[1], axis[2]);

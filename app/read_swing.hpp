@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "app/reader.hpp"
-#include "loop/csv.hpp"
-#include "models/grip_motion.hpp"
-#include "models/swing.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/loop/csv.hpp"
+#include "hosel/models/grip_motion.hpp"
+#include "hosel/models/swing.hpp"
 
 namespace hosel::app {
 
@@ -25,7 +25,8 @@ struct MotionInput {
 /// axes that are not orthonormal, cells that are not numbers.
 MotionInput read_motion(Table table);
 
-/// Springs and dampers of a joint: `stiffness`, `rotational_stiffness` and (0) `damping`, `rotational_damping`, three each.
+/// Springs and dampers of a joint: `stiffness`, `rotational_stiffness` and (0) `damping`, `rotational_damping`, three
+/// each.
 fem::JointStiffness read_springs(Table& table);
 
 /// `[grip]` of a swing: `drive = "prescribed"` (the motion itself), `"hands"` (springs to it) or `"forced"` by a

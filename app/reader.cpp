@@ -1,7 +1,8 @@
-#include "app/reader.hpp"
+#include "hosel/app/reader.hpp"
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,7 +10,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ struct Document {
   std::vector<fs::path> named_files;
   toml::table root, resolved;
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
-  std::map<const toml::table*, toml::table*> echo;                        // where each table is echoed
+  std::map<const toml::table*, toml::table*> echo;                         // where each table is echoed
 };
 }  // namespace detail
 
@@ -64,9 +64,7 @@ std::string describe(const Range& r, double factor, std::string_view unit) {
 
 }  // namespace
 
-bool Range::contains(double x) const {
-  return !std::isnan(x) && (open_min ? x > min : x >= min) && x <= max;
-}
+bool Range::contains(double x) const { return !std::isnan(x) && (open_min ? x > min : x >= min) && x <= max; }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
@@ -144,8 +142,7 @@ struct Found {
 };
 
 /// The one key of this stem, in whatever unit of the right dimension.
-Found find_quantity(const Table& t, Access access, std::string_view stem, std::string_view preferred,
-                    bool required) {
+Found find_quantity(const Table& t, Access access, std::string_view stem, std::string_view preferred, bool required) {
   const Unit* unit = find_unit(preferred);
   if (!unit) throw std::logic_error(fmt::format("no unit '{}' for key '{}'", preferred, stem));
   std::vector<Found> found;
@@ -173,7 +170,8 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
   if (!wrong_key.empty()) {
     std::string offered;
     for (const Unit& u : units())
-      if (u.dimension == unit->dimension) offered += fmt::format("{}{}_{}", offered.empty() ? "" : ", ", stem, u.suffix);
+      if (u.dimension == unit->dimension)
+        offered += fmt::format("{}{}_{}", offered.empty() ? "" : ", ", stem, u.suffix);
     if (wrong)
       t.fail(wrong_key, fmt::format("unit '{}' is a {}, expected a {} ({})", wrong->suffix, name(wrong->dimension),
                                     name(unit->dimension), offered));
@@ -203,7 +201,8 @@ double Table::quantity(std::string_view stem, std::string_view unit, Range si, s
     return *standard;
   }
   const double x = read_number(*this, f.key, *f.node);
-  if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+  if (!si.contains(x * f.unit->si))
+    fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
   access.echo(f.key, x);
   return x * f.unit->si;
 }
@@ -224,7 +223,8 @@ std::vector<double> Table::quantities(std::string_view stem, std::string_view un
     fail(f.key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
   for (const toml::node& node : *list) {
     const double x = read_number(*this, f.key, node);
-    if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+    if (!si.contains(x * f.unit->si))
+      fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
     out.push_back(x * f.unit->si);
     echoed.push_back(x);
   }
@@ -486,9 +486,7 @@ void apply_override(detail::Document& document, const std::string& text) {
   toml::table parsed;
   try {
     parsed = toml::parse("value = " + value);
-  } catch (const toml::parse_error&) {
-    parsed.insert("value", value);
-  }
+  } catch (const toml::parse_error&) { parsed.insert("value", value); }
   toml::table* at = &document.root;
   std::stringstream parts(key);
   std::vector<std::string> path;
@@ -518,10 +516,9 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
       const std::string near = nearest(key.str(), {known.begin(), known.end()});
       std::string all;
       for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-      throw InputError(fmt::format("{}:{}: {}: unknown {}; {}", d->file.string(),
-                                   std::max<unsigned>(node.source().begin.line, 1), name,
-                                   node.is_table() ? "table" : "key",
-                                   near.empty() ? "known here: " + all : "did you mean '" + near + "'?"));
+      throw InputError(fmt::format(
+          "{}:{}: {}: unknown {}; {}", d->file.string(), std::max<unsigned>(node.source().begin.line, 1), name,
+          node.is_table() ? "table" : "key", near.empty() ? "known here: " + all : "did you mean '" + near + "'?"));
     }
     if (const toml::table* child = node.as_table(); child && d->known.contains(child)) find_unknown(d, *child, name);
     if (const toml::array* list = node.as_array())

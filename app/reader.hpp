@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "golf/units.hpp"
-#include "golf/vector.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::app {
 

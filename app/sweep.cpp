@@ -1,4 +1,4 @@
-#include "app/sweep.hpp"
+#include "hosel/app/sweep.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/cases.hpp"
-#include "app/sweep_store.hpp"
-#include "solvers/errors.hpp"
+#include "hosel/app/cases.hpp"
+#include "hosel/app/sweep_store.hpp"
+#include "hosel/solvers/errors.hpp"
 
 // Present where OpenBLAS is the BLAS; its own threads would fight with one thread a point.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -63,9 +63,7 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
             result = job.compute(todo[i], own / fmt::format("point-{:06}", todo[i]));
           } catch (const solvers::NonConvergence& error) {
             result = {{"error", fmt::format("no convergence: {}", error.what())}};
-          } catch (const std::invalid_argument& error) {
-            result = {{"error", error.what()}};
-          }
+          } catch (const std::invalid_argument& error) { result = {{"error", error.what()}}; }
           const double seconds = std::chrono::duration<double>(clock() - from).count();
           store.append(todo[i], seconds, result);
           busy.fetch_add(seconds);
@@ -83,7 +81,8 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
 std::vector<json> all_points(const Plan& plan, const fs::path& root) {
   auto found = read_points(root / "shards", plan.fingerprint);
   if (found.size() != plan.points)
-    throw InputError(fmt::format("{}: {} of {} points are finished; nothing merged", root.string(), found.size(), plan.points));
+    throw InputError(
+        fmt::format("{}: {} of {} points are finished; nothing merged", root.string(), found.size(), plan.points));
   std::vector<json> points;
   for (auto& [number, result] : found) points.push_back(std::move(result));
   return points;
@@ -124,7 +123,8 @@ Planned read_planned(const fs::path& where, const std::vector<std::string>& over
 /// The plan of a directory, with the case read again and found the same.
 Planned open_plan(const fs::path& out) {
   if (!fs::is_regular_file(out / "plan.json"))
-    throw InputError(fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
+    throw InputError(
+        fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
   const json plan = json::parse(text_of(out / "plan.json"));
   Planned p = read_planned(plan.at("case").get<std::string>(), plan.at("set").get<std::vector<std::string>>());
   if (plan.at("version") != p.plan.version)
@@ -153,9 +153,7 @@ Shard parse_shard(const std::string& text) {
     const bool clean = end == slash;
     count = std::stoul(text.substr(slash + 1), &end);
     if (!clean || end != text.size() - slash - 1) index = 0;
-  } catch (const std::exception&) {
-    index = 0;
-  }
+  } catch (const std::exception&) { index = 0; }
   if (slash == std::string::npos || index < 1 || index > count)
     throw InputError(fmt::format("--shard {}: expected k/n with k from 1 to n, e.g. 2/8", text));
   return {index, count};

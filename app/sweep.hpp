@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

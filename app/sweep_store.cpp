@@ -1,4 +1,4 @@
-#include "app/sweep_store.hpp"
+#include "hosel/app/sweep_store.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "app/reader.hpp"
+#include "hosel/app/reader.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -36,7 +36,8 @@ std::string digest(const std::string& text) {
 
 std::string digest_of_files(const std::vector<fs::path>& files) {
   std::string all;
-  for (const fs::path& file : files) all += file.filename().string() + '\n' + (fs::is_regular_file(file) ? digest(content(file)) : "none") + '\n';
+  for (const fs::path& file : files)
+    all += file.filename().string() + '\n' + (fs::is_regular_file(file) ? digest(content(file)) : "none") + '\n';
   return digest(all);
 }
 
@@ -63,8 +64,10 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
         entry = nlohmann::json::parse(text.begin() + long(at), text.begin() + long(end));
         if (line == 1) {
           if (entry.at("fingerprint") != fingerprint)
-            throw InputError(fmt::format("{}: holds points of another case or another version of the program; "
-                                         "start a new directory, or discard them with --force", file.string()));
+            throw InputError(
+                fmt::format("{}: holds points of another case or another version of the program; "
+                            "start a new directory, or discard them with --force",
+                            file.string()));
         } else {
           const std::size_t number = entry.at("point");
           const auto [it, fresh] = points.emplace(number, entry.at("result"));
@@ -81,7 +84,8 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
 }
 
 PointStore::PointStore(const fs::path& directory, const std::string& fingerprint)
-    : file_((directory / "points.jsonl").string()), descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+    : file_((directory / "points.jsonl").string()),
+      descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
   if (descriptor_ < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
   try {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)

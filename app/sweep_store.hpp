@@ -21,7 +21,8 @@ std::string program_version();
 /// Every point found in DIRECTORY/*/points.jsonl, by its number. A last line cut short by a kill is
 /// not a point. Throws InputError where a file belongs to another `fingerprint`, or where two files
 /// disagree about a point.
-std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& directory, const std::string& fingerprint);
+std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& directory,
+                                                  const std::string& fingerprint);
 
 /// The points file of one shard, held by one process at a time.
 class PointStore {

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/fe_impact.hpp"
-#include "solvers/linear.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/solvers/linear.hpp"
 
 namespace {
 using namespace hosel;
@@ -44,9 +44,10 @@ void Shares(benchmark::State& state) {
     fem::State peak;
     double force = 0;
     const double whole = seconds(1, [&] {
-      result = run_impact(run.system, run.parts, run.initial, o, run.encounter.normal_speed, [&](const ImpactView& view) {
-        if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
-      });
+      result =
+          run_impact(run.system, run.parts, run.initial, o, run.encounter.normal_speed, [&](const ImpactView& view) {
+            if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
+          });
     });
     impact.parts.contact->start(impact.initial);
     fem::Vector inertia = fem::Vector::Zero(impact.system.layout.size()), internal = inertia;

@@ -28,10 +28,10 @@ struct Impact {
   double nu = 0.3, v_n = 0, v_t = 0, friction = 0;  ///< [-, m/s, m/s, -]
   bool finite = false;                              ///< St Venant-Kirchhoff, else linear
   mesh::MeridianOptions mesh;
-  int sectors = 1;        ///< of the peer's sweep
-  double span = kPi;      ///< of the sweep [rad]
-  double duration = 0;    ///< [s]
-  int steps = 0;          ///< of the duration
+  int sectors = 1;      ///< of the peer's sweep
+  double span = kPi;    ///< of the sweep [rad]
+  double duration = 0;  ///< [s]
+  int steps = 0;        ///< of the duration
 };
 
 /// After contact, in the wall's frame.
@@ -65,9 +65,11 @@ std::map<int, Vec3> write_deck(const Impact& impact, const fs::path& path) {
       nodes += fmt::format("{}, {:.12g}, {:.12g}, {:.12g}\n", it->second, x, y, -p.x());
       const bool axis = m.on_axis(node);
       if (axis && wedge) rims += fmt::format("*BOUNDARY\n{}, 1, 2\n", it->second);
-      else if (axis || plane == 0 || (plane == 2 * impact.sectors && !wedge)) rims += fmt::format("*BOUNDARY\n{}, 2\n", it->second);
+      else if (axis || plane == 0 || (plane == 2 * impact.sectors && !wedge))
+        rims += fmt::format("*BOUNDARY\n{}, 2\n", it->second);
       else if (wedge)
-        rims += fmt::format("*EQUATION\n2\n{0}, 2, {1:.12g}, {0}, 1, {2:.12g}\n", it->second, std::cos(angle), -std::sin(angle));
+        rims += fmt::format("*EQUATION\n2\n{0}, 2, {1:.12g}, {0}, 1, {2:.12g}\n", it->second, std::cos(angle),
+                            -std::sin(angle));
     }
     return it->second;
   };
@@ -111,9 +113,11 @@ std::map<int, Vec3> write_deck(const Impact& impact, const fs::path& path) {
   const int first = int(ids.size()) + 1;
   const double bottom = -1e3 * kRadius, reach = 0.9e3 * kRadius, wide = wedge ? reach * std::sin(impact.span) : reach;
   for (const double z : {bottom - 2, bottom})
-    for (const auto& [x, y] : {std::pair{wedge ? 0.0 : -reach, -1.0}, {reach, -1.0}, {reach, wide + 1}, {wedge ? 0.0 : -reach, wide + 1}})
+    for (const auto& [x, y] :
+         {std::pair{wedge ? 0.0 : -reach, -1.0}, {reach, -1.0}, {reach, wide + 1}, {wedge ? 0.0 : -reach, wide + 1}})
       plate[first + int(plate.size())] = Vec3(x, y, z);
-  out.print("*NODE, NSET=NBALL\n{}*ELEMENT, TYPE=C3D20R, ELSET=BALL\n{}*ELEMENT, TYPE=C3D15, ELSET=BALL\n{}", nodes, bricks, wedges);
+  out.print("*NODE, NSET=NBALL\n{}*ELEMENT, TYPE=C3D20R, ELSET=BALL\n{}*ELEMENT, TYPE=C3D15, ELSET=BALL\n{}", nodes,
+            bricks, wedges);
   out.print("*NODE, NSET=NPLATE\n");
   for (const auto& [n, x] : plate) out.print("{}, {:.12g}, {:.12g}, {:.12g}\n", n, x.x(), x.y(), x.z());
   out.print("*ELEMENT, TYPE=C3D8, ELSET=PLATE\n{}", ++element);
@@ -126,10 +130,11 @@ std::map<int, Vec3> write_deck(const Impact& impact, const fs::path& path) {
   out.print("*SURFACE INTERACTION, NAME=TOUCH\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n5000.\n");
   if (impact.friction > 0) out.print("*FRICTION\n{}, 200.\n", impact.friction);
   out.print("*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE\nSBALL, SPLATE\n");
-  out.print("*INITIAL CONDITIONS, TYPE=VELOCITY\nNBALL, 3, {:.12g}\nNBALL, 1, {:.12g}\n", -1e3 * impact.v_n, 1e3 * impact.v_t);
+  out.print("*INITIAL CONDITIONS, TYPE=VELOCITY\nNBALL, 3, {:.12g}\nNBALL, 1, {:.12g}\n", -1e3 * impact.v_n,
+            1e3 * impact.v_t);
   const double step = impact.duration / impact.steps;
-  out.print("*STEP, INC=100000{}\n*DYNAMIC, ALPHA=-0.05\n{:g}, {:g}, {:g}, {:g}\n", impact.finite ? ", NLGEOM" : "", step,
-            impact.duration, 1e-5 * step, step);
+  out.print("*STEP, INC=100000{}\n*DYNAMIC, ALPHA=-0.05\n{:g}, {:g}, {:g}, {:g}\n", impact.finite ? ", NLGEOM" : "",
+            step, impact.duration, 1e-5 * step, step);
   out.print("*NODE PRINT, NSET=NPLATE, FREQUENCY=1\nRF\n*END STEP\n");
   return plate;
 }
@@ -140,7 +145,8 @@ Answer read_answer(const Impact& impact, const fs::path& path, const std::map<in
   std::ifstream in(path);
   std::string line;
   double time = 0;
-  Vec3 velocity(impact.v_t, 0, -impact.v_n), place = Vec3::Zero(), spin = Vec3::Zero();  // spin: angular momentum about the origin
+  Vec3 velocity(impact.v_t, 0, -impact.v_n), place = Vec3::Zero(),
+                                             spin = Vec3::Zero();  // spin: angular momentum about the origin
   Answer out;
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double step = 0;
@@ -179,7 +185,8 @@ std::optional<Answer> calculix(const Impact& impact) {
   fs::create_directories(dir);
   const auto plate = write_deck(impact, dir / "impact.inp");
   const double before = cpu_seconds(RUSAGE_CHILDREN);
-  const int status = std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx impact > log.txt 2>&1", dir.string()).c_str());
+  const int status =
+      std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx impact > log.txt 2>&1", dir.string()).c_str());
   const double cpu = cpu_seconds(RUSAGE_CHILDREN) - before;
   std::optional<Answer> out;
   if (status == 0) {
@@ -207,7 +214,8 @@ Answer hosel(const Impact& impact, const mesh::MeridianOptions& mesh, int harmon
   return {b.v_n, b.v_t, b.rim, b.peak_force, cpu_seconds(RUSAGE_SELF) - before};
 }
 
-void report(benchmark::State& state, const Impact& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps, double penalty) {
+void report(benchmark::State& state, const Impact& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps,
+            double penalty) {
   for (auto _ : state) {
     if (std::system("command -v ccx > /dev/null") != 0) {
       state.SkipWithError("CalculiX is not installed (apt-get install calculix-ccx)");
@@ -236,7 +244,9 @@ void report(benchmark::State& state, const Impact& impact, const mesh::MeridianO
 void Normal(benchmark::State& state) {
   const int n = int(state.range(0));
   const mesh::MeridianOptions mesh{.sector = n, .rings = n, .pole = 0.5, .skin = 0.5, .core = 0.4};
-  report(state, {.nu = 0.45, .v_n = 10, .mesh = mesh, .sectors = 1, .span = radians(4), .duration = 0.9e-3, .steps = 180}, mesh, 0, 120, 1000);
+  report(state,
+         {.nu = 0.45, .v_n = 10, .mesh = mesh, .sectors = 1, .span = radians(4), .duration = 0.9e-3, .steps = 180},
+         mesh, 0, 120, 1000);
 }
 BENCHMARK(Normal)->Arg(3)->Arg(4)->ArgName("elements_per_45_degrees")->Iterations(1)->Unit(benchmark::kSecond);
 
@@ -245,8 +255,18 @@ BENCHMARK(Normal)->Arg(3)->Arg(4)->ArgName("elements_per_45_degrees")->Iteration
 void Oblique(benchmark::State& state) {
   const int n = int(state.range(0));
   const mesh::MeridianOptions mesh{.sector = n, .rings = n, .pole = 0.5, .skin = 0.5, .core = 0.4};
-  report(state, {.nu = 0.3, .v_n = 10 * std::cos(radians(25)), .v_t = 10 * std::sin(radians(25)), .friction = 0.3, .finite = true, .mesh = mesh,
-                 .sectors = 4 * n, .span = kPi, .duration = 0.95e-3, .steps = 120}, mesh, n == 2 ? 2 : 3, n == 2 ? 40 : 80, n == 2 ? 200 : 500);
+  report(state,
+         {.nu = 0.3,
+          .v_n = 10 * std::cos(radians(25)),
+          .v_t = 10 * std::sin(radians(25)),
+          .friction = 0.3,
+          .finite = true,
+          .mesh = mesh,
+          .sectors = 4 * n,
+          .span = kPi,
+          .duration = 0.95e-3,
+          .steps = 120},
+         mesh, n == 2 ? 2 : 3, n == 2 ? 40 : 80, n == 2 ? 200 : 500);
 }
 BENCHMARK(Oblique)->Arg(2)->Arg(3)->ArgName("elements_per_45_degrees")->Iterations(1)->Unit(benchmark::kSecond);
 

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "app/cases.hpp"
-#include "app/sweep.hpp"
+#include "hosel/app/cases.hpp"
+#include "hosel/app/sweep.hpp"
 
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
@@ -36,7 +36,8 @@ double seconds(int threads, std::size_t from, std::size_t to) {
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(from, to, 1),
       [](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t p = range.begin(); p < range.end(); ++p) benchmark::DoNotOptimize(study().points.compute(p, {}));
+        for (std::size_t p = range.begin(); p < range.end(); ++p)
+          benchmark::DoNotOptimize(study().points.compute(p, {}));
       },
       tbb::simple_partitioner());
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -2,7 +2,7 @@
 // the swing against the number of its elements (160 to 40: at most 5).
 #include <benchmark/benchmark.h>
 
-#include "models/fe_full_club.hpp"
+#include "hosel/models/fe_full_club.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace {
@@ -19,7 +19,8 @@ void impact(benchmark::State& state) {
   options.impact.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
   options.impact.steps_per_contact = 60;
   for (auto _ : state)
-    benchmark::DoNotOptimize(state.range(0) ? solve_full_club(blow, options).launch : solve_free_body(blow, options.impact).launch);
+    benchmark::DoNotOptimize(state.range(0) ? solve_full_club(blow, options).launch
+                                            : solve_free_body(blow, options.impact).launch);
 }
 BENCHMARK(impact)->Arg(0)->Arg(1)->ArgName("full")->Unit(benchmark::kMillisecond);
 

@@ -57,12 +57,14 @@ void HalfSphere(benchmark::State& state) {
   mesh::MeridianOptions mesh{.sector = 5, .rings = 4, .pole = .3, .far = 2, .skin = .35};
   if (row.speed == 3) mesh.pole = .2, mesh.far = 3, mesh.skin = .25;
   if (row.speed == 1) mesh.pole = .13, mesh.far = 4, mesh.skin = .15;
-  FeImpactOptions o = sphere({.elastic = fem::StVenantKirchhoff{fem::Lame::of(60e6, .3)}, .branches = {}, .density = 1129}, row.friction,
-                             row.speed == 10 ? 3 : 2, mesh);
+  FeImpactOptions o =
+      sphere({.elastic = fem::StVenantKirchhoff{fem::Lame::of(60e6, .3)}, .branches = {}, .density = 1129},
+             row.friction, row.speed == 10 ? 3 : 2, mesh);
   o.penalty = 4000;
   o.steps_per_contact = 120;
   const double angle = radians(row.angle);
-  for (auto _ : state) against(state, test::bounce(o, row.speed * std::cos(angle), row.speed * std::sin(angle)), row.found);
+  for (auto _ : state)
+    against(state, test::bounce(o, row.speed * std::cos(angle), row.speed * std::sin(angle)), row.found);
 }
 BENCHMARK(HalfSphere)->DenseRange(0, 7)->ArgName("row")->Iterations(1)->Unit(benchmark::kSecond);
 
@@ -70,8 +72,9 @@ BENCHMARK(HalfSphere)->DenseRange(0, 7)->ArgName("row")->Iterations(1)->Unit(ben
 /// normal, friction 0.4. Which mean rotation it takes is not known: the last digits are a matter of that choice.
 void GolfLike(benchmark::State& state) {
   const bool steep = state.range(0) == 20;
-  FeImpactOptions o = sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .4, 4,
-                             {.sector = 4, .rings = 4, .pole = .5, .skin = .5});
+  FeImpactOptions o =
+      sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .4, 4,
+             {.sector = 4, .rings = 4, .pole = .5, .skin = .5});
   o.tilt = steep ? .06 : .2;
   o.penalty = 1000;
   o.steps_per_contact = 320;
@@ -103,7 +106,8 @@ void SmallPatch(benchmark::State& state) {
                       {.031, 1, -.497, {.sector = 10, .rings = 14, .pole = .045, .far = 14, .skin = .02}, 4000},
                       {.0125, 1, -.454, {.sector = 10, .rings = 17, .pole = .018, .far = 30, .skin = .008}, 10000}};
   const Row& row = rows[state.range(0)];
-  FeImpactOptions o = sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .1, 2, row.mesh);
+  FeImpactOptions o = sphere(
+      {.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .1, 2, row.mesh);
   o.penalty = row.penalty;
   o.steps_per_contact = 60;
   constexpr double kappa = 2 * .51 / 1.51;

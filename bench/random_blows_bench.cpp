@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "golf/units.hpp"
-#include "models/fe_impact.hpp"
-#include "solvers/errors.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace {
 using namespace hosel;
@@ -55,12 +55,12 @@ void Blows(benchmark::State& state) {
       const auto [blow, options] = draw(random);
       try {
         const FeOutcome out = solve_free_body(blow, options);
-        const bool finite = out.launch.velocity.allFinite() && out.launch.spin.allFinite() && std::isfinite(out.result.peak_force);
-        const bool plausible = out.result.peak_force > 0 && std::abs(out.result.ledger.closure) <= 0.05 * out.result.ledger.initial;
-        finite && plausible ? ++solved : ++bad;
-      } catch (const solvers::NonConvergence&) {
-        ++refused;
-      }
+        const bool finite = out.launch.velocity.allFinite() && out.launch.spin.allFinite() &&
+                            std::isfinite(out.result.peak_force);
+        const bool plausible = out.result.peak_force > 0 &&
+                               std::abs(out.result.ledger.closure) <= 0.05 * out.result.ledger.initial;
+        finite&& plausible ? ++solved : ++bad;
+      } catch (const solvers::NonConvergence&) { ++refused; }
     }
     state.counters["solved"] = solved;
     state.counters["refused_with_a_reason"] = refused;

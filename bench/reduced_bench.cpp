@@ -6,11 +6,11 @@
 
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/hertz_maw.hpp"
-#include "models/shaft_coupled.hpp"
-#include "models/stick_slip.hpp"
-#include "models/volumetric.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/shaft_coupled.hpp"
+#include "hosel/models/stick_slip.hpp"
+#include "hosel/models/volumetric.hpp"
 
 namespace {
 using namespace hosel;
@@ -21,8 +21,13 @@ Blow blow(double toe) {
   b.club.head.cg = {-0.0423, 0.001, 0.0029};
   b.club.head.inertia = Vec3(2.843e-4, 4.085e-4, 5.679e-4).asDiagonal();
   b.club.head.face = {0.305, 0.305};
-  b.delivery = {.club_speed = 48, .attack_angle = radians(2), .club_path = radians(-3), .dynamic_loft = radians(13),
-                .face_angle = radians(2), .impact_toe = toe, .impact_high = -0.007};
+  b.delivery = {.club_speed = 48,
+                .attack_angle = radians(2),
+                .club_path = radians(-3),
+                .dynamic_loft = radians(13),
+                .face_angle = radians(2),
+                .impact_toe = toe,
+                .impact_high = -0.007};
   return b;
 }
 
@@ -69,9 +74,15 @@ void ShaftCoupled(benchmark::State& state) {
   Shaft shaft;
   for (int i = 0; i <= 20; ++i) {
     const double x = 0.05 * i, bending = 70 - 50 * x;
-    shaft.stations.push_back({.arc_length = x, .bending_stiffness_y = bending, .bending_stiffness_z = bending,
-                              .torsional_stiffness = 17.5, .axial_stiffness = 3e6, .shear_stiffness = 3e5,
-                              .mass_per_length = 0.06, .rotary_inertia_y = 8e-7, .rotary_inertia_z = 8e-7,
+    shaft.stations.push_back({.arc_length = x,
+                              .bending_stiffness_y = bending,
+                              .bending_stiffness_z = bending,
+                              .torsional_stiffness = 17.5,
+                              .axial_stiffness = 3e6,
+                              .shear_stiffness = 3e5,
+                              .mass_per_length = 0.06,
+                              .rotary_inertia_y = 8e-7,
+                              .rotary_inertia_z = 8e-7,
                               .outer_radius = 0.005});
   }
   b.club.shaft = shaft;
@@ -86,8 +97,7 @@ void TenThousand(benchmark::State& state) {
   const models::Volumetric model;
   for (auto _ : state) {
     tbb::parallel_for(tbb::blocked_range<int>(0, 10000, 50), [&](const auto& range) {
-      for (int i = range.begin(); i < range.end(); ++i)
-        benchmark::DoNotOptimize(model.launch(blow(-0.02 + 4e-6 * i)));
+      for (int i = range.begin(); i < range.end(); ++i) benchmark::DoNotOptimize(model.launch(blow(-0.02 + 4e-6 * i)));
     });
   }
 }

@@ -1,10 +1,10 @@
-#include "fem/beam.hpp"
+#include "hosel/fem/beam.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/rotation_forms.hpp"
+#include "hosel/fem/rotation_forms.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -129,12 +129,9 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
   if (line.size() < 3 || line.size() % 2 == 0) throw std::invalid_argument("a beam needs 2 n + 1 nodes for n elements");
   if (!(options_.damping_time >= 0)) throw std::invalid_argument("the damping time of a beam is not negative");
   for (std::size_t i = 0; i < line.size(); ++i)
-    if (i == 0 && options_.first)
-      nodes_.push_back(*options_.first);
-    else if (i + 1 == line.size() && options_.last)
-      nodes_.push_back(*options_.last);
-    else
-      nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
+    if (i == 0 && options_.first) nodes_.push_back(*options_.first);
+    else if (i + 1 == line.size() && options_.last) nodes_.push_back(*options_.last);
+    else nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
   rotary_.assign(line.size(), Mat3::Zero());
   moment_.assign(line.size(), Vec3::Zero());
   weight_.assign(line.size(), 0);
@@ -148,7 +145,9 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
     const Eigen::Quaterniond q2(line[first + 1].frame);
     const Vec3 w1 = rotation_log(q2.conjugate() * Eigen::Quaterniond(line[first].frame));
     const Vec3 w3 = rotation_log(q2.conjugate() * Eigen::Quaterniond(line[first + 2].frame));
-    const auto frame_at = [&](const Vec3& N) { return Mat3(line[first + 1].frame * exp_matrix(N[0] * w1 + N[2] * w3)); };
+    const auto frame_at = [&](const Vec3& N) {
+      return Mat3(line[first + 1].frame * exp_matrix(N[0] * w1 + N[2] * w3));
+    };
 
     for (std::size_t i = 0; i < 2; ++i) {
       Point& g = e.points[i];
@@ -213,8 +212,7 @@ Beam::Kinematics Beam::kinematics(const State& s, const Element& e) const {
   k.R2 = q2.toRotationMatrix();
   for (std::size_t i = 0; i < 2; ++i) {
     const Node& node = nodes_[first + 2 * i];
-    k.y[i] = k.R2.transpose() *
-             (s.q.segment<3>(node.translation.q) - s.q.segment<3>(middle.translation.q));
+    k.y[i] = k.R2.transpose() * (s.q.segment<3>(node.translation.q) - s.q.segment<3>(middle.translation.q));
     const Eigen::Quaterniond relative = q2.conjugate() * rotation(s, node.rotation);
     k.psi[i] = rotation_log(relative);
     k.relative[i] = relative.toRotationMatrix();
@@ -269,15 +267,16 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
     }
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
-        inertia.segment<3>(e.equations[6 * i]) +=
-            e.mass(static_cast<Index>(i), static_cast<Index>(j)) * s.a.segment<3>(e.equations[6 * j]);
+        inertia.segment<3>(e.equations[6 * i]) += e.mass(static_cast<Index>(i), static_cast<Index>(j)) *
+                                                  s.a.segment<3>(e.equations[6 * j]);
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Index t = nodes_[i].translation.v, r = nodes_[i].rotation.v;
     const Vec3 w = s.v.segment<3>(r), turn = s.a.segment<3>(r);
     const Mat3 R = attitude(s, i);
     inertia.segment<3>(t) += R * (turn.cross(moment_[i]) + w.cross(w.cross(moment_[i])));
-    inertia.segment<3>(r) += rotary_[i] * turn + w.cross(rotary_[i] * w) + moment_[i].cross(R.transpose() * s.a.segment<3>(t));
+    inertia.segment<3>(r) += rotary_[i] * turn + w.cross(rotary_[i] * w) +
+                             moment_[i].cross(R.transpose() * s.a.segment<3>(t));
     force.segment<3>(t) -= weight_[i] * options_.gravity;
     force.segment<3>(r) -= moment_[i].cross(R.transpose() * options_.gravity);
   }
@@ -316,8 +315,8 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
           gpsi[static_cast<std::size_t>(a)] += w * (Na * moment + dNa * bend);
           for (int b = 0; b < 2; ++b) {
             const double Nb = g.N[2 * b], dNb = g.dN[2 * b];
-            H.block<3, 3>(6 * a + 3, 6 * b + 3) +=
-                w * (Na * Nb * turn + dNa * Nb * curve + Na * dNb * curve.transpose());
+            H.block<3, 3>(6 * a + 3, 6 * b + 3) += w *
+                                                   (Na * Nb * turn + dNa * Nb * curve + Na * dNb * curve.transpose());
             H.block<3, 3>(6 * a, 6 * b + 3) += w * dNa * Nb * stretch;
             H.block<3, 3>(6 * a + 3, 6 * b) += w * Na * dNb * stretch.transpose();
           }
@@ -359,8 +358,9 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
       const Mat3 R = attitude(s, first + i);
       const Vec3 turn = s.a.segment<3>(nodes_[first + i].rotation.v);
       const Vec3 lift = R.transpose() * (s.a.segment<3>(nodes_[first + i].translation.v) - options_.gravity);
-      K.block<3, 3>(at - 3, at) -= R * (weights.mass * skew(S) + weights.damping * (skew(w.cross(S)) + skew(w) * skew(S)) +
-                                        weights.stiffness * skew(turn.cross(S) + w.cross(w.cross(S))));
+      K.block<3, 3>(at - 3, at) -= R *
+                                   (weights.mass * skew(S) + weights.damping * (skew(w.cross(S)) + skew(w) * skew(S)) +
+                                    weights.stiffness * skew(turn.cross(S) + w.cross(w.cross(S))));
       K.block<3, 3>(at, at - 3) += weights.mass * skew(S) * R.transpose();
       K.block<3, 3>(at, at) += weights.stiffness * skew(S) * skew(lift);
     }
@@ -401,8 +401,7 @@ void Beam::accept(const State& s) {
       const Vec12 rate = k.jacobian() * velocities(s, e.equations);
       for (const Point& g : e.points) {
         const Vec6 r = strain_matrix(point_strain(k, g), g) * rate;
-        power += options_.damping_time * g.weight *
-                 r.dot(g.stiffness * r);
+        power += options_.damping_time * g.weight * r.dot(g.stiffness * r);
       }
     }
   if (started_) {

@@ -8,8 +8,8 @@
 /// which is objective and depends on no path. Strain energy is integrated at two Gauss points, where the
 /// section's properties are evaluated; the residual is its exact derivative.
 /// Centres off the line: axial strain is taken at the elastic centre, shear at the shear centre, gamma + kappa x r.
-/// Mass is consistent for translations; rotary inertia and the mass centre's offset sit at the nodes (Lobatto weights), each node
-/// a small rigid body, so that momenta are those of a system of bodies.
+/// Mass is consistent for translations; rotary inertia and the mass centre's offset sit at the nodes (Lobatto weights),
+/// each node a small rigid body, so that momenta are those of a system of bodies.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/section.hpp"
-#include "fem/term.hpp"
-#include "mesh/line.hpp"
+#include "hosel/fem/section.hpp"
+#include "hosel/fem/term.hpp"
+#include "hosel/mesh/line.hpp"
 
 namespace hosel::fem {
 
@@ -71,9 +71,9 @@ class Beam final : public Term {
  private:
   struct Point {  // Gauss point of the stiffness
     double weight, arc_length;
-    Vec3 N, dN;          // shape functions and their derivatives by arc length
-    Vec3 tangent;        // X'
-    Mat6 stiffness;      // of (gamma, kappa), reference axes
+    Vec3 N, dN;      // shape functions and their derivatives by arc length
+    Vec3 tangent;    // X'
+    Mat6 stiffness;  // of (gamma, kappa), reference axes
     Mat3 frame;
   };
   struct Element {

@@ -1,4 +1,4 @@
-#include "fem/contact_face.hpp"
+#include "hosel/fem/contact_face.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -33,7 +33,8 @@ std::vector<std::pair<double, double>> gauss(int n) {
 std::vector<std::string> ContactLawAtPoint::faults() const {
   std::vector<std::string> out;
   if (!(normal_stiffness > 0)) out.emplace_back("contact: state a positive normal stiffness");
-  if (!(friction >= 0) || !std::isfinite(friction)) out.emplace_back("contact: friction must be at least zero and finite");
+  if (!(friction >= 0) || !std::isfinite(friction))
+    out.emplace_back("contact: friction must be at least zero and finite");
   if (friction > 0 && !transition_speed && !(tangential_stiffness > 0))
     out.emplace_back("contact: Coulomb friction needs a positive tangential stiffness");
   if (transition_speed && !(*transition_speed > 0)) out.emplace_back("contact: the transition speed must be positive");
@@ -151,9 +152,7 @@ ContactFace::Local ContactFace::law(const Past& past, const Kinematics& k, bool 
   out.pressure = -en * out.gap;
   out.force = out.pressure * slope;
   const Mat3 T = Mat3::Identity() - n * n.transpose();
-  if (derivatives) {
-    out.stiffness = en * slope * slope.transpose() + en * out.gap / length * T * curvature * T;
-  }
+  if (derivatives) { out.stiffness = en * slope * slope.transpose() + en * out.gap / length * T * curvature * T; }
   if (law_.friction == 0) return out;
   const double limit = law_.friction * out.pressure;
 
@@ -168,8 +167,8 @@ ContactFace::Local ContactFace::law(const Past& past, const Kinematics& k, bool 
     if (derivatives) {
       out.stiffness -= law_.friction * en * h * d * slope.transpose();
       const double secant = x > 1e-8 ? h / speed : 4 / *law_.transition_speed;
-      out.damping = limit * (secant * (T - d * d.transpose()) +
-                             4 / *law_.transition_speed * (1 - h * h) * d * d.transpose());
+      out.damping = limit *
+                    (secant * (T - d * d.transpose()) + 4 / *law_.transition_speed * (1 - h * h) * d * d.transpose());
     }
     return out;
   }
@@ -279,11 +278,10 @@ void ContactFace::tangent(const State& s, const Weights& weights, TangentSink& s
       block.noalias() += point.area * B.transpose() * right;
       if (moving) {
         // The arm of the force moves: d(arm x f) = -f x d(arm); its share from f's turning stands above.
-        block.bottomRows<3>().noalias() -=
-            point.area * weights.stiffness * turn.transpose() * skew(local.force) * B;
+        block.bottomRows<3>().noalias() -= point.area * weights.stiffness * turn.transpose() * skew(local.force) * B;
         // B^T (skew(f) turn) above counted -arm-side terms of the rotation row: R is fixed there.
-        block.bottomRightCorner<3, 3>().noalias() -=
-            point.area * weights.stiffness * (skew(k.arm) * turn).transpose() * skew(local.force) * turn;
+        block.bottomRightCorner<3, 3>().noalias() -= point.area * weights.stiffness * (skew(k.arm) * turn).transpose() *
+                                                     skew(local.force) * turn;
       }
     });
   for (std::size_t e = 0; e < edges_.size(); ++e)

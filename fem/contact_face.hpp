@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fem/harmonic_solid.hpp"
-#include "golf/face.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/golf/face.hpp"
 
 namespace hosel::fem {
 
@@ -15,9 +15,9 @@ namespace hosel::fem {
 /// Where `transition_speed` is set, friction is instead the regularised law
 /// |t| = friction p tanh(4 v / transition_speed) of the slip speed v.
 struct ContactLawAtPoint {
-  double normal_stiffness = 0;      ///< penalty per reference area [N/m^3]
-  double tangential_stiffness = 0;  ///< [N/m^3]
-  double friction = 0;              ///< Coulomb's coefficient [-]
+  double normal_stiffness = 0;             ///< penalty per reference area [N/m^3]
+  double tangential_stiffness = 0;         ///< [N/m^3]
+  double friction = 0;                     ///< Coulomb's coefficient [-]
   std::optional<double> transition_speed;  ///< [m/s]
 
   std::vector<std::string> faults() const;
@@ -27,9 +27,9 @@ struct ContactLawAtPoint {
 /// frame; `face_centre` lies in it. Without blocks the face stands still at `position`, `attitude`.
 struct FaceCarrier {
   std::optional<Layout::Block> translation, rotation;
-  Vec3 face_centre = Vec3::Zero();             ///< from the node, body frame [m]
-  Vec3 position = Vec3::Zero();                ///< of a fixed face's node, global [m]
-  Mat3 attitude = Mat3::Identity();            ///< of a fixed face, body to global
+  Vec3 face_centre = Vec3::Zero();   ///< from the node, body frame [m]
+  Vec3 position = Vec3::Zero();      ///< of a fixed face's node, global [m]
+  Mat3 attitude = Mat3::Identity();  ///< of a fixed face, body to global
 };
 
 /// Which half of the motion the angles leave to symmetry. The carrier feels the mirror images as well.
@@ -41,26 +41,26 @@ enum class Symmetry {
 
 /// One quadrature point of the patch at the last accepted state.
 struct ContactPoint {
-  Vec3 reference;        ///< material point, global, before the motion [m]
-  Vec3 position;         ///< now, global [m]
-  Vec3 traction;         ///< on the ball per reference area, global [Pa]
-  double pressure = 0;   ///< [Pa]
-  double gap = 0;        ///< positive when apart [m]
-  double slip = 0;       ///< path slid so far [m]
-  double area = 0;       ///< reference area that it stands for [m^2]
+  Vec3 reference;       ///< material point, global, before the motion [m]
+  Vec3 position;        ///< now, global [m]
+  Vec3 traction;        ///< on the ball per reference area, global [Pa]
+  double pressure = 0;  ///< [Pa]
+  double gap = 0;       ///< positive when apart [m]
+  double slip = 0;      ///< path slid so far [m]
+  double area = 0;      ///< reference area that it stands for [m^2]
   bool sliding = false;
 };
 
 /// What the patch does at the last accepted state, and its largest errors so far.
 struct ContactReport {
-  Vec3 force = Vec3::Zero();        ///< on the ball, global [N]
-  Vec3 point = Vec3::Zero();        ///< centre of pressure, global [m]
-  double normal_force = 0;          ///< [N]
-  double pressure = 0;              ///< largest [Pa]
-  double area = 0;                  ///< of the patch [m^2]
-  double penetration = 0;           ///< largest so far [m]
-  double stick_slip_error = 0;      ///< largest elastic creep of a sticking point so far [m]
-  int points = 0;                   ///< in contact
+  Vec3 force = Vec3::Zero();    ///< on the ball, global [N]
+  Vec3 point = Vec3::Zero();    ///< centre of pressure, global [m]
+  double normal_force = 0;      ///< [N]
+  double pressure = 0;          ///< largest [Pa]
+  double area = 0;              ///< of the patch [m^2]
+  double penetration = 0;       ///< largest so far [m]
+  double stick_slip_error = 0;  ///< largest elastic creep of a sticking point so far [m]
+  int points = 0;               ///< in contact
 };
 
 /// Points are Gauss points of the surface edges times equidistant angles; the gap is the distance (to
@@ -105,7 +105,7 @@ class ContactFace final : public Term {
     Vec3 reference;   // in the placement's axes, from its origin
     double area = 0;  // reference area x angular weight
   };
-  struct Past {       // as of the last accepted state, face frame
+  struct Past {  // as of the last accepted state, face frame
     Vec3 place = Vec3::Zero();
     Vec3 anchor = Vec3::Zero();  // of the tangential spring
     double gap = 0, traction = 0, slip_speed = 0, slip = 0;

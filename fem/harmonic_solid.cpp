@@ -1,4 +1,4 @@
-#include "fem/harmonic_solid.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -32,12 +32,17 @@ int largest_order(const Family& family) {
 
 HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family, SolidQuadrature quadrature,
                              std::vector<Solid> materials, Placement placement, std::string body)
-    : body_(std::move(body)), mesh_(std::move(mesh)), family_(std::move(family)), quadrature_(std::move(quadrature)),
-      materials_(std::move(materials)), placement_(std::move(placement)) {
+    : body_(std::move(body)),
+      mesh_(std::move(mesh)),
+      family_(std::move(family)),
+      quadrature_(std::move(quadrature)),
+      materials_(std::move(materials)),
+      placement_(std::move(placement)) {
   if (static_cast<int>(materials_.size()) != mesh_.layers)
     throw std::invalid_argument("harmonic solid: one material for each layer");
   for (const Solid& m : materials_) {
-    if (const auto faults = m.faults(); !faults.empty()) throw std::invalid_argument("harmonic solid: " + faults.front());
+    if (const auto faults = m.faults(); !faults.empty())
+      throw std::invalid_argument("harmonic solid: " + faults.front());
     corotated_ = corotated_ || m.linear();
   }
   dissipated_.assign(materials_.size(), 0);
@@ -90,7 +95,8 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
   const auto shape = [&](const std::array<int, 8>& element, double x, double y, double w) {
     const mesh::Q8 q = mesh::Q8::at(x, y);
     Eigen::Matrix<double, 8, 2> nodes;
-    for (int i = 0; i < 8; ++i) nodes.row(i) = mesh_.nodes[static_cast<std::size_t>(element[static_cast<std::size_t>(i)])];
+    for (int i = 0; i < 8; ++i)
+      nodes.row(i) = mesh_.nodes[static_cast<std::size_t>(element[static_cast<std::size_t>(i)])];
     const Eigen::Matrix2d jacobian = q.derivative.transpose() * nodes;  // rows d/dxi, d/deta
     const double det = jacobian.determinant();
     if (!(det > 0)) throw std::invalid_argument("harmonic solid: an element of the mesh is turned inside out");
@@ -232,8 +238,7 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
     r.noalias() = stress.col(2).transpose() * derivatives_;
     fe.noalias() += (g.value / g.rho) * r;
     if (p + 1 < (e + 1) * per) return;
-    const Eigen::MatrixXd ie =
-        element_mass_[e] * element_fields(s.a, 0, e) * gram_;
+    const Eigen::MatrixXd ie = element_mass_[e] * element_fields(s.a, 0, e) * gram_;
     const auto& equations = element_equations_[e];
     const auto& places = element_places_[e];
     for (std::size_t i = 0; i < equations.size(); ++i) {
@@ -253,8 +258,8 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
   const Vec3 b = (U.trace() * Mat3::Identity() - U).transpose().partialPivLu().solve(moment);
   // b . axial(R^T dF - dF^T R) = [b] : (R^T dF) = (R [b]) : dF, and axial counts each pair once.
   const Mat3 conjugate = R * skew(b);
-  force.segment(block_.v, block_.size) +=
-      mean_gradient_.transpose() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(conjugate.data());
+  force.segment(block_.v, block_.size) += mean_gradient_.transpose() *
+                                          Eigen::Map<const Eigen::Matrix<double, 9, 1>>(conjugate.data());
 }
 
 void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
@@ -407,7 +412,8 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   // Points of the angular rule carry the history; stresses at other angles by trigonometric interpolation.
   const auto n = static_cast<Index>(frames_.size());
   const std::size_t per = 4;
-  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_points(points_.size(), Eigen::Matrix<double, 6, Eigen::Dynamic>(6, n));
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_points(points_.size(),
+                                                                  Eigen::Matrix<double, 6, Eigen::Dynamic>(6, n));
   PointResponse response;
   const double dt = s.time - time_;
   visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
@@ -417,7 +423,8 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
             std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
     // In the cylindrical frame, so that an axisymmetric state is constant over theta.
     const Mat3 sigma = response.stress * F.transpose() / F.determinant();
-    at_points[p].col(j) = to_sym(frames_[static_cast<std::size_t>(j)].transpose() * sigma * frames_[static_cast<std::size_t>(j)]);
+    at_points[p].col(j) =
+        to_sym(frames_[static_cast<std::size_t>(j)].transpose() * sigma * frames_[static_cast<std::size_t>(j)]);
   });
   const std::size_t angles = theta.size(), nodes = mesh_.nodes.size();
   // Nearest angle of the rule, or its mirror image where the rule covers half the circle.
@@ -499,7 +506,8 @@ MeanMotion HarmonicSolid::motion(const State& s) const {
     Eigen::MatrixXd X(8, K + 2);
     X.leftCols(K) = element_fields(s.q, block_.q - block_.v, e);
     for (int i = 0; i < 8; ++i)
-      X.row(i).tail<2>() = mesh_.nodes[static_cast<std::size_t>(mesh_.elements[e][static_cast<std::size_t>(i)])].transpose();
+      X.row(i).tail<2>() =
+          mesh_.nodes[static_cast<std::size_t>(mesh_.elements[e][static_cast<std::size_t>(i)])].transpose();
     const Eigen::MatrixXd V = element_fields(s.v, 0, e);
     const auto& m = element_mass_[e];
     mass += 2 * M_PI * m.sum();

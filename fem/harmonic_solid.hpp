@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "fem/harmonics.hpp"
-#include "fem/materials/solid.hpp"
-#include "fem/term.hpp"
-#include "mesh/meridian.hpp"
+#include "hosel/fem/harmonics.hpp"
+#include "hosel/fem/materials/solid.hpp"
+#include "hosel/fem/term.hpp"
+#include "hosel/mesh/meridian.hpp"
 
 namespace hosel::fem {
 
 /// Where the solid lies in space before it moves.
 struct Placement {
-  Vec3 origin = Vec3::Zero();      ///< of the meridian's s axis, global [m]
-  Mat3 axes = Mat3::Identity();    ///< columns: s axis, direction of theta = 0, of theta = 90 degrees
+  Vec3 origin = Vec3::Zero();    ///< of the meridian's s axis, global [m]
+  Mat3 axes = Mat3::Identity();  ///< columns: s axis, direction of theta = 0, of theta = 90 degrees
 };
 
 /// Numerical integration of the volume.
@@ -25,12 +25,12 @@ struct SolidQuadrature {
 
 /// Velocity of the whole in the sense of momentum.
 struct MeanMotion {
-  double mass = 0;                              ///< [kg]
-  Vec3 centre = Vec3::Zero();                   ///< of mass, global [m]
-  Vec3 velocity = Vec3::Zero();                 ///< of the centre of mass, global [m/s]
-  Vec3 momentum = Vec3::Zero();                 ///< [kg m/s]
-  Vec3 angular_momentum = Vec3::Zero();         ///< about the centre of mass [kg m^2/s]
-  Mat3 inertia = Mat3::Zero();                  ///< about the centre of mass, present shape [kg m^2]
+  double mass = 0;                       ///< [kg]
+  Vec3 centre = Vec3::Zero();            ///< of mass, global [m]
+  Vec3 velocity = Vec3::Zero();          ///< of the centre of mass, global [m/s]
+  Vec3 momentum = Vec3::Zero();          ///< [kg m/s]
+  Vec3 angular_momentum = Vec3::Zero();  ///< about the centre of mass [kg m^2/s]
+  Mat3 inertia = Mat3::Zero();           ///< about the centre of mass, present shape [kg m^2]
 };
 
 /// Finite-strain (or corotated small-strain) solid on a meridian mesh of eight-node elements with
@@ -79,7 +79,7 @@ class HarmonicSolid final : public Term {
   void set_velocity(State& s, const Vec3& linear, const Vec3& angular) const;
 
   MeanMotion motion(const State& s) const;
-  double mass() const;                                           ///< of the mesh [kg]
+  double mass() const;                                                   ///< of the mesh [kg]
   const std::vector<double>& dissipated() const { return dissipated_; }  ///< by layer, cumulative [J]
   std::vector<double> strain_by_layer(const State& accepted) const;      ///< [J]
   /// Largest |strain| measure max |eigenvalue of F^T F - 1|/2 over all points.
@@ -103,19 +103,19 @@ class HarmonicSolid final : public Term {
   Placement placement_;
   Layout::Block block_;
   std::vector<Index> equation_;
-  std::vector<std::vector<Index>> element_equations_;        // free ones of each element
-  std::vector<std::vector<int>> element_places_;             // their place i * K + k in the element's fields
-  std::vector<Point> points_;                                // element by element
-  std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;    // density included, angular part not
-  Eigen::MatrixXd functions_, derivatives_;                  // (3 angles) x K: f_k, f_k'
-  std::vector<Mat3> frames_;                                 // columns e_s, e_rho, e_theta at each angle
-  Eigen::MatrixXd gram_;                                     // integral of f_k . f_l over theta
+  std::vector<std::vector<Index>> element_equations_;      // free ones of each element
+  std::vector<std::vector<int>> element_places_;           // their place i * K + k in the element's fields
+  std::vector<Point> points_;                              // element by element
+  std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;  // density included, angular part not
+  Eigen::MatrixXd functions_, derivatives_;                // (3 angles) x K: f_k, f_k'
+  std::vector<Mat3> frames_;                               // columns e_s, e_rho, e_theta at each angle
+  Eigen::MatrixXd gram_;                                   // integral of f_k . f_l over theta
   bool corotated_ = false;
-  Eigen::MatrixXd mean_gradient_;                            // 9 x equations: volume mean of F - 1
+  Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
   double volume_ = 0;
 
-  double time_ = 0;                                          // of the last accepted state
-  std::vector<std::size_t> history_start_;                   // of each meridian point
+  double time_ = 0;                         // of the last accepted state
+  std::vector<std::size_t> history_start_;  // of each meridian point
   std::vector<double> history_;
   std::vector<double> dissipated_;
 };

@@ -1,8 +1,8 @@
-#include "fem/harmonics.hpp"
+#include "hosel/fem/harmonics.hpp"
 
 #include <cmath>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::fem {
 

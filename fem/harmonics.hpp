@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::fem {
 

@@ -1,12 +1,17 @@
-#include "fem/modal_damping.hpp"
+#include "hosel/fem/modal_damping.hpp"
 
 #include <stdexcept>
 #include <utility>
 
 namespace hosel::fem {
 
-ModalDamping::ModalDamping(std::string body, const Node& first, std::vector<Node> nodes, Eigen::MatrixXd weights, Vector rates)
-    : body_(std::move(body)), first_(first), nodes_(std::move(nodes)), weights_(std::move(weights)), rates_(std::move(rates)) {
+ModalDamping::ModalDamping(std::string body, const Node& first, std::vector<Node> nodes, Eigen::MatrixXd weights,
+                           Vector rates)
+    : body_(std::move(body)),
+      first_(first),
+      nodes_(std::move(nodes)),
+      weights_(std::move(weights)),
+      rates_(std::move(rates)) {
   if (weights_.rows() != 6 * static_cast<Index>(nodes_.size()) || weights_.cols() != rates_.size())
     throw std::invalid_argument("modal damping: six rows per node and a column per mode");
   if (!(rates_.array() >= 0).all()) throw std::invalid_argument("modal damping: a damping ratio is not negative");
@@ -14,7 +19,8 @@ ModalDamping::ModalDamping(std::string body, const Node& first, std::vector<Node
 
 Vector ModalDamping::speeds(const State& s) const {
   const Mat3 back = rotation(s, first_.rotation).toRotationMatrix().transpose();
-  const Vec3 x0 = s.q.segment<3>(first_.translation.q), v0 = back * s.v.segment<3>(first_.translation.v), w0 = s.v.segment<3>(first_.rotation.v);
+  const Vec3 x0 = s.q.segment<3>(first_.translation.q), v0 = back * s.v.segment<3>(first_.translation.v),
+             w0 = s.v.segment<3>(first_.rotation.v);
   Vector rate(weights_.rows());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& n = nodes_[i];
@@ -33,7 +39,8 @@ void ModalDamping::residual(const State& s, Vector&, Vector& force) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& n = nodes_[i];
     const auto at = static_cast<Index>(6 * i);
-    const Vec3 f = R0 * pull.segment<3>(at), m = R0 * pull.segment<3>(at + 3), arm = s.q.segment<3>(n.translation.q) - x0;
+    const Vec3 f = R0 * pull.segment<3>(at), m = R0 * pull.segment<3>(at + 3),
+               arm = s.q.segment<3>(n.translation.q) - x0;
     force.segment<3>(n.translation.v) += f;
     force.segment<3>(n.rotation.v) += rotation(s, n.rotation).conjugate() * m;
     force.segment<3>(first_.translation.v) -= f;
@@ -50,7 +57,9 @@ void ModalDamping::accept(const State& s) {
   started_ = true;
 }
 
-void ModalDamping::save(std::vector<double>& h) const { h.insert(h.end(), {viscous_, power_, time_, started_ ? 1.0 : 0.0}); }
+void ModalDamping::save(std::vector<double>& h) const {
+  h.insert(h.end(), {viscous_, power_, time_, started_ ? 1.0 : 0.0});
+}
 
 void ModalDamping::restore(std::span<const double>& h) {
   if (h.size() < 4) throw std::invalid_argument("the checkpoint is of another system");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/beam.hpp"
+#include "hosel/fem/beam.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "fem/rigid_body.hpp"
+#include "hosel/fem/rigid_body.hpp"
 
 #include <utility>
 
@@ -6,7 +6,10 @@ namespace hosel::fem {
 
 RigidBody::RigidBody(std::string body, const Layout::Block& translation, const Layout::Block& rotation,
                      const RigidBodyProperties& properties, const Vec3& gravity)
-    : body_(std::move(body)), translation_(translation), rotation_(rotation), properties_(properties),
+    : body_(std::move(body)),
+      translation_(translation),
+      rotation_(rotation),
+      properties_(properties),
       gravity_(gravity) {
   for (Index i = 0; i < 3; ++i) equations_.push_back(translation_.v + i);
   for (Index i = 0; i < 3; ++i) equations_.push_back(rotation_.v + i);
@@ -41,8 +44,8 @@ void RigidBody::tangent(const State& s, const Weights& weights, TangentSink& sin
   Eigen::Matrix<double, 6, 6> k;
   k.topLeftCorner<3, 3>() = weights.mass * m * Mat3::Identity();
   k.bottomLeftCorner<3, 3>() = weights.mass * m * cx * R.transpose();
-  k.topRightCorner<3, 3>() = m * R * (-weights.mass * cx + weights.damping * centripetal -
-                                      weights.stiffness * skew(offset_acceleration));
+  k.topRightCorner<3, 3>() =
+      m * R * (-weights.mass * cx + weights.damping * centripetal - weights.stiffness * skew(offset_acceleration));
   k.bottomRightCorner<3, 3>() = weights.mass * (J - m * cx * cx) +
                                 weights.damping * (m * cx * centripetal + wx * J - skew(J * w)) +
                                 weights.stiffness * m * cx * skew(node);

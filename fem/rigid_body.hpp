@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 namespace hosel::fem {
 
@@ -33,11 +33,11 @@ class RigidBody final : public Term {
   void accept(const State& accepted) override;
 
   const RigidBodyProperties& properties() const { return properties_; }
-  Vec3 position(const State& s) const;                  ///< of the centre of gravity, global [m]
-  Vec3 velocity(const State& s) const;                  ///< of the centre of gravity, global [m/s]
-  Vec3 angular_velocity(const State& s) const;          ///< global [rad/s]
-  Vec3 linear_momentum(const State& s) const;           ///< global [kg m/s]
-  Vec3 angular_momentum(const State& s) const;          ///< about the global origin [kg m^2/s]
+  Vec3 position(const State& s) const;          ///< of the centre of gravity, global [m]
+  Vec3 velocity(const State& s) const;          ///< of the centre of gravity, global [m/s]
+  Vec3 angular_velocity(const State& s) const;  ///< global [rad/s]
+  Vec3 linear_momentum(const State& s) const;   ///< global [kg m/s]
+  Vec3 angular_momentum(const State& s) const;  ///< about the global origin [kg m^2/s]
 
  private:
   std::string body_;

@@ -1,4 +1,4 @@
-#include "fem/rotation_forms.hpp"
+#include "hosel/fem/rotation_forms.hpp"
 
 #include <array>
 #include <cmath>
@@ -84,7 +84,8 @@ RotationForm exp_tangent_inverse(double z) {
   RotationForm v;
   v.f = -0.5;
   if (z < 0.05) {  // Bernoulli series of (1 - x/2 cot(x/2)) / z
-    v.g = 1.0 / 12 + z * (1.0 / 720 + z * (1.0 / 30240 + z * (1.0 / 1209600 + z * (1.0 / 47900160 + z * 691.0 / 1307674368000))));
+    v.g = 1.0 / 12 +
+          z * (1.0 / 720 + z * (1.0 / 30240 + z * (1.0 / 1209600 + z * (1.0 / 47900160 + z * 691.0 / 1307674368000))));
     v.g1 = 1.0 / 720 + z * (2.0 / 30240 + z * (3.0 / 1209600 + z * (4.0 / 47900160 + z * 5 * 691.0 / 1307674368000)));
     return v;
   }

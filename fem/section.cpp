@@ -1,4 +1,4 @@
-#include "fem/section.hpp"
+#include "hosel/fem/section.hpp"
 
 #include <limits>
 

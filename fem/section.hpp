@@ -3,18 +3,18 @@
 
 #include <functional>
 
-#include "golf/shaft.hpp"
+#include "hosel/golf/shaft.hpp"
 
 namespace hosel::fem {
 
 /// Local axes: x along the beam, y and z across (principal).
 struct Section {
-  double axial = 0;              ///< EA [N]
-  double shear_y = 0, shear_z = 0;  ///< kappa G A along y, z [N]; inf holds the section normal to the axis
-  double torsion = 0;            ///< GJ [N m^2]
+  double axial = 0;                     ///< EA [N]
+  double shear_y = 0, shear_z = 0;      ///< kappa G A along y, z [N]; inf holds the section normal to the axis
+  double torsion = 0;                   ///< GJ [N m^2]
   double bending_y = 0, bending_z = 0;  ///< EI about y, z [N m^2]
-  double mass = 0;               ///< rho A [kg/m]
-  Vec3 rotary = Vec3::Zero();    ///< rho times second moments about x, y, z through the centre of mass [kg m]
+  double mass = 0;                      ///< rho A [kg/m]
+  Vec3 rotary = Vec3::Zero();           ///< rho times second moments about x, y, z through the centre of mass [kg m]
   CentreOffsets centres = {};
 };
 

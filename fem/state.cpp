@@ -1,4 +1,4 @@
-#include "fem/state.hpp"
+#include "hosel/fem/state.hpp"
 
 #include <cmath>
 

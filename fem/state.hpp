@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::fem {
 
@@ -24,8 +24,8 @@ struct State {
 class Layout {
  public:
   struct Block {
-    Index q = 0;  ///< first entry in State::q
-    Index v = 0;  ///< first entry in State::v, State::a, residuals and increments
+    Index q = 0;     ///< first entry in State::q
+    Index v = 0;     ///< first entry in State::v, State::a, residuals and increments
     Index size = 0;  ///< entries in v; a rotation has 3 (and 4 in q)
     bool rotation = false;
   };

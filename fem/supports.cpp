@@ -1,9 +1,9 @@
-#include "fem/supports.hpp"
+#include "hosel/fem/supports.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-#include "fem/rotation_forms.hpp"
+#include "hosel/fem/rotation_forms.hpp"
 
 namespace hosel::fem {
 
@@ -25,7 +25,11 @@ void ImposedMotion::impose(State& s) const {
 }
 
 NodeLoad::NodeLoad(std::string body, const Node& node, std::function<Wrench(double)> wrench, Moment moment)
-    : body_(std::move(body)), node_(node), wrench_(std::move(wrench)), kind_(moment), equations_(fem::equations(node)) {}
+    : body_(std::move(body)),
+      node_(node),
+      wrench_(std::move(wrench)),
+      kind_(moment),
+      equations_(fem::equations(node)) {}
 
 void NodeLoad::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(equations_); }
 

@@ -6,17 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "fem/beam.hpp"
+#include "hosel/fem/beam.hpp"
 
 namespace hosel::fem {
 
 /// Position and attitude of a frame with its first two derivatives.
 struct Pose {
-  Vec3 position = Vec3::Zero();                                     ///< global [m]
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();     ///< from the reference placement
-  Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();        ///< global [m/s], [m/s^2]
-  Vec3 angular_velocity = Vec3::Zero();                             ///< body frame [rad/s]
-  Vec3 angular_acceleration = Vec3::Zero();                         ///< body frame [rad/s^2]
+  Vec3 position = Vec3::Zero();                                  ///< global [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< from the reference placement
+  Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();     ///< global [m/s], [m/s^2]
+  Vec3 angular_velocity = Vec3::Zero();                          ///< body frame [rad/s]
+  Vec3 angular_acceleration = Vec3::Zero();                      ///< body frame [rad/s^2]
 };
 using Motion = std::function<Pose(double time)>;
 

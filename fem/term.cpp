@@ -1,4 +1,4 @@
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 #include <limits>
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/state.hpp"
+#include "hosel/fem/state.hpp"
 
 namespace hosel::fem {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel {
 
@@ -12,9 +12,7 @@ struct Face {
   double roll = std::numeric_limits<double>::infinity();   ///< up-down radius [m], inf = flat
 
   /// Height of the surface over the face plane at (yc, zc) [m]; zero or negative.
-  double height(double yc, double zc) const {
-    return -(yc * yc / (2 * bulge) + zc * zc / (2 * roll));
-  }
+  double height(double yc, double zc) const { return -(yc * yc / (2 * bulge) + zc * zc / (2 * roll)); }
   /// The surface point above (yc, zc), face frame [m].
   Vec3 point(double yc, double zc) const { return {height(yc, zc), yc, zc}; }
   /// Unit outward normal there, face frame.

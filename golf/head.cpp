@@ -1,4 +1,4 @@
-#include "golf/head.hpp"
+#include "hosel/golf/head.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,11 +1,11 @@
 /// A rigid clubhead. All vectors and tensors in the face frame (Xc out of the face, Yc heel, Zc up).
 #pragma once
 
-#include <vector>
 #include <string>
+#include <vector>
 
-#include "golf/face.hpp"
-#include "golf/vector.hpp"
+#include "hosel/golf/face.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel {
 

@@ -1,13 +1,11 @@
-#include "golf/launch.hpp"
+#include "hosel/golf/launch.hpp"
 
 #include <cmath>
 
 namespace hosel {
 
 double Launch::ball_speed() const { return velocity.norm(); }
-double Launch::launch_angle() const {
-  return std::atan2(velocity.z(), std::hypot(velocity.x(), velocity.y()));
-}
+double Launch::launch_angle() const { return std::atan2(velocity.z(), std::hypot(velocity.x(), velocity.y())); }
 double Launch::azimuth() const { return std::atan2(-velocity.y(), velocity.x()); }
 double Launch::backspin() const { return -spin.y(); }
 double Launch::sidespin() const { return -spin.z(); }

@@ -1,4 +1,4 @@
-#include "golf/shaft.hpp"
+#include "hosel/golf/shaft.hpp"
 
 #include <algorithm>
 

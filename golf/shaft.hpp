@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel {
 
@@ -20,7 +20,7 @@ struct CentreOffsets {
 
 /// Properties of one cross-section; local axes: x along the shaft towards the tip, y and z across.
 struct ShaftStation {
-  double arc_length = 0;         ///< from the butt [m]
+  double arc_length = 0;           ///< from the butt [m]
   double bending_stiffness_y = 0;  ///< EI for bending about local y [N m^2]
   double bending_stiffness_z = 0;  ///< EI for bending about local z [N m^2]
   double torsional_stiffness = 0;  ///< GJ [N m^2]

@@ -1,4 +1,4 @@
-#include "golf/shaft_library.hpp"
+#include "hosel/golf/shaft_library.hpp"
 
 #include <algorithm>
 #include <array>
@@ -57,12 +57,14 @@ Shaft composite_driver() {
 Shaft steel_iron7() {
   // Outer radius and wall as published for a 7-iron shaft of 104 g; E 190 GPa, nu 0.29, density of steel.
   constexpr double E = 190e9, G = E / (2 * 1.29);
-  return tube_shaft({{0, 7.6e-3, 0.348e-3}, {0.273, 7.24e-3, 0.381e-3}, {0.609, 5.08e-3, 0.549e-3}, {0.965, 4.7e-3, 0.549e-3}},
-                    {{1, E, G, 7850}}, 0.53);
+  return tube_shaft(
+      {{0, 7.6e-3, 0.348e-3}, {0.273, 7.24e-3, 0.381e-3}, {0.609, 5.08e-3, 0.549e-3}, {0.965, 4.7e-3, 0.549e-3}},
+      {{1, E, G, 7850}}, 0.53);
 }
 
 constexpr std::array kLibrary = {
-    NamedShaft{"composite-driver", "composite, 60 g, 1.10 m, EI 70 (butt) to 20 N m^2 (tip), GJ 0.35 EI", composite_driver},
+    NamedShaft{"composite-driver", "composite, 60 g, 1.10 m, EI 70 (butt) to 20 N m^2 (tip), GJ 0.35 EI",
+               composite_driver},
     NamedShaft{"steel-7-iron", "steel, 0.965 m, published radii and walls, EI 85 to 28 N m^2", steel_iron7},
 };
 
@@ -87,7 +89,8 @@ Shaft tube_shaft(const std::vector<TubeStation>& tube, const std::vector<ShaftLa
     while (at + 2 < tube.size() && s > tube[at + 1].arc_length) ++at;
     const TubeStation &a = tube[at], &b = tube[at + 1];
     const double w = (s - a.arc_length) / (b.arc_length - a.arc_length);
-    shaft.stations.push_back(tube_section({s - start, between(a.outer_radius, b.outer_radius, w), between(a.wall, b.wall, w)}, layers, shear_factor));
+    shaft.stations.push_back(tube_section(
+        {s - start, between(a.outer_radius, b.outer_radius, w), between(a.wall, b.wall, w)}, layers, shear_factor));
   }
   return shaft;
 }
@@ -105,10 +108,10 @@ Shaft composite_shaft(const std::vector<CompositeStation>& stations) {
     while (at + 2 < stations.size() && s > stations[at + 1].arc_length) ++at;
     const CompositeStation &a = stations[at], &b = stations[at + 1];
     const double w = (s - a.arc_length) / (b.arc_length - a.arc_length);
-    shaft.stations.push_back(thin_tube({s - start, between(a.bending_stiffness, b.bending_stiffness, w),
-                                        between(a.torsional_stiffness, b.torsional_stiffness, w),
-                                        between(a.mass_per_length, b.mass_per_length, w),
-                                        between(a.mean_radius, b.mean_radius, w)}));
+    shaft.stations.push_back(
+        thin_tube({s - start, between(a.bending_stiffness, b.bending_stiffness, w),
+                   between(a.torsional_stiffness, b.torsional_stiffness, w),
+                   between(a.mass_per_length, b.mass_per_length, w), between(a.mean_radius, b.mean_radius, w)}));
   }
   return shaft;
 }
@@ -141,7 +144,8 @@ std::vector<std::string> faults(const Shaft& shaft) {
     const ShaftStation& s = shaft.stations[i];
     if (i > 0 && !(s.arc_length > shaft.stations[i - 1].arc_length))
       say("the stations of a shaft must run from butt to tip with increasing arc length, which ends", s.arc_length);
-    if (!(s.bending_stiffness_y > 0 && s.bending_stiffness_z > 0)) say("the bending stiffness is not positive", s.arc_length);
+    if (!(s.bending_stiffness_y > 0 && s.bending_stiffness_z > 0))
+      say("the bending stiffness is not positive", s.arc_length);
     if (!(s.torsional_stiffness > 0)) say("the torsional stiffness is not positive", s.arc_length);
     if (!(s.axial_stiffness > 0)) say("the axial stiffness is not positive", s.arc_length);
     if (!(s.mass_per_length > 0)) say("the mass per length is not positive", s.arc_length);

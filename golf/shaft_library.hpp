@@ -6,15 +6,15 @@
 #include <string_view>
 #include <vector>
 
-#include "golf/shaft.hpp"
+#include "hosel/golf/shaft.hpp"
 
 namespace hosel {
 
 /// One layer of a tube's wall.
 struct ShaftLayer {
-  double share = 1;      ///< of the wall, inside outwards; the shares of a wall add up to 1
-  double E = 0, G = 0;   ///< along the shaft, and in shear [Pa]
-  double density = 0;    ///< [kg/m^3]
+  double share = 1;     ///< of the wall, inside outwards; the shares of a wall add up to 1
+  double E = 0, G = 0;  ///< along the shaft, and in shear [Pa]
+  double density = 0;   ///< [kg/m^3]
 };
 
 struct TubeStation {

@@ -1,4 +1,4 @@
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 #include <array>
 

@@ -22,10 +22,30 @@ constexpr double rpm(double rad_per_s) { return rad_per_s / kRadPerSecPerRpm; }
 
 /// What a unit measures. Names match the sentence shown to a person.
 enum class Dimension {
-  length, angle, speed, angular_velocity, mass, time, frequency, force, moment, pressure, density,
-  inertia, bending_stiffness, line_density, translational_stiffness, rotational_stiffness,
-  translational_damping, rotational_damping, volume_stiffness, inverse_speed, acceleration, energy,
-  area, percent,
+  length,
+  angle,
+  speed,
+  angular_velocity,
+  mass,
+  time,
+  frequency,
+  force,
+  moment,
+  pressure,
+  density,
+  inertia,
+  bending_stiffness,
+  line_density,
+  translational_stiffness,
+  rotational_stiffness,
+  translational_damping,
+  rotational_damping,
+  volume_stiffness,
+  inverse_speed,
+  acceleration,
+  energy,
+  area,
+  percent,
 };
 
 struct Unit {

@@ -1,4 +1,4 @@
-#include "loop/absorption.hpp"
+#include "hosel/loop/absorption.hpp"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

@@ -1,4 +1,5 @@
-/// How the effects look alike to the data: what is absorbed by what was fitted, and which sums of effects nothing shows.
+/// How the effects look alike to the data: what is absorbed by what was fitted, and which sums of effects nothing
+/// shows.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +10,16 @@ namespace hosel::loop {
 
 struct Absorption {
   std::string effect, parameter;
-  double absorbed = 0;   ///< share of the squared signal that the fitted parameters take up
-  double signal = 0;     ///< what is left of one scale of the parameter, in noise units
-  std::string nearest;   ///< the effect that what is left resembles most
-  double likeness = 0;   ///< their correlation
+  double absorbed = 0;  ///< share of the squared signal that the fitted parameters take up
+  double signal = 0;    ///< what is left of one scale of the parameter, in noise units
+  std::string nearest;  ///< the effect that what is left resembles most
+  double likeness = 0;  ///< their correlation
 };
 
 /// A direction in the effects' parameters, each in units of its own signal, that the data hardly show.
 struct NullVector {
-  double singular = 0;   ///< of the whitened Jacobian with columns of unit length: 0 is invisible, 1 alone in its direction
+  double singular =
+      0;  ///< of the whitened Jacobian with columns of unit length: 0 is invisible, 1 alone in its direction
   std::vector<std::pair<std::string, double>> weights;  ///< effect, share
 };
 

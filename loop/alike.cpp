@@ -1,10 +1,11 @@
-#include "loop/alike.hpp"
+#include "hosel/loop/alike.hpp"
 
 #include <set>
 
 namespace hosel::loop {
 
-Likeness alike(const Problem& problem, const std::vector<int>& rows, const Fit& at, const std::vector<const Form*>& forms) {
+Likeness alike(const Problem& problem, const std::vector<int>& rows, const Fit& at,
+               const std::vector<const Form*>& forms) {
   std::vector<EffectColumn> columns;
   std::set<std::string> seen;
   for (const Form* f : at.model.forms) seen.insert(f->effect);
@@ -24,7 +25,8 @@ Likeness alike(const Problem& problem, const std::vector<int>& rows, const Fit& 
     }
     columns.push_back(std::move(c));
   }
-  return likeness(columns, at.size() > 0 ? whitened_jacobian(problem, rows, at.model, at.p) : Eigen::MatrixXd(z.size(), 0));
+  return likeness(columns,
+                  at.size() > 0 ? whitened_jacobian(problem, rows, at.model, at.p) : Eigen::MatrixXd(z.size(), 0));
 }
 
 }  // namespace hosel::loop

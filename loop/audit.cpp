@@ -1,4 +1,4 @@
-#include "loop/audit.hpp"
+#include "hosel/loop/audit.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <numeric>
 #include <set>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -45,11 +45,11 @@ std::string name(const Feature& f, const std::vector<Source>& s) {
 
 struct Formula {
   std::string text;
-  std::set<int> from;      ///< sources
-  double residual = 0;     ///< root mean square on rows that were not fitted, without the worst tenth
-  double tolerance = 0;    ///< what rounding of all columns allows
+  std::set<int> from;    ///< sources
+  double residual = 0;   ///< root mean square on rows that were not fitted, without the worst tenth
+  double tolerance = 0;  ///< what rounding of all columns allows
   int rows = 0;
-  double cost = 0;         ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
+  double cost = 0;  ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
 };
 
 /// Root mean square of all but the worst tenth: a few bad rows must not hide an identity.
@@ -112,7 +112,8 @@ class Audit {
         Formula f;
         if (identity(target, sources_for(target, gone, false), f)) accept(target, f);
       }
-    // Then the likeliest unknown formula over all columns, again and again: a relation can be solved for any column in it.
+    // Then the likeliest unknown formula over all columns, again and again: a relation can be solved for any column in
+    // it.
     std::map<int, Formula> best;
     std::set<int> stale;
     for (int k = 0; k < int(sources_.size()); ++k) stale.insert(k);
@@ -125,7 +126,8 @@ class Audit {
         if (Formula f; search(target, sources_for(target, gone, true), f)) best[target] = f;
       }
       if (best.empty()) return found;
-      const auto [target, formula] = *std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
+      const auto [target, formula] =
+          *std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
       accept(target, formula);
       stale = {target};
       for (const auto& [other, f] : best)
@@ -170,7 +172,8 @@ class Audit {
 
   /// Judges y = f(sources): rounding of every column passed through f by differences.
   template <class F>
-  bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f, Formula& out) const {
+  bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f,
+             Formula& out) const {
     const Source& y = sources_[std::size_t(target)];
     if (rows.empty()) return false;
     std::vector<double> residual;
@@ -217,14 +220,19 @@ class Audit {
   /// Formulas of the field without free numbers.
   bool identity(int target, const std::vector<int>& use, Formula& best) const {
     const Column& y = *sources_[std::size_t(target)].column;
-    const auto si = [&](int k, const std::vector<double>& x) { return x[std::size_t(k)] * sources_[std::size_t(k)].column->si; };
-    const int back = of("backspin", use), side = of("sidespin", use), rate = of("spin_rate", use), axis = of("spin_axis", use);
+    const auto si = [&](int k, const std::vector<double>& x) {
+      return x[std::size_t(k)] * sources_[std::size_t(k)].column->si;
+    };
+    const int back = of("backspin", use), side = of("sidespin", use), rate = of("spin_rate", use),
+              axis = of("spin_axis", use);
     const int launch = of("launch_angle", use), speed = of("ball_speed", use);
     const auto attempt = [&](std::set<int> from, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < 12) return false;
       Formula out;
-      if (!judge(target, from, 0, rows, [&](const std::vector<double>& x) { return f(x) / y.si; }, out)) return false;
+      if (!judge(
+              target, from, 0, rows, [&](const std::vector<double>& x) { return f(x) / y.si; }, out))
+        return false;
       out.text = text;
       out.rows = int(rows.size());
       best = out;
@@ -249,7 +257,8 @@ class Audit {
         const int j = of(a, use), k = of(b, use);
         return j >= 0 && k >= 0 && attempt({j, k}, text, [&](V x) { return f(si(j, x), si(k, x)); });
       };
-      if (pair("impact_toe", "impact_high", "hypot(impact_toe, impact_high)", [](double a, double b) { return std::hypot(a, b); }) ||
+      if (pair("impact_toe", "impact_high", "hypot(impact_toe, impact_high)",
+               [](double a, double b) { return std::hypot(a, b); }) ||
           pair("ball_speed", "club_speed", "ball_speed / club_speed: the smash factor", std::divides{}) ||
           pair("dynamic_loft", "attack_angle", "dynamic_loft - attack_angle: the spin loft", std::minus{}) ||
           pair("face_angle", "club_path", "face_angle - club_path: the face to the path", std::minus{}))
@@ -258,8 +267,10 @@ class Audit {
     const int spin = back >= 0 ? back : rate;
     if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
       const double arm = ball_.inertia_factor * ball_.radius;
-      if (attempt({launch, speed, spin}, fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
-                  [&](V x) { return si(launch, x) + std::asin(std::clamp(arm * si(spin, x) / si(speed, x), -1.0, 1.0)); }))
+      if (attempt(
+              {launch, speed, spin},
+              fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
+              [&](V x) { return si(launch, x) + std::asin(std::clamp(arm * si(spin, x) / si(speed, x), -1.0, 1.0)); }))
         return true;
     }
     return false;
@@ -296,7 +307,8 @@ class Audit {
       Eigen::VectorXd b(n);
       for (std::ptrdiff_t i = 0; i < n; ++i) {
         A(i, 0) = 1;
-        for (std::ptrdiff_t j = 1; j < p; ++j) A(i, j) = transform(evaluate(features[std::size_t(j - 1)], sources_, fitted[std::size_t(i)]));
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          A(i, j) = transform(evaluate(features[std::size_t(j - 1)], sources_, fitted[std::size_t(i)]));
         b[i] = transform(y.x[fitted[std::size_t(i)]]);
       }
       if (!A.allFinite() || !b.allFinite()) return false;
@@ -333,7 +345,8 @@ class Audit {
         return logarithmic ? std::exp(sum) : sum;
       };
       // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
-      if (Formula again; !judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
+      if (Formula again; !judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again))
+        return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {
         double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -348,19 +361,24 @@ class Audit {
       out.rows = int(rows.size());
       if (logarithmic) {
         out.text = fmt::format("{:.5g}", std::exp(c[0]));
-        for (std::ptrdiff_t j = 1; j < p; ++j) out.text += fmt::format(" * ({})^{:.4g}", loop::name(features[std::size_t(j - 1)], sources_), c[j]);
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          out.text += fmt::format(" * ({})^{:.4g}", loop::name(features[std::size_t(j - 1)], sources_), c[j]);
       } else {
         out.text = fmt::format("{:.5g}", c[0]);
-        for (std::ptrdiff_t j = 1; j < p; ++j) out.text += fmt::format(" {:+.5g} * {}", c[j], loop::name(features[std::size_t(j - 1)], sources_));
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          out.text += fmt::format(" {:+.5g} * {}", c[j], loop::name(features[std::size_t(j - 1)], sources_));
       }
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
       // sees. Each counts as e^3 times as likely. A relation solved for another column of it than the computed one
       // misses that column by more than its own last digit: the last term.
-      const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) { return sources_[std::size_t(k)].column->role == Role::output; });
+      const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) {
+                          return sources_[std::size_t(k)].column->role == Role::output;
+                        });
       const auto composite = std::ranges::count_if(features, [](const Feature& g) { return g.b >= 0; });
       const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
-      out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 + 2 * std::log(std::max(1.0, out.residual / own))) +
+      out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 +
+                                          2 * std::log(std::max(1.0, out.residual / own))) +
                  6 * double(p + composite - seen);
       if (!found || out.cost < best.cost) best = out;
       found = true;
@@ -386,9 +404,7 @@ class Audit {
     if (found) return true;
     for (const auto& [f, g] : promising(target, all)) consider({f, g}, false);
     for (std::size_t i = 0; i < raw.size(); ++i)
-      for (std::size_t j = i + 1; j < raw.size(); ++j) {
-        consider({raw[i], raw[j]}, false);
-      }
+      for (std::size_t j = i + 1; j < raw.size(); ++j) { consider({raw[i], raw[j]}, false); }
     for (std::size_t i = 0; i < logs.size(); ++i)
       for (std::size_t j = i + 1; j < logs.size(); ++j) consider({logs[i], logs[j]}, true);
     if (found) return true;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "loop/shots.hpp"
+#include "hosel/loop/shots.hpp"
 
 namespace hosel::loop {
 
@@ -15,7 +15,7 @@ struct DerivedColumn {
   double residual_sd = 0;           ///< column's unit
   double recording_resolution = 0;  ///< column's unit
   int rows = 0;
-  bool input = false;               ///< the column is an input of the models
+  bool input = false;  ///< the column is an input of the models
 };
 
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball);

@@ -1,10 +1,10 @@
-#include "loop/balances.hpp"
+#include "hosel/loop/balances.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 

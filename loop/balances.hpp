@@ -4,12 +4,12 @@
 /// the inertia of the ball.
 #pragma once
 
-#include "loop/problem.hpp"
+#include "hosel/loop/problem.hpp"
 
 namespace hosel::loop {
 
 struct Balance {
-  double contact = 0, inertia = 0;         ///< sums of squares of the two parts of the whitened residuals
+  double contact = 0, inertia = 0;               ///< sums of squares of the two parts of the whitened residuals
   int contact_freedom = 0, inertia_freedom = 0;  ///< what they are expected to be where nothing is wrong
 
   /// Share of the excess over the noise that no contact law can mend; 0 where there is no excess.

@@ -1,4 +1,4 @@
-#include "loop/csv.hpp"
+#include "hosel/loop/csv.hpp"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,8 @@ Sheet read_csv(const std::filesystem::path& path) {
     if (header) {
       for (std::size_t c = 0; c < row.size(); ++c) {
         if (row[c].empty()) fail(row_line, fmt::format("column {} has no name", c + 1));
-        if (std::count(row.begin(), row.end(), row[c]) > 1) fail(row_line, fmt::format("column '{}' stands twice", row[c]));
+        if (std::count(row.begin(), row.end(), row[c]) > 1)
+          fail(row_line, fmt::format("column '{}' stands twice", row[c]));
       }
       sheet.names = row;
       sheet.columns.resize(row.size());

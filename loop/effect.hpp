@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "golf/blow.hpp"
-#include "golf/launch.hpp"
-#include "loop/shots.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/golf/launch.hpp"
+#include "hosel/loop/shots.hpp"
 
 namespace hosel::loop {
 
@@ -22,10 +22,10 @@ struct Trial {
 
 struct Parameter {
   std::string name;
-  std::string unit;   ///< as reports print it
-  double si = 1;      ///< one printed unit in SI
-  double min, max;    ///< plausible range [SI]; zero lies inside or on its edge
-  double scale;       ///< a size that matters [SI]: step of finite differences, unit of the optimiser
+  std::string unit;  ///< as reports print it
+  double si = 1;     ///< one printed unit in SI
+  double min, max;   ///< plausible range [SI]; zero lies inside or on its edge
+  double scale;      ///< a size that matters [SI]: step of finite differences, unit of the optimiser
 };
 
 /// One functional form of an effect. The three hooks are applied in this order; all may be empty.
@@ -47,15 +47,15 @@ struct Form {
 
 /// What the forms of an effect depend on.
 struct Setting {
-  bool head_turns = false;             ///< the base model lets the head rotate
-  bool inertia_declared = false;       ///< the case declares a finite inertia tensor
-  std::vector<Output> outputs;         ///< channels of the data
+  bool head_turns = false;        ///< the base model lets the head rotate
+  bool inertia_declared = false;  ///< the case declares a finite inertia tensor
+  std::vector<Output> outputs;    ///< channels of the data
 };
 
 struct EffectEntry {
   std::string_view name;
-  std::string_view what;     ///< what a model without it lacks
-  std::string_view sensor;   ///< the quantity whose direct measurement would settle it
+  std::string_view what;                       ///< what a model without it lacks
+  std::string_view sensor;                     ///< the quantity whose direct measurement would settle it
   std::vector<Form> (*forms)(const Setting&);  ///< empty where the effect cannot act on this base
 };
 

@@ -1,4 +1,4 @@
-#include "loop/experiment.hpp"
+#include "hosel/loop/experiment.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,8 @@ struct Box {
         lo = std::max(lo, -0.03);
         hi = std::min(hi, 0.03);
       }
-      if (k == int(Input::dynamic_loft)) lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
+      if (k == int(Input::dynamic_loft))
+        lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
       if (k == int(Input::club_speed)) lo = std::max(lo, 10.0);
       input.push_back(k);
       low.push_back(lo);
@@ -96,8 +97,8 @@ struct Box {
 
 /// A set of effects as fitted, and with the widest of the usual forms of one of its names: that name is out only where
 /// none of them fits.
-std::vector<Fit> family(const Problem& problem, const std::vector<int>& rows, const Fit& as_fitted, const std::string& name,
-                        const std::vector<const Form*>& forms, const Loss& loss) {
+std::vector<Fit> family(const Problem& problem, const std::vector<int>& rows, const Fit& as_fitted,
+                        const std::string& name, const std::vector<const Form*>& forms, const Loss& loss) {
   std::vector<Fit> all = {as_fitted};
   double usual = std::numeric_limits<double>::infinity();
   std::size_t widest = 0;
@@ -106,7 +107,9 @@ std::vector<Fit> family(const Problem& problem, const std::vector<int>& rows, co
   for (const Form* f : forms)
     if (f->effect == name && f->rarity <= usual) widest = std::max(widest, f->parameters.size());
   for (const Form* f : forms) {
-    if (f->effect != name || f->rarity > usual || f->parameters.size() < widest || std::ranges::count(as_fitted.model.forms, f)) continue;
+    if (f->effect != name || f->rarity > usual || f->parameters.size() < widest ||
+        std::ranges::count(as_fitted.model.forms, f))
+      continue;
     Model m;
     std::vector<double> start;
     std::ptrdiff_t at = 0;
@@ -117,7 +120,8 @@ std::vector<Fit> family(const Problem& problem, const std::vector<int>& rows, co
       else start.insert(start.end(), as_fitted.p.data() + at, as_fitted.p.data() + at + n);
       at += n;
     }
-    all.push_back(fit(problem, rows, m, {Eigen::Map<const Eigen::VectorXd>(start.data(), std::ptrdiff_t(start.size()))}, loss));
+    all.push_back(
+        fit(problem, rows, m, {Eigen::Map<const Eigen::VectorXd>(start.data(), std::ptrdiff_t(start.size()))}, loss));
   }
   return all;
 }
@@ -141,7 +145,9 @@ class Separation {
     const int m = problem_.width();
     const Fit &a = truth_, &b = rival_;
     Eigen::VectorXd fa(m), fb(m), up(m), down(m);
-    if (!problem_.predict(t, shot, a.model, a.p.data(), fa.data()) || !problem_.predict(t, shot, b.model, b.p.data(), fb.data())) return false;
+    if (!problem_.predict(t, shot, a.model, a.p.data(), fa.data()) ||
+        !problem_.predict(t, shot, b.model, b.p.data(), fb.data()))
+      return false;
     out.d = (fa - fb).cwiseQuotient(noise_);
     out.J.resize(m, g_.size());
     Eigen::VectorXd p = b.p;
@@ -162,7 +168,9 @@ class Separation {
     dd_ += s.d.squaredNorm();
   }
   double squared() const { return squared(G_, g_, dd_); }
-  double squared_with(const Site& s) const { return squared(G_ + s.J.transpose() * s.J, g_ + s.J.transpose() * s.d, dd_ + s.d.squaredNorm()); }
+  double squared_with(const Site& s) const {
+    return squared(G_ + s.J.transpose() * s.J, g_ + s.J.transpose() * s.d, dd_ + s.d.squaredNorm());
+  }
 
  private:
   const Problem& problem_;
@@ -173,13 +181,16 @@ class Separation {
   Eigen::VectorXd g_;
   double dd_ = 0;
 
-  static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) { return std::max(0.0, dd - g.dot(G.ldlt().solve(g))); }
+  static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) {
+    return std::max(0.0, dd - g.dot(G.ldlt().solve(g)));
+  }
 };
 
 /// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
 class Contest {
  public:
-  Contest(const Problem& problem, const std::vector<Fit>& one, const std::vector<Fit>& two, const Eigen::VectorXd& noise) {
+  Contest(const Problem& problem, const std::vector<Fit>& one, const std::vector<Fit>& two,
+          const Eigen::VectorXd& noise) {
     for (const Fit& f : two) each_.emplace_back(problem, one.front(), f, noise);
     for (const Fit& f : one) each_.emplace_back(problem, two.front(), f, noise);
   }
@@ -210,19 +221,23 @@ class Contest {
 
 }  // namespace
 
-NextExperiment design(const LoopCase& c, const Problem& problem, const std::vector<int>& rows, const Selection& selection,
-                      const std::vector<const Form*>& forms, const Loss& loss, const std::vector<Location>& unexplained, Verdict verdict) {
+NextExperiment design(const LoopCase& c, const Problem& problem, const std::vector<int>& rows,
+                      const Selection& selection, const std::vector<const Form*>& forms, const Loss& loss,
+                      const std::vector<Location>& unexplained, Verdict verdict) {
   NextExperiment next;
   if (verdict == Verdict::unexplained && !unexplained.empty()) {
-    next.text = fmt::format("vary {} on purpose with everything else held, and repeat each setting: {} follows it in a way that no candidate explains",
-                            unexplained.front().regressor, unexplained.front().channel);
+    next.text = fmt::format(
+        "vary {} on purpose with everything else held, and repeat each setting: {} follows it in a way that no "
+        "candidate explains",
+        unexplained.front().regressor, unexplained.front().channel);
     return next;
   }
   if (verdict != Verdict::ambiguous) {
     next.text = verdict == Verdict::insufficient
                     ? "more shots of the same kind: minimum_detectable says how large an effect these could have shown"
                     : "nothing is tied; shots at the edges of the recorded range would narrow the parameters most";
-    if (verdict == Verdict::noise_contradicted) next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
+    if (verdict == Verdict::noise_contradicted)
+      next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
     return next;
   }
 
@@ -237,11 +252,12 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
   // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
   constexpr double wanted = 5.5 * 5.5;
   const std::size_t most = std::max<std::size_t>(12, rows.size() * 3 / 2);  // the session once more
-  std::vector<std::size_t> chosen;   // for all pairs together
+  std::vector<std::size_t> chosen;                                          // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
   std::vector<std::string> sentences, sensors;
   for (const Rivals& r : rivals(selection)) {
-    const std::vector<Fit> one = family(problem, rows, r.a->fit, r.one, forms, loss), two = family(problem, rows, r.b->fit, r.two, forms, loss);
+    const std::vector<Fit> one = family(problem, rows, r.a->fit, r.one, forms, loss),
+                           two = family(problem, rows, r.b->fit, r.two, forms, loss);
     Contest apart(problem, one, two, noise);
     Contest::Site site;
     for (const int i : rows)
@@ -256,7 +272,8 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
       }
     std::vector<std::size_t> more;
     while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
-      const auto& best = *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
+      const auto& best =
+          *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
       apart.add(best.second);
       more.push_back(best.first);
     }
@@ -270,11 +287,15 @@ NextExperiment design(const LoopCase& c, const Problem& problem, const std::vect
           if (!std::ranges::count(sensors, s)) sensors.push_back(s);
         }
       if (after > before + 1 && partial.empty()) partial = more;
-      sentences.push_back(fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units now, {:.1f} after {} designed shots, 4.8 are needed): measure {}",
-                                      r.one, r.two, before, after, more.size(), sensor));
+      sentences.push_back(
+          fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units now, {:.1f} after {} designed "
+                      "shots, 4.8 are needed): measure {}",
+                      r.one, r.two, before, after, more.size(), sensor));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
-      sentences.push_back(fmt::format("{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)", chosen.size(), r.one, r.two, before, after));
+      sentences.push_back(fmt::format(
+          "{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)",
+          chosen.size(), r.one, r.two, before, after));
     }
   }
   if (chosen.empty()) chosen = partial;

@@ -1,4 +1,4 @@
-#include "loop/fit.hpp"
+#include "hosel/loop/fit.hpp"
 
 #include <ceres/ceres.h>
 
@@ -96,7 +96,8 @@ class Cost final : public ceres::CostFunction {
 
 }  // namespace
 
-Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p) {
+Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, const Model& model,
+                         const Eigen::VectorXd& p) {
   const int m = problem.width();
   Eigen::VectorXd z(std::ptrdiff_t(rows.size()) * m), scratch(m);
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -104,7 +105,8 @@ Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, c
   return z;
 }
 
-Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& at) {
+Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>& rows, const Model& model,
+                                  const Eigen::VectorXd& at) {
   const int m = problem.width();
   Eigen::MatrixXd J(std::ptrdiff_t(rows.size()) * m, model.size()), part(m, model.size());
   Eigen::VectorXd z(m);
@@ -138,7 +140,8 @@ std::vector<Eigen::VectorXd> starts(const Model& model) {
   return all;
 }
 
-Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& from, const Loss& loss, std::size_t most) {
+Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model,
+        const std::vector<Eigen::VectorXd>& from, const Loss& loss, std::size_t most) {
   Fit best;
   best.model = model;
   best.p = Eigen::VectorXd::Zero(model.size());
@@ -151,7 +154,8 @@ Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model
   }
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < from.size(); ++k)
-    order.emplace_back(from.size() > most ? deviance(whitened(problem, rows, model, from[k]), problem.width(), loss) : 0.0, k);
+    order.emplace_back(
+        from.size() > most ? deviance(whitened(problem, rows, model, from[k]), problem.width(), loss) : 0.0, k);
   std::ranges::stable_sort(order, {}, [](const auto& o) { return o.first; });
   order.resize(std::min(order.size(), most));
   for (const auto& [unused, which] : order) {
@@ -198,13 +202,15 @@ Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model
       const Parameter& q = *parameters[std::size_t(k)];
       best.p[k] = x[k] * q.scale;
       const double margin = 1e-3 * (q.max - q.min);
-      best.at_bound = best.at_bound || (q.max - best.p[k] < margin && q.max > 0) || (best.p[k] - q.min < margin && q.min < 0);
+      best.at_bound = best.at_bound || (q.max - best.p[k] < margin && q.max > 0) ||
+                      (best.p[k] - q.min < margin && q.min < 0);
     }
   }
   return best;
 }
 
-Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows, const Fit& fit, const Loss& loss, bool sandwich) {
+Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows, const Fit& fit, const Loss& loss,
+                           bool sandwich) {
   const int n = fit.size(), m = problem.width();
   Eigen::MatrixXd J = whitened_jacobian(problem, rows, fit.model, fit.p);
   const Eigen::VectorXd z = whitened(problem, rows, fit.model, fit.p);
@@ -225,7 +231,8 @@ Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows,
     const double variance = s[k] > 1e-3 ? 1 / (s[k] * s[k]) : 1e12;
     inverse += variance * svd.matrixV().col(k) * svd.matrixV().col(k).transpose();
   }
-  Eigen::MatrixXd cov = sandwich ? Eigen::MatrixXd(inverse * meat * inverse * (double(rows.size()) / std::max(1.0, double(rows.size()) - n)))
+  Eigen::MatrixXd cov = sandwich ? Eigen::MatrixXd(inverse * meat * inverse *
+                                                   (double(rows.size()) / std::max(1.0, double(rows.size()) - n)))
                                  : inverse;
   const auto parameters = fit.model.parameters();
   for (int a = 0; a < n; ++a)

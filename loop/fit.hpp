@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "loop/problem.hpp"
+#include "hosel/loop/problem.hpp"
 
 namespace hosel::loop {
 
@@ -26,29 +26,32 @@ struct Loss {
 
 struct Fit {
   Model model;
-  Eigen::VectorXd p;          ///< parameters [SI]
-  double deviance = 0;        ///< sum of the losses
+  Eigen::VectorXd p;    ///< parameters [SI]
+  double deviance = 0;  ///< sum of the losses
   bool converged = false;
-  bool at_bound = false;      ///< a parameter at the edge of its plausible range (zero excepted)
+  bool at_bound = false;  ///< a parameter at the edge of its plausible range (zero excepted)
   int size() const { return int(p.size()); }
 };
 
 /// Whitened residuals of the rows, stacked shot by shot (rows * width); a blow that cannot happen counts 100
 /// noise units in every channel.
-Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p);
+Eigen::VectorXd whitened(const Problem& problem, const std::vector<int>& rows, const Model& model,
+                         const Eigen::VectorXd& p);
 /// Their derivative by the parameters, per Parameter::scale.
-Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p);
+Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>& rows, const Model& model,
+                                  const Eigen::VectorXd& p);
 double deviance(const Eigen::VectorXd& whitened, int width, const Loss& loss);
 
 /// Bounded nonlinear least squares from each of the starts (Ceres, trust region), first with the uncapped loss,
 /// which sees far, then with the loss itself; the best. Starts in SI; only the `most` of least deviance are followed.
-Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model, const std::vector<Eigen::VectorXd>& starts,
-        const Loss& loss, std::size_t most = 2);
+Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model,
+        const std::vector<Eigen::VectorXd>& starts, const Loss& loss, std::size_t most = 2);
 /// All combinations of the forms' own starting points, zero first, at most 128.
 std::vector<Eigen::VectorXd> starts(const Model& model);
 
 /// Standard deviations of the parameters [SI] from the whitened Jacobian; infinite along null vectors.
 /// `sandwich` takes the scatter of the shots' scores in place of the declared noise.
-Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows, const Fit& fit, const Loss& loss, bool sandwich);
+Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows, const Fit& fit, const Loss& loss,
+                           bool sandwich);
 
 }  // namespace hosel::loop

@@ -1,4 +1,4 @@
-#include "loop/inputs.hpp"
+#include "hosel/loop/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -16,11 +16,13 @@ struct Allowed {
   double min, max;
 };
 /// What no blow with a golf club exceeds [SI].
-constexpr std::array<Allowed, kInputs> kInputRange = {{{0.5, 90}, {-0.8, 0.8}, {-0.8, 0.8}, {-0.8, 0.8}, {-0.4, 1.57}, {-0.08, 0.08}, {-0.06, 0.06}, {0.05, 1.0}}};
+constexpr std::array<Allowed, kInputs> kInputRange = {
+    {{0.5, 90}, {-0.8, 0.8}, {-0.8, 0.8}, {-0.8, 0.8}, {-0.4, 1.57}, {-0.08, 0.08}, {-0.06, 0.06}, {0.05, 1.0}}};
 
 }  // namespace
 
-Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared, const std::map<std::string, double>& noise) {
+Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
+                   const std::map<std::string, double>& noise) {
   Inputs in;
   std::array<const Column*, kInputs> column{};
   for (int k = 0; k < kInputs; ++k) column[std::size_t(k)] = shots.find_stem(stem(Input(k)));
@@ -47,7 +49,8 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
       complete = false;
     }
     bool output = false;
-    for (const Column& c : shots.columns) output = output || (c.role == Role::output && c.numeric && std::isfinite(c.value[i]));
+    for (const Column& c : shots.columns)
+      output = output || (c.role == Role::output && c.numeric && std::isfinite(c.value[i]));
     if (complete && !output) {
       ++in.unused["no launch recorded"];
       complete = false;
@@ -77,7 +80,8 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   std::vector<double> place(n);
   bool numbered = shot && shot->numeric;
   for (std::size_t i = 0; i < n && numbered; ++i) numbered = std::isfinite(shot->value[std::size_t(in.row_of[i])]);
-  for (std::size_t i = 0; i < n; ++i) place[i] = numbered ? shot->value[std::size_t(in.row_of[i])] : double(in.row_of[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    place[i] = numbered ? shot->value[std::size_t(in.row_of[i])] : double(in.row_of[i]);
   const auto [first, last] = std::ranges::minmax(place);
   for (std::size_t i = 0; i < n; ++i) in.trials[i].order = last > first ? (place[i] - first) / (last - first) : 0.0;
 
@@ -116,8 +120,9 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   }
   for (int k = 0; k < kInputs; ++k)
     if (filled[std::size_t(k)])
-      in.notes.push_back(fmt::format("{}: {} missing values filled with the mean of the recorded ones, at their variance",
-                                     column[std::size_t(k)]->name, filled[std::size_t(k)]));
+      in.notes.push_back(
+          fmt::format("{}: {} missing values filled with the mean of the recorded ones, at their variance",
+                      column[std::size_t(k)]->name, filled[std::size_t(k)]));
   if (!any) return in;
 
   // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.
@@ -151,9 +156,10 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
   // True spread = total - noise, kept positive: where the noise is all there is, the record says nothing.
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled_total - scaled_noise);
-  const Eigen::MatrixXd truth =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() * eigen.eigenvectors().transpose();
-  const Eigen::MatrixXd gain = truth * (truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs)).inverse();
+  const Eigen::MatrixXd truth = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() *
+                                eigen.eigenvectors().transpose();
+  const Eigen::MatrixXd gain = truth *
+                               (truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs)).inverse();
   const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * truth) * unit.asDiagonal();
 
   in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
@@ -172,8 +178,10 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
       const Column* c = column[std::size_t(k)];
       if (!c) continue;
       const bool known = std::isfinite(c->value[std::size_t(in.row_of[i])]);
-      if (known && sigma[std::size_t(k)] > 0 && complete) set(in.trials[i].blow, Input(k), centre[std::size_t(k)] + unit[k] * best[k]);
-      if (!known && k != int(Input::head_mass)) cov(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)] + noise_cov(k, k);
+      if (known && sigma[std::size_t(k)] > 0 && complete)
+        set(in.trials[i].blow, Input(k), centre[std::size_t(k)] + unit[k] * best[k]);
+      if (!known && k != int(Input::head_mass))
+        cov(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)] + noise_cov(k, k);
       if (known && sigma[std::size_t(k)] > 0 && !complete) cov(k, k) = noise_cov(k, k);
     }
     if (complete) {

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "loop/effect.hpp"
+#include "hosel/loop/effect.hpp"
 
 namespace hosel::loop {
 
 struct Inputs {
-  std::vector<Trial> trials;               ///< one per usable row
-  std::vector<int> row_of;                 ///< the row of each trial
-  std::vector<Eigen::MatrixXd> covariance; ///< of the inputs given their record, 8 x 8 SI; empty: all exact
-  std::map<std::string, int> unused;       ///< reason, rows
+  std::vector<Trial> trials;                ///< one per usable row
+  std::vector<int> row_of;                  ///< the row of each trial
+  std::vector<Eigen::MatrixXd> covariance;  ///< of the inputs given their record, 8 x 8 SI; empty: all exact
+  std::map<std::string, int> unused;        ///< reason, rows
   std::vector<std::pair<int, std::string>> impossible;  ///< row and "column|reason": values no blow can have
   std::vector<std::string> notes;
 };
@@ -22,6 +22,7 @@ struct Inputs {
 /// Rows without club speed, dynamic loft or any output are unused. Other missing inputs are filled with the mean
 /// of those recorded, at the variance of those recorded; a missing column is zero. `noise` by header [SI].
 /// Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean), with robust moments.
-Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared, const std::map<std::string, double>& noise);
+Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
+                   const std::map<std::string, double>& noise);
 
 }  // namespace hosel::loop

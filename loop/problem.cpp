@@ -1,4 +1,4 @@
-#include "loop/problem.hpp"
+#include "hosel/loop/problem.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -44,7 +44,11 @@ std::vector<const Parameter*> Model::parameters() const {
 
 Problem::Problem(const models::ImpactModel& base, bool direct, std::vector<Trial> trials, std::vector<Channel> channels,
                  Eigen::MatrixXd measured)
-    : base_(base), direct_(direct), trials_(std::move(trials)), channels_(std::move(channels)), measured_(std::move(measured)) {
+    : base_(base),
+      direct_(direct),
+      trials_(std::move(trials)),
+      channels_(std::move(channels)),
+      measured_(std::move(measured)) {
   if (!direct_) {
     offset_.reserve(trials_.size());
     for (Trial& t : trials_) {
@@ -74,7 +78,8 @@ void Problem::change(const Model& model, const double* p, const Trial& trial, La
   }
 }
 
-bool Problem::read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch, double* out) const {
+bool Problem::read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
+                   double* out) const {
   bool good = true;
   for (int c = 0; c < width(); ++c) {
     const Channel& channel = channels_[std::size_t(c)];
@@ -99,12 +104,11 @@ bool Problem::predict(const Trial& trial, int shot, const Model& model, const do
     Launch l = answer(t, shot);
     change(model, parameters, t, l);
     return read(t, shot, model, parameters, l, out);
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  } catch (const std::invalid_argument&) { return false; }
 }
 
-bool Problem::linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out, double* derivative) const {
+bool Problem::linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out,
+                        double* derivative) const {
   try {
     Trial t = trial(shot);
     change(model, parameters, t);
@@ -139,13 +143,12 @@ bool Problem::linearise(int shot, const Model& model, const double* parameters, 
         if (!look(at + h, there.data())) return false;
         if (central && !look(at - h, here.data())) return false;
         for (int c = 0; c < m; ++c)
-          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * step) : (there[std::size_t(c)] - out[c]) / step;
+          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * step)
+                                          : (there[std::size_t(c)] - out[c]) / step;
         ++k;
       }
     return true;
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  } catch (const std::invalid_argument&) { return false; }
 }
 
 bool Problem::launch(Trial t, const Model& model, const double* parameters, Launch& out) const {
@@ -154,9 +157,7 @@ bool Problem::launch(Trial t, const Model& model, const double* parameters, Laun
     out = answer(t, -1);
     change(model, parameters, t, out);
     return out.velocity.allFinite() && out.spin.allFinite();
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  } catch (const std::invalid_argument&) { return false; }
 }
 
 Eigen::MatrixXd Problem::input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const {
@@ -217,10 +218,8 @@ Eigen::MatrixXd Problem::residuals(const Model& model, const double* parameters)
   Eigen::MatrixXd r(shots(), width());
   Eigen::VectorXd out(width());
   for (int i = 0; i < shots(); ++i) {
-    if (predict(i, model, parameters, out.data()))
-      r.row(i) = out.transpose() - measured_.row(i);
-    else
-      r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (predict(i, model, parameters, out.data())) r.row(i) = out.transpose() - measured_.row(i);
+    else r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return r;
 }

@@ -6,16 +6,16 @@
 #include <memory>
 #include <vector>
 
-#include "loop/effect.hpp"
-#include "models/impact_model.hpp"
+#include "hosel/loop/effect.hpp"
+#include "hosel/models/impact_model.hpp"
 
 namespace hosel::loop {
 
 struct Channel {
   std::string name;  ///< the header
   Output output;
-  double si = 1;        ///< one of the header's unit in SI
-  double noise = 0;     ///< standard deviation of the instrument, header's unit
+  double si = 1;     ///< one of the header's unit in SI
+  double noise = 0;  ///< standard deviation of the instrument, header's unit
   bool declared = false;
   double resolution = 0;  ///< header's unit
 };
@@ -30,7 +30,7 @@ struct NoisyInput {
 struct Model {
   std::vector<const Form*> forms;
 
-  int size() const;                              ///< number of parameters
+  int size() const;  ///< number of parameters
   std::vector<const Parameter*> parameters() const;
 };
 
@@ -59,7 +59,8 @@ class Problem {
   /// The same with the derivatives by the parameters, per Parameter::scale, by differences over `step` scales
   /// (one-sided, or central); what a parameter does not touch is not computed again. `derivative` is width x
   /// size, column-major. Also false where a neighbour cannot happen.
-  bool linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out, double* derivative) const;
+  bool linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out,
+                 double* derivative) const;
   /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
   /// base's own answer).
   bool launch(Trial trial, const Model& model, const double* parameters, Launch& out) const;
@@ -85,7 +86,8 @@ class Problem {
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
   static void change(const Model& model, const double* parameters, Trial& trial);
   static void change(const Model& model, const double* parameters, const Trial& trial, Launch& launch);
-  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch, double* out) const;
+  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
+            double* out) const;
 
   const models::ImpactModel& base_;
   bool direct_;

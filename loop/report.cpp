@@ -1,11 +1,11 @@
-#include "loop/report.hpp"
+#include "hosel/loop/report.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "post/csv.hpp"
+#include "hosel/post/csv.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -21,7 +21,9 @@ json value(double x) {
 }
 
 json errors(const Errors& e) {
-  return {{"train_rmse", value(e.train_rmse)}, {"holdout_rmse", value(e.holdout_rmse)}, {"holdout_bias", value(e.holdout_bias)}};
+  return {{"train_rmse", value(e.train_rmse)},
+          {"holdout_rmse", value(e.holdout_rmse)},
+          {"holdout_bias", value(e.holdout_bias)}};
 }
 
 }  // namespace
@@ -37,7 +39,8 @@ json to_json(const LoopResult& r) {
   for (const auto& f : r.flagged) {
     json id = f.shot;
     // A shot number is a number, whatever the file calls a shot else is text.
-    if (!f.shot.empty() && f.shot.size() < 10 && f.shot.find_first_not_of("0123456789") == std::string::npos) id = std::stoi(f.shot);
+    if (!f.shot.empty() && f.shot.size() < 10 && f.shot.find_first_not_of("0123456789") == std::string::npos)
+      id = std::stoi(f.shot);
     out["flagged_rows"].push_back({{"shot", id}, {"column", f.column}, {"reason", f.reason}, {"finding", f.finding}});
   }
   out["derived_columns"] = json::array();
@@ -67,7 +70,8 @@ json to_json(const LoopResult& r) {
     if (f.regressor >= 0) {
       const Regressor& g = s.regressors[std::size_t(f.regressor)];
       e["regressor"] = g.column;
-      e["statistic"] = fmt::format("{}{}{}: {:+.2f} noise units", g.kind, g.detail.empty() ? "" : " ", g.detail, f.signal);
+      e["statistic"] =
+          fmt::format("{}{}{}: {:+.2f} noise units", g.kind, g.detail.empty() ? "" : " ", g.detail, f.signal);
     } else {
       e["regressor"] = "shot";
       e["statistic"] = fmt::format("neighbours alike: {:+.2f}", f.statistic);
@@ -76,7 +80,8 @@ json to_json(const LoopResult& r) {
     out["structure"].push_back(e);
     ++shown;
   }
-  out["remaining"] = {{"p", value(s.after.p)}, {"largest", s.after.findings.empty() ? json(nullptr) : value(s.after.findings.front().signal)}};
+  out["remaining"] = {{"p", value(s.after.p)},
+                      {"largest", s.after.findings.empty() ? json(nullptr) : value(s.after.findings.front().signal)}};
   out["base_holdout_score"] = value(r.base_score);
   out["candidates"] = json::array();
   int rank = 0;
@@ -105,7 +110,8 @@ json to_json(const LoopResult& r) {
   out["sentence"] = sentence(r);
   out["minimum_detectable"] = json::array();
   for (const Detectable& d : r.minimum_detectable)
-    out["minimum_detectable"].push_back({{"effect", d.effect}, {"parameter", d.parameter}, {"value", value(d.value)}, {"unit", d.unit}});
+    out["minimum_detectable"].push_back(
+        {{"effect", d.effect}, {"parameter", d.parameter}, {"value", value(d.value)}, {"unit", d.unit}});
   out["unexplained"] = json::array();
   for (const Location& l : r.unexplained)
     out["unexplained"].push_back({{"channel", l.channel}, {"regressor", l.regressor}, {"detail", l.detail}});
@@ -115,12 +121,18 @@ json to_json(const LoopResult& r) {
     for (const auto& [header, x] : d.inputs) e[header] = value(std::stod(fmt::format("{:.4g}", x)));
     shots.push_back(e);
   }
-  out["next_experiment"] = {{"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json(nullptr)}};
+  out["next_experiment"] = {
+      {"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json(nullptr)}};
   out["without_doubted_inputs"] = json::array();
-  for (const auto& [column, adopted] : r.without) out["without_doubted_inputs"].push_back({{"column", column}, {"adopted", adopted}});
+  for (const auto& [column, adopted] : r.without)
+    out["without_doubted_inputs"].push_back({{"column", column}, {"adopted", adopted}});
   out["absorption"] = json::array();
   for (const Absorption& a : r.likeness.absorption)
-    out["absorption"].push_back({{"effect", a.effect}, {"parameter", a.parameter}, {"absorbed", value(a.absorbed)}, {"nearest", a.nearest}, {"correlation", value(a.likeness)}});
+    out["absorption"].push_back({{"effect", a.effect},
+                                 {"parameter", a.parameter},
+                                 {"absorbed", value(a.absorbed)},
+                                 {"nearest", a.nearest},
+                                 {"correlation", value(a.likeness)}});
   out["null_vectors"] = json::array();
   for (const NullVector& v : r.likeness.null_vectors) {
     json weights = json::object();
@@ -129,7 +141,11 @@ json to_json(const LoopResult& r) {
   }
   if (r.balance_before) {
     const auto one = [](const Balance& b) {
-      return json{{"contact", value(b.contact)}, {"contact_freedom", b.contact_freedom}, {"inertia", value(b.inertia)}, {"inertia_freedom", b.inertia_freedom}, {"inertia_share", value(b.inertia_share())}};
+      return json{{"contact", value(b.contact)},
+                  {"contact_freedom", b.contact_freedom},
+                  {"inertia", value(b.inertia)},
+                  {"inertia_freedom", b.inertia_freedom},
+                  {"inertia_share", value(b.inertia_share())}};
     };
     out["balances"] = {{"before", one(*r.balance_before)}, {"after", one(*r.balance_after)}};
   }
@@ -144,7 +160,8 @@ std::string residuals_csv(const LoopResult& r) {
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
   for (const UsedShot& u : r.shots) {
     out += post::csv_cell(u.id) + (u.holdout ? ",holdout" : ",train");
-    for (std::size_t c = 0; c < r.channels.size(); ++c) out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
+    for (std::size_t c = 0; c < r.channels.size(); ++c)
+      out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
     out += '\n';
   }
   return out;
@@ -154,17 +171,20 @@ std::string sentence(const LoopResult& r) {
   const auto list = [](const std::vector<std::string>& v) { return fmt::format("{}", fmt::join(v, ", ")); };
   switch (r.verdict) {
     case Verdict::no_residual: return "Nothing beyond the noise: the base model explains these shots.";
-    case Verdict::explained: return fmt::format("The model lacked: {}. With it the residual is the noise again.", list(r.adopted));
+    case Verdict::explained:
+      return fmt::format("The model lacked: {}. With it the residual is the noise again.", list(r.adopted));
     case Verdict::ambiguous: {
       std::string t;
       for (const auto& tie : r.ties) t += (t.empty() ? "" : "; and ") + fmt::format("{}", fmt::join(tie, " or "));
-      return fmt::format("{}The data cannot separate {}.", r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), t);
+      return fmt::format("{}The data cannot separate {}.",
+                         r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), t);
     }
     case Verdict::unexplained:
-      return r.unexplained.empty()
-                 ? std::string("Structure remains that no candidate explains.")
-                 : fmt::format("Structure remains that no candidate explains: {} against {}.", r.unexplained.front().channel, r.unexplained.front().regressor);
-    case Verdict::insufficient: return "Too little to name anything: minimum_detectable says what these shots could have shown.";
+      return r.unexplained.empty() ? std::string("Structure remains that no candidate explains.")
+                                   : fmt::format("Structure remains that no candidate explains: {} against {}.",
+                                                 r.unexplained.front().channel, r.unexplained.front().regressor);
+    case Verdict::insufficient:
+      return "Too little to name anything: minimum_detectable says what these shots could have shown.";
     case Verdict::noise_contradicted: {
       std::string which;
       for (const std::string& n : r.notes)

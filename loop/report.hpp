@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "loop/run.hpp"
+#include "hosel/loop/run.hpp"
 
 namespace hosel::loop {
 

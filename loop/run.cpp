@@ -1,4 +1,4 @@
-#include "loop/run.hpp"
+#include "hosel/loop/run.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "loop/verdict.hpp"
+#include "hosel/loop/verdict.hpp"
 
 namespace hosel::loop {
 
@@ -49,9 +49,10 @@ void leave_one_out(const LoopCase& c, const std::vector<DerivedColumn>& derived,
     for (const UsedShot& u : fold.result.shots)
       if (u.holdout) pooled.push_back(u);
     if (fold.result.holdout > 0)
-      whole.notes.push_back(fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
-                                        fold.result.adopted.empty() ? "nothing" : fmt::format("{}", fmt::join(fold.result.adopted, ", ")),
-                                        fold.result.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.result.ties.front(), " or "))));
+      whole.notes.push_back(fmt::format(
+          "without {} '{}': adopted {}{}", c.split.by, g.name[k],
+          fold.result.adopted.empty() ? "nothing" : fmt::format("{}", fmt::join(fold.result.adopted, ", ")),
+          fold.result.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.result.ties.front(), " or "))));
   }
   std::ranges::stable_sort(pooled, {}, &UsedShot::row);
   for (std::size_t ch = 0; ch < whole.channels.size(); ++ch) {
@@ -78,7 +79,8 @@ void leave_one_out(const LoopCase& c, const std::vector<DerivedColumn>& derived,
 
 LoopResult run(const LoopCase& c) {
   if (c.shots.rows() > kMostShots)
-    throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(), kMostShots));
+    throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
+                                kMostShots));
   std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
   const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
   const auto pass = [&](std::optional<Input> doubted = {}) {
@@ -111,9 +113,10 @@ LoopResult run(const LoopCase& c) {
       std::vector<std::string> names = without.adopted;
       for (const auto& tie : without.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
       result.without.emplace_back(d.column, names);
-      result.notes.push_back(fmt::format("{} is computed from {} and is no independent evidence; without it the verdict is {}{}", d.column,
-                                         fmt::join(d.from, ", "), name(without.verdict),
-                                         names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
+      result.notes.push_back(
+          fmt::format("{} is computed from {} and is no independent evidence; without it the verdict is {}{}", d.column,
+                      fmt::join(d.from, ", "), name(without.verdict),
+                      names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
     }
   }
   return result;

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "loop/absorption.hpp"
-#include "loop/audit.hpp"
-#include "loop/balances.hpp"
-#include "loop/screen.hpp"
-#include "loop/select.hpp"
+#include "hosel/loop/absorption.hpp"
+#include "hosel/loop/audit.hpp"
+#include "hosel/loop/balances.hpp"
+#include "hosel/loop/screen.hpp"
+#include "hosel/loop/select.hpp"
 
 namespace hosel::loop {
 
@@ -23,12 +23,12 @@ struct Split {
 
 struct LoopCase {
   std::string title;
-  std::string base;                       ///< name of the model
+  std::string base;  ///< name of the model
   const models::ImpactModel* model = nullptr;
-  bool direct = true;                     ///< see Problem
-  bool head_turns = true;                 ///< the base lets the head rotate
-  std::vector<std::string> effects;       ///< declared part of the base; their parameters are fitted
-  Blow blow;                              ///< ball, head, contact law; the delivery comes from the shots
+  bool direct = true;                ///< see Problem
+  bool head_turns = true;            ///< the base lets the head rotate
+  std::vector<std::string> effects;  ///< declared part of the base; their parameters are fitted
+  Blow blow;                         ///< ball, head, contact law; the delivery comes from the shots
   bool head_mass_declared = false;
   bool inertia_declared = false;
   Shots shots;
@@ -36,7 +36,7 @@ struct LoopCase {
   std::map<std::string, double> input_noise;  ///< the same for inputs
   Split split;
   Rules rules;
-  std::vector<std::string> notes;             ///< about the case itself
+  std::vector<std::string> notes;  ///< about the case itself
 };
 
 enum class Verdict { no_residual, explained, ambiguous, unexplained, insufficient, noise_contradicted };
@@ -76,12 +76,12 @@ struct NextExperiment {
 
 struct ScoredCandidate {
   Candidate candidate;
-  std::vector<double> sd;     ///< per parameter [SI]
+  std::vector<double> sd;  ///< per parameter [SI]
   double holdout_score = 0;
 };
 
 struct UsedShot {
-  int row;         ///< of the file
+  int row;  ///< of the file
   std::string id;
   bool holdout;
   std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
@@ -102,7 +102,7 @@ struct LoopResult {
     int finding;
   };
   std::vector<Flag> flagged;
-  std::map<std::string, int> unused;       ///< reason, rows that could not be used
+  std::map<std::string, int> unused;  ///< reason, rows that could not be used
   std::vector<DerivedColumn> derived;
   std::vector<ChannelResult> channels;
   Selection selection;
@@ -116,8 +116,8 @@ struct LoopResult {
   std::vector<Location> unexplained;
   NextExperiment next;
   std::vector<UsedShot> shots;
-  std::vector<std::string> notes;          ///< sentences for people: assumptions, absorptions, contradictions
-  Likeness likeness;                       ///< of the effects to each other and to what is fitted
+  std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
+  Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories
   std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
 };

@@ -1,14 +1,15 @@
-#include "loop/scatter.hpp"
+#include "hosel/loop/scatter.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 
-double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals) {
+double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int channel,
+                      const Eigen::MatrixXd& residuals) {
   std::vector<int> seen;
   for (const int i : rows)
     if (std::isfinite(residuals(i, channel))) seen.push_back(i);
@@ -49,7 +50,8 @@ double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int 
   return scale;
 }
 
-Scatter scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals, int fitted) {
+Scatter scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,
+                int fitted) {
   double sum = 0, fourth = 0, n = 0;
   for (const int i : rows) {
     if (!std::isfinite(residuals(i, channel))) continue;

@@ -1,13 +1,14 @@
 /// What a channel scatters: a first idea of its noise, and its ratio to the noise at hand.
 #pragma once
 
-#include "loop/problem.hpp"
+#include "hosel/loop/problem.hpp"
 
 namespace hosel::loop {
 
 /// Scatter of a channel about a robust linear regression on the inputs (and their squares where rows allow):
 /// a first idea of undeclared noise that no effect of smooth form can inflate.
-double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals);
+double smooth_scatter(const Problem& problem, const std::vector<int>& rows, int channel,
+                      const Eigen::MatrixXd& residuals);
 
 struct Scatter {
   double ratio = 1;  ///< root mean square over sigma
@@ -15,6 +16,7 @@ struct Scatter {
 };
 
 /// Scatter of a channel about a fit in units of its own sigma, without the rows beyond 5 sigma.
-Scatter scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals, int fitted);
+Scatter scatter(const Problem& problem, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,
+                int fitted);
 
 }  // namespace hosel::loop

@@ -1,4 +1,4 @@
-#include "loop/screen.hpp"
+#include "hosel/loop/screen.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -32,8 +32,12 @@ std::vector<Factor> factors(const Column& c) {
         all = {{1 / kMpsPerMph, "m/s and mph"}, {3.6, "m/s and km/h"}, {1.609344, "mph and km/h"}};
         break;
       case Dimension::angle: all = {{180 / kPi, "degrees and radians"}}; break;
-      case Dimension::angular_velocity: all = {{30 / kPi, "rpm and rad/s"}, {60, "rpm and revolutions per second"}}; break;
-      case Dimension::length: all = {{25.4, "mm and inches"}, {100, "metres and centimetres"}, {1000, "metres and millimetres"}}; break;
+      case Dimension::angular_velocity:
+        all = {{30 / kPi, "rpm and rad/s"}, {60, "rpm and revolutions per second"}};
+        break;
+      case Dimension::length:
+        all = {{25.4, "mm and inches"}, {100, "metres and centimetres"}, {1000, "metres and millimetres"}};
+        break;
       case Dimension::mass: all = {{1000, "kg and g"}, {2.20462262, "kg and pounds"}}; break;
       default: break;
     }
@@ -67,7 +71,8 @@ class Row {
     predicted_ = problem.predict(trial_, shot, fit.model, fit.p.data(), prediction_.data());
   }
   /// Squared distance with some inputs [SI] and some channels [header's units] replaced.
-  double distance(const std::vector<std::pair<int, double>>& inputs, const std::vector<std::pair<int, double>>& channels) const {
+  double distance(const std::vector<std::pair<int, double>>& inputs,
+                  const std::vector<std::pair<int, double>>& channels) const {
     Eigen::VectorXd r = prediction_;
     bool good = predicted_;
     if (!inputs.empty()) {
@@ -115,7 +120,8 @@ std::string copied_from(const Shots& shots, const Column& u, const std::vector<i
 }
 
 /// One cause, one finding: a cluster most of whose rows are flagged. Its other shots are flagged too.
-void gather_clusters(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const Fit& fit, std::vector<RowFlag>& flags) {
+void gather_clusters(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const Fit& fit,
+                     std::vector<RowFlag>& flags) {
   int finding = 0;
   std::map<int, int> shot_of;
   for (int i = 0; i < problem.shots(); ++i) shot_of[row_of[std::size_t(i)]] = i;
@@ -127,16 +133,19 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
     if (g.name.size() < 2) continue;
     std::vector<std::vector<int>> of_group(g.name.size());
     for (std::size_t row = 0; row < g.of_row.size(); ++row)
-      if (g.of_row[row] >= 0 && (shot_of.contains(int(row)) || flag_of.contains(int(row)))) of_group[std::size_t(g.of_row[row])].push_back(int(row));
+      if (g.of_row[row] >= 0 && (shot_of.contains(int(row)) || flag_of.contains(int(row))))
+        of_group[std::size_t(g.of_row[row])].push_back(int(row));
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       const std::vector<int>& members = of_group[k];
       std::vector<std::size_t> bad;
       for (const int row : members)
-        if (const auto it = flag_of.find(row); it != flag_of.end() && flags[it->second].finding == 0) bad.push_back(it->second);
+        if (const auto it = flag_of.find(row); it != flag_of.end() && flags[it->second].finding == 0)
+          bad.push_back(it->second);
       if (members.size() < 3 || bad.size() * 2 <= members.size()) continue;
       std::map<std::string, int> votes;
       for (const std::size_t b : bad) ++votes[flags[b].column];
-      const bool one_slip = std::ranges::count_if(bad, [&](std::size_t b) { return flags[b].slip; }) * 2 > std::ptrdiff_t(members.size());
+      const bool one_slip = std::ranges::count_if(bad, [&](std::size_t b) { return flags[b].slip; }) * 2 >
+                            std::ptrdiff_t(members.size());
       const std::string column = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
       // The most telling reason: a slip before a value that cannot be.
       std::string reason;
@@ -147,7 +156,8 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
       if (const std::string other = u && u->numeric ? copied_from(shots, *u, members) : ""; !other.empty())
         reason = fmt::format("the values of {} stand in {}", other, column);
       ++finding;
-      const std::string said = fmt::format("all of {} '{}' recorded wrongly in {}: {}", c.name, g.name[k], column, reason);
+      const std::string said =
+          fmt::format("all of {} '{}' recorded wrongly in {}: {}", c.name, g.name[k], column, reason);
       for (const int row : members) {
         if (const auto it = flag_of.find(row); it != flag_of.end()) {
           RowFlag& f = flags[it->second];
@@ -171,8 +181,8 @@ void gather_clusters(const Problem& problem, const Shots& shots, const std::vect
 
 }  // namespace
 
-Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
-                 const Fit& fit, bool clean, const std::vector<RowFlag>& before) {
+Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of,
+                 const std::vector<ColumnUse>& uses, const Fit& fit, bool clean, const std::vector<RowFlag>& before) {
   const int n = problem.shots();
   Screening screening;
   std::vector<RowFlag>& flags = screening.flags;
@@ -190,7 +200,12 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
   if (relative.empty()) return screening;
   std::ranges::sort(relative);
   double bulk = std::max(1.0, relative[relative.size() / 2]);
-  if (!clean) bulk = 2 * std::max(bulk, 0.65 * relative[relative.size() * 3 / 4]);  // 0.65: median over upper quartile of chi-squared, 5 channels
+  if (!clean)
+    bulk =
+        2 *
+        std::max(
+            bulk,
+            0.65 * relative[relative.size() * 3 / 4]);  // 0.65: median over upper quartile of chi-squared, 5 channels
   for (int i = 0; i < n; ++i) {
     const Row row(problem, fit, i);
     int seen = 0;
@@ -198,13 +213,15 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
     if (!seen) continue;
     const boost::math::chi_squared law(seen);
     const double distance = row.distance({}, {});
-    const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))), perhaps = bulk * quantile(complement(law, 2e-4));
+    const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))),
+                 perhaps = bulk * quantile(complement(law, 2e-4));
     if (distance < perhaps) continue;
 
     const std::size_t file_row = std::size_t(row_of[std::size_t(i)]);
     std::vector<Slip> slips;
     const auto try_one = [&](const ColumnUse& u, double si, std::string reason, double cost) {
-      const double d = u.input >= 0 ? row.distance({{u.input, si}}, {}) : row.distance({}, {{u.channel, si / u.column->si}});
+      const double d = u.input >= 0 ? row.distance({{u.input, si}}, {})
+                                    : row.distance({}, {{u.channel, si / u.column->si}});
       slips.push_back({u.column->name, std::move(reason), d, cost});
     };
     std::vector<const ColumnUse*> present;
@@ -214,8 +231,10 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
       const double x = u->column->value[file_row], native = x / u->column->si;
       for (const Factor& f : factors(*u->column)) {
         const double cost = std::string_view(f.what).find("decimal") == std::string_view::npos ? 0 : 3;
-        try_one(*u, x * f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native * f.value, f.what), cost);
-        try_one(*u, x / f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native / f.value, f.what), cost);
+        try_one(*u, x * f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native * f.value, f.what),
+                cost);
+        try_one(*u, x / f.value, fmt::format("{:g} fits as {:.5g}: {} confused", native, native / f.value, f.what),
+                cost);
       }
       if (x != 0) try_one(*u, -x, fmt::format("{:g} fits with the other sign", native), 3);
       for (const double t : transpositions(native, u->column->resolution / u->column->si))
@@ -226,8 +245,10 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
         const ColumnUse &u = *present[a], &v = *present[b];
         const double x = v.column->native(file_row) * u.column->si, y = u.column->native(file_row) * v.column->si;
         std::vector<std::pair<int, double>> inputs, channels;
-        (u.input >= 0 ? inputs : channels).emplace_back(u.input >= 0 ? u.input : u.channel, u.input >= 0 ? x : x / u.column->si);
-        (v.input >= 0 ? inputs : channels).emplace_back(v.input >= 0 ? v.input : v.channel, v.input >= 0 ? y : y / v.column->si);
+        (u.input >= 0 ? inputs : channels)
+            .emplace_back(u.input >= 0 ? u.input : u.channel, u.input >= 0 ? x : x / u.column->si);
+        (v.input >= 0 ? inputs : channels)
+            .emplace_back(v.input >= 0 ? v.input : v.channel, v.input >= 0 ? y : y / v.column->si);
         slips.push_back({u.column->name, fmt::format("fits with {} and {} swapped", u.column->name, v.column->name),
                          row.distance(inputs, channels), 2});
       }
@@ -235,7 +256,8 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
     const double fits = bulk * (quantile(law, 0.95) + 2), half = 0.25 * distance;
     const Slip* best = nullptr;
     for (const Slip& s : slips)
-      if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost)) best = &s;
+      if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost))
+        best = &s;
     if (best) {
       const RowFlag flag{i, int(file_row), best->column, best->reason, 0, distance, true};
       if (const auto it = known.find(i); it != known.end()) flags[it->second] = flag;
@@ -251,7 +273,8 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
       if (u->channel >= 0) {
         // The best value of this channel: minimise over it by a parabola through three points.
         const double y0 = problem.measured()(i, u->channel), h = problem.sigma(i, u->channel);
-        const double d0 = row.distance({}, {{u->channel, y0}}), d1 = row.distance({}, {{u->channel, y0 + h}}), d2 = row.distance({}, {{u->channel, y0 - h}});
+        const double d0 = row.distance({}, {{u->channel, y0}}), d1 = row.distance({}, {{u->channel, y0 + h}}),
+                     d2 = row.distance({}, {{u->channel, y0 - h}});
         const double curve = d1 + d2 - 2 * d0, slope = (d1 - d2) / 2;
         if (curve > 0) d = d0 - slope * slope / (2 * curve);
       } else {
@@ -271,7 +294,9 @@ Screening screen(const Problem& problem, const Shots& shots, const std::vector<i
       }
     }
     flags.push_back({i, int(file_row), column,
-                     fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked", std::sqrt(distance)), 0, distance, false});
+                     fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked",
+                                 std::sqrt(distance)),
+                     0, distance, false});
   }
   gather_clusters(problem, shots, row_of, fit, flags);
 

@@ -4,19 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "loop/fit.hpp"
+#include "hosel/loop/fit.hpp"
 
 namespace hosel::loop {
 
 struct RowFlag {
-  int shot = -1;        ///< of the problem; -1 where the row never became one
-  int row = 0;          ///< of the file
+  int shot = -1;  ///< of the problem; -1 where the row never became one
+  int row = 0;    ///< of the file
   std::string column;
   std::string reason;
   int finding = 0;
-  double distance = 0;  ///< squared Mahalanobis distance
-  bool slip = true;     ///< a slip of the record explains it; else only that nothing explains it is known
-  bool cluster = false; ///< one slip explains most of its cluster
+  double distance = 0;   ///< squared Mahalanobis distance
+  bool slip = true;      ///< a slip of the record explains it; else only that nothing explains it is known
+  bool cluster = false;  ///< one slip explains most of its cluster
 };
 
 struct Screening {
@@ -38,7 +38,7 @@ struct ColumnUse {
 /// decimal point) brings it back. `before`: rows that were flagged before they could become shots. A cluster most
 /// of whose rows are flagged is one finding, with what stands in its column where another column shows it.
 /// `clean`: the fit leaves no structure; else its own misfit has tails, and a row must stand out from those.
-Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of, const std::vector<ColumnUse>& uses,
-                 const Fit& fit, bool clean, const std::vector<RowFlag>& before);
+Screening screen(const Problem& problem, const Shots& shots, const std::vector<int>& row_of,
+                 const std::vector<ColumnUse>& uses, const Fit& fit, bool clean, const std::vector<RowFlag>& before);
 
 }  // namespace hosel::loop

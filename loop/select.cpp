@@ -1,4 +1,4 @@
-#include "loop/select.hpp"
+#include "hosel/loop/select.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -31,8 +31,8 @@ int order_of(const std::string& effect) {
 
 class Search {
  public:
-  Search(const Problem& problem, const std::vector<int>& rows, const std::vector<const Form*>& base, const std::vector<const Form*>& forms,
-         const Loss& loss, const Rules& rules)
+  Search(const Problem& problem, const std::vector<int>& rows, const std::vector<const Form*>& base,
+         const std::vector<const Form*>& forms, const Loss& loss, const Rules& rules)
       : problem_(problem), rows_(rows), base_(base), forms_(forms), loss_(loss), rules_(rules) {
     Model m{base};
     base_fit = fit(problem, rows, m, starts(m), loss);
@@ -90,7 +90,8 @@ class Search {
     for (const Guess& g : guesses) {
       const auto key = std::minmax(linear_[g.a].form->effect, linear_[g.b].form->effect);
       int& count = tried[{key.first, key.second}];
-      const bool partner = !singles.empty() && (key.first == singles[0].effects[0] || key.second == singles[0].effects[0]);
+      const bool partner = !singles.empty() &&
+                           (key.first == singles[0].effects[0] || key.second == singles[0].effects[0]);
       if ((chosen.size() < 36 && count < 3) || (partner && count < 1)) {
         ++count;
         chosen.push_back(g);
@@ -137,7 +138,8 @@ class Search {
         Eigen::MatrixXd A = columns_.middleCols(l.first, l.count);
         A -= Q * (Q.transpose() * A);
         const Eigen::MatrixXd basis = orthonormal(A);
-        ranked.emplace_back(-(basis.transpose() * zw).squaredNorm() + rules_.parameter_cost * double(l.count) + l.form->rarity, l.form);
+        ranked.emplace_back(
+            -(basis.transpose() * zw).squaredNorm() + rules_.parameter_cost * double(l.count) + l.form->rarity, l.form);
       }
       std::ranges::stable_sort(ranked, {}, [](const auto& r) { return r.first; });
       for (std::size_t j = 0; j < std::min<std::size_t>(ranked.size(), 6); ++j) {
@@ -217,7 +219,8 @@ class Search {
       q[std::ptrdiff_t(k)] = par.max >= par.scale ? par.scale : -par.scale;
       probes.push_back(q);
     }
-    for (const auto& s : form.starts) probes.push_back(Eigen::Map<const Eigen::VectorXd>(s.data(), std::ptrdiff_t(s.size())));
+    for (const auto& s : form.starts)
+      probes.push_back(Eigen::Map<const Eigen::VectorXd>(s.data(), std::ptrdiff_t(s.size())));
     for (const Eigen::VectorXd& q : probes) {
       p.tail(q.size()) = q;
       if ((whitened(problem_, rows_, m, p) - z0).cwiseAbs().maxCoeff() > 1e-4) return true;
@@ -350,10 +353,8 @@ void ties_of(const std::vector<const Candidate*>& tied, Selection& out) {
   }
   // A list of one name is no tie: every rival set keeps that name, or the rivals are counted in another list.
   for (auto& l : lists)
-    if (l.size() > 1)
-      out.ties.push_back(l);
-    else
-      out.adopted.push_back(l[0]);
+    if (l.size() > 1) out.ties.push_back(l);
+    else out.adopted.push_back(l[0]);
   std::ranges::stable_sort(out.adopted, {}, order_of);
 }
 
@@ -377,21 +378,25 @@ Selection select(const Problem& problem, const std::vector<int>& rows, const std
   const auto jacobian = [&](const Fit& f) { return whitened_jacobian(problem, rows, f.model, f.p); };
 
   // Without an effect worth a name its residual is noise with the likeliest part taken out: such flips find too much.
-  const bool effect = !search.singles.empty() && search.base_fit.deviance - search.singles.front().fit.deviance > rules.gain;
+  const bool effect = !search.singles.empty() &&
+                      search.base_fit.deviance - search.singles.front().fit.deviance > rules.gain;
   const Fit& near = effect ? search.singles.front().fit : search.base_fit;
   const Eigen::VectorXd scatter = whitened(problem, rows, near.model, near.p);
-  s.before = structure(problem, rows, search.z0, scatter, weights(scatter), jacobian(search.base_fit), regressors, search.directions(), {},
-                       rules.flips, rules.seed);
+  s.before = structure(problem, rows, search.z0, scatter, weights(scatter), jacobian(search.base_fit), regressors,
+                       search.directions(), {}, rules.flips, rules.seed);
   const auto strongest = [&](const StructureMap& map) {
     for (const Finding& f : map.findings)
-      if (f.channel >= 0 ? declared[std::size_t(f.channel)] : std::ranges::all_of(declared, std::identity{})) return std::abs(f.signal);
+      if (f.channel >= 0 ? declared[std::size_t(f.channel)] : std::ranges::all_of(declared, std::identity{}))
+        return std::abs(f.signal);
     return 0.0;
   };
-  s.structured = s.before.p < rules.gate || strongest(s.before) > rules.remaining_signal || search.threshold_gain() > rules.threshold_gain;
+  s.structured = s.before.p < rules.gate || strongest(s.before) > rules.remaining_signal ||
+                 search.threshold_gain() > rules.threshold_gain;
 
   const auto check = [&](const Fit& f) {
     const Eigen::VectorXd z = whitened(problem, rows, f.model, f.p);
-    s.after = structure(problem, rows, z, z, weights(z), jacobian(f), regressors, Eigen::MatrixXd(z.size(), 0), {}, rules.flips, rules.seed);
+    s.after = structure(problem, rows, z, z, weights(z), jacobian(f), regressors, Eigen::MatrixXd(z.size(), 0), {},
+                        rules.flips, rules.seed);
     return !(s.after.p < rules.remaining || strongest(s.after) > rules.remaining_signal);
   };
 

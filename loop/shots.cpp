@@ -1,4 +1,4 @@
-#include "loop/shots.hpp"
+#include "hosel/loop/shots.hpp"
 
 #include <fmt/format.h>
 
@@ -12,16 +12,20 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<std::string_view, kInputs> kInputStems = {"club_speed",   "attack_angle", "club_path",   "face_angle",
-                                                               "dynamic_loft", "impact_toe",   "impact_high", "head_mass"};
-constexpr std::array<Dimension, kInputs> kInputDimensions = {Dimension::speed,  Dimension::angle,  Dimension::angle,
-                                                             Dimension::angle,  Dimension::angle,  Dimension::length,
+constexpr std::array<std::string_view, kInputs> kInputStems = {
+    "club_speed", "attack_angle", "club_path", "face_angle", "dynamic_loft", "impact_toe", "impact_high", "head_mass"};
+constexpr std::array<Dimension, kInputs> kInputDimensions = {Dimension::speed,  Dimension::angle, Dimension::angle,
+                                                             Dimension::angle,  Dimension::angle, Dimension::length,
                                                              Dimension::length, Dimension::mass};
 constexpr std::array<std::string_view, 7> kOutputStems = {"ball_speed", "launch_angle", "azimuth",  "backspin",
                                                           "sidespin",   "spin_rate",    "spin_axis"};
-constexpr std::array<Dimension, 7> kOutputDimensions = {
-    Dimension::speed,            Dimension::angle,            Dimension::angle, Dimension::angular_velocity,
-    Dimension::angular_velocity, Dimension::angular_velocity, Dimension::angle};
+constexpr std::array<Dimension, 7> kOutputDimensions = {Dimension::speed,
+                                                        Dimension::angle,
+                                                        Dimension::angle,
+                                                        Dimension::angular_velocity,
+                                                        Dimension::angular_velocity,
+                                                        Dimension::angular_velocity,
+                                                        Dimension::angle};
 constexpr std::array<std::string_view, 5> kBookkeeping = {"shot", "club", "ball", "player", "session"};
 
 /// A whole cell as a number; nullopt for text. "nan" and "inf" are numbers here (and broken ones).
@@ -100,12 +104,11 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   for (std::size_t i = 0; i < cells.size() && c.numeric; ++i) {
     if (cells[i].empty()) continue;
     if (const auto x = number(cells[i])) {
-      if (std::isfinite(*x))
-        c.value[i] = *x;
-      else
-        c.broken.push_back(i);
+      if (std::isfinite(*x)) c.value[i] = *x;
+      else c.broken.push_back(i);
     } else if (wanted) {
-      throw DataError(fmt::format("{}:{}: column '{}': '{}' is not a number", sheet.file, sheet.lines[i], header, cells[i]));
+      throw DataError(
+          fmt::format("{}:{}: column '{}': '{}' is not a number", sheet.file, sheet.lines[i], header, cells[i]));
     } else {
       c.numeric = false;
     }
@@ -191,7 +194,8 @@ Shots read_shots(const Sheet& sheet) {
     Column column = make_column(sheet.names[c], sheet.columns[c], sheet);
     if (column.role == Role::input || column.role == Role::output)
       if (const Column* other = shots.find_stem(column.stem))
-        throw DataError(fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
+        throw DataError(
+            fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
     shots.columns.push_back(std::move(column));
   }
   const Column* shot = shots.find("shot");

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "golf/blow.hpp"
-#include "golf/launch.hpp"
-#include "golf/units.hpp"
-#include "loop/csv.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/golf/launch.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/loop/csv.hpp"
 
 namespace hosel::loop {
 
@@ -19,14 +19,14 @@ enum class Role { bookkeeping, input, output, other };
 enum class Input { club_speed, attack_angle, club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass };
 inline constexpr int kInputs = 8;
 std::string_view stem(Input input);
-double get(const Blow& blow, Input input);            ///< SI
-void set(Blow& blow, Input input, double value);      ///< SI
+double get(const Blow& blow, Input input);        ///< SI
+void set(Blow& blow, Input input, double value);  ///< SI
 
 /// What a launch monitor reports.
 enum class Output { ball_speed, launch_angle, azimuth, backspin, sidespin, spin_rate, spin_axis };
 std::string_view stem(Output output);
 std::optional<Output> output_of(std::string_view stem);  ///< the output that a column of this stem records
-double get(const Launch& launch, Output output);      ///< SI
+double get(const Launch& launch, Output output);         ///< SI
 
 struct Column {
   std::string name;  ///< the header, letter for letter
@@ -34,9 +34,9 @@ struct Column {
   double si = 1;     ///< one of the header's unit in SI
   Role role = Role::other;
   bool numeric = false;
-  std::vector<double> value;      ///< SI; NaN where missing or not a finite number; empty for text columns
-  std::vector<std::string> text;  ///< for text columns; "" where missing
-  double resolution = 0;          ///< recording step found from the digits, SI; 0 where unknown
+  std::vector<double> value;        ///< SI; NaN where missing or not a finite number; empty for text columns
+  std::vector<std::string> text;    ///< for text columns; "" where missing
+  double resolution = 0;            ///< recording step found from the digits, SI; 0 where unknown
   std::vector<std::size_t> broken;  ///< rows whose cell is infinite or not a number ("nan", "inf")
 
   double native(std::size_t row) const { return value[row] / si; }
@@ -44,8 +44,8 @@ struct Column {
 
 struct Shots {
   std::string file;
-  std::vector<std::string> id;     ///< the `shot` value, or the row's number
-  std::vector<std::size_t> line;   ///< in the file
+  std::vector<std::string> id;    ///< the `shot` value, or the row's number
+  std::vector<std::size_t> line;  ///< in the file
   std::vector<Column> columns;
   bool has_shot_column = false;
 

@@ -1,4 +1,4 @@
-#include "loop/split.hpp"
+#include "hosel/loop/split.hpp"
 
 #include <fmt/format.h>
 
@@ -8,16 +8,18 @@
 #include <random>
 #include <set>
 
-#include "models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 
-Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of, const std::vector<int>& usable) {
+Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of,
+                const std::vector<int>& usable) {
   // Thresholds show at the most oblique shots only, so these are never held out: beyond them nothing would be learnt.
   std::vector<double> oblique;
   for (const int i : usable) {
     Blow blow = problem.trial(i).blow;
-    if (!c.head_turns) blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
+    if (!c.head_turns)
+      blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
     const models::ContactGeometry g = models::contact_geometry(blow);
     const double approach = g.approach.dot(g.normal);
     oblique.push_back((g.approach - approach * g.normal).norm() / approach);
@@ -47,7 +49,7 @@ Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int
     const std::size_t block = fraction > 0 ? std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction))) : 0;
     for (std::size_t k = 0; block && k < order.size(); k += block) {
       const std::size_t size = std::min(block, order.size() - k);
-      if (size < block && double(random() >> 11) * 0x1p-53 > double(size) * fraction) continue;
+      if (size<block&& double(random() >> 11) * 0x1p-53> double(size) * fraction) continue;
       // One of the block, or as many as the fraction asks for.
       const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
       for (std::size_t t = 0; t < take; ++t) {
@@ -78,7 +80,8 @@ Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int
     if (have >= wanted) break;
   }
   Rows rows;
-  for (std::size_t i = 0; i < usable.size(); ++i) (held.contains(group[i]) ? rows.holdout : rows.train).push_back(usable[i]);
+  for (std::size_t i = 0; i < usable.size(); ++i)
+    (held.contains(group[i]) ? rows.holdout : rows.train).push_back(usable[i]);
   return rows;
 }
 

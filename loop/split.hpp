@@ -1,8 +1,8 @@
 /// Which shots train and which are held out.
 #pragma once
 
-#include "loop/problem.hpp"
-#include "loop/run.hpp"
+#include "hosel/loop/problem.hpp"
+#include "hosel/loop/run.hpp"
 
 namespace hosel::loop {
 
@@ -12,7 +12,8 @@ struct Rows {
 
 /// Whole clusters, by a seeded shuffle of their names in order of appearance, or single rows; never the most oblique
 /// ones. `row_of[shot]` is the row of the file, `usable` the shots to be divided.
-Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of, const std::vector<int>& usable);
+Rows split_rows(const LoopCase& c, const Problem& problem, const std::vector<int>& row_of,
+                const std::vector<int>& usable);
 
 /// At most so many rows, evenly spread: what names an effect does not need thousands, and their cost would be felt.
 std::vector<int> thinned(const std::vector<int>& rows);

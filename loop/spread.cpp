@@ -1,4 +1,4 @@
-#include "loop/spread.hpp"
+#include "hosel/loop/spread.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "loop/shots.hpp"
+#include "hosel/loop/shots.hpp"
 
 namespace hosel::loop {
 

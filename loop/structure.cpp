@@ -1,4 +1,4 @@
-#include "loop/structure.hpp"
+#include "hosel/loop/structure.hpp"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,8 @@ void remove_trend(Eigen::VectorXd& q, const Eigen::VectorXd& x, const std::vecto
 
 /// What an instrument does to a reading y: dead band about a value, saturation beyond one, the reading of the shot
 /// before mixed in. The value is the base model's, so that noise does not enter.
-void add_responses(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& order, std::vector<Regressor>& all) {
+void add_responses(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& order,
+                   std::vector<Regressor>& all) {
   const int n = problem.shots(), m = problem.width();
   if (rows.size() < 12) return;
   Eigen::MatrixXd y(n, m);
@@ -80,12 +81,15 @@ void add_responses(const Problem& problem, const std::vector<int>& rows, const E
     };
     for (const double share : {0.3, 0.5, 0.7}) {
       const double half = 0.5 * (at(0.5 + share / 2) - at(0.5 - share / 2)), centre = at(0.5);
-      add("response", fmt::format("dead band about {:.4g}", centre), name, [&](double v) { return std::abs(v - centre) < half ? v - centre : 0.0; });
+      add("response", fmt::format("dead band about {:.4g}", centre), name,
+          [&](double v) { return std::abs(v - centre) < half ? v - centre : 0.0; });
     }
     for (const double q : {0.2, 0.4, 0.6, 0.8})
-      add("response", fmt::format("kink at {:.4g}", at(q)), name, [&](double v) { return q < 0.5 ? std::min(0.0, v - at(q)) : std::max(0.0, v - at(q)); });
+      add("response", fmt::format("kink at {:.4g}", at(q)), name,
+          [&](double v) { return q < 0.5 ? std::min(0.0, v - at(q)) : std::max(0.0, v - at(q)); });
     Eigen::VectorXd lag = Eigen::VectorXd::Zero(n);
-    for (int k = 1; k < n; ++k) lag[by_order[std::size_t(k)]] = y(by_order[std::size_t(k) - 1], c) - y(by_order[std::size_t(k)], c);
+    for (int k = 1; k < n; ++k)
+      lag[by_order[std::size_t(k)]] = y(by_order[std::size_t(k) - 1], c) - y(by_order[std::size_t(k)], c);
     if (standardise(lag, rows)) all.push_back({"shot", "lag", "the reading of the shot before", true, lag, c});
   }
 }
@@ -102,7 +106,8 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
-std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows, const Problem& problem) {
+std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+                                  const Problem& problem) {
   const int n = problem.shots();
   std::vector<Regressor> all;
   all.push_back({"constant", "constant", "", false, Eigen::VectorXd::Ones(n)});
@@ -156,7 +161,8 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
       remove_trend(q, lines[b].x, rows);
       if (q.norm() < 0.05 * std::sqrt(double(n)) || !standardise(q, rows)) continue;
       const bool second = lines[b].foreign;
-      all.push_back({lines[second ? b : a].name, "interaction", "with " + lines[second ? a : b].name, lines[a].foreign || second, q});
+      all.push_back({lines[second ? b : a].name, "interaction", "with " + lines[second ? a : b].name,
+                     lines[a].foreign || second, q});
       ++products;
     }
 
@@ -181,7 +187,8 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     for (int k = 1; k < 12; ++k) {
       Eigen::VectorXd x(n);
       for (int i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
-      if (standardise(x, rows)) all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
+      if (standardise(x, rows))
+        all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
     }
     const int fastest = std::clamp(int(rows.size()) / 4, 2, 16);
     // Half periods too: the slow ones need not close over the session.
@@ -192,13 +199,15 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
           const double phase = kPi * half * order[i];
           x[i] = sine ? std::sin(phase) : std::cos(phase);
         }
-        if (standardise(x, rows)) all.push_back({"shot", "oscillation", fmt::format("{:g} periods in the session", 0.5 * half), true, x});
+        if (standardise(x, rows))
+          all.push_back({"shot", "oscillation", fmt::format("{:g} periods in the session", 0.5 * half), true, x});
       }
   }
   return all;
 }
 
-Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<int>& rows, const std::vector<const Regressor*>& which) {
+Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<int>& rows,
+                                    const std::vector<const Regressor*>& which) {
   const int m = problem.width();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(std::ptrdiff_t(rows.size()) * m, std::ptrdiff_t(which.size()) * m);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -211,8 +220,9 @@ Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<in
   return A;
 }
 
-StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& noise,
-                       const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance, const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
+StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z,
+                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
                        const std::vector<int>& cluster, int flips, unsigned long seed) {
   const int n = int(rows.size()), m = problem.width();
   const Eigen::MatrixXd Q = orthonormal(nuisance);
@@ -245,8 +255,7 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
         auto part = a.segment(std::ptrdiff_t(i) * m, m);
         if (problem.observed(rows[std::size_t(i)], c))
           part = problem.whitening(rows[std::size_t(i)]).col(c) * regressors[r].value[rows[std::size_t(i)]];
-        else
-          part.setZero();
+        else part.setZero();
       }
       add(c, int(r));
     }
@@ -277,7 +286,8 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
   if (map.findings.empty()) return map;
 
   Eigen::MatrixXf U(n, std::ptrdiff_t(plain)), V(n, std::ptrdiff_t(scores.size() - plain));
-  for (std::size_t k = 0; k < scores.size(); ++k) (k < plain ? U.col(std::ptrdiff_t(k)) : V.col(std::ptrdiff_t(k - plain))) = scores[k];
+  for (std::size_t k = 0; k < scores.size(); ++k)
+    (k < plain ? U.col(std::ptrdiff_t(k)) : V.col(std::ptrdiff_t(k - plain))) = scores[k];
   std::mt19937_64 random(seed);
   int n_cluster = 0;
   for (const int g : cluster) n_cluster = std::max(n_cluster, g + 1);
@@ -299,7 +309,8 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
     }
     const Eigen::MatrixXf A = S * U, B = P * V;
     for (int b = 0; b < batch && done + b < flips; ++b)
-      largest.push_back(double(std::max(A.row(b).cwiseAbs().maxCoeff(), V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
+      largest.push_back(
+          double(std::max(A.row(b).cwiseAbs().maxCoeff(), V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
   }
   std::ranges::sort(largest);
   map.threshold = largest[std::size_t(0.99 * double(largest.size() - 1))];
@@ -310,7 +321,8 @@ StructureMap structure(const Problem& problem, const std::vector<int>& rows, con
     f.p_adjusted = (1.0 + double(above)) / (1.0 + double(largest.size()));
     top = std::max(top, t);
   }
-  map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) / (1.0 + double(largest.size()));
+  map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
+          (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
   return map;
 }

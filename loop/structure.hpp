@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "loop/problem.hpp"
+#include "hosel/loop/problem.hpp"
 
 namespace hosel::loop {
 
@@ -25,8 +25,8 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
                                   const Problem& problem);
 
 struct Finding {
-  int channel = 0;     ///< -1: all channels
-  int regressor = 0;   ///< -1: autocorrelation
+  int channel = 0;        ///< -1: all channels
+  int regressor = 0;      ///< -1: autocorrelation
   double statistic = 0;   ///< signed, in units of its standard deviation, self-normalised over the shots
   double signal = 0;      ///< the same in units of the declared noise
   double p_adjusted = 1;  ///< against the largest of all statistics under sign flips
@@ -43,13 +43,14 @@ struct StructureMap {
 /// own (channel -1, regressor index after the others). `cluster` gives whole clusters one sign where not empty.
 /// `noise` are the whitened residuals whose signs are flipped: those of the best model, so that a strong effect
 /// does not hide in its own scatter; for a test of what remains the same as `z`.
-StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z, const Eigen::VectorXd& noise,
-                       const Eigen::VectorXd& weights,
-                       const Eigen::MatrixXd& nuisance, const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
+StructureMap structure(const Problem& problem, const std::vector<int>& rows, const Eigen::VectorXd& z,
+                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
                        const std::vector<int>& cluster, int flips, unsigned long seed);
 
 /// The linear space of some regressors in all channels, whitened: nuisance for a second look.
-Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<int>& rows, const std::vector<const Regressor*>& which);
+Eigen::MatrixXd whitened_regressors(const Problem& problem, const std::vector<int>& rows,
+                                    const std::vector<const Regressor*>& which);
 
 /// Orthonormal basis of the column space.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);

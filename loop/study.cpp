@@ -1,4 +1,4 @@
-#include "loop/study.hpp"
+#include "hosel/loop/study.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,12 @@
 #include <cmath>
 #include <functional>
 
-#include "loop/scatter.hpp"
+#include "hosel/loop/scatter.hpp"
 
 namespace hosel::loop {
 
-Study::Study(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held, std::optional<Input> doubted)
+Study::Study(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held,
+             std::optional<Input> doubted)
     : loop_case(c), held_rows(std::move(held)) {
   result.title = c.title;
   result.base = c.base;
@@ -70,7 +71,8 @@ void Study::prepare(std::optional<Input> doubted) {
     result.notes.push_back("no launch quantity has a value");
     return;
   }
-  if (channels.empty()) throw DataError(fmt::format("{}:1: no measured launch quantity (ball_speed_*, launch_angle_*, ...)", shots.file));
+  if (channels.empty())
+    throw DataError(fmt::format("{}:1: no measured launch quantity (ball_speed_*, launch_angle_*, ...)", shots.file));
 
   std::vector<Trial> trials;
   std::vector<int> row_of;
@@ -94,7 +96,8 @@ void Study::prepare(std::optional<Input> doubted) {
       measured(std::ptrdiff_t(i), std::ptrdiff_t(k)) = columns[k]->native(std::size_t(row_of[i]));
   // The record's last digit rounds: that much is added to the noise.
   for (Channel& ch : channels) ch.noise = std::hypot(ch.noise, ch.declared ? ch.resolution / std::sqrt(12.0) : 0.0);
-  problem = std::make_unique<Problem>(*loop_case.model, loop_case.direct, std::move(trials), channels, std::move(measured));
+  problem =
+      std::make_unique<Problem>(*loop_case.model, loop_case.direct, std::move(trials), channels, std::move(measured));
   for (const Channel& ch : channels) result.channel_names.push_back(ch.name);
   for (const Channel& ch : channels) declared_noise.push_back(ch.declared ? ch.noise : 0);
 
@@ -135,13 +138,15 @@ void Study::prepare(std::optional<Input> doubted) {
 
 /// Every shot's value of this input may be anything: its direction is projected out of the shot's channels.
 void Study::distrust(Input input) {
-  if (inputs.covariance.empty()) inputs.covariance.assign(inputs.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
+  if (inputs.covariance.empty())
+    inputs.covariance.assign(inputs.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (const Trial& t : inputs.trials) {
     lo = std::min(lo, get(t.blow, input));
     hi = std::max(hi, get(t.blow, input));
   }
-  for (Eigen::MatrixXd& cov : inputs.covariance) cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
+  for (Eigen::MatrixXd& cov : inputs.covariance)
+    cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
 }
 
 void Study::split(const std::set<int>& without) {
@@ -150,7 +155,8 @@ void Study::split(const std::set<int>& without) {
     if (!without.contains(i)) kept.push_back(i);
   if (held_rows) {
     rows = {};
-    for (const int i : kept) (held_rows->contains(inputs.row_of[std::size_t(i)]) ? rows.holdout : rows.train).push_back(i);
+    for (const int i : kept)
+      (held_rows->contains(inputs.row_of[std::size_t(i)]) ? rows.holdout : rows.train).push_back(i);
   } else {
     // The split is made over all usable rows, so that screening does not reshuffle it.
     const Rows all = split_rows(loop_case, *problem, inputs.row_of, usable);
@@ -185,7 +191,8 @@ void Study::estimate_noise(const Fit* at) {
     double from_inputs = 0;
     if (at && !inputs.covariance.empty()) {
       double sum = 0;
-      for (const int i : rows.train) sum += std::max(0.0, problem->sigma(i, c) * problem->sigma(i, c) - ch.noise * ch.noise);
+      for (const int i : rows.train)
+        sum += std::max(0.0, problem->sigma(i, c) * problem->sigma(i, c) - ch.noise * ch.noise);
       from_inputs = sum / std::max<double>(1, double(rows.train.size()));
     }
     const double floor = std::max({ch.resolution / std::sqrt(12.0), 1e-3 * sd, 1e-9});
@@ -206,7 +213,8 @@ std::vector<char> Study::declared() const {
 }
 
 void Study::select(bool deep) {
-  result.selection = loop::select(*problem, thinned(rows.train), base_forms, candidate_forms, regressors, loss, declared(), loop_case.rules, deep);
+  result.selection = loop::select(*problem, thinned(rows.train), base_forms, candidate_forms, regressors, loss,
+                                  declared(), loop_case.rules, deep);
 }
 
 void Study::work() {
@@ -221,7 +229,8 @@ void Study::work() {
     const Fit& at = result.selection.chosen;
     Screening screening = screen(*problem, loop_case.shots, inputs.row_of, uses, at, result.selection.clean, early);
     // A drift can follow a club that recorded something else: what leaves structure must not hide such a club.
-    if (!result.selection.clean && result.selection.level > 0 && std::ranges::none_of(screening.flags, &RowFlag::cluster)) {
+    if (!result.selection.clean && result.selection.level > 0 &&
+        std::ranges::none_of(screening.flags, &RowFlag::cluster)) {
       Screening bare = screen(*problem, loop_case.shots, inputs.row_of, uses, result.selection.base, false, early);
       if (std::ranges::any_of(bare.flags, &RowFlag::cluster)) screening = std::move(bare);
     }
@@ -242,7 +251,8 @@ void Study::work() {
     estimate_noise(&at);
     bool settled_noise = true;
     for (int c = 0; c < problem->width(); ++c)
-      settled_noise = settled_noise && std::abs(problem->channels()[std::size_t(c)].noise / before[std::size_t(c)] - 1) < 0.03;
+      settled_noise = settled_noise &&
+                      std::abs(problem->channels()[std::size_t(c)].noise / before[std::size_t(c)] - 1) < 0.03;
     const bool first_covariance = pass == 0 && !inputs.covariance.empty() && !at.model.forms.empty();
     set_covariance(&at);
     regressors = loop::regressors(loop_case.shots, inputs.row_of, thinned(rows.train), *problem);
@@ -262,7 +272,8 @@ void Study::contradict(const Fit& at) {
     const Channel& ch = problem->channels()[std::size_t(c)];
     if (!ch.declared || std::ranges::count(contradicted, ch.name)) continue;
     const Scatter s = scatter(*problem, rows.train, c, r, at.size());
-    if (std::abs(std::log(s.ratio)) > 4.2 * s.error && (s.ratio > 1.25 || s.ratio < 0.8)) contradicted.push_back(ch.name);
+    if (std::abs(std::log(s.ratio)) > 4.2 * s.error && (s.ratio > 1.25 || s.ratio < 0.8))
+      contradicted.push_back(ch.name);
   }
 }
 

@@ -5,15 +5,16 @@
 #include <optional>
 #include <set>
 
-#include "loop/inputs.hpp"
-#include "loop/run.hpp"
-#include "loop/split.hpp"
+#include "hosel/loop/inputs.hpp"
+#include "hosel/loop/run.hpp"
+#include "hosel/loop/split.hpp"
 
 namespace hosel::loop {
 
 struct Study {
   /// `held_rows`: the holdout, where it is not split here. `doubted`: an input whose record counts for nothing.
-  Study(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows = {}, std::optional<Input> doubted = {});
+  Study(const LoopCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows = {},
+        std::optional<Input> doubted = {});
 
   LoopResult result;  ///< title, rows, forms, selection; the verdict is still to come
 
@@ -23,11 +24,11 @@ struct Study {
   std::unique_ptr<Problem> problem;  ///< absent where no shot can be used
   std::vector<const Form*> base_forms, candidate_forms;
   std::vector<ColumnUse> uses;
-  std::vector<int> usable;           ///< shots whose base answer exists
+  std::vector<int> usable;  ///< shots whose base answer exists
   Rows rows;
-  std::vector<RowFlag> early;        ///< flagged before they could become shots
+  std::vector<RowFlag> early;  ///< flagged before they could become shots
   std::vector<RowFlag> flags;
-  std::string widespread;            ///< see Screening
+  std::string widespread;  ///< see Screening
   Loss loss;
   std::vector<Regressor> regressors;
   std::vector<std::string> contradicted;  ///< channels whose declared noise is not that of the data

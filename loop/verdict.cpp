@@ -1,4 +1,4 @@
-#include "loop/verdict.hpp"
+#include "hosel/loop/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <functional>
 #include <map>
 
-#include "loop/alike.hpp"
-#include "loop/experiment.hpp"
-#include "loop/scatter.hpp"
+#include "hosel/loop/alike.hpp"
+#include "hosel/loop/experiment.hpp"
+#include "hosel/loop/scatter.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -37,7 +37,8 @@ Errors errors(const Rows& rows, int channel, const Eigen::MatrixXd& residuals) {
 }
 
 /// Mean log predictive density per value.
-double score(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p, const Loss& loss) {
+double score(const Problem& problem, const std::vector<int>& rows, const Model& model, const Eigen::VectorXd& p,
+             const Loss& loss) {
   const Eigen::VectorXd z = whitened(problem, rows, model, p);
   const int m = problem.width();
   double sum = 0, count = 0;
@@ -53,8 +54,8 @@ double score(const Problem& problem, const std::vector<int>& rows, const Model& 
   return count ? sum / count : kNaN;
 }
 
-std::vector<Detectable> detectable(const Problem& problem, const std::vector<int>& rows, const Fit& base, const std::vector<const Form*>& forms,
-                                   const Rules& rules) {
+std::vector<Detectable> detectable(const Problem& problem, const std::vector<int>& rows, const Fit& base,
+                                   const std::vector<const Form*>& forms, const Rules& rules) {
   // Found nine times in ten: the threshold and 1.3 standard deviations more.
   const double wanted = std::sqrt(rules.gain) + 1.3;
   std::vector<Detectable> all;
@@ -92,11 +93,14 @@ std::vector<Detectable> detectable(const Problem& problem, const std::vector<int
 }
 
 /// Deviance of the held-out rows.
-double held_out(const Study& study, const Fit& f) { return deviance(whitened(*study.problem, study.rows.holdout, f.model, f.p), study.problem->width(), study.loss); }
+double held_out(const Study& study, const Fit& f) {
+  return deviance(whitened(*study.problem, study.rows.holdout, f.model, f.p), study.problem->width(), study.loss);
+}
 
 std::vector<std::string> names_of(const Study& study, const Fit& f) {
   std::vector<std::string> names;
-  for (std::size_t k = study.base_forms.size(); k < f.model.forms.size(); ++k) names.push_back(f.model.forms[k]->effect);
+  for (std::size_t k = study.base_forms.size(); k < f.model.forms.size(); ++k)
+    names.push_back(f.model.forms[k]->effect);
   return names;
 }
 
@@ -106,7 +110,8 @@ void report_flags(Study& study) {
   int own = 0;
   for (const RowFlag& f : study.flags) own = std::max(own, f.finding);
   for (const RowFlag& f : study.flags)
-    study.result.flagged.push_back({f.row, study.loop_case.shots.id[std::size_t(f.row)], f.column, f.reason, f.finding ? f.finding : ++own});
+    study.result.flagged.push_back(
+        {f.row, study.loop_case.shots.id[std::size_t(f.row)], f.column, f.reason, f.finding ? f.finding : ++own});
   std::ranges::stable_sort(study.result.flagged, {}, &LoopResult::Flag::row);
   std::map<int, int> number;
   for (auto& f : study.result.flagged) {
@@ -131,8 +136,10 @@ Location place(const Study& study, const Finding& f) {
 
 /// Kurtosis of n values in its standard deviations from that of a normal sample (Anscombe & Glynn 1983).
 double kurtosis_deviation(double kurtosis, double n) {
-  const double mean = 3 * (n - 1) / (n + 1), variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
-  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) * std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
+  const double mean = 3 * (n - 1) / (n + 1),
+               variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
+  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) *
+                          std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
   const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
   const double stretch = 1 + (kurtosis - mean) / std::sqrt(variance) * std::sqrt(2 / (a - 4));
   if (stretch <= 0) return -std::numeric_limits<double>::infinity();
@@ -186,7 +193,8 @@ bool shape_remains(Study& study) {
 void locate(Study& study) {
   const Selection& s = study.result.selection;
   const auto foreign = [&](const Finding& f) {
-    return f.regressor < 0 || (std::size_t(f.regressor) < s.regressors.size() && s.regressors[std::size_t(f.regressor)].foreign);
+    return f.regressor < 0 ||
+           (std::size_t(f.regressor) < s.regressors.size() && s.regressors[std::size_t(f.regressor)].foreign);
   };
   const auto first = [&](const StructureMap& map, auto&& good) -> const Finding* {
     for (const Finding& f : map.findings)
@@ -211,7 +219,9 @@ void locate(Study& study) {
   // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
   for (const StructureMap* map : {&s.after, &s.before})
     for (const Finding& f : map->findings)
-      if (f.channel >= 0 && study.result.unexplained.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) && f.p_adjusted < 0.05) add(&f);
+      if (f.channel >= 0 && study.result.unexplained.size() < 4 &&
+          std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) && f.p_adjusted < 0.05)
+        add(&f);
 }
 
 }  // namespace
@@ -252,16 +262,20 @@ void conclude(Study& study) {
   }
 
   if (study.rows.train.size() > thinned(study.rows.train).size()) {
-    study.result.notes.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", thinned(study.rows.train).size(), study.rows.train.size()));
+    study.result.notes.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all",
+                                             thinned(study.rows.train).size(), study.rows.train.size()));
     Fit& chosen = study.result.selection.chosen;
     if (chosen.size() > 0) chosen = fit(*study.problem, study.rows.train, chosen.model, {chosen.p}, study.loss);
   }
   // The holdout is read here, once: what was chosen must not fail there.
   const Fit& base = s.base;
-  const bool offered = study.result.verdict != Verdict::unexplained && study.result.verdict != Verdict::insufficient && s.level > 0;
-  const bool refuted = offered && held_out(study, s.chosen) > held_out(study, base) + study.loop_case.rules.holdout_loss;
+  const bool offered = study.result.verdict != Verdict::unexplained && study.result.verdict != Verdict::insufficient &&
+                       s.level > 0;
+  const bool refuted = offered &&
+                       held_out(study, s.chosen) > held_out(study, base) + study.loop_case.rules.holdout_loss;
   if (refuted) {
-    study.result.notes.push_back(fmt::format("{} explained the training shots and not those held out: not adopted", fmt::join(names_of(study, s.chosen), " and ")));
+    study.result.notes.push_back(fmt::format("{} explained the training shots and not those held out: not adopted",
+                                             fmt::join(names_of(study, s.chosen), " and ")));
     if (study.result.verdict != Verdict::noise_contradicted) study.result.verdict = Verdict::insufficient;
     study.result.adopted.clear();
     study.result.ties.clear();
@@ -269,36 +283,47 @@ void conclude(Study& study) {
   const bool shown = offered && !refuted;
   const Fit& after = shown ? s.chosen : base;
   if (study.rows.train.size() >= 4) {
-    const Eigen::MatrixXd rb = study.problem->residuals(base.model, base.p.data()), ra = study.problem->residuals(after.model, after.p.data());
+    const Eigen::MatrixXd rb = study.problem->residuals(base.model, base.p.data()),
+                          ra = study.problem->residuals(after.model, after.p.data());
     for (int c = 0; c < study.problem->width(); ++c) {
       const Channel& ch = study.problem->channels()[std::size_t(c)];
-      ChannelResult out{.name = ch.name, .noise = ch.noise, .noise_source = ch.declared && !std::ranges::count(study.contradicted, ch.name) ? "declared" : "estimated"};
+      ChannelResult out{
+          .name = ch.name,
+          .noise = ch.noise,
+          .noise_source = ch.declared && !std::ranges::count(study.contradicted, ch.name) ? "declared" : "estimated"};
       out.scatter = scatter(*study.problem, study.rows.train, c, ra, after.size()).ratio;
       out.before = errors(study.rows, c, rb);
       out.after = errors(study.rows, c, ra);
       study.result.channels.push_back(out);
       if (std::ranges::count(study.contradicted, ch.name))
-        study.result.notes.push_back(fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}", ch.name, study.declared_noise[std::size_t(c)], ch.noise));
+        study.result.notes.push_back(fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}",
+                                                 ch.name, study.declared_noise[std::size_t(c)], ch.noise));
     }
     study.result.base_score = score(*study.problem, study.rows.holdout, base.model, base.p, study.loss);
     for (std::size_t k = 0; k < std::min<std::size_t>(s.candidates.size(), 25); ++k) {
       ScoredCandidate sc{.candidate = s.candidates[k]};
-      const Eigen::MatrixXd cov = covariance(*study.problem, thinned(study.rows.train), sc.candidate.fit, study.loss, !std::ranges::all_of(study.declared(), std::identity{}));
+      const Eigen::MatrixXd cov = covariance(*study.problem, thinned(study.rows.train), sc.candidate.fit, study.loss,
+                                             !std::ranges::all_of(study.declared(), std::identity{}));
       for (Eigen::Index j = 0; j < cov.rows(); ++j) sc.sd.push_back(std::sqrt(cov(j, j)));
-      sc.holdout_score = score(*study.problem, study.rows.holdout, sc.candidate.fit.model, sc.candidate.fit.p, study.loss);
+      sc.holdout_score =
+          score(*study.problem, study.rows.holdout, sc.candidate.fit.model, sc.candidate.fit.p, study.loss);
       study.result.candidates.push_back(std::move(sc));
     }
-    study.result.minimum_detectable = detectable(*study.problem, thinned(study.rows.train), base, study.candidate_forms, study.loop_case.rules);
+    study.result.minimum_detectable =
+        detectable(*study.problem, thinned(study.rows.train), base, study.candidate_forms, study.loop_case.rules);
     study.result.likeness = alike(*study.problem, thinned(study.rows.train), after, study.candidate_forms);
     study.result.balance_before = balance(*study.problem, study.rows.train, base.model, base.p.data());
     study.result.balance_after = balance(*study.problem, study.rows.train, after.model, after.p.data());
-    study.result.next = design(study.loop_case, *study.problem, thinned(study.rows.train), s, study.candidate_forms, study.loss, study.result.unexplained, study.result.verdict);
+    study.result.next = design(study.loop_case, *study.problem, thinned(study.rows.train), s, study.candidate_forms,
+                               study.loss, study.result.unexplained, study.result.verdict);
     std::vector<int> all = study.rows.train;
     all.insert(all.end(), study.rows.holdout.begin(), study.rows.holdout.end());
     std::ranges::sort(all);
     const std::set<int> held(study.rows.holdout.begin(), study.rows.holdout.end());
     for (const int i : all) {
-      UsedShot u{.row = study.inputs.row_of[std::size_t(i)], .id = study.loop_case.shots.id[std::size_t(study.inputs.row_of[std::size_t(i)])], .holdout = held.contains(i)};
+      UsedShot u{.row = study.inputs.row_of[std::size_t(i)],
+                 .id = study.loop_case.shots.id[std::size_t(study.inputs.row_of[std::size_t(i)])],
+                 .holdout = held.contains(i)};
       for (int c = 0; c < study.problem->width(); ++c) {
         u.measured.push_back(study.problem->measured()(i, c));
         u.before.push_back(rb(i, c));

@@ -1,7 +1,7 @@
 /// From a selection to what is said of it: verdict, places, errors on both sets, what to measure next.
 #pragma once
 
-#include "loop/study.hpp"
+#include "hosel/loop/study.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "mesh/line.hpp"
+#include "hosel/mesh/line.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "mesh/meridian.hpp"
+#include "hosel/mesh/meridian.hpp"
 
 #include <cmath>
 #include <functional>
@@ -127,12 +127,9 @@ Meridian sphere_meridian(const std::vector<double>& interfaces, const MeridianOp
       return from_pole * (kappa + (1 - kappa) * std::pow(from_pole / end, (*options.far - 1) / (1 - options.pole)));
     };
     double phi = 0;
-    if (!options.far || kappa == 1)
-      phi = 2 * std::atan(kappa * std::tan(angle / 2));
-    else if (!options.both_poles)
-      phi = power(angle, kPi);
-    else
-      phi = angle <= kPi / 2 ? power(angle, kPi / 2) : kPi - power(kPi - angle, kPi / 2);
+    if (!options.far || kappa == 1) phi = 2 * std::atan(kappa * std::tan(angle / 2));
+    else if (!options.both_poles) phi = power(angle, kPi);
+    else phi = angle <= kPi / 2 ? power(angle, kPi / 2) : kPi - power(kPi - angle, kPi / 2);
     return Point(r * std::cos(phi), r * std::sin(phi));
   };
   // The core block lies between a square and a disc, corners at 45 degrees.

@@ -1,4 +1,4 @@
-#include "models/ball_calibration.hpp"
+#include "hosel/models/ball_calibration.hpp"
 
 #include <ceres/ceres.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {

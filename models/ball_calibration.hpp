@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "models/fe_impact.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 namespace hosel::models {
 
 /// What the ball shall do: restitution level + slope v at the speeds, contact time at one of them. Spin and
 /// tangential data have no place here: what the ball says about them is a prediction.
 struct NormalImpactTarget {
-  std::vector<double> speeds{20, 30, 40, 50};   ///< [m/s]
-  double restitution = 0.86;                    ///< level [-]
-  double restitution_slope = -0.0029;           ///< [s/m]
-  double restitution_sigma = 0.005;             ///< [-]
-  double contact_speed = 40;                    ///< one of the speeds [m/s]
-  double contact_time = 0.45e-3;                ///< [s]
-  double contact_time_sigma = 0.01e-3;          ///< [s]
+  std::vector<double> speeds{20, 30, 40, 50};  ///< [m/s]
+  double restitution = 0.86;                   ///< level [-]
+  double restitution_slope = -0.0029;          ///< [s/m]
+  double restitution_sigma = 0.005;            ///< [-]
+  double contact_speed = 40;                   ///< one of the speeds [m/s]
+  double contact_time = 0.45e-3;               ///< [s]
+  double contact_time_sigma = 0.01e-3;         ///< [s]
 };
 
 struct NormalImpactPoint {
@@ -31,14 +31,14 @@ struct NormalImpactPoint {
 
 struct BallCalibration {
   FeBall ball;
-  std::vector<std::string> names;      ///< of the parameters that were fitted
-  std::vector<double> start, values;   ///< of the first layer, in the units of the names
-  Eigen::MatrixXd covariance;          ///< of log values, at the residuals' declared sigmas
+  std::vector<std::string> names;     ///< of the parameters that were fitted
+  std::vector<double> start, values;  ///< of the first layer, in the units of the names
+  Eigen::MatrixXd covariance;         ///< of log values, at the residuals' declared sigmas
   std::vector<NormalImpactPoint> points;
-  double cost = 0;                     ///< half the sum of squared residuals over sigmas
+  double cost = 0;  ///< half the sum of squared residuals over sigmas
   int evaluations = 0;
   bool converged = false;
-  std::string report;                  ///< of the least-squares solver, one line
+  std::string report;  ///< of the least-squares solver, one line
 };
 
 /// One normal impact on a wall.

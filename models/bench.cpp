@@ -1,4 +1,4 @@
-#include "models/bench.hpp"
+#include "hosel/models/bench.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,10 +8,10 @@
 #include <functional>
 #include <stdexcept>
 
-#include "fem/supports.hpp"
-#include "golf/shaft_library.hpp"
-#include "models/swing.hpp"
-#include "solvers/linear.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/models/swing.hpp"
+#include "hosel/solvers/linear.hpp"
 
 namespace hosel::models {
 namespace {
@@ -36,12 +36,16 @@ struct Assembly {
 
 void assemble(Assembly& a, const Shaft& shaft, const BenchOptions& o) {
   const double length = shaft.length() - o.clamped_length;
-  const auto line = mesh::straight(mesh::graded(length, o.elements), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-  const fem::SectionLaw law = [sections = fem::shaft_sections(shaft, o.shear), from = o.clamped_length](double s) { return sections(s + from); };
+  const auto line =
+      mesh::straight(mesh::graded(length, o.elements), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
+  const fem::SectionLaw law = [sections = fem::shaft_sections(shaft, o.shear), from = o.clamped_length](double s) {
+    return sections(s + from);
+  };
   auto owned = std::make_unique<fem::Beam>(a.system.layout, line, law, fem::BeamOptions{});
   a.beam = owned.get();
   a.system.terms.push_back(std::move(owned));
-  a.system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(a.beam->nodes().front(), fem::at_rest(Vec3::Zero())));
+  a.system.prescribed.push_back(
+      std::make_unique<fem::ImposedMotion>(a.beam->nodes().front(), fem::at_rest(Vec3::Zero())));
 }
 
 MatrixXd tangent(const Assembly& a, const fem::State& s, const fem::Weights& weights) {
@@ -64,9 +68,10 @@ MatrixXd joined(const MatrixXd& beam, const Mat6& head) {
   return m;
 }
 
-/// Stiffness of a pull along the shaft, `acceleration(s)` outwards at arc length s from the clamp, `head` [kg] at the end.
-MatrixXd pulled(const std::vector<mesh::LineNode>& line, const Shaft& shaft, double clamped, double head, const Vec3& cg,
-                const std::function<double(double)>& acceleration) {
+/// Stiffness of a pull along the shaft, `acceleration(s)` outwards at arc length s from the clamp, `head` [kg] at the
+/// end.
+MatrixXd pulled(const std::vector<mesh::LineNode>& line, const Shaft& shaft, double clamped, double head,
+                const Vec3& cg, const std::function<double(double)>& acceleration) {
   const auto n = 6 * (std::ptrdiff_t(line.size()) - 1);
   MatrixXd K = MatrixXd::Zero(n, n);
   const double length = line.back().arc_length, at_head = head * acceleration(length - cg.z());
@@ -133,7 +138,8 @@ std::vector<std::string> BenchOptions::faults() const {
   std::vector<std::string> out;
   if (elements < 2) out.emplace_back("a bench shaft needs at least two elements");
   if (!(clamped_length >= 0)) out.emplace_back("the clamped length is not negative");
-  if (std::abs(rotation_axis.z()) > 1e-12 || std::abs(rotation_axis.norm() - 1) > 1e-9) out.emplace_back("the clamp turns about XG or YG");
+  if (std::abs(rotation_axis.z()) > 1e-12 || std::abs(rotation_axis.norm() - 1) > 1e-9)
+    out.emplace_back("the clamp turns about XG or YG");
   return out;
 }
 
@@ -178,7 +184,9 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   F[kBending] = S * (2 * (whole - half)) * S.transpose();
   F[kTorsion] = S * (2 * half - whole) * S.transpose();
   const auto& line = plain.beam->line();
-  const auto place = [&](std::ptrdiff_t node) { return node < nb / 6 ? line[std::size_t(node) + 1].position : line.back().position; };
+  const auto place = [&](std::ptrdiff_t node) {
+    return node < nb / 6 ? line[std::size_t(node) + 1].position : line.back().position;
+  };
   for (int a = 0; a < 3; ++a) {
     VectorXd clamp = VectorXd::Zero(n), hosel = VectorXd::Zero(n);
     for (std::ptrdiff_t i = 0; i < n / 6; ++i) {
@@ -203,7 +211,8 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   std::vector<MatrixXd> parts;
   const auto with = [&](const ClubChange& c, int count) {
     MatrixXd sum = F[kBending] + F[kTorsion];
-    for (int a = 0; a < 3; ++a) sum += c.clamp[a] * F[std::size_t(kClamp + a)] + c.hosel[a] * F[std::size_t(kHosel + a)];
+    for (int a = 0; a < 3; ++a)
+      sum += c.clamp[a] * F[std::size_t(kClamp + a)] + c.hosel[a] * F[std::size_t(kHosel + a)];
     const Mat6 h = head_mass(c);
     parts.push_back(shapes(sum, rooted(h), count));
   };
@@ -275,7 +284,8 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
         g.segment<3>(6 * i) = about.cross(Vec3(x + at * Vec3::UnitZ()));
         g.segment<3>(6 * i + 3) = about;
       }
-      read_[kBending].row(row) = st.outer_radius / (lead ? st.bending_stiffness_y : st.bending_stiffness_z) * g.transpose() * W;
+      read_[kBending].row(row) = st.outer_radius / (lead ? st.bending_stiffness_y : st.bending_stiffness_z) *
+                                 g.transpose() * W;
       continue;
     }
     std::ptrdiff_t node = nb / 6;  // the head's
@@ -284,7 +294,10 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
       for (std::ptrdiff_t i = 0; i < nb / 6; ++i)
         if (std::abs(-place(i).z() - at) < std::abs(-place(node).z() - at)) node = i;
     }
-    const int entry = sensor.quantity == Quantity::lead ? 0 : sensor.quantity == Quantity::droop ? 1 : sensor.quantity == Quantity::shortening ? 2 : 5;
+    const int entry = sensor.quantity == Quantity::lead         ? 0
+                      : sensor.quantity == Quantity::droop      ? 1
+                      : sensor.quantity == Quantity::shortening ? 2
+                                                                : 5;
     for (int a = 0; a < kCompliances; ++a) read_[std::size_t(a)].row(row) = F[std::size_t(a)].row(6 * node + entry) * W;
   }
 }
@@ -323,7 +336,8 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
     K = (0.5 * (K + K.transpose())).eval();
     solver.compute(B, K);
   }
-  if (solver.info() != Eigen::Success) throw std::invalid_argument("this club cannot vibrate: its stiffness or mass is not positive");
+  if (solver.info() != Eigen::Success)
+    throw std::invalid_argument("this club cannot vibrate: its stiffness or mass is not positive");
   const int m = std::min(count, r);
   BenchModes out;
   out.omega.resize(m);
@@ -350,7 +364,8 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
     out.base.col(k) = move.transpose() * a;
     const double stored = force.dot(G * force);
     const double shaft = yields[0] * force.dot(flex_[0] * force) + yields[1] * force.dot(flex_[1] * force);
-    out.ratio[k] = 0.5 * out.omega[k] * (damping_time_ + change.damping_time) * shaft / stored + 0.5 * change.mass_damping / out.omega[k] + change.damping_ratio;
+    out.ratio[k] = 0.5 * out.omega[k] * (damping_time_ + change.damping_time) * shaft / stored +
+                   0.5 * change.mass_damping / out.omega[k] + change.damping_ratio;
   }
   return out;
 }

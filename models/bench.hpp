@@ -11,23 +11,23 @@
 #include <string>
 #include <vector>
 
-#include "golf/blow.hpp"
+#include "hosel/golf/blow.hpp"
 
 namespace hosel::models {
 
 /// What may differ from the declared club and its supports; all zero: nothing does.
 struct ClubChange {
-  double bending = 0;         ///< log of the factor on bending and axial stiffness
-  double torsion = 0;         ///< log of the factor on torsional and shear stiffness
-  double damping_time = 0;    ///< added to the shaft's own, stiffness-proportional [s]
-  double mass_damping = 0;    ///< force = -rate * mass * velocity [1/s]
-  double damping_ratio = 0;   ///< added to that of every mode
-  Vec3 clamp = Vec3::Zero();  ///< rotational compliance of the clamp about XG, YG, ZG [rad/(N m)]
-  Vec3 hosel = Vec3::Zero();  ///< the same between shaft tip and head
-  double tip_mass = 0;        ///< added at the hosel [kg]
-  Vec3 cg = Vec3::Zero();     ///< shift of the head's centre of gravity, face frame [m]
+  double bending = 0;           ///< log of the factor on bending and axial stiffness
+  double torsion = 0;           ///< log of the factor on torsional and shear stiffness
+  double damping_time = 0;      ///< added to the shaft's own, stiffness-proportional [s]
+  double mass_damping = 0;      ///< force = -rate * mass * velocity [1/s]
+  double damping_ratio = 0;     ///< added to that of every mode
+  Vec3 clamp = Vec3::Zero();    ///< rotational compliance of the clamp about XG, YG, ZG [rad/(N m)]
+  Vec3 hosel = Vec3::Zero();    ///< the same between shaft tip and head
+  double tip_mass = 0;          ///< added at the hosel [kg]
+  Vec3 cg = Vec3::Zero();       ///< shift of the head's centre of gravity, face frame [m]
   Vec3 inertia = Vec3::Zero();  ///< logs of the factors on the head's inertia about the face axes
-  double stiffening = 0;      ///< share of the centrifugal stiffness that is felt
+  double stiffening = 0;        ///< share of the centrifugal stiffness that is felt
 
   bool operator==(const ClubChange&) const = default;
 };
@@ -44,12 +44,13 @@ struct BenchSensor {
 
 struct BenchOptions {
   int elements = 12;
-  bool shear = true;                 ///< Timoshenko; false: Rayleigh
-  double clamped_length = 0;         ///< from the butt [m]
-  Vec3 gravity = Vec3::Zero();       ///< grip axes; its pull along the declared club counts, sag does not: readings are from rest [m/s^2]
-  double rotation_rate = 0;          ///< of the clamp about `rotation_axis` [rad/s]
+  bool shear = true;            ///< Timoshenko; false: Rayleigh
+  double clamped_length = 0;    ///< from the butt [m]
+  Vec3 gravity = Vec3::Zero();  ///< grip axes; its pull along the declared club counts, sag does not: readings are from
+                                ///< rest [m/s^2]
+  double rotation_rate = 0;     ///< of the clamp about `rotation_axis` [rad/s]
   Vec3 rotation_axis = Vec3::UnitY();  ///< XG or YG
-  double hub = 0;                    ///< of the clamp from the axis of rotation [m]
+  double hub = 0;                      ///< of the clamp from the axis of rotation [m]
 
   std::vector<std::string> faults() const;
 };
@@ -78,12 +79,12 @@ class Bench {
   bool with_head_;
   BenchOptions options_;
   double length_ = 0, damping_time_ = 0;
-  int basis_ = 0;                       // vectors of V
-  std::vector<Eigen::MatrixXd> flex_;   // W' F_a W of each compliance a
-  std::vector<Eigen::MatrixXd> read_;   // sensors' rows of F_a W
-  Eigen::MatrixXd head_shape_;          // V at the head's six degrees of freedom
-  Eigen::MatrixXd base_shape_;          // V' M0 r of the clamp's three translations
-  Eigen::MatrixXd weight_, spin_;       // V' K V of gravity, and of one (rad/s)^2
+  int basis_ = 0;                      // vectors of V
+  std::vector<Eigen::MatrixXd> flex_;  // W' F_a W of each compliance a
+  std::vector<Eigen::MatrixXd> read_;  // sensors' rows of F_a W
+  Eigen::MatrixXd head_shape_;         // V at the head's six degrees of freedom
+  Eigen::MatrixXd base_shape_;         // V' M0 r of the clamp's three translations
+  Eigen::MatrixXd weight_, spin_;      // V' K V of gravity, and of one (rad/s)^2
   Eigen::Matrix<double, 6, 6> head0_;
 };
 

@@ -1,4 +1,4 @@
-#include "models/fe_ball.hpp"
+#include "hosel/models/fe_ball.hpp"
 
 #include <array>
 #include <utility>
@@ -44,8 +44,10 @@ FeBall two_piece_ball() {
 
 namespace {
 constexpr std::array kBalls = {
-    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, as cases/calibrate-range-ball finds it", range_ball},
-    NamedFeBall{"two-piece", "rubber core under a cover three times as stiff, as cases/calibrate-two-piece finds it", two_piece_ball},
+    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, as cases/calibrate-range-ball finds it",
+                range_ball},
+    NamedFeBall{"two-piece", "rubber core under a cover three times as stiff, as cases/calibrate-two-piece finds it",
+                two_piece_ball},
 };
 }  // namespace
 

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "fem/materials/solid.hpp"
-#include "golf/ball.hpp"
+#include "hosel/fem/materials/solid.hpp"
+#include "hosel/golf/ball.hpp"
 
 namespace hosel::models {
 
 struct BallLayer {
-  double radius = 1;     ///< outer, as a fraction of the ball's radius; the last layer's is 1
-  fem::Solid material;   ///< its density counts relative to the other layers': the ball's mass is kept
+  double radius = 1;    ///< outer, as a fraction of the ball's radius; the last layer's is 1
+  fem::Solid material;  ///< its density counts relative to the other layers': the ball's mass is kept
 };
 
 struct FeBall {

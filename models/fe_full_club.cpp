@@ -1,4 +1,4 @@
-#include "models/fe_full_club.hpp"
+#include "hosel/models/fe_full_club.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -8,10 +8,14 @@ namespace hosel::models {
 
 FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& options) {
   const Head& head = blow.club.head;
-  if (std::isinf(head.mass)) throw std::invalid_argument("fe full club: a head of infinite mass feels no shaft; use fe-free-body");
-  if (const auto faults = head.faults(); !faults.empty()) throw std::invalid_argument("fe full club: " + faults.front());
+  if (std::isinf(head.mass))
+    throw std::invalid_argument("fe full club: a head of infinite mass feels no shaft; use fe-free-body");
+  if (const auto faults = head.faults(); !faults.empty())
+    throw std::invalid_argument("fe full club: " + faults.front());
   if (options.impact.harmonics == 0)
-    throw std::invalid_argument("fe full club: the shaft turns the head, which the axisymmetric ball cannot follow: use harmonics of 2 or more");
+    throw std::invalid_argument(
+        "fe full club: the shaft turns the head, which the axisymmetric ball cannot follow: use harmonics of 2 or "
+        "more");
   ShaftMount mount = options.mount;
   if (mount.load && !mount.loaded)
     mount.loaded = loaded_by_grip(blow, *mount.load, mount.grip_point, mount.elements, mount.growth, mount.shear);
@@ -22,9 +26,10 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   // The node that head and shaft share is at the hosel, its frame the face frame.
   const Vec3& hosel = blow.club.geometry.hosel;
   out.hosel = {out.system.layout.add_vector(3), out.system.layout.add_rotation()};
-  auto body = std::make_unique<fem::RigidBody>("head", out.hosel.translation, out.hosel.rotation,
-                                               fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel},
-                                               mount.loaded ? Vec3(e.face_axes * mount.loaded->gravity) : Vec3(Vec3::Zero()));
+  auto body =
+      std::make_unique<fem::RigidBody>("head", out.hosel.translation, out.hosel.rotation,
+                                       fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel},
+                                       mount.loaded ? Vec3(e.face_axes * mount.loaded->gravity) : Vec3(Vec3::Zero()));
   out.head = body.get();
   out.system.terms.push_back(std::move(body));
 
@@ -38,7 +43,8 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   const Vec3& w = blow.delivery.head_angular_velocity;
   out.initial.q.segment<3>(out.hosel.translation.q) = e.face_centre + e.face_axes * hosel;
   fem::set_rotation(out.initial, out.hosel.rotation, Eigen::Quaterniond(e.face_axes));
-  out.initial.v.segment<3>(out.hosel.translation.v) = blow.delivery.velocity() + w.cross(e.face_axes * (hosel - head.cg));
+  out.initial.v.segment<3>(out.hosel.translation.v) = blow.delivery.velocity() +
+                                                      w.cross(e.face_axes * (hosel - head.cg));
   out.initial.v.segment<3>(out.hosel.rotation.v) = e.face_axes.transpose() * w;
   out.shaft = &mount_shaft(out.system, out.initial, out.hosel, blow.club, mount);
   return out;

@@ -1,8 +1,8 @@
 /// The finite-element impact with the whole club: ball, contact, head and flexible shaft in one system.
 #pragma once
 
-#include "models/fe_impact.hpp"
-#include "models/mounted_shaft.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/models/mounted_shaft.hpp"
 
 namespace hosel::models {
 

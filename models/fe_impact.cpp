@@ -1,4 +1,4 @@
-#include "models/fe_impact.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {
@@ -115,21 +115,24 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   // The mesh weighs what the ball weighs, layer by layer in proportion to the densities given.
   const auto mass_of = [&](const std::vector<fem::Solid>& m) {
     fem::Layout layout;
-    return fem::HarmonicSolid(layout, meridian, fem::axisymmetric_family(), {fem::single_angle(), 2}, m, placement).mass();
+    return fem::HarmonicSolid(layout, meridian, fem::axisymmetric_family(), {fem::single_angle(), 2}, m, placement)
+        .mass();
   };
   const double scale = blow.ball.mass / mass_of(materials);
   for (fem::Solid& m : materials) m.density *= scale;
 
-  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian, family, fem::SolidQuadrature{rule(angles), 2},
-                                                   materials, placement);
+  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian, family,
+                                                   fem::SolidQuadrature{rule(angles), 2}, materials, placement);
   fem::ContactLawAtPoint law;
   law.normal_stiffness = o.penalty * o.ball.instant_young() / R;
   law.tangential_stiffness = o.tangential_penalty * law.normal_stiffness;
   law.friction = axial ? 0 : o.friction;
   law.transition_speed = o.transition_speed;
-  auto contact = std::make_unique<fem::ContactFace>(
-      *ball, blow.club.head.face, carrier, law, rule(patch),
-      axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none, o.edge_points);
+  auto contact = std::make_unique<fem::ContactFace>(*ball, blow.club.head.face, carrier, law, rule(patch),
+                                                    axial    ? fem::Symmetry::axis
+                                                    : planar ? fem::Symmetry::plane
+                                                             : fem::Symmetry::none,
+                                                    o.edge_points);
   BallOnFace parts{ball.get(), contact.get()};
   system.terms.push_back(std::move(ball));
   system.terms.push_back(std::move(contact));
@@ -165,7 +168,8 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.newton.residual_relative = o.newton_relative;
   // The gradient F holds strains to machine precision and no better: what that is in forces counts in very slow blows.
   double stiffest = 0;
-  for (const fem::Solid& m : parts.ball->materials()) stiffest = std::max(stiffest, m.bulk() + 4.0 / 3 * m.instant_shear());
+  for (const fem::Solid& m : parts.ball->materials())
+    stiffest = std::max(stiffest, m.bulk() + 4.0 / 3 * m.instant_shear());
   options.newton.residual_absolute = 1e-3 * o.newton_relative * mass * approach_speed / expected +
                                      4 * std::numeric_limits<double>::epsilon() * stiffest * radius * radius;
   options.newton.increment_vector = 1e-4 * approach_speed * step;
@@ -262,7 +266,8 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
   const bool wall = std::isinf(head.mass);
   if (options.harmonics == 0 && !e.axial && !wall)
     throw std::invalid_argument(
-        "fe impact: harmonics = 0 is the axisymmetric ball: a blow with loft, offset or curved face needs harmonics of 2 or more");
+        "fe impact: harmonics = 0 is the axisymmetric ball: a blow with loft, offset or curved face needs harmonics of "
+        "2 or more");
   if (options.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
   fem::FaceCarrier carrier;
@@ -278,7 +283,8 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
     carrier.translation = x;
     carrier.rotation = r;
     carrier.face_centre = -head.cg;
-    auto body = std::make_unique<fem::RigidBody>("head", x, r, fem::RigidBodyProperties{head.mass, head.inertia, Vec3::Zero()});
+    auto body =
+        std::make_unique<fem::RigidBody>("head", x, r, fem::RigidBodyProperties{head.mass, head.inertia, Vec3::Zero()});
     out.head = body.get();
     out.system.terms.push_back(std::move(body));
   }
@@ -299,7 +305,8 @@ FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, cons
                           const ImpactCheckpoint* from) {
   FreeBodyImpact impact = assemble_free_body(blow, options);
   FeOutcome out;
-  out.result = run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed, observer, from);
+  out.result =
+      run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed, observer, from);
   out.launch = launch_of(out.result);
   if (impact.head) {
     out.launch.head_velocity = impact.head->velocity(out.result.last);
@@ -312,7 +319,8 @@ FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, cons
 }
 
 FeFreeBody::FeFreeBody(FeImpactOptions options) : options_(std::move(options)) {
-  if (const auto faults = options_.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
+  if (const auto faults = options_.faults(); !faults.empty())
+    throw std::invalid_argument("fe impact: " + faults.front());
 }
 
 FeOutcome FeFreeBody::solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const {

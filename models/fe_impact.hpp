@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "fem/beam.hpp"
-#include "fem/contact_face.hpp"
-#include "fem/rigid_body.hpp"
-#include "golf/blow.hpp"
-#include "mesh/meridian.hpp"
-#include "models/fe_ball.hpp"
-#include "models/impact_model.hpp"
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/fem/beam.hpp"
+#include "hosel/fem/contact_face.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/mesh/meridian.hpp"
+#include "hosel/models/fe_ball.hpp"
+#include "hosel/models/impact_model.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 
 namespace hosel::models {
 
@@ -24,12 +24,12 @@ struct FeImpactOptions {
   std::optional<double> transition_speed;  ///< where set, friction is regularised by velocity [m/s]
 
   mesh::MeridianOptions mesh;
-  int harmonics = 4;      ///< N; 0 is the axisymmetric ball
-  int antisymmetric = 2;  ///< harmonics across the plane of the slip, where the blow has no plane of symmetry
-  int angles = 0;         ///< of the volume over the half circle; 0: 2 N + 4
-  int contact_angles = 0; ///< of the patch over the half circle; 0: 3 N + 8
-  int edge_points = 4;    ///< Gauss points of the patch along an edge
-  double tilt = 0;        ///< of the mesh's axis against the expected turn of the ball [rad]
+  int harmonics = 4;       ///< N; 0 is the axisymmetric ball
+  int antisymmetric = 2;   ///< harmonics across the plane of the slip, where the blow has no plane of symmetry
+  int angles = 0;          ///< of the volume over the half circle; 0: 2 N + 4
+  int contact_angles = 0;  ///< of the patch over the half circle; 0: 3 N + 8
+  int edge_points = 4;     ///< Gauss points of the patch along an edge
+  double tilt = 0;         ///< of the mesh's axis against the expected turn of the ball [rad]
 
   double penalty = 1000;            ///< contact pressure stiffness times radius over Young's modulus [-]
   double tangential_penalty = 0.5;  ///< tangential stiffness over normal stiffness [-]
@@ -37,9 +37,9 @@ struct FeImpactOptions {
   /// Of generalized-alpha. Above about 0.7 the patch's penalty chatters at the step's own frequency and
   /// may gain energy; restitution does not depend on it from 0.2 to 0.6.
   double rho_inf = 0.5;
-  int steps_per_contact = 120;   ///< of the contact time of Hertz's theory
-  double newton_relative = 1e-6; ///< residual over the size of the forces
-  double after = 0.05;           ///< time computed after contact, as a fraction of the contact time
+  int steps_per_contact = 120;    ///< of the contact time of Hertz's theory
+  double newton_relative = 1e-6;  ///< residual over the size of the forces
+  double after = 0.05;            ///< time computed after contact, as a fraction of the contact time
 
   /// Sentences naming what cannot be; empty if all is well.
   std::vector<std::string> faults() const;
@@ -54,14 +54,14 @@ struct BallOnFace {
 
 /// What a blow looks like at first contact, ball centre at the global origin.
 struct Encounter {
-  Mat3 face_axes;         ///< columns: face frame in the global one
-  Vec3 face_centre;       ///< global [m]
-  Vec3 point, normal;     ///< of first contact; out of the face
-  Vec3 approach;          ///< velocity of the face there [m/s]
+  Mat3 face_axes;           ///< columns: face frame in the global one
+  Vec3 face_centre;         ///< global [m]
+  Vec3 point, normal;       ///< of first contact; out of the face
+  Vec3 approach;            ///< velocity of the face there [m/s]
   double normal_speed = 0;  ///< approach along the normal [m/s]
-  bool axial = false;     ///< nothing but a normal blow through the centres
-  bool planar = false;    ///< a plane of symmetry exists
-  Mat3 ball_axes;         ///< contact pole, direction of slip, across both
+  bool axial = false;       ///< nothing but a normal blow through the centres
+  bool planar = false;      ///< a plane of symmetry exists
+  Mat3 ball_axes;           ///< contact pole, direction of slip, across both
 };
 Encounter encounter(const Blow& blow);
 
@@ -72,10 +72,10 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
 
 /// Where the face stands and how it moves.
 struct FacePose {
-  Vec3 centre = Vec3::Zero();      ///< of the face, global [m]
-  Mat3 axes = Mat3::Identity();    ///< columns: face frame in the global one
-  Vec3 velocity = Vec3::Zero();    ///< of the face centre, global [m/s]
-  Vec3 spin = Vec3::Zero();        ///< global [rad/s]
+  Vec3 centre = Vec3::Zero();    ///< of the face, global [m]
+  Mat3 axes = Mat3::Identity();  ///< columns: face frame in the global one
+  Vec3 velocity = Vec3::Zero();  ///< of the face centre, global [m/s]
+  Vec3 spin = Vec3::Zero();      ///< global [rad/s]
 };
 
 /// What the impact was.
@@ -84,25 +84,25 @@ struct FeImpactResult {
   /// Angular momentum over the undeformed mesh's own inertia: the spin that the ball keeps once its
   /// vibration has died away, global [rad/s].
   Vec3 ball_spin = Vec3::Zero();
-  double contact_time = 0;            ///< from first to last touch [s]
-  double peak_force = 0;              ///< largest normal force [N]
-  double peak_time = 0;               ///< when [s]
-  double compression = 0;             ///< largest approach of ball centre and face along the normal [m]
-  double penetration = 0;             ///< largest of the patch [m]
-  double creep = 0;                   ///< largest elastic slip of a sticking point [m]
-  std::vector<double> dissipated;     ///< by layer [J]
+  double contact_time = 0;         ///< from first to last touch [s]
+  double peak_force = 0;           ///< largest normal force [N]
+  double peak_time = 0;            ///< when [s]
+  double compression = 0;          ///< largest approach of ball centre and face along the normal [m]
+  double penetration = 0;          ///< largest of the patch [m]
+  double creep = 0;                ///< largest elastic slip of a sticking point [m]
+  std::vector<double> dissipated;  ///< by layer [J]
   solvers::Ledger ledger;
   solvers::GeneralizedAlpha::Counts counts;
-  fem::State last;                    ///< when it was over
+  fem::State last;  ///< when it was over
 };
 
 /// An impact under way: all that is needed to go on exactly where it was.
 struct ImpactCheckpoint {
   solvers::Checkpoint solver;
-  FeImpactResult so_far;   ///< what grows with the steps: peak, compression
+  FeImpactResult so_far;  ///< what grows with the steps: peak, compression
   bool touched = false, over = false;
-  double last_touch = 0;   ///< [s]
-  double last_gap = 0;     ///< between ball centre and face [m]
+  double last_touch = 0;  ///< [s]
+  double last_gap = 0;    ///< between ball centre and face [m]
 };
 
 /// What an observer sees after every accepted step, and once at the start.
@@ -114,8 +114,8 @@ struct ImpactView {
   const fem::ContactReport& report;
   const solvers::Ledger& ledger;
   FacePose face;
-  double expected_end = 0;            ///< when Hertz's theory would have contact end [s]
-  const fem::Beam* shaft = nullptr;   ///< of a full club
+  double expected_end = 0;           ///< when Hertz's theory would have contact end [s]
+  const fem::Beam* shaft = nullptr;  ///< of a full club
   std::function<ImpactCheckpoint()> checkpoint;
 };
 using ImpactObserver = std::function<void(const ImpactView&)>;
@@ -137,8 +137,8 @@ class FeModel : public ImpactModel {
 /// Runs a system with a ball until contact has ended. `initial` holds the velocities at first contact.
 /// Throws solvers::NonConvergence.
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial,
-                          const FeImpactOptions& options, double approach_speed,
-                          const ImpactObserver& observer = {}, const ImpactCheckpoint* from = nullptr);
+                          const FeImpactOptions& options, double approach_speed, const ImpactObserver& observer = {},
+                          const ImpactCheckpoint* from = nullptr);
 
 /// What the ball does, from the result; the head's motion is the caller's to add.
 Launch launch_of(const FeImpactResult& result);

@@ -1,4 +1,4 @@
-#include "models/grip_motion.hpp"
+#include "hosel/models/grip_motion.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -16,7 +16,8 @@ solvers::Spline make_spline(const GripTrack& track, double smoothing) {
     last = q;
     values.row(static_cast<Eigen::Index>(i)) << track.positions[i].transpose(), q.coeffs().transpose();
   }
-  return smoothing > 0 ? solvers::Spline::near(track.times, values, smoothing) : solvers::Spline::through(track.times, values);
+  return smoothing > 0 ? solvers::Spline::near(track.times, values, smoothing)
+                       : solvers::Spline::through(track.times, values);
 }
 
 }  // namespace

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "fem/supports.hpp"
-#include "solvers/spline.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/solvers/spline.hpp"
 
 namespace hosel::models {
 
 /// Samples of position and attitude (grip frame to global).
 struct GripTrack {
-  std::vector<double> times;               ///< [s]
-  std::vector<Vec3> positions;             ///< global [m]
+  std::vector<double> times;    ///< [s]
+  std::vector<Vec3> positions;  ///< global [m]
   std::vector<Eigen::Quaterniond> attitudes;
 
   /// Sentences naming what no motion can have: time backwards, a gap longer than `longest_gap` [s], a

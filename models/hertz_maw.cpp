@@ -1,4 +1,4 @@
-#include "models/hertz_maw.hpp"
+#include "hosel/models/hertz_maw.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {
@@ -15,8 +15,15 @@ namespace {
 class Patch {
  public:
   Patch(double half_width, int springs, double radius, double modulus, double tangential_modulus)
-      : dx_(half_width / springs), radius_(radius), modulus_(modulus), stiffness_(2 * tangential_modulus * dx_),
-        u1_(springs), u2_(springs), n1_(springs), n2_(springs), limit_(springs) {
+      : dx_(half_width / springs),
+        radius_(radius),
+        modulus_(modulus),
+        stiffness_(2 * tangential_modulus * dx_),
+        u1_(springs),
+        u2_(springs),
+        n1_(springs),
+        n2_(springs),
+        limit_(springs) {
     for (int i = 0; i <= springs; ++i) cubed_.push_back(std::pow(i * dx_, 3) / (3 * radius));
   }
 
@@ -26,7 +33,8 @@ class Patch {
     const int whole = std::min(static_cast<int>(a / dx_), size());
     for (int i = 0; i < whole; ++i) limit_[i] = scale * 2 * modulus_ * (depth * dx_ - (cubed_[i + 1] - cubed_[i]));
     if (whole < size()) {
-      limit_[whole] = scale * 2 * modulus_ * std::max(0.0, depth * (a - whole * dx_) - (a * a * a / (3 * radius_) - cubed_[whole]));
+      limit_[whole] = scale * 2 * modulus_ *
+                      std::max(0.0, depth * (a - whole * dx_) - (a * a * a / (3 * radius_) - cubed_[whole]));
       for (int i = whole + 1; i < size(); ++i) limit_[i] = 0;
     }
   }
@@ -126,8 +134,9 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
       // Discrete gradient of depth^2.5, written without a difference of near numbers.
       const double x = std::sqrt(depth), y = s.depth > 0 ? std::sqrt(s.depth) : 0;
       const double gradient =
-          s.depth <= 0 ? (depth > 0 ? stored_normal(depth) / (depth - s.depth) : 0.0)
-                       : potential * (y * y * y * y + y * y * y * x + y * y * x * x + y * x * x * x + x * x * x * x) / (x + y);
+          s.depth <= 0
+              ? (depth > 0 ? stored_normal(depth) / (depth - s.depth) : 0.0)
+              : potential * (y * y * y * y + y * y * y * x + y * y * x * x + y * x * x * x + x * x * x * x) / (x + y);
       const double rate = travel[0] / h;
       const double factor = std::max(0.0, 1 + law.damping * end[0]);
       patch.limits(s.depth, law.friction * factor);

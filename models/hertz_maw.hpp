@@ -3,29 +3,29 @@
 
 #include <functional>
 
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 namespace hosel::models {
 
 /// Material of the ball; the face is rigid.
 struct HertzMawLaw {
-  double modulus = 85e6;         ///< Young's modulus [Pa]
-  double poisson = 0.49;         ///< [-]
-  double friction = 0.4;         ///< mu [-]
-  double damping = 6.4e-3;       ///< normal force times (1 + d v_n) [s/m]; 0: elastic
+  double modulus = 85e6;    ///< Young's modulus [Pa]
+  double poisson = 0.49;    ///< [-]
+  double friction = 0.4;    ///< mu [-]
+  double damping = 6.4e-3;  ///< normal force times (1 + d v_n) [s/m]; 0: elastic
 };
 
 struct HertzMawOptions {
-  int springs = 24;   ///< across half the patch
+  int springs = 24;  ///< across half the patch
   int steps = 64;    ///< per contact of Hertz's duration
 };
 
 struct HertzMawResult {
   Launch launch;
-  Vec3 impulse = Vec3::Zero();  ///< on the ball, global frame [N s]
-  double stored = 0;            ///< left in the springs at separation [J]; they carry no force there
+  Vec3 impulse = Vec3::Zero();                ///< on the ball, global frame [N s]
+  double stored = 0;                          ///< left in the springs at separation [J]; they carry no force there
   double lost_normal = 0, lost_friction = 0;  ///< [J]
-  double gap = 0;               ///< what the energy balance misses, relative to the kinetic energy before
+  double gap = 0;                             ///< what the energy balance misses, relative to the kinetic energy before
 };
 
 /// One instant, for histories: forces on the ball.

@@ -1,7 +1,7 @@
-#include "models/hinged_head.hpp"
+#include "hosel/models/hinged_head.hpp"
 
-#include "models/jointed_club.hpp"
-#include "models/stick_slip.hpp"
+#include "hosel/models/jointed_club.hpp"
+#include "hosel/models/stick_slip.hpp"
 
 namespace hosel::models {
 

@@ -1,7 +1,7 @@
 /// The hinged club of Cochran and Stobbs (1968), The Search for the Perfect Swing.
 #pragma once
 
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 namespace hosel::models {
 

@@ -1,4 +1,4 @@
-#include "models/hosel_load.hpp"
+#include "hosel/models/hosel_load.hpp"
 
 namespace hosel::models {
 
@@ -7,7 +7,8 @@ fem::Wrench hosel_load(const fem::Beam& shaft, const fem::State& s) {
   shaft.residual(s, inertia, force);
   const fem::Node& tip = shaft.nodes().back();
   const fem::Vector r = inertia + force;
-  return {-(fem::rotation(s, tip.rotation).conjugate() * Vec3(r.segment<3>(tip.translation.v))), -r.segment<3>(tip.rotation.v)};
+  return {-(fem::rotation(s, tip.rotation).conjugate() * Vec3(r.segment<3>(tip.translation.v))),
+          -r.segment<3>(tip.rotation.v)};
 }
 
 void HoselHistory::add(const fem::Beam& shaft, const fem::State& s) {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fem/beam.hpp"
-#include "fem/supports.hpp"
+#include "hosel/fem/beam.hpp"
+#include "hosel/fem/supports.hpp"
 
 namespace hosel::models {
 
@@ -13,11 +13,11 @@ namespace hosel::models {
 fem::Wrench hosel_load(const fem::Beam& shaft, const fem::State& s);
 
 struct HoselHistory {
-  std::vector<double> times;        ///< [s]
+  std::vector<double> times;  ///< [s]
   std::vector<fem::Wrench> loads;
 
   void add(const fem::Beam& shaft, const fem::State& s);
-  fem::Wrench impulse() const;      ///< [N s], [N m s]; trapezoids
+  fem::Wrench impulse() const;  ///< [N s], [N m s]; trapezoids
 };
 
 }  // namespace hosel::models

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "golf/blow.hpp"
-#include "golf/launch.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/golf/launch.hpp"
 
 namespace hosel::models {
 

@@ -1,4 +1,4 @@
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 #include <Eigen/LU>
 #include <cmath>

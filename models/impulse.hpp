@@ -2,8 +2,8 @@
 /// models without finite motion (stick-slip, hertz-maw, pendulum-club, hinged-head) have in common.
 #pragma once
 
-#include "models/rigid_eccentric.hpp"
-#include "models/shaft_impedance.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/models/shaft_impedance.hpp"
 
 namespace hosel::models {
 
@@ -13,9 +13,9 @@ Mat6 free_head_mobility(const Blow& blow, const ContactGeometry& g);
 
 struct ImpulseProblem {
   ContactGeometry geometry;
-  Vec3 arm;            ///< from the ball's centre to P [m]
-  Vec3 approach;       ///< velocity of the face past the ball at P [m/s]
-  Mat3 mobility;       ///< change of -approach by an impulse on the ball [1/kg]
+  Vec3 arm;       ///< from the ball's centre to P [m]
+  Vec3 approach;  ///< velocity of the face past the ball at P [m/s]
+  Mat3 mobility;  ///< change of -approach by an impulse on the ball [1/kg]
   Mat6 head_mobility;
 
   double normal_approach() const { return approach.dot(geometry.normal); }

@@ -1,4 +1,4 @@
-#include "models/jointed_club.hpp"
+#include "hosel/models/jointed_club.hpp"
 
 #include <Eigen/LU>
 #include <stdexcept>
@@ -7,7 +7,8 @@ namespace hosel::models {
 
 Mat6 jointed_mobility(const Blow& blow, bool hinged) {
   const Club& club = blow.club;
-  if (!club.shaft || club.shaft->stations.size() < 2) throw std::invalid_argument("this model needs a club with a shaft");
+  if (!club.shaft || club.shaft->stations.size() < 2)
+    throw std::invalid_argument("this model needs a club with a shaft");
   // Face axes; the butt is the origin.
   const Vec3 axis = club.geometry.shaft_axis.normalized();
   const Vec3 hosel = -club.shaft->length() * axis, cg = hosel + club.head.cg - club.geometry.hosel;

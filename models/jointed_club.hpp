@@ -1,7 +1,7 @@
 /// A rigid head on a rigid rod that turns about its butt.
 #pragma once
 
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 namespace hosel::models {
 

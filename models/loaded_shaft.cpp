@@ -1,17 +1,18 @@
-#include "models/loaded_shaft.hpp"
+#include "hosel/models/loaded_shaft.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/section.hpp"
-#include "models/mounted_shaft.hpp"
-#include "solvers/errors.hpp"
-#include "solvers/statics.hpp"
+#include "hosel/fem/section.hpp"
+#include "hosel/models/mounted_shaft.hpp"
+#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/statics.hpp"
 
 namespace hosel::models {
 
-LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& s, const SwingSample& before, const SwingSample& last) {
+LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& s, const SwingSample& before,
+                            const SwingSample& last) {
   const fem::Node &tip = swing.shaft().nodes().back(), &butt = swing.shaft().nodes().front();
   if (!swing.head() || swing.head_node().translation.v != tip.translation.v)
     throw std::invalid_argument("a loaded start needs a head that is rigid on the shaft");
@@ -39,12 +40,14 @@ LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& s, const Swing
   out.grip_angular_acceleration = to_face * Vec3(s.a.segment<3>(butt.rotation.v));
   const Vec3 w = s.v.segment<3>(tip.rotation.v), alpha = s.a.segment<3>(tip.rotation.v);
   const Vec3& c = swing.head()->properties().offset;
-  out.head_acceleration = local(Vec3(s.a.segment<3>(tip.translation.v)) + head * (alpha.cross(c) + w.cross(w.cross(c))));
+  out.head_acceleration =
+      local(Vec3(s.a.segment<3>(tip.translation.v)) + head * (alpha.cross(c) + w.cross(w.cross(c))));
   out.head_angular_acceleration = to_face * alpha;
   return out;
 }
 
-LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_point, int elements, double growth, bool shear) {
+LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_point, int elements, double growth,
+                           bool shear) {
   const Club& club = blow.club;
   const Mat3 face = blow.delivery.face_to_global(), to_face = face_to_grip(club.geometry).transpose();
   const Vec3 gravity = face.transpose() * load.gravity, w = face.transpose() * blow.delivery.head_angular_velocity;
@@ -55,14 +58,16 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
   // A system of its own in face axes: the head's node at the origin, held; the butt under the wrench.
   fem::System system;
   const fem::Node head{system.layout.add_vector(3), system.layout.add_rotation()};
-  system.terms.push_back(std::make_unique<fem::RigidBody>(
-      "head", head.translation, head.rotation, fem::RigidBodyProperties{club.head.mass, club.head.inertia, c}, gravity));
+  system.terms.push_back(
+      std::make_unique<fem::RigidBody>("head", head.translation, head.rotation,
+                                       fem::RigidBodyProperties{club.head.mass, club.head.inertia, c}, gravity));
   const auto line = shaft_line(club, grip_point, elements, growth);
   auto owned = std::make_unique<fem::Beam>(system.layout, line, mounted_sections(club, grip_point, shear),
                                            fem::BeamOptions{.gravity = gravity, .last = head});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
-  system.terms.push_back(std::make_unique<fem::NodeLoad>("hands", beam.nodes().front(), [&grip](double) { return grip; }, fem::NodeLoad::Moment::body));
+  system.terms.push_back(std::make_unique<fem::NodeLoad>(
+      "hands", beam.nodes().front(), [&grip](double) { return grip; }, fem::NodeLoad::Moment::body));
   Vec3 a = Vec3::Zero(), alpha = Vec3::Zero();
   system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(head, [&](double) {
     return fem::Pose{.velocity = v, .acceleration = a, .angular_velocity = w, .angular_acceleration = alpha};
@@ -93,10 +98,12 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
     }
     return out;
   };
-  const solvers::NewtonOptions newton{.residual_relative = 1e-9, .residual_absolute = 1e-7, .increment_vector = 1e-9, .increment_rotation = 1e-9};
+  const solvers::NewtonOptions newton{
+      .residual_relative = 1e-9, .residual_absolute = 1e-7, .increment_vector = 1e-9, .increment_rotation = 1e-9};
   double change = 1;
   for (int round = 0; change > 1e-8; ++round) {  // of a swing's wrench each round leaves some 0.8 of the change
-    if (round == 500) throw solvers::NonConvergence("loaded shaft: deflection and acceleration do not settle under this grip wrench");
+    if (round == 500)
+      throw solvers::NonConvergence("loaded shaft: deflection and acceleration do not settle under this grip wrench");
     grip.force = fem::rotation(s, beam.nodes().front().rotation) * (to_face * load.force);
     move(Vec3::Zero(), Vec3::Zero(), w);
     const Eigen::Matrix<double, 6, 1> at_rest = resultant();

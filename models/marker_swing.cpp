@@ -1,4 +1,4 @@
-#include "models/marker_swing.hpp"
+#include "hosel/models/marker_swing.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -63,7 +63,8 @@ MarkerSwing marker_swing(const MarkerTrack& track, double still, double end) {
   return out;
 }
 
-double marker_error(const MarkerSwing& swing, const GripMotion& motion, const std::vector<SwingSample>& samples, double from, double to) {
+double marker_error(const MarkerSwing& swing, const GripMotion& motion, const std::vector<SwingSample>& samples,
+                    double from, double to) {
   double sum = 0;
   std::size_t n = 0, at = 0;
   for (std::size_t i = 0; i < swing.times.size(); ++i) {

@@ -4,16 +4,16 @@
 #include <array>
 #include <vector>
 
-#include "models/grip_motion.hpp"
-#include "models/shaft_identification.hpp"
+#include "hosel/models/grip_motion.hpp"
+#include "hosel/models/shaft_identification.hpp"
 
 namespace hosel::models {
 
 /// Marker positions over time; a drop-out is NaN.
 struct MarkerTrack {
-  std::vector<double> times;                             ///< [s]
-  std::vector<std::array<Vec3, 3>> shaft, head;          ///< global [m]
-  std::vector<Vec3> wrists;                              ///< midpoint [m]
+  std::vector<double> times;                     ///< [s]
+  std::vector<std::array<Vec3, 3>> shaft, head;  ///< global [m]
+  std::vector<Vec3> wrists;                      ///< midpoint [m]
 };
 
 /// Best rigid placement of three points on three others (W. Kabsch, Acta Cryst. A32 (1976) 922).
@@ -28,17 +28,18 @@ Placement place(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to);
 /// to the middle of the wrists; the clamp is the point of that line nearest the shaft markers; the lead
 /// direction is the global X, across the line.
 struct MarkerSwing {
-  GripTrack clamp;                     ///< pose of the grip frame at the clamp
-  double length = 0;                   ///< from the clamp to the hosel [m]
-  std::vector<double> times;           ///< of the samples with all head markers
-  std::vector<double> lead, droop;     ///< of the hosel, measured [m]
+  GripTrack clamp;                        ///< pose of the grip frame at the clamp
+  double length = 0;                      ///< from the clamp to the hosel [m]
+  std::vector<double> times;              ///< of the samples with all head markers
+  std::vector<double> lead, droop;        ///< of the hosel, measured [m]
   std::vector<std::array<Vec3, 3>> head;  ///< measured at those times, global
-  std::array<Vec3, 3> head_reference;  ///< in grip axes from the clamp, unloaded
+  std::array<Vec3, 3> head_reference;     ///< in grip axes from the clamp, unloaded
 };
 MarkerSwing marker_swing(const MarkerTrack& track, double still, double end);
 
 /// Root mean square distance of predicted and measured head markers between two times [m]. `samples` empty: a
 /// rigid shaft.
-double marker_error(const MarkerSwing& swing, const GripMotion& motion, const std::vector<SwingSample>& samples, double from, double to);
+double marker_error(const MarkerSwing& swing, const GripMotion& motion, const std::vector<SwingSample>& samples,
+                    double from, double to);
 
 }  // namespace hosel::models

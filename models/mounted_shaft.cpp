@@ -1,9 +1,9 @@
-#include "models/mounted_shaft.hpp"
+#include "hosel/models/mounted_shaft.hpp"
 
 #include <stdexcept>
 
-#include "fem/section.hpp"
-#include "golf/shaft_library.hpp"
+#include "hosel/fem/section.hpp"
+#include "hosel/golf/shaft_library.hpp"
 
 namespace hosel::models {
 
@@ -25,8 +25,10 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   const auto line = shaft_line(club, mount.grip_point, mount.elements, mount.growth);
   LoadedShaft shaft;  // straight and at rest on the head
   if (mount.loaded) shaft = *mount.loaded;
-  else for (const mesh::LineNode& n : line) shaft.nodes.push_back({.position = n.position});
-  if (shaft.nodes.size() != line.size()) throw std::invalid_argument("the loaded shaft has another number of nodes than the club's mesh");
+  else
+    for (const mesh::LineNode& n : line) shaft.nodes.push_back({.position = n.position});
+  if (shaft.nodes.size() != line.size())
+    throw std::invalid_argument("the loaded shaft has another number of nodes than the club's mesh");
 
   const Vec3 x = initial.q.segment<3>(head.translation.q), v = initial.v.segment<3>(head.translation.v);
   const Vec3 w = initial.v.segment<3>(head.rotation.v);  // body frame
@@ -77,7 +79,8 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   if (mount.grip == Grip::clamped) system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(butt, motion));
   if (mount.grip == Grip::forced || mount.grip == Grip::hands)
     system.terms.push_back(std::make_unique<fem::NodeLoad>("hands", butt, wrench, fem::NodeLoad::Moment::body));
-  if (mount.grip == Grip::hands) system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, butt, mount.hands));
+  if (mount.grip == Grip::hands)
+    system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, butt, mount.hands));
   return beam;
 }
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "fem/beam.hpp"
-#include "fem/supports.hpp"
-#include "golf/blow.hpp"
-#include "models/loaded_shaft.hpp"
+#include "hosel/fem/beam.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/models/loaded_shaft.hpp"
 
 namespace hosel::models {
 

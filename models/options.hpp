@@ -2,10 +2,10 @@
 /// not say it: one struct for all, each model reads its own.
 #pragma once
 
-#include "models/hertz_maw.hpp"
-#include "models/fe_impact.hpp"
-#include "models/mounted_shaft.hpp"
-#include "models/volumetric.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/mounted_shaft.hpp"
+#include "hosel/models/volumetric.hpp"
 
 namespace hosel::models {
 

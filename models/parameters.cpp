@@ -1,4 +1,4 @@
-#include "models/parameters.hpp"
+#include "hosel/models/parameters.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,16 +7,23 @@ namespace hosel::models {
 namespace {
 
 // A parameter that is one number of the blow or of the options.
-#define PLAIN(name, unit, low, high, place)                                             \
-  NamedParameter {                                                                      \
-    name, unit, low, high, [](const Options& o, const Blow& b) { (void)o, (void)b; return double(place); }, \
-        [](Options& o, Blow& b, double x) { (void)o, (void)b; place = x; }              \
+#define PLAIN(name, unit, low, high, place)   \
+  NamedParameter {                            \
+    name, unit, low, high,                    \
+        [](const Options& o, const Blow& b) { \
+          (void)o, (void)b;                   \
+          return double(place);               \
+        },                                    \
+        [](Options& o, Blow& b, double x) {   \
+          (void)o, (void)b;                   \
+          place = x;                          \
+        }                                     \
   }
 // An error of the recorded delivery: zero in the record, added to what a shot says.
-#define OFFSET(name, unit, low, high, place)                                            \
-  NamedParameter {                                                                      \
-    name, unit, low, high, [](const Options&, const Blow&) { return 0.0; },             \
-        [](Options&, Blow& b, double x) { place += x; }                                 \
+#define OFFSET(name, unit, low, high, place)                                \
+  NamedParameter {                                                          \
+    name, unit, low, high, [](const Options&, const Blow&) { return 0.0; }, \
+        [](Options&, Blow& b, double x) { place += x; }                     \
   }
 
 constexpr double kTurn = 1.5;  // [rad]
@@ -46,7 +53,8 @@ constexpr std::array kParameters = {
     PLAIN("volumetric_stiffness", "N_per_m3", 1e8, 1e11, o.volumetric.stiffness),
     PLAIN("volume_exponent", "", 0.5, 1.5, o.volumetric.volume_exponent),
     PLAIN("volumetric_damping", "s_per_m", 0.0, 0.05, o.volumetric.damping),
-    NamedParameter{"volumetric_friction", "", 0.01, 2.0, [](const Options& o, const Blow&) { return o.volumetric.friction; },
+    NamedParameter{"volumetric_friction", "", 0.01, 2.0,
+                   [](const Options& o, const Blow&) { return o.volumetric.friction; },
                    [](Options& o, Blow&, double x) { o.volumetric.friction = o.volumetric.static_friction = x; }},
     PLAIN("volumetric_transition_speed", "mps", 0.01, 20.0, o.volumetric.transition_speed),
     PLAIN("joint_stiffness", "N_m_per_rad", 0.1, 1e4, o.volumetric.joint_stiffness),
@@ -54,7 +62,8 @@ constexpr std::array kParameters = {
     PLAIN("cover_thickness", "mm", 1e-4, 1e-2, o.volumetric.cover_thickness),
     NamedParameter{"common_friction", "", 0.01, 2.0, [](const Options&, const Blow& b) { return b.contact.friction; },
                    [](Options& o, Blow& b, double x) {
-                     b.contact.friction = o.volumetric.friction = o.volumetric.static_friction = o.hertz_maw.friction = o.fe.friction = x;
+                     b.contact.friction = o.volumetric.friction = o.volumetric.static_friction = o.hertz_maw.friction =
+                         o.fe.friction = x;
                    }},
     PLAIN("hertz_modulus", "MPa", 1e6, 1e9, o.hertz_maw.modulus),
     PLAIN("hertz_poisson", "", 0.0, 0.5, o.hertz_maw.poisson),

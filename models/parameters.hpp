@@ -5,15 +5,15 @@
 #include <span>
 #include <string_view>
 
-#include "golf/blow.hpp"
-#include "models/options.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/models/options.hpp"
 
 namespace hosel::models {
 
 struct NamedParameter {
   std::string_view name;
-  std::string_view unit;   ///< suffix in files; empty: dimensionless
-  double low, high;        ///< what is plausible at all [SI]
+  std::string_view unit;  ///< suffix in files; empty: dimensionless
+  double low, high;       ///< what is plausible at all [SI]
   double (*get)(const Options&, const Blow&);
   void (*set)(Options&, Blow&, double);
 };

@@ -1,7 +1,7 @@
-#include "models/pendulum_club.hpp"
+#include "hosel/models/pendulum_club.hpp"
 
-#include "models/jointed_club.hpp"
-#include "models/stick_slip.hpp"
+#include "hosel/models/jointed_club.hpp"
+#include "hosel/models/stick_slip.hpp"
 
 namespace hosel::models {
 

@@ -1,7 +1,7 @@
 /// The club as a rigid pendulum.
 #pragma once
 
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 namespace hosel::models {
 

@@ -1,17 +1,17 @@
-#include "models/registry.hpp"
+#include "hosel/models/registry.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "models/hinged_head.hpp"
-#include "models/pendulum_club.hpp"
-#include "models/fe_full_club.hpp"
-#include "models/fe_impact.hpp"
-#include "models/rigid_eccentric.hpp"
-#include "models/rigid_planar.hpp"
-#include "models/shaft_coupled.hpp"
-#include "models/stick_slip.hpp"
-#include "models/volumetric.hpp"
+#include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/models/hinged_head.hpp"
+#include "hosel/models/pendulum_club.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_planar.hpp"
+#include "hosel/models/shaft_coupled.hpp"
+#include "hosel/models/stick_slip.hpp"
+#include "hosel/models/volumetric.hpp"
 
 namespace hosel::models {
 namespace {
@@ -40,8 +40,10 @@ std::unique_ptr<ImpactModel> fe_full_club(const Options& o) {
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
     ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", plain<RigidEccentric>},
-    ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover", volumetric},
-    ModelEntry{"stick-slip", "sliding then rolling along the impulse's path, with tangential restitution", plain<StickSlip>},
+    ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover",
+               volumetric},
+    ModelEntry{"stick-slip", "sliding then rolling along the impulse's path, with tangential restitution",
+               plain<StickSlip>},
     ModelEntry{"hertz-maw", "elastic ball whose contact patch sticks and slips piecewise", hertz_maw},
     ModelEntry{"shaft-coupled", "volumetric ball, head with the shaft as a condensed beam at the hosel", shaft_coupled},
     ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", plain<PendulumClub>},

@@ -1,4 +1,4 @@
-#include "models/response_surface.hpp"
+#include "hosel/models/response_surface.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::models {
 namespace {
@@ -90,7 +90,10 @@ ResponseSurface::ResponseSurface(const ImpactModel& slow, const Blow& blow, cons
     const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
     const Eigen::VectorXd left = (1 - Q.rowwise().squaredNorm().array()).max(1e-9);
     const Eigen::MatrixXd e = left.cwiseInverse().asDiagonal() * (y - A * c);
-    const double sum = (e.colwise().squaredNorm().array() / (y.rowwise() - y.colwise().mean()).colwise().squaredNorm().array().max(1e-30)).head(6).sum();
+    const double sum = (e.colwise().squaredNorm().array() /
+                        (y.rowwise() - y.colwise().mean()).colwise().squaredNorm().array().max(1e-30))
+                           .head(6)
+                           .sum();
     if (sum >= least) continue;
     least = sum;
     degree_ = degree;

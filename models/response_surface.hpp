@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/impact_model.hpp"
+#include "hosel/models/impact_model.hpp"
 
 namespace hosel::models {
 

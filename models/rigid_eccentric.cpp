@@ -1,4 +1,4 @@
-#include "models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -37,10 +37,8 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   // A head of infinite mass is a wall: it gives way to nothing.
   const bool wall = std::isinf(head.mass);
   const Mat3 inverse_inertia = wall ? Mat3(Mat3::Zero()) : Mat3(g.head_inertia.inverse());
-  const Mat3 head_mobility =
-      Mat3::Identity() / head.mass - skew(g.head_arm) * inverse_inertia * skew(g.head_arm);
-  const Mat3 ball_mobility =
-      Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
+  const Mat3 head_mobility = Mat3::Identity() / head.mass - skew(g.head_arm) * inverse_inertia * skew(g.head_arm);
+  const Mat3 ball_mobility = Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
   const Mat3 K = ball_mobility + head_mobility;
 
   // Columns of `effect`: change of the relative surface velocity at P by an impulse along n (with

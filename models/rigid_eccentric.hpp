@@ -1,17 +1,17 @@
 /// The eccentric impact of a rigid ball on a free rigid head in three dimensions.
 #pragma once
 
-#include "models/impact_model.hpp"
+#include "hosel/models/impact_model.hpp"
 
 namespace hosel::models {
 
 /// Where ball and face meet, in the global frame with the origin at the ball's centre.
 struct ContactGeometry {
-  Vec3 point;            ///< contact point P on the face [m]
-  Vec3 normal;           ///< unit, out of the face, at P
-  Vec3 head_arm;         ///< from the head's centre of gravity to P [m]
-  Mat3 head_inertia;     ///< about the cg, global axes [kg m^2]
-  Vec3 approach;         ///< velocity of the head's surface at P before the blow [m/s]
+  Vec3 point;         ///< contact point P on the face [m]
+  Vec3 normal;        ///< unit, out of the face, at P
+  Vec3 head_arm;      ///< from the head's centre of gravity to P [m]
+  Mat3 head_inertia;  ///< about the cg, global axes [kg m^2]
+  Vec3 approach;      ///< velocity of the head's surface at P before the blow [m/s]
 };
 ContactGeometry contact_geometry(const Blow& blow);
 

@@ -1,4 +1,4 @@
-#include "models/rigid_planar.hpp"
+#include "hosel/models/rigid_planar.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,7 @@ Launch RigidPlanar::launch(const Blow& blow) const {
   const double vn = approach * (1 + e) / (1 + m / M);
   const double arm = blow.contact.normal_force_offset * r;
   // The offset normal impulse already spins the ball: friction need not close that part of the slip.
-  const double closed = d.club_speed * std::sin(a) * (1 + blow.contact.tangential_restitution) -
-                        arm * r * m * vn / I;
+  const double closed = d.club_speed * std::sin(a) * (1 + blow.contact.tangential_restitution) - arm * r * m * vn / I;
   double vp = closed / (1 + m / M + m * r * r / I);
   vp = std::clamp(vp, -blow.contact.friction * vn, blow.contact.friction * vn);
   const double spin = m * (vp * r + arm * vn) / I;

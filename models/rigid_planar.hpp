@@ -1,7 +1,7 @@
 /// The rolling rigid-body model in the plane of the loft.
 #pragma once
 
-#include "models/impact_model.hpp"
+#include "hosel/models/impact_model.hpp"
 
 namespace hosel::models {
 

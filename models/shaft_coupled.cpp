@@ -1,4 +1,4 @@
-#include "models/shaft_coupled.hpp"
+#include "hosel/models/shaft_coupled.hpp"
 
 #include <memory>
 #include <mutex>
@@ -9,13 +9,17 @@ namespace {
 
 /// Everything a condensed shaft depends on, as numbers.
 std::vector<double> signature(const Club& club, const ShaftImpedanceOptions& o) {
-  std::vector<double> s = {double(o.functions), o.highest, double(o.feels_translation), double(o.feels_rotation), club.shaft ? club.shaft->damping_time : -1};
-  for (const Vec3& v : {club.geometry.hosel, club.geometry.shaft_axis, club.head.cg}) s.insert(s.end(), v.data(), v.data() + 3);
+  std::vector<double> s = {double(o.functions), o.highest, double(o.feels_translation), double(o.feels_rotation),
+                           club.shaft ? club.shaft->damping_time : -1};
+  for (const Vec3& v : {club.geometry.hosel, club.geometry.shaft_axis, club.head.cg})
+    s.insert(s.end(), v.data(), v.data() + 3);
   if (club.shaft)
     for (const ShaftStation& t : club.shaft->stations) {
-      for (const auto& centre : {t.centres.elastic, t.centres.shear, t.centres.mass}) s.insert(s.end(), centre.begin(), centre.end());
-      s.insert(s.end(), {t.arc_length, t.bending_stiffness_y, t.bending_stiffness_z, t.torsional_stiffness, t.axial_stiffness,
-                         t.shear_stiffness, t.mass_per_length, t.rotary_inertia_y, t.rotary_inertia_z});
+      for (const auto& centre : {t.centres.elastic, t.centres.shear, t.centres.mass})
+        s.insert(s.end(), centre.begin(), centre.end());
+      s.insert(s.end(),
+               {t.arc_length, t.bending_stiffness_y, t.bending_stiffness_z, t.torsional_stiffness, t.axial_stiffness,
+                t.shear_stiffness, t.mass_per_length, t.rotary_inertia_y, t.rotary_inertia_z});
     }
   return s;
 }

@@ -1,19 +1,20 @@
-#include "models/shaft_identification.hpp"
+#include "hosel/models/shaft_identification.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "golf/shaft_library.hpp"
-#include "solvers/errors.hpp"
-#include "solvers/least_squares.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::models {
 namespace {
 
 /// Simulated minus measured deflection at every sample: leads, then droops.
-Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const MeasuredSwing& m, double scale, double damping, long& shortened) {
+Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const MeasuredSwing& m, double scale,
+                       double damping, long& shortened) {
   Club club = nominal;
   club.shaft = scaled(*nominal.shaft, scale, 1);
   club.shaft->damping_time = damping;
@@ -84,11 +85,13 @@ ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const
     }
   };
   const std::vector<solvers::Bounds> bounds{{-std::log(10.0), std::log(10.0)}, {-std::log(1000.0), std::log(1000.0)}};
-  const solvers::LeastSquaresFit fit = solvers::least_squares(residuals, samples, Eigen::Vector2d::Zero(), bounds, {.starts = 1});
+  const solvers::LeastSquaresFit fit =
+      solvers::least_squares(residuals, samples, Eigen::Vector2d::Zero(), bounds, {.starts = 1});
   for (Eigen::Index i = 0; i < 2; ++i)
     if (std::abs(fit.parameters[i]) > 0.99 * bounds[static_cast<std::size_t>(i)].high)
-      throw solvers::NonConvergence(i == 0 ? "identify-shaft: no stiffness within a factor of 10 of the nominal fits best"
-                                           : "identify-shaft: no damping within a factor of 1000 of the first guess fits best");
+      throw solvers::NonConvergence(
+          i == 0 ? "identify-shaft: no stiffness within a factor of 10 of the nominal fits best"
+                 : "identify-shaft: no damping within a factor of 1000 of the first guess fits best");
   out.bending_scale = std::exp(fit.parameters[0]);
   out.damping_time = guess * std::exp(fit.parameters[1]);
   const double variance = 2 * fit.cost / static_cast<double>(samples - 2);

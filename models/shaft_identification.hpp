@@ -4,22 +4,22 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/swing.hpp"
+#include "hosel/models/swing.hpp"
 
 namespace hosel::models {
 
 /// One measured swing: what drove the club, and how the hosel moved in the grip frame.
 struct MeasuredSwing {
   fem::Motion motion;
-  double begin = 0, end = 0;         ///< the simulation's span [s]
-  std::vector<double> times;         ///< of the samples that count, increasing, within the span [s]
-  std::vector<double> lead, droop;   ///< [m]
-  bool train = true;                 ///< false: held out, for the error only
+  double begin = 0, end = 0;        ///< the simulation's span [s]
+  std::vector<double> times;        ///< of the samples that count, increasing, within the span [s]
+  std::vector<double> lead, droop;  ///< [m]
+  bool train = true;                ///< false: held out, for the error only
 };
 
 struct ShaftIdentification {
-  double bending_scale = 1;   ///< of bending and axial stiffness
-  double damping_time = 0;    ///< [s]
+  double bending_scale = 1;  ///< of bending and axial stiffness
+  double damping_time = 0;   ///< [s]
   /// Of the logarithms of bending_scale and damping_time: 95 % of a parameter lies within a factor
   /// exp(+-1.96 sd) of the estimate.
   Eigen::Matrix2d log_covariance = Eigen::Matrix2d::Zero();

@@ -1,4 +1,4 @@
-#include "models/shaft_impedance.hpp"
+#include "hosel/models/shaft_impedance.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::models {
 namespace {
@@ -73,8 +73,11 @@ Condensed condense(const MatrixXd& M, const MatrixXd& K, int fields, double high
   const int n = static_cast<int>(M.rows()), per = n / fields, inner = n - fields;
   std::vector<int> tip, rest;
   for (int i = 0; i < n; ++i) (i % per == 0 ? tip : rest).push_back(i);
-  const auto pick = [](const MatrixXd& A, const std::vector<int>& r, const std::vector<int>& c) { return MatrixXd(A(r, c)); };
-  const MatrixXd Kii = pick(K, rest, rest), Kib = pick(K, rest, tip), Mii = pick(M, rest, rest), Mib = pick(M, rest, tip);
+  const auto pick = [](const MatrixXd& A, const std::vector<int>& r, const std::vector<int>& c) {
+    return MatrixXd(A(r, c));
+  };
+  const MatrixXd Kii = pick(K, rest, rest), Kib = pick(K, rest, tip), Mii = pick(M, rest, rest),
+                 Mib = pick(M, rest, tip);
   const MatrixXd S = -Kii.ldlt().solve(Kib);  // inner motion that follows the tip at rest
   Condensed out;
   out.stiffness = pick(K, tip, tip) + Kib.transpose() * S;
@@ -96,7 +99,8 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
   const Shaft& shaft = *club.shaft;
   for (const ShaftStation& s : shaft.stations)
     if (!s.centres.none())
-      throw std::invalid_argument("shaft-coupled: the condensed shaft has its centres on its line; for [shaft.offsets] use fe-full-club");
+      throw std::invalid_argument(
+          "shaft-coupled: the condensed shaft has its centres on its line; for [shaft.offsets] use fe-full-club");
   const int n = options.functions, pieces = static_cast<int>(shaft.stations.size()) - 1;
   const double start = shaft.stations.front().arc_length, length = shaft.length() - start;
   MatrixXd My = MatrixXd::Zero(2 * n, 2 * n), Ky = My, Mz = My, Kz = My;  // bending: displacement, slope
@@ -110,7 +114,8 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
       const ShaftStation st = shaft.at(s);
       functions((s - start) / length, length, f, g);
       shear << g, -f;  // displacement' - slope
-      const MatrixXd ff = w * f * f.transpose(), gg = w * g * g.transpose(), ss = w * st.shear_stiffness * shear * shear.transpose();
+      const MatrixXd ff = w * f * f.transpose(), gg = w * g * g.transpose(),
+                     ss = w * st.shear_stiffness * shear * shear.transpose();
       // Along y: slope = rotation about z. Along z: slope = - rotation about y.
       My.topLeftCorner(n, n) += st.mass_per_length * ff;
       My.bottomRightCorner(n, n) += st.rotary_inertia_z * ff;

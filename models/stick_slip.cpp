@@ -1,4 +1,4 @@
-#include "models/stick_slip.hpp"
+#include "hosel/models/stick_slip.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -25,8 +25,8 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
   const Vec2 K_tn = T.transpose() * p.mobility * n, w = T.transpose() * slip;
   const double mu = blow.contact.friction;
 
-  const Vec2 stop = to_stop * w;       // tangential impulse that stops the slip at once
-  const Vec2 hold = -to_stop * K_tn;   // per normal impulse, while sticking
+  const Vec2 stop = to_stop * w;      // tangential impulse that stops the slip at once
+  const Vec2 hold = -to_stop * K_tn;  // per normal impulse, while sticking
   const double K_nn = n.dot(p.mobility * n);
   const double approach = p.normal_approach();
 
@@ -34,7 +34,7 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
   double p_slide = 0;
   Vec2 slide = Vec2::Zero();  // mu d
   if (std::isinf(mu)) {
-    slide = stop;             // an impulse, at once
+    slide = stop;  // an impulse, at once
   } else if (stop.norm() > 0) {
     const double a = stop.squaredNorm(), b = stop.dot(hold), c = hold.squaredNorm() - mu * mu;
     const double inner = b * b - a * c, q = inner >= 0 ? (-b + std::sqrt(inner)) / a : 0;
@@ -56,9 +56,9 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
     at_slide_end = T * stop;
     tangential = stop + out.normal_impulse * hold;
   } else {
-    closing = p_slide * sliding >= approach ? approach / sliding
-                                            : p_slide + (approach - p_slide * sliding) / sticking;
-    if (!(closing > 0)) throw std::invalid_argument("stick-slip: friction jams the contact (sliding does not close it)");
+    closing = p_slide * sliding >= approach ? approach / sliding : p_slide + (approach - p_slide * sliding) / sticking;
+    if (!(closing > 0))
+      throw std::invalid_argument("stick-slip: friction jams the contact (sliding does not close it)");
     out.normal_impulse = (1 + e) * closing;
     const double slid = std::min(p_slide, out.normal_impulse);
     if (slid < out.normal_impulse && hold.norm() > mu)

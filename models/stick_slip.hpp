@@ -1,19 +1,19 @@
 /// Sliding, then rolling: the impulse followed along its path, in closed form.
 #pragma once
 
-#include "models/impulse.hpp"
+#include "hosel/models/impulse.hpp"
 
 namespace hosel::models {
 
 /// How the blow went, by the normal impulse p.
 struct StickSlipPath {
-  Vec3 impulse;               ///< on the ball, global frame [N s]
-  double normal_impulse = 0;  ///< at the end [N s]
-  double rolling_from = 0;    ///< share of the normal impulse at which sliding ends; 1: never
+  Vec3 impulse;                       ///< on the ball, global frame [N s]
+  double normal_impulse = 0;          ///< at the end [N s]
+  double rolling_from = 0;            ///< share of the normal impulse at which sliding ends; 1: never
   double tangential_restitution = 0;  ///< the share of e_t that Coulomb's limit let through
-  double lost_normal = 0;     ///< work of the normal force [J]
-  double lost_friction = 0;   ///< work of friction while sliding [J]
-  double lost_tangential = 0; ///< work of the tangential impulse while sticking and given back [J]
+  double lost_normal = 0;             ///< work of the normal force [J]
+  double lost_friction = 0;           ///< work of friction while sliding [J]
+  double lost_tangential = 0;         ///< work of the tangential impulse while sticking and given back [J]
 };
 
 /// Routh's construction. While the ball slides, dJ = (n + mu d) dp with the constant direction d in

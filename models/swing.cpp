@@ -1,12 +1,12 @@
-#include "models/swing.hpp"
+#include "hosel/models/swing.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/modal_damping.hpp"
-#include "golf/shaft_library.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/statics.hpp"
+#include "hosel/fem/modal_damping.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/solvers/modes.hpp"
+#include "hosel/solvers/statics.hpp"
 
 namespace hosel::models {
 namespace {
@@ -92,11 +92,10 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
 
   const auto line = mesh::straight(mesh::graded(length_, options.elements, options.growth), Vec3::Zero(),
                                    mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-  const fem::SectionLaw sections = [law = fem::shaft_sections(shaft, options.shear), from = options.grip_point](double s) {
-    return law(s + from);
-  };
-  auto beam = std::make_unique<fem::Beam>(system_.layout, line, sections,
-                                          fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
+  const fem::SectionLaw sections = [law = fem::shaft_sections(shaft, options.shear),
+                                    from = options.grip_point](double s) { return law(s + from); };
+  auto beam = std::make_unique<fem::Beam>(
+      system_.layout, line, sections, fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
   shaft_ = beam.get();
   system_.terms.push_back(std::move(beam));
   head_node_ = shaft_->nodes().back();
@@ -127,8 +126,7 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
     return fem::Pose{.position = p.position, .rotation = p.rotation};
   };
   using Kind = GripDrive::Kind;
-  if (drive_.kind == Kind::prescribed)
-    system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(grip, motion));
+  if (drive_.kind == Kind::prescribed) system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(grip, motion));
   else if (drive_.kind == Kind::hands)
     system_.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, grip, drive_.hands));
   else if (drive_.kind == Kind::forced)
@@ -142,15 +140,18 @@ std::unique_ptr<fem::Term> Swing::modal_damping() {
   if (head_node_.translation.v != shaft_->nodes().back().translation.v)
     rest.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
   const auto count = static_cast<Eigen::Index>(options_.modal_damping.size());
-  system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(shaft_->nodes().front(), fem::at_rest(Vec3::Zero())));
+  system_.prescribed.push_back(
+      std::make_unique<fem::ImposedMotion>(shaft_->nodes().front(), fem::at_rest(Vec3::Zero())));
   const solvers::Modes modes = solvers::modes(system_, rest, static_cast<int>(count));
   system_.prescribed.pop_back();
-  if (static_cast<Eigen::Index>(modes.omega.size()) < count) throw std::invalid_argument("swing: the club has fewer modes than damping ratios");
+  if (static_cast<Eigen::Index>(modes.omega.size()) < count)
+    throw std::invalid_argument("swing: the club has fewer modes than damping ratios");
   struct Product final : fem::TangentSink {  // mass matrix times the modes
     const Eigen::MatrixXd& of;
     Eigen::MatrixXd sum;
     explicit Product(const Eigen::MatrixXd& m) : of(m), sum(Eigen::MatrixXd::Zero(m.rows(), m.cols())) {}
-    void add(const std::vector<fem::Index>& rows, const std::vector<fem::Index>& columns, const Eigen::Ref<const Eigen::MatrixXd>& block) override {
+    void add(const std::vector<fem::Index>& rows, const std::vector<fem::Index>& columns,
+             const Eigen::Ref<const Eigen::MatrixXd>& block) override {
       sum(rows, Eigen::all) += block * of(columns, Eigen::all);
     }
   } product(modes.shapes);
@@ -231,8 +232,14 @@ fem::State Swing::hold(double time, double seconds) {
     s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
   s = start(time, s);
   s.time = time - seconds;
-  solvers::GeneralizedAlpha scheme(system_, {.rho_inf = options_.rho_inf, .newton = newton(), .step_max = options_.step,
-                                             .step_min = options_.step / 1024, .error_vector = kInf, .error_rotation = kInf}, s);
+  solvers::GeneralizedAlpha scheme(system_,
+                                   {.rho_inf = options_.rho_inf,
+                                    .newton = newton(),
+                                    .step_max = options_.step,
+                                    .step_min = options_.step / 1024,
+                                    .error_vector = kInf,
+                                    .error_rotation = kInf},
+                                   s);
   while (scheme.time() < time - 1e-9 * seconds) scheme.advance(time);
   held_.reset();
   s = scheme.state();
@@ -281,8 +288,14 @@ SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) con
 }
 
 fem::State Swing::run(const fem::State& from, double end, const Observer& observer) {
-  solvers::GeneralizedAlpha scheme(system_, {.rho_inf = options_.rho_inf, .newton = newton(), .step_max = options_.step,
-                                             .step_min = options_.step / 1024, .error_vector = kInf, .error_rotation = kInf}, from);
+  solvers::GeneralizedAlpha scheme(system_,
+                                   {.rho_inf = options_.rho_inf,
+                                    .newton = newton(),
+                                    .step_max = options_.step,
+                                    .step_min = options_.step / 1024,
+                                    .error_vector = kInf,
+                                    .error_rotation = kInf},
+                                   from);
   if (observer) observer(sample(scheme.state(), scheme.reactions()));
   while (scheme.time() < end - 1e-9 * options_.step) {
     scheme.advance(end);

@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "fem/beam.hpp"
-#include "fem/rigid_body.hpp"
-#include "fem/supports.hpp"
-#include "golf/blow.hpp"
-#include "golf/units.hpp"
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/fem/beam.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 
 namespace hosel::models {
 
@@ -28,12 +28,12 @@ enum class HeadJoint {
 
 struct SwingOptions {
   int elements = 20;
-  double growth = 1;         ///< of the elements' lengths towards the tip
-  double step = 1e-3;        ///< [s]
-  double rho_inf = 0.8;      ///< of generalized-alpha
-  double tolerance = 1e-6;   ///< of Newton: forces, of what acts; displacements, of 0.1 m or rad
-  bool shear = true;         ///< Timoshenko; false: Rayleigh
-  double grip_point = 0;     ///< arc length of the grip point from the butt; the shaft above it is the hands' [m]
+  double growth = 1;        ///< of the elements' lengths towards the tip
+  double step = 1e-3;       ///< [s]
+  double rho_inf = 0.8;     ///< of generalized-alpha
+  double tolerance = 1e-6;  ///< of Newton: forces, of what acts; displacements, of 0.1 m or rad
+  bool shear = true;        ///< Timoshenko; false: Rayleigh
+  double grip_point = 0;    ///< arc length of the grip point from the butt; the shaft above it is the hands' [m]
   Vec3 gravity = Vec3(0, 0, -kGravity);
   HeadJoint joint = HeadJoint::rigid;
   /// Damping ratios of the club's first modes, held at the grip, beside the shaft's own damping time.
@@ -48,21 +48,21 @@ struct SwingOptions {
 /// What drives the grip.
 struct GripDrive {
   enum class Kind { prescribed, forced, hands, free } kind = Kind::prescribed;
-  fem::Motion motion;                             ///< prescribed, hands; of all kinds the pose at the start
-  std::function<fem::Wrench(double)> wrench;      ///< forced: force global, moment in grip axes
-  fem::JointStiffness hands;                      ///< hands
+  fem::Motion motion;                         ///< prescribed, hands; of all kinds the pose at the start
+  std::function<fem::Wrench(double)> wrench;  ///< forced: force global, moment in grip axes
+  fem::JointStiffness hands;                  ///< hands
 };
 
 /// The club at one time.
 struct SwingSample {
-  double time = 0;         ///< [s]
-  double lead = 0;         ///< hosel from its place on the rigid club along XG [m]
-  double droop = 0;        ///< along YG [m]
-  double shortening = 0;   ///< along ZG [m]
-  Vec3 twist = Vec3::Zero();           ///< rotation vector of the hosel in the grip frame [rad]
-  fem::Pose grip, head;                ///< head: position of the cg, rotation face frame to global
-  Vec3 force = Vec3::Zero();           ///< of the hands on the club, global [N]
-  Vec3 moment = Vec3::Zero();          ///< about the grip point, grip axes [N m]
+  double time = 0;             ///< [s]
+  double lead = 0;             ///< hosel from its place on the rigid club along XG [m]
+  double droop = 0;            ///< along YG [m]
+  double shortening = 0;       ///< along ZG [m]
+  Vec3 twist = Vec3::Zero();   ///< rotation vector of the hosel in the grip frame [rad]
+  fem::Pose grip, head;        ///< head: position of the cg, rotation face frame to global
+  Vec3 force = Vec3::Zero();   ///< of the hands on the club, global [N]
+  Vec3 moment = Vec3::Zero();  ///< about the grip point, grip axes [N m]
 };
 
 /// Rotation from face to grip axes of a club, before any bending.

@@ -1,10 +1,10 @@
-#include "models/volume.hpp"
+#include "hosel/models/volume.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::models {
 
@@ -23,8 +23,9 @@ double overlap_potential(double depth, double radius, double curvature, double e
   for (int k = 0; k < parts; ++k) {
     const double middle = (2 * k + 1) * half;
     for (int i = 0; i < 5; ++i)
-      sum += half * weight[i] * (powered(overlap(middle - half * at[i], radius, curvature).volume, exponent) +
-                                 powered(overlap(middle + half * at[i], radius, curvature).volume, exponent));
+      sum += half * weight[i] *
+             (powered(overlap(middle - half * at[i], radius, curvature).volume, exponent) +
+              powered(overlap(middle + half * at[i], radius, curvature).volume, exponent));
   }
   return sum + (depth - lens) * powered(4.0 / 3.0 * kPi * smaller * smaller * smaller, exponent);
 }

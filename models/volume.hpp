@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::models {
 

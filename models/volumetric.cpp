@@ -1,4 +1,4 @@
-#include "models/volumetric.hpp"
+#include "hosel/models/volumetric.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -7,22 +7,22 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "models/rigid_eccentric.hpp"
-#include "models/volume.hpp"
-#include "solvers/cvode.hpp"
-#include "solvers/rosenbrock_w.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/models/volume.hpp"
+#include "hosel/solvers/cvode.hpp"
+#include "hosel/solvers/rosenbrock_w.hpp"
 
 namespace hosel::models {
 namespace {
 
 // Layout of the state. Inertial axes: the face frame at first contact; origin: the ball's centre then.
 enum : int {
-  kBall = 0,         // displacement of the ball's centre
+  kBall = 0,  // displacement of the ball's centre
   kBallVelocity = 3,
-  kCore = 6,         // angular velocities
+  kCore = 6,  // angular velocities
   kCover = 9,
-  kTwist = 12,       // rotation of the cover against the core
-  kHead = 15,        // displacement of the head's cg
+  kTwist = 12,         // rotation of the cover against the core
+  kHead = 15,          // displacement of the head's cg
   kHeadRotation = 18,  // quaternion w, x, y, z
   kHeadVelocity = 22,
   kHeadSpin = 25,
@@ -31,8 +31,8 @@ enum : int {
   kLostJoint = 30,
   kCarrier = 31,
   kLostShaft = 32,
-  kTime = 33,        // since first contact
-  kFree = 34,        // size without a shaft; with one: head's departure u from the carrier, q, q'
+  kTime = 33,  // since first contact
+  kFree = 34,  // size without a shaft; with one: head's departure u from the carrier, q, q'
 };
 
 using ConstVec = Eigen::Map<const Vec3>;
@@ -63,7 +63,8 @@ class Contact {
       added_ = shaft_->mass - shaft_->coupling * shaft_->coupling.transpose();
       if (shaft_->acceleration && !wall_) {
         carried_ = *shaft_->acceleration;
-        held_ << head_.mass * carried_.head<3>(), head_.inertia * carried_.tail<3>() + start_spin_.cross(head_.inertia * start_spin_);
+        held_ << head_.mass * carried_.head<3>(),
+            head_.inertia * carried_.tail<3>() + start_spin_.cross(head_.inertia * start_spin_);
       }
     }
     speed_ = d.velocity().norm();
@@ -112,7 +113,7 @@ class Contact {
     // The spring turns with the mean of the two bodies, so that a common spin does not load it.
     MutVec(dy + kTwist) = relative + 0.5 * (core + cover).cross(twist);
     MutVec(dy + kHead) = vh;
-    const double *q = y + kHeadRotation;
+    const double* q = y + kHeadRotation;
     double* dq = dy + kHeadRotation;
     dq[0] = -0.5 * (wh.x() * q[1] + wh.y() * q[2] + wh.z() * q[3]);
     dq[1] = 0.5 * (wh.x() * q[0] + wh.y() * q[3] - wh.z() * q[2]);
@@ -201,8 +202,10 @@ class Contact {
     };
     e.kinetic_before = wall_ ? ball_.mass * blow.delivery.velocity().squaredNorm() / 2
                              : head_energy(start_velocity_, start_spin_);
-    e.kinetic_after = (ball_.mass * vb.squaredNorm() + core_inertia_ * core.squaredNorm() +
-                       cover_inertia_ * cover.squaredNorm()) / 2 + head_energy(vh, R_.transpose() * wh);
+    e.kinetic_after =
+        (ball_.mass * vb.squaredNorm() + core_inertia_ * core.squaredNorm() + cover_inertia_ * cover.squaredNorm()) /
+            2 +
+        head_energy(vh, R_.transpose() * wh);
     e.stored_contact = law_.stiffness * overlap_potential(depth_, ball_.radius, curvature_, law_.volume_exponent);
     e.stored_joint = law_.joint_stiffness * twist.squaredNorm() / 2;
     e.lost_normal = y[kLostNormal];
@@ -215,7 +218,9 @@ class Contact {
       const Vec6 v = velocity(y);
       const Eigen::Map<const Eigen::VectorXd> p(y + kFree + 6, modes_), dp(y + kFree + 6 + modes_, modes_);
       e.stored_shaft = (v.dot(shaft_->mass * v) + u.dot(shaft_->stiffness * u) + dp.squaredNorm() +
-                        p.dot(shaft_->frequency2.cwiseProduct(p))) / 2 + v.dot(shaft_->coupling * dp);
+                        p.dot(shaft_->frequency2.cwiseProduct(p))) /
+                           2 +
+                       v.dot(shaft_->coupling * dp);
     }
   }
 
@@ -226,9 +231,9 @@ class Contact {
   void geometry(const double* y) {
     const double *q = y + kHeadRotation, qw = q[0], qx = q[1], qy = q[2], qz = q[3];
     const double f = 2 / (qw * qw + qx * qx + qy * qy + qz * qz);
-    R_ << 1 - f * (qy * qy + qz * qz), f * (qx * qy - qz * qw), f * (qx * qz + qy * qw),
-        f * (qx * qy + qz * qw), 1 - f * (qx * qx + qz * qz), f * (qy * qz - qx * qw),
-        f * (qx * qz - qy * qw), f * (qy * qz + qx * qw), 1 - f * (qx * qx + qy * qy);
+    R_ << 1 - f * (qy * qy + qz * qz), f * (qx * qy - qz * qw), f * (qx * qz + qy * qw), f * (qx * qy + qz * qw),
+        1 - f * (qx * qx + qz * qz), f * (qy * qz - qx * qw), f * (qx * qz - qy * qw), f * (qy * qz + qx * qw),
+        1 - f * (qx * qx + qy * qy);
     const Vec3 from_cg = ConstVec(y + kBall) - cg_start_ - ConstVec(y + kHead);
     const Vec3 s = R_.transpose() * from_cg + head_.cg;
     // Stationary: (D by + 1) y = s_y, (D bz + 1) z = s_z with D the height of the centre over the face.
@@ -314,7 +319,8 @@ class Contact {
     Vec6 carrier, moves;
     carrier << start_velocity_, start_spin_;
     moves << ConstVec(y + kHeadVelocity), ConstVec(y + kHeadSpin);
-    dy[kCarrier] = moves.dot(held_) - (carrier + y[kTime] * carried_).dot(shaft_->mass * a + shaft_->coupling * dp_rate + pull);
+    dy[kCarrier] = moves.dot(held_) -
+                   (carrier + y[kTime] * carried_).dot(shaft_->mass * a + shaft_->coupling * dp_rate + pull);
     dy[kLostShaft] = damping * (v.dot(shaft_->stiffness * v) + dp.dot(shaft_->frequency2.cwiseProduct(dp)));
   }
 
@@ -366,7 +372,8 @@ class Peak {
 }  // namespace
 
 VolumetricResult volumetric_impact(const Blow& blow, const VolumetricLaw& law, const VolumetricOptions& options,
-                                   const ShaftImpedance* shaft, const std::function<void(const ContactSample&)>& watch) {
+                                   const ShaftImpedance* shaft,
+                                   const std::function<void(const ContactSample&)>& watch) {
   Contact contact(blow, law, shaft);
   std::vector<double> y = contact.start();
   if (!(contact.approach(y.data()) > 0)) throw std::invalid_argument("the head moves away from the ball");

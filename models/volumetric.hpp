@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "models/impact_model.hpp"
-#include "models/shaft_impedance.hpp"
+#include "hosel/models/impact_model.hpp"
+#include "hosel/models/shaft_impedance.hpp"
 
 namespace hosel::models {
 
@@ -33,9 +33,7 @@ struct VolumetricLaw {
 
   /// Table 8 of Caldwell and McPhee (2024); their ball's radius is 21.3 mm.
   static VolumetricLaw published_driver() { return {}; }
-  static VolumetricLaw published_iron7() {
-    return {6.83e9, 9.26e-3, 0.489, 0.489, 0.812, 34.1, 13.2e-3, 2.55e-3};
-  }
+  static VolumetricLaw published_iron7() { return {6.83e9, 9.26e-3, 0.489, 0.489, 0.812, 34.1, 13.2e-3, 2.55e-3}; }
 };
 
 /// Two ways through the same equations.
@@ -54,25 +52,26 @@ struct VolumetricOptions {
 
 /// One instant of the contact, for histories. Impulses and forces act on the ball.
 struct ContactSample {
-  double time = 0;              ///< since first contact [s]
-  double depth = 0;             ///< approach of ball and face [m]
-  double normal_force = 0;      ///< [N]
+  double time = 0;                       ///< since first contact [s]
+  double depth = 0;                      ///< approach of ball and face [m]
+  double normal_force = 0;               ///< [N]
   Vec3 tangential_force = Vec3::Zero();  ///< global frame [N]
-  Vec3 slip = Vec3::Zero();     ///< velocity of the face past the ball there, global frame [m/s]
+  Vec3 slip = Vec3::Zero();              ///< velocity of the face past the ball there, global frame [m/s]
 };
 
 /// Where the energy went; every column is computed for itself [J].
 struct EnergyLedger {
   double kinetic_before = 0, kinetic_after = 0;
-  double stored_contact = 0;   ///< k_V times the overlap's potential, at the end
-  double stored_joint = 0;     ///< in the rotary spring, at the end
-  double stored_shaft = 0;     ///< kinetic and elastic in the shaft beyond the head, at the end
+  double stored_contact = 0;  ///< k_V times the overlap's potential, at the end
+  double stored_joint = 0;    ///< in the rotary spring, at the end
+  double stored_shaft = 0;    ///< kinetic and elastic in the shaft beyond the head, at the end
   double lost_normal = 0, lost_friction = 0, lost_joint = 0, lost_shaft = 0;
   double work_of_carrier = 0;  ///< done on the moving frame in which the shaft is at rest before the blow
   /// What is missing, relative to the kinetic energy before.
   double gap() const {
     return (kinetic_before + work_of_carrier - kinetic_after - stored_contact - stored_joint - stored_shaft -
-            lost_normal - lost_friction - lost_joint - lost_shaft) / kinetic_before;
+            lost_normal - lost_friction - lost_joint - lost_shaft) /
+           kinetic_before;
   }
 };
 
@@ -80,9 +79,9 @@ struct VolumetricResult {
   Launch launch;
   EnergyLedger energy;
   Vec3 core_spin = Vec3::Zero(), cover_spin = Vec3::Zero();  ///< at separation, global frame [rad/s]
-  Vec3 ball_displacement = Vec3::Zero();  ///< of the ball's centre during contact, global frame [m]
-  Vec3 head_displacement = Vec3::Zero();  ///< of the head's cg during contact, global frame [m]
-  Mat3 head_rotation = Mat3::Identity();  ///< of the head during contact, global frame
+  Vec3 ball_displacement = Vec3::Zero();                     ///< of the ball's centre during contact, global frame [m]
+  Vec3 head_displacement = Vec3::Zero();                     ///< of the head's cg during contact, global frame [m]
+  Mat3 head_rotation = Mat3::Identity();                     ///< of the head during contact, global frame
   long steps = 0, rate_calls = 0;
 };
 

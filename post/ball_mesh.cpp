@@ -1,4 +1,4 @@
-#include "post/ball_mesh.hpp"
+#include "hosel/post/ball_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 struct Swept {
   const fem::HarmonicSolid& ball;
   int nodes, points, angles;
-  std::vector<bool> axial;               // one point instead of a ring
-  std::vector<std::int64_t> first;       // point number of each meridian point at angle 0
+  std::vector<bool> axial;          // one point instead of a ring
+  std::vector<std::int64_t> first;  // point number of each meridian point at angle 0
 
   Swept(const fem::HarmonicSolid& b, int n)
       : ball(b), nodes(int(b.mesh().nodes.size())), points(nodes + int(b.mesh().elements.size())), angles(n) {
@@ -23,7 +23,9 @@ struct Swept {
       next += axial.back() ? 1 : n;
     }
   }
-  std::int64_t at(int point, int angle) const { return first[size_t(point)] + (axial[size_t(point)] ? 0 : angle % angles); }
+  std::int64_t at(int point, int angle) const {
+    return first[size_t(point)] + (axial[size_t(point)] ? 0 : angle % angles);
+  }
 };
 
 double von_mises(const fem::Sym& s) {
@@ -33,7 +35,8 @@ double von_mises(const fem::Sym& s) {
 
 }  // namespace
 
-VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceTraction& traction, int angles) {
+VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceTraction& traction,
+                  int angles) {
   const Swept swept(ball, angles);
   const mesh::Meridian& meridian = ball.mesh();
   std::vector<double> theta;
@@ -47,7 +50,8 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
 
   VtkMesh out;
   std::vector<Vec3> u, v, t;
-  VtkField cauchy{"cauchy_stress", "Pa", 6, {}}, mises{"von_mises", "Pa", 1, {}}, pressure{"contact_pressure", "Pa", 1, {}};
+  VtkField cauchy{"cauchy_stress", "Pa", 6, {}}, mises{"von_mises", "Pa", 1, {}},
+      pressure{"contact_pressure", "Pa", 1, {}};
   for (int p = 0; p < swept.points; ++p)
     for (int a = 0; a < (swept.axial[size_t(p)] ? 1 : angles); ++a) {
       Vec3 x = Vec3::Zero(), du = Vec3::Zero(), dv = Vec3::Zero(), force = Vec3::Zero();
@@ -80,7 +84,8 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
   for (std::size_t e = 0; e < meridian.elements.size(); ++e) {
     const auto& n = meridian.elements[e];
     const int c = swept.nodes + int(e);
-    const std::array<std::array<int, 4>, 4> quads{{{n[0], n[4], c, n[7]}, {n[4], n[1], n[5], c}, {c, n[5], n[2], n[6]}, {n[7], c, n[6], n[3]}}};
+    const std::array<std::array<int, 4>, 4> quads{
+        {{n[0], n[4], c, n[7]}, {n[4], n[1], n[5], c}, {c, n[5], n[2], n[6]}, {n[7], c, n[6], n[3]}}};
     for (const auto& quad : quads) {
       std::array<int, 4> q = quad;
       // Turn it so that an edge on the axis comes first: it closes the cell to a wedge.
@@ -93,16 +98,24 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
       for (int a = 0; a < angles; ++a) {
         VtkMesh::Cell cell{};
         if (wedge)
-          cell = {CellShape::wedge, {swept.at(q[0], 0), swept.at(q[3], a), swept.at(q[3], a + 1), swept.at(q[1], 0), swept.at(q[2], a), swept.at(q[2], a + 1)}};
+          cell = {CellShape::wedge,
+                  {swept.at(q[0], 0), swept.at(q[3], a), swept.at(q[3], a + 1), swept.at(q[1], 0), swept.at(q[2], a),
+                   swept.at(q[2], a + 1)}};
         else
-          cell = {CellShape::hexahedron, {swept.at(q[0], a), swept.at(q[1], a), swept.at(q[2], a), swept.at(q[3], a), swept.at(q[0], a + 1), swept.at(q[1], a + 1), swept.at(q[2], a + 1), swept.at(q[3], a + 1)}};
+          cell = {CellShape::hexahedron,
+                  {swept.at(q[0], a), swept.at(q[1], a), swept.at(q[2], a), swept.at(q[3], a), swept.at(q[0], a + 1),
+                   swept.at(q[1], a + 1), swept.at(q[2], a + 1), swept.at(q[3], a + 1)}};
         out.cells.push_back(cell);
         layer.values.push_back(meridian.layer[e]);
       }
     }
   }
-  out.point_fields = {vector_field("displacement", "m", u), vector_field("velocity", "m/s", v),
-                      vector_field("contact_traction", "Pa", t), std::move(cauchy), std::move(mises), std::move(pressure)};
+  out.point_fields = {vector_field("displacement", "m", u),
+                      vector_field("velocity", "m/s", v),
+                      vector_field("contact_traction", "Pa", t),
+                      std::move(cauchy),
+                      std::move(mises),
+                      std::move(pressure)};
   out.cell_fields = {std::move(layer)};
   return out;
 }

@@ -1,4 +1,4 @@
-#include "post/bodies.hpp"
+#include "hosel/post/bodies.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "post/checkpoint.hpp"
+#include "hosel/post/checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -39,8 +39,8 @@ void from_json(const json& j, fem::State& s) {
 }
 
 json to_json(const solvers::Ledger& l) {
-  return {{"time", l.time},         {"kinetic", l.kinetic},     {"strain", l.strain},     {"contact", l.contact},
-          {"friction", l.friction}, {"viscous", l.viscous},     {"numerical", l.numerical}, {"external", l.external},
+  return {{"time", l.time},         {"kinetic", l.kinetic}, {"strain", l.strain},       {"contact", l.contact},
+          {"friction", l.friction}, {"viscous", l.viscous}, {"numerical", l.numerical}, {"external", l.external},
           {"initial", l.initial},   {"closure", l.closure}};
 }
 
@@ -63,32 +63,31 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
   const models::ImpactCheckpoint& i = saved.impact;
   const solvers::Checkpoint& s = i.solver;
   const models::FeImpactResult& r = i.so_far;
-  const json j = {
-      {"run", run},
-      {"solver",
-       {{"state", to_json(s.state)},
-        {"auxiliary", numbers(s.auxiliary)},
-        {"step", s.step},
-        {"last_step", s.last_step},
-        {"ledger", to_json(s.ledger)},
-        {"friction_before", s.friction_before},
-        {"viscous_before", s.viscous_before},
-        {"external_before", s.external_before},
-        {"history", s.history}}},
-      {"so_far",
-       {{"peak_force", r.peak_force},
-        {"peak_time", r.peak_time},
-        {"compression", r.compression},
-        {"penetration", r.penetration},
-        {"creep", r.creep},
-        {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
-      {"touched", i.touched},
-      {"over", i.over},
-      {"last_touch", i.last_touch},
-      {"last_gap", i.last_gap},
-      {"face_centre", numbers(saved.face_centre)},
-      {"face_axes", numbers(saved.face_axes)},
-      {"steps", saved.steps}};
+  const json j = {{"run", run},
+                  {"solver",
+                   {{"state", to_json(s.state)},
+                    {"auxiliary", numbers(s.auxiliary)},
+                    {"step", s.step},
+                    {"last_step", s.last_step},
+                    {"ledger", to_json(s.ledger)},
+                    {"friction_before", s.friction_before},
+                    {"viscous_before", s.viscous_before},
+                    {"external_before", s.external_before},
+                    {"history", s.history}}},
+                  {"so_far",
+                   {{"peak_force", r.peak_force},
+                    {"peak_time", r.peak_time},
+                    {"compression", r.compression},
+                    {"penetration", r.penetration},
+                    {"creep", r.creep},
+                    {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
+                  {"touched", i.touched},
+                  {"over", i.over},
+                  {"last_touch", i.last_touch},
+                  {"last_gap", i.last_gap},
+                  {"face_centre", numbers(saved.face_centre)},
+                  {"face_axes", numbers(saved.face_axes)},
+                  {"steps", saved.steps}};
   const fs::path beside = file.string() + ".part";
   {
     std::ofstream out(beside, std::ios::binary);

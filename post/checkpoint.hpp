@@ -5,15 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "models/fe_impact.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 namespace hosel::post {
 
 struct SavedImpact {
   models::ImpactCheckpoint impact;
-  Vec3 face_centre = Vec3::Zero();       ///< at the start, global [m]
-  Mat3 face_axes = Mat3::Identity();     ///< at the start: columns, face frame in the global one
-  long steps = 0;                        ///< recorded
+  Vec3 face_centre = Vec3::Zero();    ///< at the start, global [m]
+  Mat3 face_axes = Mat3::Identity();  ///< at the start: columns, face frame in the global one
+  long steps = 0;                     ///< recorded
 };
 
 /// Written beside and renamed. `run` names what is computed: nothing else may go on from it.

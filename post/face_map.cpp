@@ -1,4 +1,4 @@
-#include "post/face_map.hpp"
+#include "hosel/post/face_map.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "golf/units.hpp"
-#include "post/csv.hpp"
-#include "post/launch_table.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/post/csv.hpp"
+#include "hosel/post/launch_table.hpp"
 
 namespace hosel::post {
 namespace {
@@ -20,8 +20,10 @@ std::vector<MapQuantity> make_quantities() {
   for (const Channel& c : channels())
     all.push_back({std::string(c.name), std::string(c.unit), c.si,
                    [value = c.value](const Launch& l) -> std::optional<double> { return (l.*value)(); }});
-  all.push_back({"head_speed", "mps", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_velocity.norm(); }});
-  all.push_back({"head_rotation", "rad_per_s", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_spin.norm(); }});
+  all.push_back(
+      {"head_speed", "mps", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_velocity.norm(); }});
+  all.push_back(
+      {"head_rotation", "rad_per_s", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_spin.norm(); }});
   for (int axis = 0; axis < 3; ++axis)
     all.push_back({fmt::format("head_spin_{}", "xyz"[axis]), "rad_per_s", 1.0,
                    [axis](const Launch& l) -> std::optional<double> { return l.head_spin[axis]; }});
@@ -93,7 +95,8 @@ std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& map
   return csv(grid, others, [&](const FaceMap& m, const MapQuantity& q) { return differences(m, reference, q); });
 }
 
-Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string title, std::string label, bool symmetric) {
+Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string title, std::string label,
+                 bool symmetric) {
   Panel p;
   p.title = std::move(title);
   p.x_label = "heel  <-  impact toe [mm]  ->  toe";
@@ -113,7 +116,8 @@ Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string
   return p;
 }
 
-VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference) {
+VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps,
+                      const FaceMap& reference) {
   VtkMesh mesh;
   for (std::size_t p = 0; p < grid.size(); ++p) mesh.points.push_back(face.point(-grid.toe_at(p), grid.high_at(p)));
   for (int j = 0; j + 1 < grid.rows; ++j)
@@ -127,7 +131,8 @@ VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<
         mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), q.unit, 1, std::move(v)});
       if (m.title == reference.title) continue;
       if (auto v = differences(m, reference, q); !v.empty())
-        mesh.point_fields.push_back({fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), q.unit, 1, std::move(v)});
+        mesh.point_fields.push_back(
+            {fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), q.unit, 1, std::move(v)});
     }
   return mesh;
 }

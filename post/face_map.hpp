@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "golf/face.hpp"
-#include "golf/launch.hpp"
-#include "post/figure.hpp"
-#include "post/vtk_series.hpp"
+#include "hosel/golf/face.hpp"
+#include "hosel/golf/launch.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
 
@@ -35,8 +35,8 @@ struct FaceMap {
 
 /// What a map shows: the launch channels, and head and contact after the blow.
 struct MapQuantity {
-  std::string name, unit;  ///< unit as a suffix
-  double si;               ///< one of the unit in SI
+  std::string name, unit;                                     ///< unit as a suffix
+  double si;                                                  ///< one of the unit in SI
   std::function<std::optional<double>(const Launch&)> value;  ///< SI; absent where the model has none
 };
 std::span<const MapQuantity> map_quantities();
@@ -57,10 +57,12 @@ Panel face_panel(const FaceGrid& grid, const std::vector<double>& values, std::s
                  bool symmetric);
 /// Under every figure of maps.
 inline constexpr const char* kFaceView =
-    "seen from the golfer's side of the head, towards the target (right-handed): heel left, toe right; dashed: 12 mm from the face centre";
+    "seen from the golfer's side of the head, towards the target (right-handed): heel left, toe right; dashed: 12 mm "
+    "from the face centre";
 
 /// The face's surface through the grid points (face frame) with every quantity of every map, and its
 /// differences to the reference, as point arrays `<model>.<quantity>` and `<model>-minus-<reference>.<quantity>`.
-VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference);
+VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps,
+                      const FaceMap& reference);
 
 }  // namespace hosel::post

@@ -1,4 +1,4 @@
-#include "post/figure.hpp"
+#include "hosel/post/figure.hpp"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -97,9 +97,10 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
           p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
           p.map_y.front(), p.map_y.back());
       if (p.map_contours)
-        plots += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
-                 "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
-                 "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
+        plots +=
+            "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
+            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
+            "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
       plots += "set pm3d map interpolate 3,3\nsplot $" + name + " with pm3d nocontour notitle";
       if (p.map_contours) plots += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
       for (std::size_t i = 0; i < p.series.size(); ++i) {
@@ -122,22 +123,26 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
       s += data_block(name, c);
       const std::string title = c.label.empty() ? "notitle" : "title " + literal(c.label);
       if (!plot.empty()) plot += ", \\\n     ";
-      plot += "$" + name + (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
+      plot += "$" + name +
+              (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
       plot += fmt::format(" lt {} lw 1.6 ", i + 1);
       if (!c.error.empty() || c.style.find("points") != std::string::npos)
         plot += fmt::format("pt {} ps 0.9 ", 6 + static_cast<int>(i) % 8);
       plot += title;
     }
-    plots += plot.empty() ? "set xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\nset autoscale xy\n"
-                          // Marks and their bars stay clear of the frame.
-                          : (marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n" : "unset offsets\n") + std::string("plot ") + plot + "\n";
+    plots += plot.empty()
+                 ? "set xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\nset autoscale xy\n"
+                 // Marks and their bars stay clear of the frame.
+                 : (marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
+                                                  : "unset offsets\n") +
+                       std::string("plot ") + plot + "\n";
   }
   std::string head = fmt::format(
       "set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n"
       "set grid lc rgb '#dddddd'\nset tics nomirror\n",
       columns * f.panel_width, rows * f.panel_height + (f.title.empty() ? 0 : 40), literal(png.string()));
-  head += fmt::format("set multiplot layout {},{}{}\n", rows, columns,
-                      f.title.empty() ? "" : " title " + literal(f.title));
+  head +=
+      fmt::format("set multiplot layout {},{}{}\n", rows, columns, f.title.empty() ? "" : " title " + literal(f.title));
   return s + head + plots + "\nunset multiplot\nunset output\n";
 }
 

@@ -9,10 +9,10 @@ namespace hosel::post {
 
 /// One curve or cloud of points.
 struct Series {
-  std::string label = {};           ///< in the key; empty: not in the key
+  std::string label = {};              ///< in the key; empty: not in the key
   std::vector<double> x = {}, y = {};  ///< same length
-  std::string style = "lines";      ///< gnuplot style: lines, points, linespoints, ...
-  std::vector<double> error = {};   ///< half-length of a bar in y; empty: none
+  std::string style = "lines";         ///< gnuplot style: lines, points, linespoints, ...
+  std::vector<double> error = {};      ///< half-length of a bar in y; empty: none
 };
 
 /// One set of axes. With `map` non-empty it is a coloured map with contour lines, else curves.
@@ -21,20 +21,20 @@ struct Panel {
   std::string x_label = {}, y_label = {};  ///< with units: "dynamic loft [deg]"
   bool log_x = false, log_y = false;
   std::vector<Series> series = {};
-  std::string key = "top right";    ///< place of the key, as gnuplot says it
+  std::string key = "top right";  ///< place of the key, as gnuplot says it
 
   std::vector<double> map_x = {}, map_y = {};  ///< grid lines of the map
-  std::vector<double> map = {};      ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
-  std::string map_label = {};        ///< of the colour bar, with unit
-  bool map_symmetric = false;        ///< colours diverge from zero, as far to either side: for differences
-  bool map_equal_axes = false;       ///< one unit is as long in x as in y
-  bool map_contours = true;          ///< lines with their values: for smooth fields
+  std::vector<double> map = {};                ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
+  std::string map_label = {};                  ///< of the colour bar, with unit
+  bool map_symmetric = false;                  ///< colours diverge from zero, as far to either side: for differences
+  bool map_equal_axes = false;                 ///< one unit is as long in x as in y
+  bool map_contours = true;                    ///< lines with their values: for smooth fields
 };
 
 struct Figure {
   std::string title = {};
   std::vector<Panel> panels = {};
-  int columns = 1;                  ///< of the grid of panels
+  int columns = 1;                            ///< of the grid of panels
   int panel_width = 620, panel_height = 440;  ///< [pixel]
 };
 

@@ -1,4 +1,4 @@
-#include "post/history.hpp"
+#include "hosel/post/history.hpp"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,15 @@
-#include "post/impact_recorder.hpp"
+#include "hosel/post/impact_recorder.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "post/ball_mesh.hpp"
-#include "post/bodies.hpp"
-#include "post/checkpoint.hpp"
-#include "post/history.hpp"
-#include "post/patch_mesh.hpp"
-#include "post/vtk_series.hpp"
+#include "hosel/post/ball_mesh.hpp"
+#include "hosel/post/bodies.hpp"
+#include "hosel/post/checkpoint.hpp"
+#include "hosel/post/history.hpp"
+#include "hosel/post/patch_mesh.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -103,19 +103,28 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   State& s = *state_;
   const solvers::Ledger& e = view.ledger;
   if (!s.history) {
-    std::vector<std::string> columns = {"time_s", "normal_force_N", "force_heel_N", "force_up_N", "tangential_force_N", "contact_pressure_Pa",
-                                        "contact_area_m2", "penetration_m", "kinetic_J"};
+    std::vector<std::string> columns = {"time_s",          "normal_force_N",     "force_heel_N",
+                                        "force_up_N",      "tangential_force_N", "contact_pressure_Pa",
+                                        "contact_area_m2", "penetration_m",      "kinetic_J"};
     for (const auto& [body, joules] : e.strain)
       if (deforms(body)) columns.push_back("strain_" + body + "_J");
-    for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"}) columns.emplace_back(name);
+    for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"})
+      columns.emplace_back(name);
     for (std::size_t layer = 0; layer < view.ball.dissipated().size(); ++layer)
       columns.push_back(fmt::format("viscous_layer{}_J", layer));
     s.history.emplace(s.directory / "history.csv", columns, s.kept());
   }
   const models::FacePose face = view.face;
   const Vec3 force = face.axes.transpose() * view.report.force;
-  std::vector<double> row = {view.state.time, force.x(), force.y(), force.z(), view.report.force.dot(s.slip), view.report.pressure, view.report.area,
-                             view.report.penetration, e.kinetic};
+  std::vector<double> row = {view.state.time,
+                             force.x(),
+                             force.y(),
+                             force.z(),
+                             view.report.force.dot(s.slip),
+                             view.report.pressure,
+                             view.report.area,
+                             view.report.penetration,
+                             e.kinetic};
   for (const auto& [body, joules] : e.strain)
     if (deforms(body)) row.push_back(joules);
   for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
@@ -147,7 +156,8 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
 std::vector<fs::path> ImpactRecorder::files() const {
   std::vector<fs::path> out;
   for (const char* body : {"ball", "patch", "face", "head", "shaft"})
-    if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file)) out.push_back(file);
+    if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file))
+      out.push_back(file);
   return out;
 }
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
-#include "golf/blow.hpp"
-#include "models/fe_impact.hpp"
+#include "hosel/golf/blow.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 namespace hosel::post {
 

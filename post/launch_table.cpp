@@ -1,4 +1,4 @@
-#include "post/launch_table.hpp"
+#include "hosel/post/launch_table.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::post {
 namespace {
@@ -53,7 +53,8 @@ std::string launch_table(const std::vector<LaunchColumn>& columns, const Measure
     }
     if (measured.empty()) continue;
     const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);
-    text += it == measured.end() ? fmt::format("{:>{}}", "-", width) : fmt::format("{:>{}.{}f}", it->second / channel.si, width, channel.decimals);
+    text += it == measured.end() ? fmt::format("{:>{}}", "-", width)
+                                 : fmt::format("{:>{}.{}f}", it->second / channel.si, width, channel.decimals);
   }
   return text;
 }

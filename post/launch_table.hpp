@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "golf/launch.hpp"
+#include "hosel/golf/launch.hpp"
 
 namespace hosel::post {
 

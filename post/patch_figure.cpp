@@ -1,4 +1,4 @@
-#include "post/patch_figure.hpp"
+#include "hosel/post/patch_figure.hpp"
 
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "post/figure.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
     std::vector<double> pressure, traction, slip;  // of the points on the line, from behind to before
   };
   std::vector<Frame> all;
-  std::vector<vtkIdType> line;     // points on it
+  std::vector<vtkIdType> line;  // points on it
   std::vector<double> position;
   for (const fs::path& file : frames) {
     vtkNew<vtkXMLPolyDataReader> reader;
@@ -52,9 +52,12 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
     }
     Frame frame{data->GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), {}, {}, {}};
     for (const vtkIdType i : line) {
-      const auto value = [&](const char* name, int k) { return data->GetPointData()->GetArray(name)->GetComponent(i, k); };
+      const auto value = [&](const char* name, int k) {
+        return data->GetPointData()->GetArray(name)->GetComponent(i, k);
+      };
       frame.pressure.push_back(value("contact_pressure", 0));
-      frame.traction.push_back(ball_axes.col(1).dot(Vec3(value("contact_traction", 0), value("contact_traction", 1), value("contact_traction", 2))));
+      frame.traction.push_back(ball_axes.col(1).dot(
+          Vec3(value("contact_traction", 0), value("contact_traction", 1), value("contact_traction", 2))));
       frame.slip.push_back(value("slip", 0));
     }
     all.push_back(std::move(frame));
@@ -85,7 +88,8 @@ std::string draw_patch(const PatchHistory& patch, const fs::path& stem) {
   Figure figure;
   figure.title = "the ball's surface along the line of slip";
   figure.columns = 3;
-  const auto panel = [&](const char* title, const char* label, const std::vector<double>& values, double unit, bool symmetric) {
+  const auto panel = [&](const char* title, const char* label, const std::vector<double>& values, double unit,
+                         bool symmetric) {
     Panel p;
     p.title = title;
     p.x_label = "time [ms]";

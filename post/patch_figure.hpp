@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::post {
 
 /// Values at (time[i], position[j]) stand in [j * time.size() + i]; the material points lie on the ball's great circle
 /// through the first point of contact along the slip.
 struct PatchHistory {
-  std::vector<double> time;       ///< [s]
-  std::vector<double> position;   ///< arc from the first point of contact, along the slip positive [m]
-  std::vector<double> pressure;   ///< [Pa]
-  std::vector<double> traction;   ///< on the ball along the slip [Pa]
-  std::vector<double> slip;       ///< path slid so far [m]
+  std::vector<double> time;      ///< [s]
+  std::vector<double> position;  ///< arc from the first point of contact, along the slip positive [m]
+  std::vector<double> pressure;  ///< [Pa]
+  std::vector<double> traction;  ///< on the ball along the slip [Pa]
+  std::vector<double> slip;      ///< path slid so far [m]
 };
 
 /// Reads the frames of a patch series (`vtk`/patch/patch_*.vtp). `ball_axes`: from the ball's centre to the first point

@@ -1,4 +1,4 @@
-#include "post/patch_mesh.hpp"
+#include "hosel/post/patch_mesh.hpp"
 
 namespace hosel::post {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fem/contact_face.hpp"
-#include "post/vtk_series.hpp"
+#include "hosel/fem/contact_face.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
 

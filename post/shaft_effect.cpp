@@ -1,4 +1,4 @@
-#include "post/shaft_effect.hpp"
+#include "hosel/post/shaft_effect.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::post {
 namespace {
@@ -39,7 +39,9 @@ double at(const FaceGrid& g, const Field& f, double toe, double high) {
   const double x = (toe / g.width + 0.5) * (g.columns - 1), y = (high / g.height + 0.5) * (g.rows - 1);
   const int i = std::clamp(int(x), 0, g.columns - 2), j = std::clamp(int(y), 0, g.rows - 2);
   const double a = x - i, b = y - j;
-  const auto v = [&](int column, int row) { return f[std::size_t(row) * std::size_t(g.columns) + std::size_t(column)]; };
+  const auto v = [&](int column, int row) {
+    return f[std::size_t(row) * std::size_t(g.columns) + std::size_t(column)];
+  };
   return (1 - b) * ((1 - a) * v(i, j) + a * v(i + 1, j)) + b * ((1 - a) * v(i, j + 1) + a * v(i + 1, j + 1));
 }
 
@@ -50,7 +52,8 @@ struct Slope {
 Slope slope(const FaceGrid& g, const Field& f) {
   Eigen::MatrixX3d A(Eigen::Index(g.size()), 3);
   for (std::size_t p = 0; p < g.size(); ++p) A.row(Eigen::Index(p)) << 1, 1e3 * g.toe_at(p), 1e3 * g.high_at(p);
-  const Eigen::Vector3d c = A.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(f.data(), Eigen::Index(f.size())));
+  const Eigen::Vector3d c =
+      A.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(f.data(), Eigen::Index(f.size())));
   return {c[1], c[2]};
 }
 
@@ -95,14 +98,16 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
   const Place fastest_club = least(g, negative(v_club)), fastest_free = least(g, negative(v_free));
   const Place calm_club = least(g, field(club, turn2)), calm_free = least(g, field(free, turn2));
   const Place most = least(g, negative(gain));
-  const Field d_side = minus(field(club, side), field(free, side)), d_back = minus(field(club, back), field(free, back));
+  const Field d_side = minus(field(club, side), field(free, side)),
+              d_back = minus(field(club, back), field(free, back));
   const Slope launch_free = slope(g, field(free, launch)), launch_club = slope(g, field(club, launch));
   const Slope azimuth_free = slope(g, field(free, azimuth)), azimuth_club = slope(g, field(club, azimuth));
   const Slope side_free = slope(g, field(free, side)), side_slope = slope(g, d_side), back_slope = slope(g, d_back);
   const Field turn_free = field(free, turn), turn_club = field(club, turn);
   const double gain_min = *std::ranges::min_element(gain), gain_max = *std::ranges::max_element(gain);
   const double share = double(std::ranges::count_if(gain, [](double x) { return x > 0; })) / double(gain.size());
-  const double gain_centre = at(g, gain, 0, 0), gain_corner = at(g, gain, -toe, high), gain_far = at(g, gain, toe, -high);
+  const double gain_centre = at(g, gain, 0, 0), gain_corner = at(g, gain, -toe, high),
+               gain_far = at(g, gain, toe, -high);
   const double apart = std::hypot(fastest_club.toe - calm_club.toe, fastest_club.high - calm_club.high);
   const double apart_free = std::hypot(fastest_free.toe - calm_free.toe, fastest_free.high - calm_free.high);
   const double d_side_toe = at(g, d_side, toe, 0), d_side_heel = at(g, d_side, -toe, 0);
@@ -152,16 +157,20 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
       {"the ball is faster with the club over the whole face", share == 1},
       {"the gain grows towards the heel, upwards, and is larger at the high heel than at the centre",
        gain_slope.toe < 0 && gain_slope.high > 0 && gain_corner > gain_centre},
-      {"the fastest point lies towards the toe, at most 15 mm from the centre line", fastest_club.toe > 0 && fastest_club.toe <= 15},
+      {"the fastest point lies towards the toe, at most 15 mm from the centre line",
+       fastest_club.toe > 0 && fastest_club.toe <= 15},
       {"the fastest point lies within 10 mm of the least head rotation", apart <= 10},
       {"sidespin differs towards fade at the toe and towards draw at the heel", d_side_toe > 0 && d_side_heel < 0},
-      {"the launch angle changes less with height with the club", std::abs(launch_club.high) < std::abs(launch_free.high)},
-      {"the azimuth changes less from heel to toe with the club", std::abs(azimuth_club.toe) < std::abs(azimuth_free.toe)},
+      {"the launch angle changes less with height with the club",
+       std::abs(launch_club.high) < std::abs(launch_free.high)},
+      {"the azimuth changes less from heel to toe with the club",
+       std::abs(azimuth_club.toe) < std::abs(azimuth_free.toe)},
   };
   return out;
 }
 
-std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, const FaceMap& heavier, double mass, double extra) {
+std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, const FaceMap& heavier, double mass,
+                                    double extra) {
   const auto inverse = [](const Launch& l) { return 1 / l.ball_speed(); };
   const Field c = field(club, inverse), f = field(free, inverse), h = field(heavier, inverse);
   Field out;

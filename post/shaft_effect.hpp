@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "post/face_map.hpp"
+#include "hosel/post/face_map.hpp"
 
 namespace hosel::post {
 

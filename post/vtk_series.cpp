@@ -1,4 +1,4 @@
-#include "post/vtk_series.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -42,8 +42,8 @@ Shape shape(CellShape s) {
 
 vtkNew<vtkDoubleArray> array_of(const VtkField& field, std::size_t tuples) {
   if (field.values.size() != tuples * std::size_t(field.components))
-    throw std::invalid_argument(fmt::format("array '{}' has {} values, expected {} x {}", field.name, field.values.size(),
-                                            tuples, field.components));
+    throw std::invalid_argument(fmt::format("array '{}' has {} values, expected {} x {}", field.name,
+                                            field.values.size(), tuples, field.components));
   vtkNew<vtkDoubleArray> array;
   array->SetName(field.name.c_str());
   array->SetNumberOfComponents(field.components);
@@ -100,7 +100,8 @@ VtkSeries::VtkSeries(fs::path directory, std::string name, Form form, double res
     for (int i = 0; collection && i < collection->GetNumberOfNestedElements(); ++i) {
       vtkXMLDataElement* e = collection->GetNestedElement(i);
       double time = 0;
-      if (e->GetScalarAttribute("timestep", time) && time <= resume_after) entries_.push_back({time, e->GetAttribute("file")});
+      if (e->GetScalarAttribute("timestep", time) && time <= resume_after)
+        entries_.push_back({time, e->GetAttribute("file")});
     }
   } else {
     fs::remove_all(directory_ / name_);
@@ -143,7 +144,9 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
   fs::rename(beside, target);
   entries_.push_back({time, entry});
 
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
   for (const Entry& e : entries_)
     text += fmt::format("    <DataSet timestep=\"{:.9g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", e.time, e.file);
   text += "  </Collection>\n</VTKFile>\n";

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::post {
 

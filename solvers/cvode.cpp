@@ -1,4 +1,4 @@
-#include "solvers/cvode.hpp"
+#include "hosel/solvers/cvode.hpp"
 
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -36,20 +36,30 @@ void check(int code, const char* what) {
   if (code < 0) throw NonConvergence(std::string("CVODE: ") + what + " failed with code " + std::to_string(code));
 }
 
-struct FreeContext { void operator()(SUNContext c) const { SUNContext_Free(&c); } };
-struct FreeVector { void operator()(N_Vector v) const { N_VDestroy(v); } };
-struct FreeMatrix { void operator()(SUNMatrix m) const { SUNMatDestroy(m); } };
-struct FreeSolver { void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); } };
-struct FreeMemory { void operator()(void* m) const { CVodeFree(&m); } };
+struct FreeContext {
+  void operator()(SUNContext c) const { SUNContext_Free(&c); }
+};
+struct FreeVector {
+  void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+struct FreeMatrix {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct FreeSolver {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+struct FreeMemory {
+  void operator()(void* m) const { CVodeFree(&m); }
+};
 template <class Handle, class Deleter>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
 
 }  // namespace
 
 double integrate_to_event(const std::function<void(double, const double*, double*)>& rate,
-                          const std::function<double(double, const double*)>& event, double t0,
-                          double latest, std::span<double> y, const CvodeOptions& options,
-                          CvodeStatistics* statistics, const std::function<void(double, const double*)>& watch) {
+                          const std::function<double(double, const double*)>& event, double t0, double latest,
+                          std::span<double> y, const CvodeOptions& options, CvodeStatistics* statistics,
+                          const std::function<void(double, const double*)>& watch) {
   SUNContext raw = nullptr;
   check(SUNContext_Create(nullptr, &raw), "context");
   const Owned<SUNContext, FreeContext> context(raw);

@@ -26,9 +26,8 @@ struct CvodeStatistics {
 /// Throws NonConvergence where no event comes before `latest`, or CVODE gives up.
 /// Source: Hindmarsh et al. (2005), SUNDIALS, ACM TOMS 31:363.
 double integrate_to_event(const std::function<void(double, const double*, double*)>& rate,
-                          const std::function<double(double, const double*)>& event, double t0,
-                          double latest, std::span<double> y, const CvodeOptions& options = {},
-                          CvodeStatistics* statistics = nullptr,
+                          const std::function<double(double, const double*)>& event, double t0, double latest,
+                          std::span<double> y, const CvodeOptions& options = {}, CvodeStatistics* statistics = nullptr,
                           const std::function<void(double, const double*)>& watch = {});
 
 }  // namespace hosel::solvers

@@ -1,11 +1,11 @@
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -113,28 +113,27 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
 
   Vector full = Vector::Zero(system_.layout.size());
-  const NewtonProblem problem{
-      .residual =
-          [&](double& scale) {
-            evaluate(trial_, trial_inertia_, trial_force_);
-            scale = trial_inertia_.norm() + trial_force_.norm();
-            return tangent_.gather(trial_inertia_ + trial_force_);
-          },
-      .assemble =
-          [&] {
-            tangent_.assemble(system_, trial_, {1, to_v, to_a}, increment_);
-            tangent_step_ = h;
-            return tangent_.round_off(system_, trial_);
-          },
-      .advance =
-          [&](const Vector& dx) {
-            tangent_.scatter(dx, full);
-            increment_ += full;
-            trial_.v += to_v * full;
-            trial_.a += to_a * full;
-            trial_.q = system_.layout.advanced(state_.q, increment_);
-            if (!imposed_.empty()) impose(trial_);
-          }};
+  const NewtonProblem problem{.residual =
+                                  [&](double& scale) {
+                                    evaluate(trial_, trial_inertia_, trial_force_);
+                                    scale = trial_inertia_.norm() + trial_force_.norm();
+                                    return tangent_.gather(trial_inertia_ + trial_force_);
+                                  },
+                              .assemble =
+                                  [&] {
+                                    tangent_.assemble(system_, trial_, {1, to_v, to_a}, increment_);
+                                    tangent_step_ = h;
+                                    return tangent_.round_off(system_, trial_);
+                                  },
+                              .advance =
+                                  [&](const Vector& dx) {
+                                    tangent_.scatter(dx, full);
+                                    increment_ += full;
+                                    trial_.v += to_v * full;
+                                    trial_.a += to_a * full;
+                                    trial_.q = system_.layout.advanced(state_.q, increment_);
+                                    if (!imposed_.empty()) impose(trial_);
+                                  }};
   if (std::abs(h - tangent_step_) > 0.1 * tangent_step_) newton_.forget();
   NewtonReport report = newton_.solve(problem);
   counts_.iterations += report.iterations;
@@ -154,8 +153,7 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
 
 void GeneralizedAlpha::accept(double h) {
   const double kinetic = ledger_.kinetic;
-  for (Index e : imposed_)
-    imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
+  for (Index e : imposed_) imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
   const double inertial_work = 0.5 * (inertia_ + trial_inertia_).dot(increment_);
   std::swap(state_, trial_);
   auxiliary_ = trial_auxiliary_;
@@ -165,8 +163,8 @@ void GeneralizedAlpha::accept(double h) {
   for (const auto& term : system_.terms) term->accept(state_);
   take_stock();
   ledger_.numerical += inertial_work - (ledger_.kinetic - kinetic);
-  ledger_.closure = ledger_.initial + ledger_.external - ledger_.kinetic - ledger_.strain_total() -
-                    ledger_.contact - ledger_.friction - ledger_.viscous - ledger_.numerical;
+  ledger_.closure = ledger_.initial + ledger_.external - ledger_.kinetic - ledger_.strain_total() - ledger_.contact -
+                    ledger_.friction - ledger_.viscous - ledger_.numerical;
   ++counts_.steps;
 }
 
@@ -193,10 +191,8 @@ void GeneralizedAlpha::take_stock() {
 
 NewtonReport GeneralizedAlpha::step(double h) {
   NewtonReport report = attempt(h);
-  if (report.converged)
-    accept(h);
-  else
-    ++counts_.rejected;
+  if (report.converged) accept(h);
+  else ++counts_.rejected;
   return report;
 }
 
@@ -207,10 +203,8 @@ double GeneralizedAlpha::advance(double end) {
   for (const auto& term : system_.terms) h = std::min(h, term->step_limit(state_));
   h = std::max(h, options_.step_min);
   // The last two steps share what is left, so that no sliver remains.
-  if (h >= left * (1 - 1e-9))
-    h = left;
-  else if (2 * h > left)
-    h = left / 2;
+  if (h >= left * (1 - 1e-9)) h = left;
+  else if (2 * h > left) h = left / 2;
   const bool adaptive = std::isfinite(options_.error_vector) || std::isfinite(options_.error_rotation);
   for (;;) {
     const NewtonReport report = attempt(h);
@@ -231,8 +225,8 @@ double GeneralizedAlpha::advance(double end) {
     step_ = h;
     if (h < options_.step_min) {
       std::ostringstream text;
-      text << "at t = " << state_.time << " s the time step fell below its minimum of " << options_.step_min
-           << " s (" << (report.converged ? "the error stays above its tolerance" : report.reason)
+      text << "at t = " << state_.time << " s the time step fell below its minimum of " << options_.step_min << " s ("
+           << (report.converged ? "the error stays above its tolerance" : report.reason)
            << "): allow smaller steps, or look for a load or stiffness that is out of scale";
       throw NonConvergence(text.str());
     }
@@ -240,8 +234,9 @@ double GeneralizedAlpha::advance(double end) {
 }
 
 Checkpoint GeneralizedAlpha::checkpoint() const {
-  Checkpoint c{state_, auxiliary_, step_, last_step_, ledger_, friction_before_, viscous_before_,
-               external_before_ - imposed_work_, {}};
+  Checkpoint c{state_,  auxiliary_,       step_,           last_step_,
+               ledger_, friction_before_, viscous_before_, external_before_ - imposed_work_,
+               {}};
   for (const auto& term : system_.terms) term->save(c.history);
   return c;
 }

@@ -14,21 +14,21 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/newton.hpp"
+#include "hosel/solvers/newton.hpp"
 
 namespace hosel::solvers {
 
 struct GeneralizedAlphaOptions {
-  double rho_inf = -1;       ///< spectral radius at infinite frequency, in [0, 1]; must be stated
+  double rho_inf = -1;  ///< spectral radius at infinite frequency, in [0, 1]; must be stated
   NewtonOptions newton;
-  double step_max = 0;       ///< the fixed step where no error tolerance is set [s]
-  double step_min = 0;       ///< below this a failing step gives up [s]
-  double step_first = 0;     ///< 0: step_max [s]
+  double step_max = 0;    ///< the fixed step where no error tolerance is set [s]
+  double step_min = 0;    ///< below this a failing step gives up [s]
+  double step_first = 0;  ///< 0: step_max [s]
   /// First guess of a step: the last acceleration goes on, or (false) none does: the better guess where
   /// contact makes accelerations jump.
   bool predict_acceleration = true;
-  double error_vector = 0;   ///< error allowed per step of a plain number [m]; inf: fixed steps
-  double error_rotation = 0; ///< of a rotation [rad]; inf: fixed steps
+  double error_vector = 0;    ///< error allowed per step of a plain number [m]; inf: fixed steps
+  double error_rotation = 0;  ///< of a rotation [rad]; inf: fixed steps
 
   std::vector<std::string> faults() const;
 };
@@ -85,7 +85,8 @@ class GeneralizedAlpha {
   struct Counts {
     long steps = 0, rejected = 0, iterations = 0, factorisations = 0;
     friend Counts operator+(const Counts& a, const Counts& b) {
-      return {a.steps + b.steps, a.rejected + b.rejected, a.iterations + b.iterations, a.factorisations + b.factorisations};
+      return {a.steps + b.steps, a.rejected + b.rejected, a.iterations + b.iterations,
+              a.factorisations + b.factorisations};
     }
   };
   const Counts& counts() const { return counts_; }
@@ -110,7 +111,8 @@ class GeneralizedAlpha {
   Vector inertia_, trial_inertia_, trial_force_, residual_;
   std::vector<Index> imposed_;
   double step_ = 0, last_step_ = 0, tangent_step_ = 0, error_ = 0;
-  double friction_before_ = 0, viscous_before_ = 0, external_before_ = 0;  // what the terms' cumulative figures began with
+  double friction_before_ = 0, viscous_before_ = 0,
+         external_before_ = 0;  // what the terms' cumulative figures began with
   double imposed_work_ = 0;
   Ledger ledger_;
   Counts counts_;

@@ -1,4 +1,4 @@
-#include "solvers/ida.hpp"
+#include "hosel/solvers/ida.hpp"
 
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -115,7 +115,8 @@ void integrate_ida(const fem::System& system, const fem::State& initial, const s
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto& b = blocks[i];
     const Index nq = b.rotation ? 4 : b.size;
-    for (Index k = 0; k < nq; ++k) py[problem.q_at[i] + k] = initial.q[b.q + k], pt[problem.q_at[i] + k] = options.absolute_position;
+    for (Index k = 0; k < nq; ++k)
+      py[problem.q_at[i] + k] = initial.q[b.q + k], pt[problem.q_at[i] + k] = options.absolute_position;
     for (Index k = 0; k < b.size; ++k) {
       py[problem.v_at[i] + k] = initial.v[b.v + k];
       pyp[problem.v_at[i] + k] = initial.a[b.v + k];

@@ -3,15 +3,15 @@
 
 #include <functional>
 
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 namespace hosel::solvers {
 
 struct IdaOptions {
-  double relative = 1e-6;            ///< [-]
-  double absolute_position = 1e-7;   ///< [m] and quaternion components
-  double absolute_velocity = 1e-4;   ///< [m/s] and [rad/s]
-  double step_max = 0;               ///< 0: none [s]
+  double relative = 1e-6;           ///< [-]
+  double absolute_position = 1e-7;  ///< [m] and quaternion components
+  double absolute_velocity = 1e-4;  ///< [m/s] and [rad/s]
+  double step_max = 0;              ///< 0: none [s]
 };
 
 /// Unknowns are q and v, block by block; F = (q' - v, inertia(q, v, v') + force(q, v)), imposed blocks hold

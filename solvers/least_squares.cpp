@@ -1,4 +1,4 @@
-#include "solvers/least_squares.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 #include <ceres/ceres.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -82,7 +82,8 @@ LeastSquaresFit least_squares(const Residuals& plain, int count, const Eigen::Ve
                               const std::vector<Bounds>& bounds, const LeastSquaresOptions& options) {
   const int n = static_cast<int>(bounds.size());
   for (const Bounds& b : bounds)
-    if (!(b.low < b.high) || !std::isfinite(b.high - b.low)) throw std::invalid_argument("least squares: bounds must be finite, low below high");
+    if (!(b.low < b.high) || !std::isfinite(b.high - b.low))
+      throw std::invalid_argument("least squares: bounds must be finite, low below high");
   const Residuals residuals = options.huber > 0 ? robust(plain, options.huber) : plain;
   Cost cost(residuals, count, bounds, options.step);
   ceres::Problem::Options keep;
@@ -99,7 +100,8 @@ LeastSquaresFit least_squares(const Residuals& plain, int count, const Eigen::Ve
   for (int k = 0; k < options.starts; ++k) {
     std::vector<double> x(n);
     for (int i = 0; i < n; ++i)
-      x[i] = k == 0 ? std::clamp((start[i] - bounds[i].low) / (bounds[i].high - bounds[i].low), 0.0, 1.0) : 0.05 + 0.9 * uniform();
+      x[i] = k == 0 ? std::clamp((start[i] - bounds[i].low) / (bounds[i].high - bounds[i].low), 0.0, 1.0)
+                    : 0.05 + 0.9 * uniform();
     ceres::Problem problem(keep);
     problem.AddResidualBlock(&cost, nullptr, x.data());
     for (int i = 0; i < n; ++i) {
@@ -114,18 +116,21 @@ LeastSquaresFit least_squares(const Residuals& plain, int count, const Eigen::Ve
     how.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(how, &problem, &summary);
-    if (summary.IsSolutionUsable()) runs.push_back({x, summary.final_cost, summary.termination_type == ceres::CONVERGENCE});
+    if (summary.IsSolutionUsable())
+      runs.push_back({x, summary.final_cost, summary.termination_type == ceres::CONVERGENCE});
   }
   if (runs.empty()) throw NonConvergence("least squares: no start has an answer");
   std::ranges::sort(runs, {}, &Run::cost);
-  if (!runs.front().converged) throw NonConvergence("least squares: the best start has not converged; allow more iterations");
+  if (!runs.front().converged)
+    throw NonConvergence("least squares: the best start has not converged; allow more iterations");
   LeastSquaresFit fit;
   fit.parameters = cost.physical(runs.front().x.data());
   fit.cost = runs.front().cost;
   fit.converged = true;
   for (const Run& r : runs) fit.costs.push_back(r.cost);
   const Cost unrobust(plain, count, bounds, options.step);
-  if (!unrobust.differences(runs.front().x.data(), fit.jacobian)) throw NonConvergence("least squares: no derivative at the solution");
+  if (!unrobust.differences(runs.front().x.data(), fit.jacobian))
+    throw NonConvergence("least squares: no derivative at the solution");
   for (int i = 0; i < n; ++i) fit.jacobian.col(i) /= bounds[i].high - bounds[i].low;
   return fit;
 }
@@ -145,7 +150,8 @@ Identifiability identifiability(const Eigen::MatrixXd& whitened, const std::vect
     const double variance = s > 1e-12 * svd.singularValues()[0] ? 1 / (s * s) : INFINITY;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
-        if (const double part = v[i] * v[j]; std::isfinite(variance) || std::abs(part) > 1e-12) covariance(i, j) += variance * part;
+        if (const double part = v[i] * v[j]; std::isfinite(variance) || std::abs(part) > 1e-12)
+          covariance(i, j) += variance * part;
   }
   out.sd = covariance.diagonal().cwiseSqrt().cwiseProduct(scale);
   out.correlation = Eigen::MatrixXd::Identity(n, n);
@@ -154,7 +160,8 @@ Identifiability identifiability(const Eigen::MatrixXd& whitened, const std::vect
       if (i != j) {
         const double c = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
         // Two parameters of one blind direction: wholly tied, with the sign of their product.
-        out.correlation(i, j) = std::isfinite(c) ? c : (std::isinf(covariance(i, j)) ? std::copysign(1.0, covariance(i, j)) : 0.0);
+        out.correlation(i, j) =
+            std::isfinite(c) ? c : (std::isinf(covariance(i, j)) ? std::copysign(1.0, covariance(i, j)) : 0.0);
       }
   Eigen::MatrixXd unit = scaled;
   for (int i = 0; i < n; ++i)

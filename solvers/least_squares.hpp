@@ -16,19 +16,19 @@ struct Bounds {
 };
 
 struct LeastSquaresOptions {
-  int starts = 8;         ///< the given one and starts - 1 at random inside the bounds
+  int starts = 8;  ///< the given one and starts - 1 at random inside the bounds
   unsigned seed = 1;
-  int iterations = 60;    ///< at most, per start
-  double huber = 0;       ///< knee of the robust loss in units of noise per residual; 0: least squares
-  double step = 1e-3;     ///< of the central differences, share of the bounds' distance
+  int iterations = 60;  ///< at most, per start
+  double huber = 0;     ///< knee of the robust loss in units of noise per residual; 0: least squares
+  double step = 1e-3;   ///< of the central differences, share of the bounds' distance
 };
 
 struct LeastSquaresFit {
   Eigen::VectorXd parameters;
-  double cost = 0;                  ///< half the sum of the squared (robust: rho'd) residuals
+  double cost = 0;  ///< half the sum of the squared (robust: rho'd) residuals
   bool converged = false;
-  std::vector<double> costs;        ///< of every start, the best first
-  Eigen::MatrixXd jacobian;         ///< whitened, at the solution
+  std::vector<double> costs;  ///< of every start, the best first
+  Eigen::MatrixXd jacobian;   ///< whitened, at the solution
 };
 
 /// Ceres, trust region. Throws NonConvergence where no start has residuals or none converges, and
@@ -38,9 +38,9 @@ LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen
 
 /// Covariance from the singular values of the whitened Jacobian, with the columns scaled to the bounds.
 struct Identifiability {
-  Eigen::VectorXd sd;            ///< infinite along what the data do not see
+  Eigen::VectorXd sd;  ///< infinite along what the data do not see
   Eigen::MatrixXd correlation;
-  double condition = 0;          ///< of the Jacobian with columns of unit length
+  double condition = 0;                ///< of the Jacobian with columns of unit length
   std::vector<Eigen::VectorXd> blind;  ///< directions (scaled by the bounds) that the data leave free
 };
 

@@ -1,4 +1,4 @@
-#include "solvers/linear.hpp"
+#include "hosel/solvers/linear.hpp"
 
 #include <umfpack.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 // Fronts are small and runs go in parallel: threads of the BLAS cost more than they bring. Absent
 // where the BLAS is not OpenBLAS.
@@ -29,7 +29,8 @@ SparseTangent::SparseTangent(const fem::System& system) {
   rotation_of_.assign(n, -1);
   for (const auto& b : system.layout.blocks())
     if (b.rotation) {
-      for (Index i = 0; i < 3; ++i) rotation_of_[static_cast<std::size_t>(b.v + i)] = static_cast<int>(rotation_at_.size());
+      for (Index i = 0; i < 3; ++i)
+        rotation_of_[static_cast<std::size_t>(b.v + i)] = static_cast<int>(rotation_at_.size());
       rotation_at_.push_back(b.v);
     }
 
@@ -135,8 +136,8 @@ void SparseTangent::add(const std::vector<Index>& rows, const std::vector<Index>
     for (const auto& p : s.rotations) {
       const Mat3& t = transform_[static_cast<std::size_t>(p[3])];
       for (int k = 0; k < 3; ++k)
-        scratch_.col(p[static_cast<std::size_t>(k)]) =
-            block.col(p[0]) * t(0, k) + block.col(p[1]) * t(1, k) + block.col(p[2]) * t(2, k);
+        scratch_.col(p[static_cast<std::size_t>(k)]) = block.col(p[0]) * t(0, k) + block.col(p[1]) * t(1, k) +
+                                                       block.col(p[2]) * t(2, k);
     }
   }
   const Eigen::Ref<const Eigen::MatrixXd> from = turned ? Eigen::Ref<const Eigen::MatrixXd>(scratch_) : block;
@@ -211,8 +212,8 @@ void Factorisation::factorise(const SparseTangent& matrix) {
   s.matrix = &matrix;
   s.values.assign(matrix.values().begin(), matrix.values().end());
   const int *starts = matrix.column_starts().data(), *rows = matrix.row_indices().data();
-  if (!s.symbolic && umfpack_di_symbolic(n, n, starts, rows, s.values.data(), &s.symbolic, s.control.data(),
-                                         nullptr) < 0)
+  if (!s.symbolic &&
+      umfpack_di_symbolic(n, n, starts, rows, s.values.data(), &s.symbolic, s.control.data(), nullptr) < 0)
     throw NonConvergence("the tangent matrix cannot be ordered: it holds numbers that are not finite");
   const int status =
       umfpack_di_numeric(starts, rows, s.values.data(), s.symbolic, &s.numeric, s.control.data(), nullptr);
@@ -230,8 +231,7 @@ Vector Factorisation::solve(const Vector& right) const {
   Vector x(right.size());
   const int status = umfpack_di_solve(UMFPACK_A, s.matrix->column_starts().data(), s.matrix->row_indices().data(),
                                       s.values.data(), x.data(), right.data(), s.numeric, s.control.data(), nullptr);
-  if (status != UMFPACK_OK || !x.allFinite())
-    throw NonConvergence("the tangent matrix gave no finite solution");
+  if (status != UMFPACK_OK || !x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");
   return x;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 namespace hosel::solvers {
 
@@ -23,8 +23,8 @@ class SparseTangent final : public fem::TangentSink {
   Index size() const { return static_cast<Index>(free_.size()); }
   /// Equation number of each row.
   const std::vector<Index>& free_equations() const { return free_; }
-  Vector gather(const Vector& full) const;                 ///< entries of the free equations
-  void scatter(const Vector& reduced, Vector& full) const; ///< writes the free equations only
+  Vector gather(const Vector& full) const;                  ///< entries of the free equations
+  void scatter(const Vector& reduced, Vector& full) const;  ///< writes the free equations only
 
   /// Assembles weights.stiffness K T + weights.damping C + weights.mass M, where T is the tangent of
   /// the exponential map at `increment` (Layout::size() entries, body-frame rotation increments
@@ -49,16 +49,16 @@ class SparseTangent final : public fem::TangentSink {
  private:
   struct Scatter {
     std::vector<Index> rows, columns;
-    std::vector<int> to;                            // place in values_, -1 where imposed
-    std::vector<std::array<int, 4>> rotations;      // places of a rotation's columns, and its number
+    std::vector<int> to;                        // place in values_, -1 where imposed
+    std::vector<std::array<int, 4>> rotations;  // places of a rotation's columns, and its number
   };
   Scatter make_scatter(const std::vector<Index>& rows, const std::vector<Index>& columns) const;
 
   std::vector<Index> free_;
-  std::vector<int> reduced_;         // equation -> free row, or -1
-  std::vector<int> rotation_of_;     // equation -> rotation number, or -1
-  std::vector<Index> rotation_at_;   // rotation number -> its first equation
-  std::vector<Mat3> transform_;      // T of each rotation during the stiffness pass, else empty
+  std::vector<int> reduced_;        // equation -> free row, or -1
+  std::vector<int> rotation_of_;    // equation -> rotation number, or -1
+  std::vector<Index> rotation_at_;  // rotation number -> its first equation
+  std::vector<Mat3> transform_;     // T of each rotation during the stiffness pass, else empty
   std::vector<int> starts_, rows_;
   std::vector<double> values_;
   std::vector<Scatter> scatters_;

@@ -1,11 +1,11 @@
-#include "solvers/modes.hpp"
+#include "hosel/solvers/modes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/errors.hpp"
-#include "solvers/linear.hpp"
+#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/linear.hpp"
 
 namespace hosel::solvers {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 namespace hosel::solvers {
 

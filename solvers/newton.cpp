@@ -1,4 +1,4 @@
-#include "solvers/newton.hpp"
+#include "hosel/solvers/newton.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <deque>
 #include <stdexcept>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 
@@ -34,9 +34,9 @@ Newton::Newton(const fem::System& system, SparseTangent& tangent, NewtonOptions 
 double Newton::increment_measure(const Vector& increment) const {
   double largest = 0;
   for (Index i = 0; i < increment.size(); ++i)
-    largest = std::max(largest, std::abs(increment[i]) / (rotation_[static_cast<std::size_t>(i)]
-                                                              ? options_.increment_rotation
-                                                              : options_.increment_vector));
+    largest = std::max(largest,
+                       std::abs(increment[i]) / (rotation_[static_cast<std::size_t>(i)] ? options_.increment_rotation
+                                                                                        : options_.increment_vector));
   return largest;
 }
 
@@ -44,13 +44,15 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
   NewtonReport report;
   double increment = INFINITY;
   Vector r, last, direction;
-  std::deque<Vector> moved, changed;    // pairs of increment and change of the Newton direction
-  std::vector<double> shrinking;        // |r| since the factor was made or the solve began
+  std::deque<Vector> moved, changed;  // pairs of increment and change of the Newton direction
+  std::vector<double> shrinking;      // |r| since the factor was made or the solve began
   const auto evaluate = [&] {
     r = problem.residual(report.scale);
     report.residual = r.norm();
   };
-  const auto tolerance = [&] { return options_.residual_relative * report.scale + options_.residual_absolute + round_off_; };
+  const auto tolerance = [&] {
+    return options_.residual_relative * report.scale + options_.residual_absolute + round_off_;
+  };
   const bool guarded = options_.acceleration > 0;
   const auto slow = [&] {
     const std::size_t n = shrinking.size(), back = options_.acceleration > 0 ? 3 : 1;
@@ -121,7 +123,8 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
       }
       // Kinks of contact make a full step overshoot: halve it while that brings the residual down.
       // Slender structures, whose residual must rise before it falls, are left alone.
-      for (int halvings = 0; guarded && halvings < 8 && !(report.residual <= std::max(before, tolerance())); ++halvings) {
+      for (int halvings = 0; guarded && halvings < 8 && !(report.residual <= std::max(before, tolerance()));
+           ++halvings) {
         const double full = report.residual;
         last *= 0.5;
         problem.advance(-last);
@@ -130,9 +133,7 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
       }
       shrinking.push_back(report.residual);
     }
-  } catch (const NonConvergence& e) {
-    report.reason = e.what();
-  }
+  } catch (const NonConvergence& e) { report.reason = e.what(); }
   factors_.forget();
   return report;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/linear.hpp"
+#include "hosel/solvers/linear.hpp"
 
 namespace hosel::solvers {
 
@@ -40,7 +40,7 @@ struct NewtonProblem {
   std::function<Vector(double& scale)> residual;
   /// The tangent at the present iterate; returns the residual that round-off alone may leave.
   std::function<double()> assemble;
-  std::function<void(const Vector&)> advance;   ///< moves the iterate by an increment
+  std::function<void(const Vector&)> advance;  ///< moves the iterate by an increment
 };
 
 /// Solves residual = 0. `factors` may come from earlier calls and are kept for later ones. Never

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 
@@ -27,8 +27,7 @@ struct RosenbrockStatistics {
 template <class System>
 class RosenbrockW {
  public:
-  explicit RosenbrockW(System& system)
-      : s_(system), n_(system.size()), k_(4 * n_), y_(n_), work_(n_), next_(n_) {}
+  explicit RosenbrockW(System& system) : s_(system), n_(system.size()), k_(4 * n_), y_(n_), work_(n_), next_(n_) {}
 
   /// Advances `y` from 0 until the event; returns its time. Throws NonConvergence where the step
   /// shrinks below `latest` * 1e-12 or the event does not come before `latest`.
@@ -62,11 +61,15 @@ class RosenbrockW {
   /// One step of size h from y into next(); returns the error estimate in units of the scales.
   double step(const double* y, double h) {
     static constexpr double g = 0.43586652150845900;
-    static constexpr double a[4][3] = {{}, {0.87173304301691801, 0, 0}, {0.84457060015369423, -0.11299064236484185, 0}, {0, 0, 1}};
-    static constexpr double c[4][3] = {{}, {-0.87173304301691801, 0, 0}, {-0.90338057013044082, 0.054180672388095326, 0},
+    static constexpr double a[4][3] = {
+        {}, {0.87173304301691801, 0, 0}, {0.84457060015369423, -0.11299064236484185, 0}, {0, 0, 1}};
+    static constexpr double c[4][3] = {{},
+                                       {-0.87173304301691801, 0, 0},
+                                       {-0.90338057013044082, 0.054180672388095326, 0},
                                        {0.24212380706095346, -1.2232505839045147, 0.54526025533510214}};
     static constexpr double b[4] = {0.24212380706095346, -1.2232505839045147, 1.5452602553351020, 0.43586652150845900};
-    static constexpr double d[4] = {b[0] - 0.37810903145819369, b[1] + 0.096042292212423178, b[2] - 0.5, b[3] - 0.21793326075422950};
+    static constexpr double d[4] = {b[0] - 0.37810903145819369, b[1] + 0.096042292212423178, b[2] - 0.5,
+                                    b[3] - 0.21793326075422950};
     for (int i = 0; i < 4; ++i) {
       double* k = k_.data() + i * n_;
       if (i == 0) {

@@ -1,4 +1,4 @@
-#include "solvers/spline.hpp"
+#include "hosel/solvers/spline.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
@@ -118,7 +118,8 @@ Spline Spline::near(const std::vector<double>& times, const Eigen::MatrixXd& val
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(Eigen::SparseMatrix<double>(A.transpose() * A));
   if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-12) {
     std::ostringstream text;
-    text << "the smoothing spline has too few samples between its knots, " << spacing << " s apart: lengthen the smoothing";
+    text << "the smoothing spline has too few samples between its knots, " << spacing
+         << " s apart: lengthen the smoothing";
     throw std::invalid_argument(text.str());
   }
   s.coefficients_ = ldlt.solve(Eigen::MatrixXd(A.transpose() * values));

@@ -25,8 +25,8 @@ class Spline {
 
  private:
   struct Basis {
-    int first;                       // first basis function that is not zero
-    Eigen::Matrix<double, 3, 6> n;   // values, first and second derivatives
+    int first;                      // first basis function that is not zero
+    Eigen::Matrix<double, 3, 6> n;  // values, first and second derivatives
   };
   Basis basis(double t) const;
 

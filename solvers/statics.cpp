@@ -1,4 +1,4 @@
-#include "solvers/statics.hpp"
+#include "hosel/solvers/statics.hpp"
 
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>
@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <memory>
 
-#include "solvers/errors.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

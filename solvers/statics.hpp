@@ -1,14 +1,14 @@
 /// Static equilibrium force(q) = 0 at rest, by load stepping.
 #pragma once
 
-#include "solvers/newton.hpp"
+#include "hosel/solvers/newton.hpp"
 
 namespace hosel::solvers {
 
 struct StaticsOptions {
   NewtonOptions newton;
-  int load_steps = 1;        ///< equal steps to begin with
-  int max_bisections = 8;    ///< of a failing load step
+  int load_steps = 1;      ///< equal steps to begin with
+  int max_bisections = 8;  ///< of a failing load step
 };
 
 struct StaticsReport {

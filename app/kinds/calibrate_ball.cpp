@@ -1,4 +1,4 @@
-#include "app/kinds/calibrate_ball.hpp"
+#include "hosel/app/kinds/calibrate_ball.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_solid.hpp"
-#include "models/ball_calibration.hpp"
-#include "post/figure.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/models/ball_calibration.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -37,22 +37,25 @@ class CalibrateBallJob final : public Job {
     target_.restitution_sigma = target.number("restitution_sigma", {1e-6, 1}, target_.restitution_sigma);
     target_.contact_speed = target.quantity("contact_speed", "mps", {1, 100}, target_.contact_speed);
     target_.contact_time = target.quantity("contact_time", "ms", Range::positive(), target_.contact_time);
-    target_.contact_time_sigma = target.quantity("contact_time_sigma", "ms", Range::positive(), target_.contact_time_sigma);
+    target_.contact_time_sigma =
+        target.quantity("contact_time_sigma", "ms", Range::positive(), target_.contact_time_sigma);
     if (auto fit = root.optional_table("fit")) hold_times_ = fit->flag("hold_branch_times", hold_times_);
     if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
   }
 
   void run(Output& out) override {
     Progress progress = out.progress("calibrating");
-    const models::BallCalibration fit = models::calibrate_ball(
-        options_, ball_, target_, hold_times_, [&](int n, double cost) {
+    const models::BallCalibration fit =
+        models::calibrate_ball(options_, ball_, target_, hold_times_, [&](int n, double cost) {
           progress.update(std::min(0.99, n / 40.0), fmt::format("{} evaluations, cost {:.3f}", n, cost));
         });
     progress.finish();
-    nlohmann::json summary{{"converged", fit.converged}, {"cost", fit.cost}, {"evaluations", fit.evaluations}, {"solver", fit.report}};
+    nlohmann::json summary{
+        {"converged", fit.converged}, {"cost", fit.cost}, {"evaluations", fit.evaluations}, {"solver", fit.report}};
     for (std::size_t p = 0; p < fit.names.size(); ++p) {
       const double relative = std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p)));
-      summary["parameters"].push_back({{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]}, {"relative_sigma", relative}});
+      summary["parameters"].push_back(
+          {{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]}, {"relative_sigma", relative}});
       out.say(fmt::format("{:<32} {:12.5g}  +- {:.1f} %", fit.names[p], fit.values[p], 100 * relative));
     }
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
@@ -63,13 +66,21 @@ class CalibrateBallJob final : public Job {
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
     std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
     post::Series wanted{.label = "target, one standard deviation"}, got{.label = "ball", .style = "points"};
-    post::Series law{.label = fmt::format("{:g} {} {:g} v", target_.restitution, target_.restitution_slope < 0 ? '-' : '+', std::abs(target_.restitution_slope))};
-    post::Series time_wanted{.label = "target, one standard deviation"}, time_got{.label = "ball", .style = "linespoints"};
+    post::Series law{.label = fmt::format("{:g} {} {:g} v", target_.restitution,
+                                          target_.restitution_slope < 0 ? '-' : '+',
+                                          std::abs(target_.restitution_slope))};
+    post::Series time_wanted{.label = "target, one standard deviation"},
+        time_got{.label = "ball", .style = "linespoints"};
     for (const auto& p : fit.points) {
-      out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution, 1e3 * p.contact_time, 1e-3 * p.peak_force));
-      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
-      summary["points"].push_back({{"speed_mps", p.speed}, {"target_restitution", p.target}, {"restitution", p.restitution},
-                                   {"contact_time_s", p.contact_time}, {"peak_force_N", p.peak_force}});
+      out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution,
+                          1e3 * p.contact_time, 1e-3 * p.peak_force));
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time,
+                         p.peak_force);
+      summary["points"].push_back({{"speed_mps", p.speed},
+                                   {"target_restitution", p.target},
+                                   {"restitution", p.restitution},
+                                   {"contact_time_s", p.contact_time},
+                                   {"peak_force_N", p.peak_force}});
       wanted.x.push_back(p.speed);
       wanted.y.push_back(p.target);
       wanted.error.push_back(target_.restitution_sigma);
@@ -88,7 +99,8 @@ class CalibrateBallJob final : public Job {
     post::Figure figure;
     figure.title = "the calibrated ball on a rigid wall";
     figure.columns = 2;
-    for (const auto& [label, series] : {std::pair{"restitution", std::vector{wanted, got, law}}, {"contact time [ms]", {time_wanted, time_got}}}) {
+    for (const auto& [label, series] :
+         {std::pair{"restitution", std::vector{wanted, got, law}}, {"contact time [ms]", {time_wanted, time_got}}}) {
       post::Panel panel;
       panel.x_label = "impact speed [m/s]";
       panel.y_label = label;
@@ -104,7 +116,8 @@ class CalibrateBallJob final : public Job {
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
     std::string text = fmt::format(
-        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; no spin data.\n# {}\n",
+        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; no spin "
+        "data.\n# {}\n",
         target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
         target_.contact_speed, fit.report);
     for (std::size_t p = 0; p < fit.names.size(); ++p)
@@ -112,18 +125,22 @@ class CalibrateBallJob final : public Job {
                           100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));
     text += "# covariance of their logarithms:";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
-    text += fmt::format("\n{}\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", hold_times_ ? "# branch times were held" : "# branch times were fitted",
-                        ball_.mass, 1e3 * ball_.radius);
+    text += fmt::format("\n{}\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n",
+                        hold_times_ ? "# branch times were held" : "# branch times were fitted", ball_.mass,
+                        1e3 * ball_.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
       const auto& law = std::get<fem::Hyperelastic>(layer.material.elastic);
       std::vector<double> moduli, times;
       for (const auto& b : layer.material.branches) moduli.push_back(b.modulus / 1e6), times.push_back(b.time * 1e3);
       const char* name = law.c01 != 0 ? "mooney-rivlin" : law.c20 != 0 || law.c30 != 0 ? "yeoh" : "neo-hooke";
-      text += fmt::format("\n[[ball.layers]]\nradius_fraction = {}\nlaw = \"{}\"\nc10_MPa = {:.6g}\n", layer.radius, name, law.c10 / 1e6);
+      text += fmt::format("\n[[ball.layers]]\nradius_fraction = {}\nlaw = \"{}\"\nc10_MPa = {:.6g}\n", layer.radius,
+                          name, law.c10 / 1e6);
       if (law.c01 != 0) text += fmt::format("c01_MPa = {:.6g}\n", law.c01 / 1e6);
-      if (law.c20 != 0 || law.c30 != 0) text += fmt::format("c20_MPa = {:.6g}\nc30_MPa = {:.6g}\n", law.c20 / 1e6, law.c30 / 1e6);
-      text += fmt::format("bulk_MPa = {:.6g}\ndensity_kg_per_m3 = {:.6g}\nbranch_moduli_MPa = [{:.6g}]\nbranch_times_ms = [{:.6g}]\n",
-                          law.bulk / 1e6, layer.material.density, fmt::join(moduli, ", "), fmt::join(times, ", "));
+      if (law.c20 != 0 || law.c30 != 0)
+        text += fmt::format("c20_MPa = {:.6g}\nc30_MPa = {:.6g}\n", law.c20 / 1e6, law.c30 / 1e6);
+      text += fmt::format(
+          "bulk_MPa = {:.6g}\ndensity_kg_per_m3 = {:.6g}\nbranch_moduli_MPa = [{:.6g}]\nbranch_times_ms = [{:.6g}]\n",
+          law.bulk / 1e6, layer.material.density, fmt::join(moduli, ", "), fmt::join(times, ", "));
     }
     return text;
   }

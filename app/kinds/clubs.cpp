@@ -1,4 +1,4 @@
-#include "app/kinds/clubs.hpp"
+#include "hosel/app/kinds/clubs.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "golf/units.hpp"
-#include "loop/shots.hpp"
-#include "models/registry.hpp"
-#include "post/csv.hpp"
-#include "post/figure.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/loop/shots.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -24,7 +24,8 @@ namespace {
 constexpr std::array<double, 4> resolution = {0.0251, 1.01, 0.0151, 0.0501};
 
 /// The quantities of the tables, in the files' units.
-constexpr std::array<const char*, 4> kColumns = {"dynamic_loft_deg", "spin_rate_rpm", "launch_angle_deg", "ball_speed_mph"};
+constexpr std::array<const char*, 4> kColumns = {"dynamic_loft_deg", "spin_rate_rpm", "launch_angle_deg",
+                                                 "ball_speed_mph"};
 
 struct Line {
   double slope = 0, intercept = 0, r2 = 0;
@@ -64,7 +65,8 @@ class ClubsJob final : public Job {
     options_ = read_options(root, beside_);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
-    if (auto head = root.optional_table("head")) blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
+    if (auto head = root.optional_table("head"))
+      blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
     Table data = root.table("data");
     shots_file_ = data.data_file("shots");
     clubs_file_ = data.data_file("clubs");
@@ -96,7 +98,8 @@ class ClubsJob final : public Job {
       if (degrees(l.launch_angle()) > peak) peak = degrees(l.launch_angle()), peak_at = loft;
       if (i % 10) continue;
       spin.x.push_back(loft), launch.x.push_back(loft), speed.x.push_back(loft);
-      spin.y.push_back(rpm(l.spin_rate())), launch.y.push_back(degrees(l.launch_angle())), speed.y.push_back(l.ball_speed());
+      spin.y.push_back(rpm(l.spin_rate())), launch.y.push_back(degrees(l.launch_angle())),
+          speed.y.push_back(l.ball_speed());
       csv += fmt::format("{:g},{:.8g},{:.8g},{:.8g}\n", loft, spin.y.back(), launch.y.back(), speed.y.back());
     }
     out.write("theory.csv", csv);
@@ -107,15 +110,21 @@ class ClubsJob final : public Job {
       return rpm(model->launch(b).spin_rate()) / std::sin(radians(30));
     };
     const double own = coefficient(blow_.ball), other = coefficient(other_ball_);
-    out.say(fmt::format("spin = {:.4f} sin(loft) rpm for the stated ball (printed: 11120); {:.2f} with m = {:g} kg and r = {:g} mm", own,
-                        other, other_ball_.mass, other_ball_.radius * 1e3));
+    out.say(fmt::format(
+        "spin = {:.4f} sin(loft) rpm for the stated ball (printed: 11120); {:.2f} with m = {:g} kg and r = {:g} mm",
+        own, other, other_ball_.mass, other_ball_.radius * 1e3));
     out.say(fmt::format("launch angle peaks at {:.3f} deg for a loft of {:.1f} deg", peak, peak_at));
-    summary["theory"] = {{"spin_coefficient_rpm", own}, {"spin_coefficient_other_ball_rpm", other}, {"launch_peak_deg", peak}, {"launch_peak_at_deg", peak_at}};
+    summary["theory"] = {{"spin_coefficient_rpm", own},
+                         {"spin_coefficient_other_ball_rpm", other},
+                         {"launch_peak_deg", peak},
+                         {"launch_peak_at_deg", peak_at}};
 
     // Club by club.
-    out.say(fmt::format("\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8}", "club", "loft", "spin", "measured", "", "launch",
-                        "measured", "", "speed", "measured", ""));
-    csv = "club,dynamic_loft_deg,model_spin_rpm,measured_spin_rpm,model_launch_deg,measured_launch_deg,model_ball_speed_mph,measured_ball_speed_mph\n";
+    out.say(fmt::format("\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8}", "club", "loft", "spin",
+                        "measured", "", "launch", "measured", "", "speed", "measured", ""));
+    csv =
+        "club,dynamic_loft_deg,model_spin_rpm,measured_spin_rpm,model_launch_deg,measured_launch_deg,model_ball_speed_"
+        "mph,measured_ball_speed_mph\n";
     std::array<int, 3> inside{};
     std::array<double, 3> bias{}, square{};
     double ratio = 0;
@@ -127,9 +136,12 @@ class ClubsJob final : public Job {
       c.launch = degrees(l.launch_angle());
       c.speed = l.ball_speed() / kMpsPerMph;
       const std::array<double, 3> m = {c.spin, c.launch, c.speed};
-      out.say(fmt::format("{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}%", c.name, c.mean[0], m[0],
-                          c.mean[1], 100 * (m[0] / c.mean[1] - 1), m[1], c.mean[2], m[1] - c.mean[2], m[2], c.mean[3], 100 * (m[2] / c.mean[3] - 1)));
-      csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", post::csv_cell(c.name), c.mean[0], m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
+      out.say(fmt::format(
+          "{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}%",
+          c.name, c.mean[0], m[0], c.mean[1], 100 * (m[0] / c.mean[1] - 1), m[1], c.mean[2], m[1] - c.mean[2], m[2],
+          c.mean[3], 100 * (m[2] / c.mean[3] - 1)));
+      csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", post::csv_cell(c.name), c.mean[0],
+                         m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
       ratio += m[0] / c.mean[1] / static_cast<double>(clubs.size());
       for (int k = 0; k < 3; ++k) {
         const double d = m[k] - c.mean[k + 1];
@@ -150,43 +162,63 @@ class ClubsJob final : public Job {
       }
     }
     out.write("clubs.csv", csv);
-    out.say(fmt::format("\nmodel / measured spin {:.4f}; bias {:+.0f} rpm, {:+.3f} deg, {:+.3f} mph; rms {:.0f} rpm, {:.3f} deg, {:.3f} mph", ratio,
-                        bias[0], bias[1], bias[2], std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])));
-    out.say(fmt::format("inside the printed error bars: spin {} of {}, launch {}, ball speed {}", inside[0], clubs.size(), inside[1], inside[2]));
-    summary["comparison"] = {{"spin_ratio", ratio}, {"bias", bias}, {"rms", {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])}}, {"inside_error_bars", inside}};
+    out.say(fmt::format(
+        "\nmodel / measured spin {:.4f}; bias {:+.0f} rpm, {:+.3f} deg, {:+.3f} mph; rms {:.0f} rpm, {:.3f} deg, "
+        "{:.3f} mph",
+        ratio, bias[0], bias[1], bias[2], std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])));
+    out.say(fmt::format("inside the printed error bars: spin {} of {}, launch {}, ball speed {}", inside[0],
+                        clubs.size(), inside[1], inside[2]));
+    summary["comparison"] = {{"spin_ratio", ratio},
+                             {"bias", bias},
+                             {"rms", {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])}},
+                             {"inside_error_bars", inside}};
 
     for (const std::string& name : beside_) compare(name, clubs, out, summary);
 
-    out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope", "intercept", "R2", "launch", "intercept", "R2"));
-    out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", "printed", 269.24, 668.67, .9979, .705, .5098, .9987));
-    for (const auto& [name, set] : {std::pair{"table of means as printed", &prints}, std::pair{"means recomputed from the shots", &means},
-                                    std::pair{"single shots with a recorded loft", &singles}}) {
+    out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope",
+                        "intercept", "R2", "launch", "intercept", "R2"));
+    out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", "printed", 269.24, 668.67,
+                        .9979, .705, .5098, .9987));
+    for (const auto& [name, set] :
+         {std::pair{"table of means as printed", &prints}, std::pair{"means recomputed from the shots", &means},
+          std::pair{"single shots with a recorded loft", &singles}}) {
       const Line s = straight_line((*set)[0], (*set)[1]), l = straight_line((*set)[0], (*set)[2]);
-      out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", name, s.slope, s.intercept, s.r2, l.slope, l.intercept, l.r2));
-      summary["fits"].push_back({{"data", name}, {"spin", {s.slope, s.intercept, s.r2}}, {"launch", {l.slope, l.intercept, l.r2}}});
+      out.say(fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>8.5f} {:>10.4f} {:>10.4f} {:>8.5f}", name, s.slope,
+                          s.intercept, s.r2, l.slope, l.intercept, l.r2));
+      summary["fits"].push_back(
+          {{"data", name}, {"spin", {s.slope, s.intercept, s.r2}}, {"launch", {l.slope, l.intercept, l.r2}}});
     }
     double top = 0, bottom = 0;
     for (std::size_t i = 0; i < means[0].size(); ++i) {
       top += means[1][i] * std::sin(radians(means[0][i]));
       bottom += std::pow(std::sin(radians(means[0][i])), 2);
     }
-    out.say(fmt::format("measured spin = {:.1f} sin(loft) through the origin: the model's coefficient is {:.3f} of it", top / bottom, own / (top / bottom)));
+    out.say(fmt::format("measured spin = {:.1f} sin(loft) through the origin: the model's coefficient is {:.3f} of it",
+                        top / bottom, own / (top / bottom)));
     summary["sine_through_origin_rpm"] = top / bottom;
 
-    post::Figure figure{.title = "loft against spin, launch angle and ball speed: theory (above), seven clubs (below)", .columns = 3, .panel_width = 520};
+    post::Figure figure{.title = "loft against spin, launch angle and ball speed: theory (above), seven clubs (below)",
+                        .columns = 3,
+                        .panel_width = 520};
     const Line spin_fit = straight_line(means[0], means[1]), launch_fit = straight_line(means[0], means[2]);
-    figure.panels = {{.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}, .key = "bottom right"},
-                     {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}, .key = "bottom right"},
-                     {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}, .key = "bottom left"}};
+    figure.panels = {
+        {.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}, .key = "bottom right"},
+        {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}, .key = "bottom right"},
+        {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}, .key = "bottom left"}};
     const std::array<const char*, 3> labels = {"spin rate [rpm]", "launch angle [deg]", "ball speed [mph]"};
     for (int k = 0; k < 3; ++k) {
       measured[k].label = "measured (printed bars)";
       predicted[k].label = model_;
       predicted[k].style = "linespoints";
-      post::Panel p{.x_label = "dynamic loft [deg]", .y_label = labels[k], .series = {measured[k], predicted[k]}, .key = k == 2 ? "bottom left" : "top left"};
+      post::Panel p{.x_label = "dynamic loft [deg]",
+                    .y_label = labels[k],
+                    .series = {measured[k], predicted[k]},
+                    .key = k == 2 ? "bottom left" : "top left"};
       if (k < 2) {
         const Line& f = k == 0 ? spin_fit : launch_fit;
-        p.series.push_back({.label = fmt::format("{:.4g} loft + {:.4g}", f.slope, f.intercept), .x = {12, 33}, .y = {f.slope * 12 + f.intercept, f.slope * 33 + f.intercept}});
+        p.series.push_back({.label = fmt::format("{:.4g} loft + {:.4g}", f.slope, f.intercept),
+                            .x = {12, 33},
+                            .y = {f.slope * 12 + f.intercept, f.slope * 33 + f.intercept}});
       }
       figure.panels.push_back(p);
     }
@@ -206,8 +238,8 @@ class ClubsJob final : public Job {
       progress.update(double(i) / double(clubs.size()), c.name);
       const Launch l = model->launch(c.blow);
       const std::array<double, 3> m = {rpm(l.spin_rate()), degrees(l.launch_angle()), l.ball_speed() / kMpsPerMph};
-      out.say(fmt::format("{:<5} {:>10.1f} rpm {:>+7.1f}% {:>9.3f} deg {:>+7.2f} {:>9.2f} mph {:>+7.2f}%", c.name, m[0], 100 * (m[0] / c.mean[1] - 1), m[1],
-                          m[1] - c.mean[2], m[2], 100 * (m[2] / c.mean[3] - 1)));
+      out.say(fmt::format("{:<5} {:>10.1f} rpm {:>+7.1f}% {:>9.3f} deg {:>+7.2f} {:>9.2f} mph {:>+7.2f}%", c.name, m[0],
+                          100 * (m[0] / c.mean[1] - 1), m[1], m[1] - c.mean[2], m[2], 100 * (m[2] / c.mean[3] - 1)));
       summary["beside"][name][c.name] = {{"spin_rate_rpm", m[0]}, {"launch_angle_deg", m[1]}, {"ball_speed_mph", m[2]}};
       const double n = static_cast<double>(clubs.size());
       spin += m[0] / c.mean[1] / n;
@@ -245,7 +277,9 @@ class ClubsJob final : public Job {
           std::array<double, 4> s{};
           for (int i = 0; i < 4; ++i) {
             const loop::Column* column = shots.find(kColumns[static_cast<std::size_t>(i)]);
-            if (!column) throw InputError(fmt::format("{}: no column '{}'", shots_file_.string(), kColumns[static_cast<std::size_t>(i)]));
+            if (!column)
+              throw InputError(
+                  fmt::format("{}: no column '{}'", shots_file_.string(), kColumns[static_cast<std::size_t>(i)]));
             s[i] = column->native(row);
             low[i] = std::min(low[i], s[i]);
             high[i] = std::max(high[i], s[i]);
@@ -263,21 +297,22 @@ class ClubsJob final : public Job {
         for (int i = 0; i < 4; ++i) {
           const double off = c.mean[i] - c.printed[i];
           if (i == 0 && std::abs(off) > 10) {
-            out.say(fmt::format("{}: the shots' loft column has the mean {:.3f}, no loft (club speed {:g} mph); the table's {:g} is taken", c.name, c.mean[0],
-                                std::stod(cell("club_speed_mph", k)), c.printed[0]));
+            out.say(
+                fmt::format("{}: the shots' loft column has the mean {:.3f}, no loft (club speed {:g} mph); the "
+                            "table's {:g} is taken",
+                            c.name, c.mean[0], std::stod(cell("club_speed_mph", k)), c.printed[0]));
             c.mean[0] = c.printed[0];
             c.loft_replaced = true;
           } else if (std::abs(off) > resolution[static_cast<std::size_t>(i)]) {
-            out.say(fmt::format("{}: printed mean of {} {:g}, recomputed {:.5g}", c.name, kColumns[static_cast<std::size_t>(i)], c.printed[i], c.mean[i]));
+            out.say(fmt::format("{}: printed mean of {} {:g}, recomputed {:.5g}", c.name,
+                                kColumns[static_cast<std::size_t>(i)], c.printed[i], c.mean[i]));
           }
         }
         c.blow.delivery.dynamic_loft = radians(c.mean[0]);
         rows.push_back(c);
       }
       return rows;
-    } catch (const loop::DataError& e) {
-      throw InputError(e.what());
-    } catch (const std::invalid_argument&) {
+    } catch (const loop::DataError& e) { throw InputError(e.what()); } catch (const std::invalid_argument&) {
       throw InputError(fmt::format("{}: a cell is not a number", clubs_file_.string()));
     }
   }

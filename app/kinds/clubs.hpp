@@ -1,7 +1,7 @@
 /// kind = "clubs": a rolling model against the means of several clubs, with straight-line fits.
 #pragma once
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "app/kinds/cross_check.hpp"
+#include "hosel/app/kinds/cross_check.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -9,13 +9,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/read_parameter.hpp"
-#include "models/registry.hpp"
-#include "models/rigid_eccentric.hpp"
-#include "post/figure.hpp"
-#include "post/launch_table.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_parameter.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -45,12 +45,10 @@ Answer answer(const models::ImpactModel& model, const Blow& blow) {
     a.launch = model.launch(blow);
     const Vec3 n = models::contact_geometry(blow).normal, J = blow.ball.mass * a.launch.velocity;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    a.quantity = {a.launch.contact_time.value_or(nan), a.launch.peak_force.value_or(nan), J.dot(n), (J - J.dot(n) * n).norm(),
-                  (a.launch.head_spin - blow.delivery.head_angular_velocity).norm()};
+    a.quantity = {a.launch.contact_time.value_or(nan), a.launch.peak_force.value_or(nan), J.dot(n),
+                  (J - J.dot(n) * n).norm(), (a.launch.head_spin - blow.delivery.head_angular_velocity).norm()};
     a.good = true;
-  } catch (const std::exception& e) {
-    a.why = e.what();
-  }
+  } catch (const std::exception& e) { a.why = e.what(); }
   return a;
 }
 
@@ -80,7 +78,8 @@ class CrossCheckJob final : public Job {
         models::Options options = options_;
         Blow blow = blow_;
         set(k, options, blow);
-        for (std::size_t m = 0; m < models_.size(); ++m) answers[m][k] = answer(*models::find(models_[m])->make(options), blow);
+        for (std::size_t m = 0; m < models_.size(); ++m)
+          answers[m][k] = answer(*models::find(models_[m])->make(options), blow);
         progress.update(static_cast<double>(++done) / static_cast<double>(points_));
       });
       progress.finish();
@@ -90,12 +89,16 @@ class CrossCheckJob final : public Job {
     nlohmann::json summary;
     summary["reference"] = models_[reference_];
     summary["points"] = points_;
-    std::string page = fmt::format("# {}\n\nReference: `{}`. {} blows: ", title_.empty() ? "Cross-check" : title_, models_[reference_], points_);
+    std::string page = fmt::format("# {}\n\nReference: `{}`. {} blows: ", title_.empty() ? "Cross-check" : title_,
+                                   models_[reference_], points_);
     for (std::size_t a = 0; a < axes_.size(); ++a)
-      page += fmt::format("{}{} from {:g} to {:g} ({} values)", a ? ", " : "", axes_[a].label, axes_[a].values.front() / axes_[a].si,
-                          axes_[a].values.back() / axes_[a].si, axes_[a].values.size());
-    page += ".\n\nDifference = model minus reference. The last column names the physical quantity that differs most, relative to the\n"
-            "reference, where the channel's difference is largest.\n";
+      page += fmt::format("{}{} from {:g} to {:g} ({} values)", a ? ", " : "", axes_[a].label,
+                          axes_[a].values.front() / axes_[a].si, axes_[a].values.back() / axes_[a].si,
+                          axes_[a].values.size());
+    page +=
+        ".\n\nDifference = model minus reference. The last column names the physical quantity that differs most, "
+        "relative to the\n"
+        "reference, where the channel's difference is largest.\n";
     std::string csv = "model,channel,unit,mean,rms,largest";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
     for (const Quantity& q : kQuantities) csv += fmt::format(",{} [{}] difference there [%]", q.name, q.unit);
@@ -107,13 +110,17 @@ class CrossCheckJob final : public Job {
       for (const Answer& a : answers[m])
         if (!a.good && failed++ == 0) first = a.why;
       if (failed) {
-        const std::string text = fmt::format("{}: no answer at {} of {} blows ({})", models_[m], failed, points_, first);
+        const std::string text =
+            fmt::format("{}: no answer at {} of {} blows ({})", models_[m], failed, points_, first);
         out.say(text);
         page += "\n" + text + "\n";
         summary["failed"][models_[m]] = failed;
       }
       if (m == reference_) continue;
-      page += fmt::format("\n## {}\n\n| channel | mean | rms | largest | where | reference there | differs most |\n|---|---|---|---|---|---|---|\n", models_[m]);
+      page += fmt::format(
+          "\n## {}\n\n| channel | mean | rms | largest | where | reference there | differs most "
+          "|\n|---|---|---|---|---|---|---|\n",
+          models_[m]);
       for (const char* name : kChannels) {
         const post::Channel& c = *post::find_channel(name);
         double mean = 0, square = 0, largest = 0;
@@ -145,19 +152,28 @@ class CrossCheckJob final : public Job {
           if (std::isfinite(share)) quantities[kQuantities[q].name] = share;
           if (std::isfinite(share) && std::abs(share) > std::abs(most) && std::abs(largest) > 1e-9) {
             most = share;
-            cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g} {})", kQuantities[q].name, share, mine / kQuantities[q].si,
-                                theirs / kQuantities[q].si, kQuantities[q].unit);
+            cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g} {})", kQuantities[q].name, share,
+                                mine / kQuantities[q].si, theirs / kQuantities[q].si, kQuantities[q].unit);
           }
         }
         csv += '\n';
-        page += fmt::format("| {} [{}] | {:+.4g} | {:.4g} | {:+.4g} | {} | {:.5g} | {} |\n", c.name, c.unit, mean, square, largest, place,
-                            (answers[reference_][where].launch.*c.value)() / c.si, cause);
-        out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit, place, cause));
-        summary["differences"].push_back({{"model", models_[m]}, {"channel", c.name}, {"unit", c.unit}, {"mean", mean}, {"rms", square},
-                                          {"largest", largest}, {"where", place}, {"differs_most", cause}, {"quantities_pct", quantities}});
+        page += fmt::format("| {} [{}] | {:+.4g} | {:.4g} | {:+.4g} | {} | {:.5g} | {} |\n", c.name, c.unit, mean,
+                            square, largest, place, (answers[reference_][where].launch.*c.value)() / c.si, cause);
+        out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit,
+                            place, cause));
+        summary["differences"].push_back({{"model", models_[m]},
+                                          {"channel", c.name},
+                                          {"unit", c.unit},
+                                          {"mean", mean},
+                                          {"rms", square},
+                                          {"largest", largest},
+                                          {"where", place},
+                                          {"differs_most", cause},
+                                          {"quantities_pct", quantities}});
       }
       const std::string stem = "map-" + models_[m];
-      if (const std::string missing = post::draw(figure(answers, m), out.path(stem)); !missing.empty()) out.say(missing);
+      if (const std::string missing = post::draw(figure(answers, m), out.path(stem)); !missing.empty())
+        out.say(missing);
       page += fmt::format("\n![{} minus {}]({}.png)\n", models_[m], models_[reference_], stem);
     }
     out.write("differences.csv", csv);
@@ -179,7 +195,8 @@ class CrossCheckJob final : public Job {
     const std::vector<std::size_t> at = index(k);
     for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].parameter->set(options, blow, axes_[a].values[at[a]]);
   }
-  double difference(const std::vector<std::vector<Answer>>& answers, std::size_t m, std::size_t k, const post::Channel& c) const {
+  double difference(const std::vector<std::vector<Answer>>& answers, std::size_t m, std::size_t k,
+                    const post::Channel& c) const {
     const Answer &mine = answers[m][k], &theirs = answers[reference_][k];
     if (!mine.good || !theirs.good) return std::numeric_limits<double>::quiet_NaN();
     return ((mine.launch.*c.value)() - (theirs.launch.*c.value)()) / c.si;
@@ -196,13 +213,15 @@ class CrossCheckJob final : public Job {
         if (!a.good) continue;
         csv += models_[m];
         const std::vector<std::size_t> at = index(k);
-        for (std::size_t i = 0; i < axes_.size(); ++i) csv += fmt::format(",{:.8g}", axes_[i].values[at[i]] / axes_[i].si);
+        for (std::size_t i = 0; i < axes_.size(); ++i)
+          csv += fmt::format(",{:.8g}", axes_[i].values[at[i]] / axes_[i].si);
         for (const char* name : kChannels) {
           const post::Channel& c = *post::find_channel(name);
           csv += fmt::format(",{:.8g}", (a.launch.*c.value)() / c.si);
         }
         for (std::size_t q = 0; q < kQuantities.size(); ++q)
-          csv += std::isfinite(a.quantity[q]) ? fmt::format(",{:.8g}", a.quantity[q] / kQuantities[q].si) : std::string(",");
+          csv += std::isfinite(a.quantity[q]) ? fmt::format(",{:.8g}", a.quantity[q] / kQuantities[q].si)
+                                              : std::string(",");
         csv += '\n';
       }
     out.write("points.csv", csv);
@@ -219,7 +238,10 @@ class CrossCheckJob final : public Job {
       }
       stride *= axes_[a].values.size();
     }
-    post::Figure f{.title = fmt::format("{} minus {}{}", models_[m], models_[reference_], rest), .columns = 3, .panel_width = 520, .panel_height = 400};
+    post::Figure f{.title = fmt::format("{} minus {}{}", models_[m], models_[reference_], rest),
+                   .columns = 3,
+                   .panel_width = 520,
+                   .panel_height = 400};
     const Axis& x = axes_[0];
     for (const char* name : kChannels) {
       const post::Channel& c = *post::find_channel(name);
@@ -243,7 +265,8 @@ class CrossCheckJob final : public Job {
         for (const double v : x.values) p.map_x.push_back(v / x.si);
         for (const double v : y.values) p.map_y.push_back(v / y.si);
         for (std::size_t j = 0; j < y.values.size(); ++j)
-          for (std::size_t i = 0; i < x.values.size(); ++i) p.map.push_back(difference(answers, m, base + j * x.values.size() + i, c));
+          for (std::size_t i = 0; i < x.values.size(); ++i)
+            p.map.push_back(difference(answers, m, base + j * x.values.size() + i, c));
       }
       f.panels.push_back(p);
     }

@@ -1,7 +1,7 @@
 /// kind = "cross-check": a set of models over a grid of blows, each against a reference.
 #pragma once
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "app/kinds/curves.hpp"
+#include "hosel/app/kinds/curves.hpp"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/read_parameter.hpp"
-#include "models/hertz_maw.hpp"
-#include "models/registry.hpp"
-#include "models/stick_slip.hpp"
-#include "post/figure.hpp"
-#include "post/launch_table.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_parameter.hpp"
+#include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/models/stick_slip.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -29,7 +29,8 @@ class CurvesJob final : public Job {
     history_ = root.flag("history", false);
     if (history_) {
       for (const std::string& m : models_)
-        if (m != "volumetric" && m != "hertz-maw") root.fail("models", "force histories come from volumetric and hertz-maw");
+        if (m != "volumetric" && m != "hertz-maw")
+          root.fail("models", "force histories come from volumetric and hertz-maw");
       return;
     }
     x_ = read_axis(root.table("x"));
@@ -47,7 +48,8 @@ class CurvesJob final : public Job {
   std::string member(double value) const {
     std::string name(family_.parameter->name);
     std::ranges::replace(name, '_', ' ');
-    return fmt::format("{} {:g}{}{}", name, value / family_.si, family_.parameter->unit.empty() ? "" : " ", family_.parameter->unit);
+    return fmt::format("{} {:g}{}{}", name, value / family_.si, family_.parameter->unit.empty() ? "" : " ",
+                       family_.parameter->unit);
   }
 
   void curves(Output& out) const {
@@ -59,7 +61,8 @@ class CurvesJob final : public Job {
       for (const std::string& m : models_) {
         std::string name(c->name);
         std::ranges::replace(name, '_', ' ');
-        figure.panels.push_back({.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c->unit), .key = "top left"});
+        figure.panels.push_back(
+            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c->unit), .key = "top left"});
       }
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)
@@ -74,8 +77,8 @@ class CurvesJob final : public Job {
           try {
             launch = models::find(models_[m])->make(options)->launch(blow);
           } catch (const std::exception& e) {
-            failed.push_back(fmt::format("{}, {} {:g}, {} {:g}: {}", models_[m], column(*family_.parameter), f / family_.si,
-                                         column(*x_.parameter), x / x_.si, e.what()));
+            failed.push_back(fmt::format("{}, {} {:g}, {} {:g}: {}", models_[m], column(*family_.parameter),
+                                         f / family_.si, column(*x_.parameter), x / x_.si, e.what()));
             continue;
           }
           csv += fmt::format("{},{:.8g},{:.8g}", models_[m], f / family_.si, x / x_.si);
@@ -87,7 +90,8 @@ class CurvesJob final : public Job {
           }
           csv += '\n';
         }
-        for (std::size_t c = 0; c < channels_.size(); ++c) figure.panels[c * models_.size() + m].series.push_back(lines[c]);
+        for (std::size_t c = 0; c < channels_.size(); ++c)
+          figure.panels[c * models_.size() + m].series.push_back(lines[c]);
       }
     finish(out, csv, figure, failed);
   }
@@ -98,7 +102,8 @@ class CurvesJob final : public Job {
     nlohmann::json summary = nlohmann::json::array();
     for (const std::string& m : models_) {
       post::Panel tangential{.title = m, .x_label = "time [ms]", .y_label = "tangential force [kN]"},
-          ratio{.title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]", .key = "bottom left"};
+          ratio{
+              .title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]", .key = "bottom left"};
       for (const double f : family_.values) {
         models::Options options = options_;
         Blow blow = blow_;
@@ -123,20 +128,25 @@ class CurvesJob final : public Job {
           models::VolumetricOptions fine = options.volumetric_solution;
           fine.tolerance = std::min(fine.tolerance, 1e-6);
           launch = volumetric_impact(blow, options.volumetric, fine, nullptr, [&](const models::ContactSample& s) {
-            add(s.time, s.normal_force, s.tangential_force);
-          }).launch;
+                     add(s.time, s.normal_force, s.tangential_force);
+                   }).launch;
         } else {
-          launch = hertz_maw_impact(blow, options.hertz_maw, options.hertz_maw_solution, [&](const models::HertzMawSample& s) {
-            add(s.time, s.normal_force, s.tangential_force);
-          }).launch;
+          launch = hertz_maw_impact(
+                       blow, options.hertz_maw, options.hertz_maw_solution,
+                       [&](const models::HertzMawSample& s) { add(s.time, s.normal_force, s.tangential_force); })
+                       .launch;
         }
         Blow rolling = blow;
         rolling.contact = {};
         const double spin = models::StickSlip().launch(rolling).spin_rate();
-        summary.push_back({{"model", m}, {column(*family_.parameter), f / family_.si}, {"largest_tangential_N", most},
-                           {"reversed_tangential_N", least}, {"spin_over_rolling", launch.spin_rate() / spin},
+        summary.push_back({{"model", m},
+                           {column(*family_.parameter), f / family_.si},
+                           {"largest_tangential_N", most},
+                           {"reversed_tangential_N", least},
+                           {"spin_over_rolling", launch.spin_rate() / spin},
                            {"contact_ms", *launch.contact_time * 1e3}});
-        out.say(fmt::format("{:<11} {:<34} force {:7.0f} to {:7.0f} N   spin / rolling {:.3f}", m, member(f), least, most, launch.spin_rate() / spin));
+        out.say(fmt::format("{:<11} {:<34} force {:7.0f} to {:7.0f} N   spin / rolling {:.3f}", m, member(f), least,
+                            most, launch.spin_rate() / spin));
         tangential.series.push_back(line);
         ratio.series.push_back(share);
       }

@@ -1,4 +1,4 @@
-#include "app/kinds/face_map.hpp"
+#include "hosel/app/kinds/face_map.hpp"
 
 #include <fmt/format.h>
 
@@ -7,17 +7,17 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/sweep.hpp"
-#include "app/sweep_store.hpp"
-#include "models/fe_impact.hpp"
-#include "models/hosel_load.hpp"
-#include "models/registry.hpp"
-#include "post/face_map.hpp"
-#include "post/launch_table.hpp"
-#include "post/shaft_effect.hpp"
-#include "post/vtk_series.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/sweep.hpp"
+#include "hosel/app/sweep_store.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/models/hosel_load.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/face_map.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/post/shaft_effect.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 namespace hosel::app {
 namespace {
@@ -28,7 +28,9 @@ json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vector(const json& j) { return Vec3(j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()); }
 
 json stored(const Launch& l) {
-  json out = {{"velocity", list(l.velocity)}, {"spin", list(l.spin)}, {"head_velocity", list(l.head_velocity)},
+  json out = {{"velocity", list(l.velocity)},
+              {"spin", list(l.spin)},
+              {"head_velocity", list(l.head_velocity)},
               {"head_spin", list(l.head_spin)}};
   if (l.contact_time) out["contact_time"] = *l.contact_time;
   if (l.peak_force) out["peak_force"] = *l.peak_force;
@@ -134,8 +136,10 @@ class FaceMapJob final : public PointJob {
         .write(0, post::face_map_mesh(layers_[reference_].blow.club.head.face, grid_, maps, reference));
 
     json summary;
-    summary["grid"] = {{"width_mm", 1e3 * grid_.width}, {"height_mm", 1e3 * grid_.height},
-                       {"columns", grid_.columns}, {"rows", grid_.rows}};
+    summary["grid"] = {{"width_mm", 1e3 * grid_.width},
+                       {"height_mm", 1e3 * grid_.height},
+                       {"columns", grid_.columns},
+                       {"rows", grid_.rows}};
     summary["reference"] = reference.title;
     for (const post::FaceMap& map : maps) {
       json& m = summary["models"][map.title];
@@ -176,7 +180,8 @@ class FaceMapJob final : public PointJob {
     }
     std::vector<std::string> names;
     for (const Variant& v : s.variants) {
-      if (std::ranges::find(names, v.title) != names.end()) root.fail("models", fmt::format("'{}' is there twice", v.title));
+      if (std::ranges::find(names, v.title) != names.end())
+        root.fail("models", fmt::format("'{}' is there twice", v.title));
       names.push_back(v.title);
     }
     const std::string reference = root.choice("reference", names, names.front());
@@ -220,8 +225,9 @@ class FaceMapJob final : public PointJob {
       const auto v = reference ? post::differences(map, *reference, q) : post::values(map, q);
       if (v.empty()) continue;
       const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
-      figure.panels.push_back(post::face_panel(grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", q.name, unit),
-                                               fmt::format("[{}]", unit), reference != nullptr));
+      figure.panels.push_back(
+          post::face_panel(grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", q.name, unit),
+                           fmt::format("[{}]", unit), reference != nullptr));
     }
     picture(out, figure, fmt::format("figures/{}{}", reference ? "difference-" : "map-", file_name(map.title)));
   }
@@ -229,7 +235,8 @@ class FaceMapJob final : public PointJob {
   /// What the shaft does to the head at every point: force and moment over time, and their impulses as maps.
   void hosel(Output& out, const std::vector<json>& points, std::size_t layer) const {
     static constexpr std::array kAxes = {"x", "y", "z"};
-    std::string csv = "impact_toe_mm,impact_high_mm,time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+    std::string csv =
+        "impact_toe_mm,impact_high_mm,time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
     std::array<std::vector<double>, 6> impulses;
     bool any = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -241,16 +248,20 @@ class FaceMapJob final : public PointJob {
       any = true;
       for (const json& row : points[i]["hosel"]["history"]) {
         const Vec3 force = vector(row.at(1)), moment = vector(row.at(2));
-        csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", 1e3 * grid_.toe_at(work_[i].place),
-                           1e3 * grid_.high_at(work_[i].place), 1e3 * row.at(0).get<double>(), force.x(), force.y(), force.z(),
-                           moment.x(), moment.y(), moment.z());
+        csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n",
+                           1e3 * grid_.toe_at(work_[i].place), 1e3 * grid_.high_at(work_[i].place),
+                           1e3 * row.at(0).get<double>(), force.x(), force.y(), force.z(), moment.x(), moment.y(),
+                           moment.z());
       }
     }
     if (!any) return;
     const std::string name = file_name(layers_[layer].title);
     out.write(fmt::format("hosel-{}.csv", name), csv);
-    post::Figure figure{.title = fmt::format("{}: impulse of the shaft on the head at the hosel, face axes; {}", layers_[layer].title, post::kFaceView),
-                        .columns = 3, .panel_width = 640, .panel_height = 330};
+    post::Figure figure{.title = fmt::format("{}: impulse of the shaft on the head at the hosel, face axes; {}",
+                                             layers_[layer].title, post::kFaceView),
+                        .columns = 3,
+                        .panel_width = 640,
+                        .panel_height = 330};
     for (std::size_t k = 0; k < 6; ++k)
       figure.panels.push_back(post::face_panel(
           grid_, impulses[k], fmt::format("{} along {}", k < 3 ? "force's impulse" : "moment's impulse", kAxes[k % 3]),
@@ -287,11 +298,13 @@ class FaceMapJob final : public PointJob {
       std::vector<double> grams;
       for (const double x : mass) grams.push_back(1e3 * x);
       const std::string label = "equivalent extra head mass [g]";
-      picture(out,
-              {.title = fmt::format("head mass by which {} plays as {}; {}", reference.title, map.title, post::kFaceView),
-               .panels = {post::face_panel(grid_, grams, label, label, false)},
-               .panel_width = 1100, .panel_height = 620},
-              "figures/equivalent-mass-" + file_name(map.title));
+      picture(
+          out,
+          {.title = fmt::format("head mass by which {} plays as {}; {}", reference.title, map.title, post::kFaceView),
+           .panels = {post::face_panel(grid_, grams, label, label, false)},
+           .panel_width = 1100,
+           .panel_height = 620},
+          "figures/equivalent-mass-" + file_name(map.title));
     }
     // The same figures from the nine coarse points, as computed and with finer numerics: their
     // difference is the numerical uncertainty.
@@ -308,7 +321,8 @@ class FaceMapJob final : public PointJob {
         if (extra_ > 0) {
           with_mass(*as_computed, post::equivalent_mass(base(m), base(reference_), base(maps_), head, extra_), 4);
           with_mass(*finer,
-                    post::equivalent_mass(all[bases_ + m], all[bases_ + reference_], all[bases_ + maps_], head, extra_), 4);
+                    post::equivalent_mass(all[bases_ + m], all[bases_ + reference_], all[bases_ + maps_], head, extra_),
+                    4);
         }
       }
     }

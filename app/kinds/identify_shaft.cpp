@@ -1,4 +1,4 @@
-#include "app/kinds/identify_shaft.hpp"
+#include "hosel/app/kinds/identify_shaft.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_shaft.hpp"
-#include "app/read_swing.hpp"
-#include "golf/shaft_library.hpp"
-#include "loop/csv.hpp"
-#include "models/marker_swing.hpp"
-#include "post/figure.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_swing.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/loop/csv.hpp"
+#include "hosel/models/marker_swing.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -97,12 +97,17 @@ class IdentifyJob final : public Job {
             {"holdout_rms_mm", {{"before", 1e3 * r.holdout_before}, {"after", 1e3 * r.holdout_after}}}};
   }
   static void say(Output& out, const models::ShaftIdentification& r) {
-    const auto scale = interval(r.bending_scale, r.log_covariance(0, 0)), damping = interval(r.damping_time, r.log_covariance(1, 1));
-    out.say(fmt::format("bending stiffness x {:.4f} (95 %: {:.4f} to {:.4f}), damping time {:.3g} s ({:.3g} to {:.3g}); deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
-                        r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before, 1e3 * r.train_after,
-                        1e3 * r.holdout_before, 1e3 * r.holdout_after));
+    const auto scale = interval(r.bending_scale, r.log_covariance(0, 0)),
+               damping = interval(r.damping_time, r.log_covariance(1, 1));
+    out.say(
+        fmt::format("bending stiffness x {:.4f} (95 %: {:.4f} to {:.4f}), damping time {:.3g} s ({:.3g} to {:.3g}); "
+                    "deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
+                    r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before,
+                    1e3 * r.train_after, 1e3 * r.holdout_before, 1e3 * r.holdout_after));
     if (r.shortened_steps > 0)
-      out.say(fmt::format("{} steps did not converge at their full length: shorten solution.step, or the interval says too little", r.shortened_steps));
+      out.say(fmt::format(
+          "{} steps did not converge at their full length: shorten solution.step, or the interval says too little",
+          r.shortened_steps));
   }
   void recorded(Output& out) {
     std::vector<models::GripMotion> motions;
@@ -113,7 +118,10 @@ class IdentifyJob final : public Job {
       if (!std::filesystem::exists(r.deflection)) return out.skip(r.deflection);
       const loop::Sheet sheet = read_sheet(r.deflection);
       motions.emplace_back(r.motion.track, r.motion.smoothing);
-      models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); }, .begin = r.motion.begin, .end = r.motion.end, .train = r.train};
+      models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); },
+                              .begin = r.motion.begin,
+                              .end = r.motion.end,
+                              .train = r.train};
       m.times = numbers(sheet, "time_s");
       m.lead = numbers(sheet, "lead_mm");
       m.droop = numbers(sheet, "droop_mm");
@@ -126,13 +134,15 @@ class IdentifyJob final : public Job {
     out.write_summary({{"identified", to_json(r)}});
   }
 
-  std::vector<models::SwingSample> simulate(const models::GripMotion& motion, double end, double scale, double damping) const {
+  std::vector<models::SwingSample> simulate(const models::GripMotion& motion, double end, double scale,
+                                            double damping) const {
     Club club = club_;
     club.shaft = scaled(*club_.shaft, scale, 1);
     club.shaft->damping_time = damping;
     models::Swing swing(club, options_, {.motion = [&](double t) { return motion.at(t); }});
     std::vector<models::SwingSample> samples;
-    swing.run(swing.start(motion.first(), swing.equilibrium(motion.first())), end, [&](const models::SwingSample& s) { samples.push_back(s); });
+    swing.run(swing.start(motion.first(), swing.equilibrium(motion.first())), end,
+              [&](const models::SwingSample& s) { samples.push_back(s); });
     return samples;
   }
 
@@ -155,11 +165,13 @@ class IdentifyJob final : public Job {
     const double end = test_[1];
     const models::MarkerSwing swing = models::marker_swing(track, still_, end);
     options_.grip_point = club_.shaft->length() - swing.length;
-    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty()) throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
+    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
+      throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
     const models::GripMotion motion(swing.clamp, smoothing_);
 
     const auto part = [&](double from, double to, bool train) {
-      models::MeasuredSwing m{.motion = [&](double t) { return motion.at(t); }, .begin = motion.first(), .end = to, .train = train};
+      models::MeasuredSwing m{
+          .motion = [&](double t) { return motion.at(t); }, .begin = motion.first(), .end = to, .train = train};
       for (std::size_t i = 0; i < swing.times.size(); ++i)
         if (swing.times[i] >= from && swing.times[i] <= to) {
           m.times.push_back(swing.times[i]);
@@ -170,16 +182,19 @@ class IdentifyJob final : public Job {
       return m;
     };
     out.say(fmt::format("clamp to hosel {:.3f} m; identifying on {:g} to {:g} s", swing.length, train_[0], train_[1]));
-    const models::ShaftIdentification r = models::identify_shaft(club_, options_, {part(train_[0], train_[1], true), part(test_[0], test_[1], false)});
+    const models::ShaftIdentification r =
+        models::identify_shaft(club_, options_, {part(train_[0], train_[1], true), part(test_[0], test_[1], false)});
     say(out, r);
 
     const auto nominal = simulate(motion, motion.last(), 1, club_.shaft->damping_time);
     const auto identified = simulate(motion, motion.last(), r.bending_scale, r.damping_time);
     nlohmann::json errors;
     const auto error = [&](const char* name, const std::vector<models::SwingSample>& samples) {
-      const double all = models::marker_error(swing, motion, samples, end - 0.3, end), held = models::marker_error(swing, motion, samples, test_[0], test_[1]);
+      const double all = models::marker_error(swing, motion, samples, end - 0.3, end),
+                   held = models::marker_error(swing, motion, samples, test_[0], test_[1]);
       errors[name] = {{"last_300_ms_mm", 1e3 * all}, {"test_mm", 1e3 * held}};
-      out.say(fmt::format("head markers, RMS over the last 300 ms: {:>6.1f} mm ({}); over the test interval {:.1f} mm", 1e3 * all, name, 1e3 * held));
+      out.say(fmt::format("head markers, RMS over the last 300 ms: {:>6.1f} mm ({}); over the test interval {:.1f} mm",
+                          1e3 * all, name, 1e3 * held));
     };
     error("rigid shaft", {});
     error("nominal", nominal);
@@ -187,10 +202,14 @@ class IdentifyJob final : public Job {
 
     post::Figure figure{.columns = 2};
     for (const bool is_lead : {true, false}) {
-      post::Panel panel{.title = is_lead ? "lead" : "droop", .x_label = "time [s]", .y_label = "deflection [mm]", .key = "bottom left"};
+      post::Panel panel{.title = is_lead ? "lead" : "droop",
+                        .x_label = "time [s]",
+                        .y_label = "deflection [mm]",
+                        .key = "bottom left"};
       post::Series measured{.label = "measured", .style = "points"};
       for (std::size_t i = 0; i < swing.times.size(); ++i)
-        if (swing.times[i] > end - 0.6) measured.x.push_back(swing.times[i]), measured.y.push_back(1e3 * (is_lead ? swing.lead : swing.droop)[i]);
+        if (swing.times[i] > end - 0.6)
+          measured.x.push_back(swing.times[i]), measured.y.push_back(1e3 * (is_lead ? swing.lead : swing.droop)[i]);
       panel.series.push_back(measured);
       for (const auto& [label, samples] : {std::pair{"nominal", &nominal}, {"identified", &identified}}) {
         post::Series line{.label = label};

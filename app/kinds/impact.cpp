@@ -1,4 +1,4 @@
-#include "app/kinds/impact.hpp"
+#include "hosel/app/kinds/impact.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "models/fe_impact.hpp"
-#include "models/registry.hpp"
-#include "post/impact_recorder.hpp"
-#include "post/launch_table.hpp"
-#include "post/patch_figure.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/impact_recorder.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/post/patch_figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -39,7 +39,8 @@ class ImpactJob final : public Job {
       for (const std::string& key : measured->keys()) {
         const SplitName split = split_unit(key);
         const post::Channel* channel = post::find_channel(split.stem);
-        if (!channel) measured->fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
+        if (!channel)
+          measured->fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
         measured_.emplace_back(channel, measured->quantity(split.stem, std::string(channel->unit)));
       }
   }
@@ -53,7 +54,8 @@ class ImpactJob final : public Job {
         const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
-        if (const auto e_t = tangential_restitution(outcome.launch)) summary["models"][entry.name]["tangential_restitution"] = *e_t;
+        if (const auto e_t = tangential_restitution(outcome.launch))
+          summary["models"][entry.name]["tangential_restitution"] = *e_t;
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
       } else {
         columns.push_back({entry.name, entry.model->launch(blow_)});
@@ -87,14 +89,16 @@ class ImpactJob final : public Job {
     if (out.force()) fs::remove(home / "checkpoint.cbor");
     post::ImpactRecorder recorder(home, blow_, record_, name + "\n" + out.resolved_case());
     if (const models::ImpactCheckpoint* from = recorder.resume())
-      out.say(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name, 1e3 * from->solver.state.time));
+      out.say(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
+                          1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
     const models::FeOutcome outcome = model.solve(
         blow_,
         [&](const models::ImpactView& view) {
           recorder(view);
-          progress.update(std::min(0.99, view.state.time / view.expected_end),
-                          fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
+          progress.update(
+              std::min(0.99, view.state.time / view.expected_end),
+              fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
         },
         recorder.resume());
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
@@ -113,7 +117,8 @@ class ImpactJob final : public Job {
     const Vec3 slip = e.approach - e.normal_speed * e.normal;
     if (slip.norm() < 1e-9 * e.approach.norm()) return std::nullopt;
     const Vec3 arm = e.point - (e.face_centre + e.face_axes * blow_.club.head.cg);
-    const Vec3 face = launch.head_velocity + (std::isfinite(blow_.club.head.mass) ? Vec3(launch.head_spin.cross(arm)) : Vec3::Zero());
+    const Vec3 face = launch.head_velocity +
+                      (std::isfinite(blow_.club.head.mass) ? Vec3(launch.head_spin.cross(arm)) : Vec3::Zero());
     const Vec3 ball = launch.velocity + launch.spin.cross(-blow_.ball.radius * e.normal);
     return (ball - face).dot(slip) / slip.squaredNorm();
   }
@@ -121,9 +126,10 @@ class ImpactJob final : public Job {
   /// What the solution was and how well its energy adds up: for the person and the summary.
   nlohmann::json solution(Output& out, const std::string& name, const models::FeImpactResult& r) const {
     const double closure = r.ledger.closure / r.ledger.initial;
-    out.say(fmt::format("{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
-                        "energy closes to {:.1e} of the initial",
-                        name, 1e3 * r.contact_time, 1e-3 * r.peak_force, 1e3 * r.compression, 1e6 * r.penetration, closure));
+    out.say(fmt::format(
+        "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
+        "energy closes to {:.1e} of the initial",
+        name, 1e3 * r.contact_time, 1e-3 * r.peak_force, 1e3 * r.compression, 1e6 * r.penetration, closure));
     nlohmann::json j = {{"contact_time_ms", 1e3 * r.contact_time},
                         {"peak_force_N", r.peak_force},
                         {"peak_time_ms", 1e3 * r.peak_time},
@@ -135,9 +141,10 @@ class ImpactJob final : public Job {
                         {"newton_iterations", r.counts.iterations},
                         {"factorisations", r.counts.factorisations},
                         {"dissipated_by_layer_J", r.dissipated}};
-    j["energy_J"] = {{"initial", r.ledger.initial},   {"kinetic", r.ledger.kinetic},     {"strain", r.ledger.strain_total()},
-                     {"contact", r.ledger.contact},   {"friction", r.ledger.friction},   {"viscous", r.ledger.viscous},
-                     {"numerical", r.ledger.numerical}, {"external", r.ledger.external}, {"closure", r.ledger.closure}};
+    j["energy_J"] = {
+        {"initial", r.ledger.initial},     {"kinetic", r.ledger.kinetic},   {"strain", r.ledger.strain_total()},
+        {"contact", r.ledger.contact},     {"friction", r.ledger.friction}, {"viscous", r.ledger.viscous},
+        {"numerical", r.ledger.numerical}, {"external", r.ledger.external}, {"closure", r.ledger.closure}};
     return j;
   }
 

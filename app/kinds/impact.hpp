@@ -1,7 +1,7 @@
 /// kind = "impact": one blow through one or several models.
 #pragma once
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

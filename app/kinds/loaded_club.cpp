@@ -1,4 +1,4 @@
-#include "app/kinds/loaded_club.hpp"
+#include "hosel/app/kinds/loaded_club.hpp"
 
 #include <fmt/format.h>
 
@@ -7,16 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/read_shaft.hpp"
-#include "app/read_swing.hpp"
-#include "models/fe_full_club.hpp"
-#include "models/hosel_load.hpp"
-#include "models/shaft_coupled.hpp"
-#include "post/csv.hpp"
-#include "post/figure.hpp"
-#include "post/launch_table.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_swing.hpp"
+#include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/hosel_load.hpp"
+#include "hosel/models/shaft_coupled.hpp"
+#include "hosel/post/csv.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -48,7 +48,8 @@ class LoadedClubJob final : public Job {
     if (auto ball = root.optional_table("ball")) blow_.ball = read_ball(*ball);
     motion_ = read_motion(root.table("motion"));
     swing_ = read_swing_options(root);
-    if (swing_.joint != models::HeadJoint::rigid) root.fail("joint", "a loaded start needs a head that is rigid on the shaft");
+    if (swing_.joint != models::HeadJoint::rigid)
+      root.fail("joint", "a loaded start needs a head that is rigid on the shaft");
     solve_ = read_options(root, {"fe-free-body"});
     models::ShaftMount& mount = solve_.shaft_mount;
     mount.elements = swing_.elements;
@@ -68,20 +69,28 @@ class LoadedClubJob final : public Job {
     const Club club = models::turned_about_normal(blow_.club, lie);
     const SwingEnd end = swing_to_end(club, swing_.gravity), weightless = swing_to_end(club, Vec3::Zero());
     const Delivery& d = end.delivery;
-    out.say(fmt::format("the swing ends with lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg, loft {:.2f} deg, face {:.2f} deg, lie {:.2f} deg",
-                        1e3 * end.lead, 1e3 * end.droop, d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.dynamic_loft),
-                        degrees(d.face_angle), degrees(lie)));
-    out.say(fmt::format("hands on the club: force {:.1f} N, moment {:.1f} N m; head without a blow: {:.0f} m/s^2", end.shaft.grip.force.norm(),
-                        end.shaft.grip.moment.norm(), end.shaft.head_acceleration.norm()));
+    out.say(
+        fmt::format("the swing ends with lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path "
+                    "{:.2f} deg, loft {:.2f} deg, face {:.2f} deg, lie {:.2f} deg",
+                    1e3 * end.lead, 1e3 * end.droop, d.club_speed, degrees(d.attack_angle), degrees(d.club_path),
+                    degrees(d.dynamic_loft), degrees(d.face_angle), degrees(lie)));
+    out.say(fmt::format("hands on the club: force {:.1f} N, moment {:.1f} N m; head without a blow: {:.0f} m/s^2",
+                        end.shaft.grip.force.norm(), end.shaft.grip.moment.norm(), end.shaft.head_acceleration.norm()));
     nlohmann::json summary;
-    summary["delivery"] = {{"club_speed_mps", d.club_speed}, {"attack_angle_deg", degrees(d.attack_angle)}, {"club_path_deg", degrees(d.club_path)},
-                           {"dynamic_loft_deg", degrees(d.dynamic_loft)}, {"face_angle_deg", degrees(d.face_angle)}, {"dynamic_lie_deg", degrees(lie)}};
-    summary["preload"] = {{"lead_mm", 1e3 * end.lead}, {"droop_mm", 1e3 * end.droop}, {"hands_force_N", end.shaft.grip.force.norm()},
-                          {"hands_moment_N_m", end.shaft.grip.moment.norm()}, {"head_acceleration_m_per_s2", end.shaft.head_acceleration.norm()}};
+    summary["delivery"] = {{"club_speed_mps", d.club_speed},          {"attack_angle_deg", degrees(d.attack_angle)},
+                           {"club_path_deg", degrees(d.club_path)},   {"dynamic_loft_deg", degrees(d.dynamic_loft)},
+                           {"face_angle_deg", degrees(d.face_angle)}, {"dynamic_lie_deg", degrees(lie)}};
+    summary["preload"] = {{"lead_mm", 1e3 * end.lead},
+                          {"droop_mm", 1e3 * end.droop},
+                          {"hands_force_N", end.shaft.grip.force.norm()},
+                          {"hands_moment_N_m", end.shaft.grip.moment.norm()},
+                          {"head_acceleration_m_per_s2", end.shaft.head_acceleration.norm()}};
     std::string table = "impact_toe_mm,impact_high_mm,club";
     for (const post::Channel& c : post::channels()) table += fmt::format(",{}_{}", c.name, c.unit);
-    table += ",head_speed_mps,head_rotation_rad_per_s,hosel_impulse_x_N_s,hosel_impulse_y_N_s,hosel_impulse_z_N_s,hosel_moment_impulse_x_N_m_s,"
-             "hosel_moment_impulse_y_N_m_s,hosel_moment_impulse_z_N_m_s\n";
+    table +=
+        ",head_speed_mps,head_rotation_rad_per_s,hosel_impulse_x_N_s,hosel_impulse_y_N_s,hosel_impulse_z_N_s,hosel_"
+        "moment_impulse_x_N_m_s,"
+        "hosel_moment_impulse_y_N_m_s,hosel_moment_impulse_z_N_m_s\n";
     post::Figure figure{.columns = 2, .panel_width = 840}, waves{.columns = 2, .panel_width = 840};
     const double back = axial_return();
     summary["axial_wave_back_from_the_grip_ms"] = 1e3 * back;
@@ -106,21 +115,26 @@ class LoadedClubJob final : public Job {
         table += "\n";
         point["clubs"][a.name] = post::to_json(a.launch);
         if (!a.hosel.times.empty())
-          point["clubs"][a.name]["hosel_impulse"] = {{"force_N_s", {impulse.force.x(), impulse.force.y(), impulse.force.z()}},
-                                                     {"moment_N_m_s", {impulse.moment.x(), impulse.moment.y(), impulse.moment.z()}}};
+          point["clubs"][a.name]["hosel_impulse"] = {
+              {"force_N_s", {impulse.force.x(), impulse.force.y(), impulse.force.z()}},
+              {"moment_N_m_s", {impulse.moment.x(), impulse.moment.y(), impulse.moment.z()}}};
       }
       out.say(at);
       out.say(post::launch_table(columns));
       for (const auto& [what, with, without] : parts()) {
         const Launch &a = find(answers, with).launch, &b = find(answers, without).launch;
         point["parts"][what] = difference(a, b);
-        out.say(fmt::format("  {:<58} ball {:+.4f} m/s, launch {:+.3f} deg, azimuth {:+.3f} deg, backspin {:+.1f} rpm, sidespin {:+.1f} rpm, head rotation {:+.2f} rad/s",
-                            what, a.ball_speed() - b.ball_speed(), degrees(a.launch_angle() - b.launch_angle()), degrees(a.azimuth() - b.azimuth()),
-                            rpm(a.backspin() - b.backspin()), rpm(a.sidespin() - b.sidespin()), a.head_spin.norm() - b.head_spin.norm()));
+        out.say(
+            fmt::format("  {:<58} ball {:+.4f} m/s, launch {:+.3f} deg, azimuth {:+.3f} deg, backspin {:+.1f} rpm, "
+                        "sidespin {:+.1f} rpm, head rotation {:+.2f} rad/s",
+                        what, a.ball_speed() - b.ball_speed(), degrees(a.launch_angle() - b.launch_angle()),
+                        degrees(a.azimuth() - b.azimuth()), rpm(a.backspin() - b.backspin()),
+                        rpm(a.sidespin() - b.sidespin()), a.head_spin.norm() - b.head_spin.norm()));
       }
       summary["points"].push_back(point);
       out.write(fmt::format("hosel_{}.csv", k + 1), history(find(answers, "club loaded")));
-      for (const bool force : {true, false}) figure.panels.push_back(panel(find(answers, "club loaded"), find(answers, "club at rest"), at, force));
+      for (const bool force : {true, false})
+        figure.panels.push_back(panel(find(answers, "club loaded"), find(answers, "club at rest"), at, force));
       waves.panels.push_back(grip_panel(answers, at, back));
     }
     out.write("points.csv", table);
@@ -148,7 +162,8 @@ class LoadedClubJob final : public Job {
   static double rpm(double w) { return w * 60 / (2 * kPi); }
   static nlohmann::json difference(const Launch& a, const Launch& b) {
     nlohmann::json j;
-    for (const post::Channel& c : post::channels()) j[fmt::format("{}_{}", c.name, c.unit)] = ((a.*c.value)() - (b.*c.value)()) / c.si;
+    for (const post::Channel& c : post::channels())
+      j[fmt::format("{}_{}", c.name, c.unit)] = ((a.*c.value)() - (b.*c.value)()) / c.si;
     j["head_speed_mps"] = a.head_velocity.norm() - b.head_velocity.norm();
     j["head_rotation_rad_per_s"] = a.head_spin.norm() - b.head_spin.norm();
     return j;
@@ -165,15 +180,21 @@ class LoadedClubJob final : public Job {
     options.gravity = gravity;
     models::Swing swing(club, options, {.motion = [&](double t) { return grip.at(t); }});
     models::SwingSample before, last;
-    const fem::State s = swing.run(swing.start(motion_.begin, swing.equilibrium(motion_.begin)), motion_.end, [&](const models::SwingSample& x) {
-      before = last;
-      last = x;
-    });
-    return {models::delivery_of(last.head), models::loaded_by_swing(swing, s, before, last),
-            {.force = last.grip.rotation.conjugate() * last.force, .moment = last.moment, .gravity = gravity}, models::dynamic_lie(last.head), last.lead, last.droop};
+    const fem::State s = swing.run(swing.start(motion_.begin, swing.equilibrium(motion_.begin)), motion_.end,
+                                   [&](const models::SwingSample& x) {
+                                     before = last;
+                                     last = x;
+                                   });
+    return {models::delivery_of(last.head),
+            models::loaded_by_swing(swing, s, before, last),
+            {.force = last.grip.rotation.conjugate() * last.force, .moment = last.moment, .gravity = gravity},
+            models::dynamic_lie(last.head),
+            last.lead,
+            last.droop};
   }
 
-  std::vector<Answer> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless, const std::string& at) const {
+  std::vector<Answer> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
+                          const std::string& at) const {
     std::vector<Answer> answers;
     Progress progress = out.progress(at);
     const auto fe = [&](const std::string& name, const models::ShaftMount* mount) {
@@ -182,7 +203,8 @@ class LoadedClubJob final : public Job {
       const auto watch = [&](const models::ImpactView& view) {
         if (view.shaft) a.hosel.add(*view.shaft, view.state);
       };
-      a.launch = mount ? models::solve_full_club(blow, {solve_.fe, *mount}, watch).launch : models::solve_free_body(blow, solve_.fe).launch;
+      a.launch = mount ? models::solve_full_club(blow, {solve_.fe, *mount}, watch).launch
+                       : models::solve_free_body(blow, solve_.fe).launch;
       answers.push_back(std::move(a));
     };
     fe("free body", nullptr);
@@ -194,7 +216,8 @@ class LoadedClubJob final : public Job {
     fe("club loaded, no gravity", &mount);
     mount.loaded = end.shaft;
     fe("club loaded", &mount);
-    for (const auto& [name, grip] : {std::pair{"club loaded, clamped", Grip::clamped}, {"club loaded, free", Grip::free}}) {
+    for (const auto& [name, grip] :
+         {std::pair{"club loaded, clamped", Grip::clamped}, {"club loaded, free", Grip::free}}) {
       mount.grip = grip;
       fe(name, &mount);
     }
@@ -203,15 +226,19 @@ class LoadedClubJob final : public Job {
     mount.load = end.hands;
     fe("club from delivery and hands", &mount);
 
-    const auto reduced = [&](const std::string& name, const models::ImpactModel& model) { answers.push_back({.name = name, .launch = model.launch(blow)}); };
+    const auto reduced = [&](const std::string& name, const models::ImpactModel& model) {
+      answers.push_back({.name = name, .launch = model.launch(blow)});
+    };
     reduced("volumetric", models::Volumetric(solve_.volumetric, solve_.volumetric_solution));
     models::ShaftImpedanceOptions translation = solve_.shaft_beam;
     translation.feels_rotation = false;
-    reduced("shaft-coupled, translation", models::ShaftCoupled(solve_.volumetric, solve_.volumetric_solution, translation));
+    reduced("shaft-coupled, translation",
+            models::ShaftCoupled(solve_.volumetric, solve_.volumetric_solution, translation));
     reduced("shaft-coupled", models::ShaftCoupled(solve_.volumetric, solve_.volumetric_solution, solve_.shaft_beam));
     mount.load.reset();
     mount.loaded = end.shaft;
-    reduced("shaft-coupled, loaded", models::ShaftCoupled(solve_.volumetric, solve_.volumetric_solution, solve_.shaft_beam, mount));
+    reduced("shaft-coupled, loaded",
+            models::ShaftCoupled(solve_.volumetric, solve_.volumetric_solution, solve_.shaft_beam, mount));
     return answers;
   }
 
@@ -219,17 +246,21 @@ class LoadedClubJob final : public Job {
     std::string csv = "time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
     for (std::size_t i = 0; i < a.hosel.times.size(); ++i) {
       const fem::Wrench& w = a.hosel.loads[i];
-      csv += fmt::format("{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", 1e3 * a.hosel.times[i], w.force.x(), w.force.y(), w.force.z(), w.moment.x(), w.moment.y(), w.moment.z());
+      csv += fmt::format("{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", 1e3 * a.hosel.times[i], w.force.x(),
+                         w.force.y(), w.force.z(), w.moment.x(), w.moment.y(), w.moment.z());
     }
     return csv;
   }
   /// Loaded: lines; at rest: points.
   static post::Panel panel(const Answer& loaded, const Answer& at_rest, const std::string& at, bool force) {
-    post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"), .x_label = "time [ms]",
-                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]", .key = "outside right"};
+    post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"),
+                  .x_label = "time [ms]",
+                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]",
+                  .key = "outside right"};
     for (const Answer* a : {&loaded, &at_rest})
       for (int c = 0; c < 3; ++c) {
-        post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"), .style = a == &loaded ? "lines" : "points"};
+        post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"),
+                       .style = a == &loaded ? "lines" : "points"};
         for (std::size_t i = 0; i < a->hosel.times.size(); ++i) {
           s.x.push_back(1e3 * a->hosel.times[i]);
           s.y.push_back((force ? a->hosel.loads[i].force : a->hosel.loads[i].moment)[c]);
@@ -253,8 +284,10 @@ class LoadedClubJob final : public Job {
   }
   /// What a clamped or a free grip changes in the hosel's force against the forced one, along the shaft and across.
   post::Panel grip_panel(const std::vector<Answer>& answers, const std::string& at, double back) const {
-    post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back), .x_label = "time [ms]",
-                  .y_label = "force at the hosel, change [N]", .key = "outside right"};
+    post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back),
+                  .x_label = "time [ms]",
+                  .y_label = "force at the hosel, change [N]",
+                  .key = "outside right"};
     const models::HoselHistory& forced = find(answers, "club loaded").hosel;
     const Vec3 axis = blow_.club.geometry.shaft_axis.normalized();
     for (const auto& [name, label] : {std::pair{"club loaded, clamped", "clamped"}, {"club loaded, free", "free"}}) {

@@ -1,4 +1,4 @@
-#include "app/kinds/loop.hpp"
+#include "hosel/app/kinds/loop.hpp"
 
 #include <fmt/format.h>
 
@@ -8,21 +8,22 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/kinds/loop_history.hpp"
-#include "app/kinds/loop_report.hpp"
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/read_shaft.hpp"
-#include "loop/report.hpp"
-#include "loop/run.hpp"
-#include "loop/spread.hpp"
-#include "models/registry.hpp"
-#include "models/response_surface.hpp"
+#include "hosel/app/kinds/loop_history.hpp"
+#include "hosel/app/kinds/loop_report.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/loop/report.hpp"
+#include "hosel/loop/run.hpp"
+#include "hosel/loop/spread.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/models/response_surface.hpp"
 
 namespace hosel::app {
 namespace {
 
-std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, loop::Role role, std::string_view what) {
+std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, loop::Role role,
+                                         std::string_view what) {
   std::map<std::string, double> noise;
   for (const std::string& key : table.keys()) {
     const loop::Column* column = shots.find(key);
@@ -31,7 +32,8 @@ std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, 
       for (const auto& c : shots.columns)
         if (c.role == role) known.push_back(c.name);
       const std::string near = nearest(key, known);
-      table.fail(key, fmt::format("no {} column of this name{}", what, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+      table.fail(key, fmt::format("no {} column of this name{}", what,
+                                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
     }
     noise[key] = table.number(key, Range::non_negative());
   }
@@ -62,7 +64,8 @@ class LoopJob final : public Job {
     for (const std::string& e : case_.effects)
       if (!loop::find_effect(e)) {
         const std::string near = nearest(e, known);
-        model.fail("effects", fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+        model.fail("effects",
+                   fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
       }
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
@@ -91,11 +94,11 @@ class LoopJob final : public Job {
           const std::string by = joined->text("by");
           loop::join(case_.shots, loop::read_csv(other), by);
         }
-      } catch (const loop::DataError& e) {
-        throw InputError(e.what());
-      }
-      if (auto noise = data.optional_table("noise")) case_.noise = read_noise(*noise, case_.shots, loop::Role::output, "output");
-      if (auto noise = data.optional_table("input_noise")) case_.input_noise = read_noise(*noise, case_.shots, loop::Role::input, "input");
+      } catch (const loop::DataError& e) { throw InputError(e.what()); }
+      if (auto noise = data.optional_table("noise"))
+        case_.noise = read_noise(*noise, case_.shots, loop::Role::output, "output");
+      if (auto noise = data.optional_table("input_noise"))
+        case_.input_noise = read_noise(*noise, case_.shots, loop::Role::input, "input");
     } else {
       if (auto joined = data.optional_table("join")) {
         joined->data_file("file");
@@ -123,9 +126,7 @@ class LoopJob final : public Job {
     try {
       if (points_ > 0) build_surrogate(out);
       result = loop::run(case_);
-    } catch (const loop::DataError& e) {
-      throw InputError(e.what());
-    }
+    } catch (const loop::DataError& e) { throw InputError(e.what()); }
     out.write("residuals.csv", loop::residuals_csv(result));
     out.write("report.html", loop::page(result, case_.shots));
     report_loop(out, result, "rows");
@@ -152,7 +153,8 @@ class LoopJob final : public Job {
     if (!faults.empty())
       for (const std::string& key : table.keys())
         if (key.starts_with("inertia")) {
-          if (!(principal[0] > 0) || !head.inertia.isApprox(head.inertia.transpose(), 1e-6)) table.fail(key, faults.front());
+          if (!(principal[0] > 0) || !head.inertia.isApprox(head.inertia.transpose(), 1e-6))
+            table.fail(key, faults.front());
           case_.notes.push_back(fmt::format("{}: {}", key, faults.front()));
         }
     return head;
@@ -174,13 +176,16 @@ class LoopJob final : public Job {
       if (!output) continue;
       double square = 0;
       for (std::size_t i = 0; i < deliveries.size(); ++i) {
-        const double e = (loop::get(surface->predicted()[i], *output) - loop::get(surface->answers()[i], *output)) / c.si;
+        const double e = (loop::get(surface->predicted()[i], *output) - loop::get(surface->answers()[i], *output)) /
+                         c.si;
         square += e * e / double(deliveries.size());
       }
       errors += fmt::format("{}{} {:.3g}", errors.empty() ? "" : ", ", c.name, std::sqrt(square));
     }
-    case_.notes.push_back(fmt::format("{} stands behind a response surface of degree {} through {} of its answers; error of each answer predicted from the others: {}",
-                                      case_.base, surface->degree(), deliveries.size(), errors));
+    case_.notes.push_back(
+        fmt::format("{} stands behind a response surface of degree {} through {} of its answers; error of each answer "
+                    "predicted from the others: {}",
+                    case_.base, surface->degree(), deliveries.size(), errors));
     out.say(case_.notes.back());
     model_ = std::move(surface);
     case_.model = model_.get();

@@ -1,17 +1,17 @@
-#include "app/kinds/loop_history.hpp"
+#include "hosel/app/kinds/loop_history.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/kinds/loop_report.hpp"
-#include "app/read_blow.hpp"
-#include "app/read_series.hpp"
-#include "app/read_shaft.hpp"
-#include "app/read_swing.hpp"
-#include "loop/history/swing_history.hpp"
-#include "loop/report.hpp"
+#include "hosel/app/kinds/loop_report.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_series.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_swing.hpp"
+#include "hosel/loop/history/swing_history.hpp"
+#include "hosel/loop/report.hpp"
 
 namespace hosel::app {
 namespace {
@@ -31,7 +31,8 @@ class HistoryJob final : public Job {
     for (const std::string& e : case_.effects)
       if (!loop::find_history_effect(e)) {
         const std::string near = nearest(e, known);
-        model.fail("effects", fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+        model.fail("effects",
+                   fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
       }
     club_.shaft = read_shaft(root.table("shaft"));
     loop::HistorySetting& setting = case_.setting;
@@ -56,9 +57,7 @@ class HistoryJob final : public Job {
     loop::LoopResult result;
     try {
       result = loop::run(case_);
-    } catch (const loop::DataError& e) {
-      throw InputError(e.what());
-    }
+    } catch (const loop::DataError& e) { throw InputError(e.what()); }
     out.write("residuals.csv", loop::history_residuals_csv(case_, result));
     out.write("report.html", loop::page(result, loop::as_shots(case_)));
     report_loop(out, result, "readings");
@@ -82,8 +81,10 @@ class HistoryJob final : public Job {
         channels = s.channels;
       } else {
         const auto same = [](const loop::HistoryChannel& a, const loop::HistoryChannel& b) { return a.name == b.name; };
-        if (!std::ranges::equal(channels, s.channels, same)) throw InputError(fmt::format("{}:1: other channels than in {}", f.string(), files.front().string()));
-        for (std::size_t k = 0; k < channels.size(); ++k) channels[k].resolution = std::max(channels[k].resolution, s.channels[k].resolution);
+        if (!std::ranges::equal(channels, s.channels, same))
+          throw InputError(fmt::format("{}:1: other channels than in {}", f.string(), files.front().string()));
+        for (std::size_t k = 0; k < channels.size(); ++k)
+          channels[k].resolution = std::max(channels[k].resolution, s.channels[k].resolution);
       }
       case_.records.push_back(std::move(s.record));
       drives.push_back(std::move(s.drive));
@@ -114,43 +115,50 @@ class HistoryJob final : public Job {
     std::vector<double> rates{0};
     if (auto t = root.optional_table("bench")) {
       options.clamped_length = t->quantity("clamped_length", "mm", Range::non_negative(), 0);
-      if (options.clamped_length >= club_.shaft->length()) t->fail("clamped_length_mm", "the clamp holds the whole shaft");
+      if (options.clamped_length >= club_.shaft->length())
+        t->fail("clamped_length_mm", "the clamp holds the whole shaft");
       options.elements = int(t->integer("elements", 2, 60, options.elements));
       options.shear = t->flag("shear", true);
       const std::string hang = t->choice("shaft", {"horizontal", "hanging", "standing"}, "horizontal");
       if (hang != "horizontal") options.gravity = Vec3(0, 0, hang == "hanging" ? -kGravity : kGravity);
       const std::string kind = t->choice("start", {"unknown", "release", "impulse", "rest"}, "unknown");
       using loop::Start;
-      start.kind = kind == "release" ? Start::release : kind == "impulse" ? Start::impulse : kind == "rest" ? Start::rest : Start::unknown;
+      start.kind = kind == "release"   ? Start::release
+                   : kind == "impulse" ? Start::impulse
+                   : kind == "rest"    ? Start::rest
+                                       : Start::unknown;
       if (start.kind == Start::release) {
         start.force = t->vector("load", "N", Vec3::Zero());
         start.moment = t->vector("load_moment", "N_m", Vec3::Zero());
-        if (start.force.norm() + start.moment.norm() == 0) t->fail("load_N", "a release needs the load that held the hosel");
+        if (start.force.norm() + start.moment.norm() == 0)
+          t->fail("load_N", "a release needs the load that held the hosel");
       }
       if (start.kind == Start::impulse) {
         const auto j = t->numbers("impulse_N_s", 3);
         start.force = Vec3(j[0], j[1], j[2]);
       }
-      if (start.kind == Start::release || start.kind == Start::impulse) start.at = t->quantity("at", "s", Range::finite(), 0);
+      if (start.kind == Start::release || start.kind == Start::impulse)
+        start.at = t->quantity("at", "s", Range::finite(), 0);
       rates = t->quantities("rotation_rate", "rpm", 0, Range::finite(), std::vector<double>{0});
-      if (t->has("rotation_axis")) options.rotation_axis = t->choice("rotation_axis", {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
+      if (t->has("rotation_axis"))
+        options.rotation_axis = t->choice("rotation_axis", {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
       options.hub = t->quantity("hub", "mm", Range::non_negative(), 0);
     }
     std::vector<loop::BenchRecord> records = read_records(root, options.clamped_length, kMostSamples);
     if (!skipped_.empty()) return;
-    if (rates.size() != 1 && rates.size() != records.size()) root.table("bench").fail("rotation_rate", "one rate for all records, or one for each");
+    if (rates.size() != 1 && rates.size() != records.size())
+      root.table("bench").fail("rotation_rate", "one rate for all records, or one for each");
     loop::HistorySetting& setting = case_.setting;
     for (std::size_t k = 0; k < records.size(); ++k) {
       records[k].rotation_rate = rates[rates.size() == 1 ? 0 : k];
       setting.turning = setting.turning || records[k].rotation_rate != 0;
     }
     try {
-      auto bench = std::make_unique<loop::BenchHistory>(club_, setting.head, options, start, std::move(records), setting.channels);
+      auto bench = std::make_unique<loop::BenchHistory>(club_, setting.head, options, start, std::move(records),
+                                                        setting.channels);
       std::tie(setting.frequency, setting.ratio) = bench->first_mode();
       model_ = std::move(bench);
-    } catch (const std::invalid_argument& e) {
-      root.fail("", e.what());
-    }
+    } catch (const std::invalid_argument& e) { root.fail("", e.what()); }
     setting.driven = start.kind != loop::Start::unknown;
     case_.start_unknown = !setting.driven;
     const double free = club_.shaft->length() - options.clamped_length;
@@ -167,14 +175,19 @@ class HistoryJob final : public Job {
     if (!skipped_.empty()) return;
     for (const loop::HistoryChannel& c : case_.setting.channels)
       if (c.reading == loop::Reading::strain_lead || c.reading == loop::Reading::strain_droop || c.order > 0)
-        throw InputError(fmt::format("{}:1: channel '{}': of a swing, lead, droop, shortening and twist of the hosel are known", case_.records.front().name, c.name));
+        throw InputError(
+            fmt::format("{}:1: channel '{}': of a swing, lead, droop, shortening and twist of the hosel are known",
+                        case_.records.front().name, c.name));
     std::vector<std::vector<double>> times;
     for (const auto& r : records) {
       if (r.times.front() < motion.begin - 1e-9 || r.times.back() > motion.end + 1e-9)
-        throw InputError(fmt::format("{}: the record reaches beyond the motion ({:g} to {:g} s)", case_.records[times.size()].name, motion.begin, motion.end));
+        throw InputError(fmt::format("{}: the record reaches beyond the motion ({:g} to {:g} s)",
+                                     case_.records[times.size()].name, motion.begin, motion.end));
       times.push_back(r.times);
     }
-    auto swing = std::make_unique<loop::SwingHistory>(club_, options, models::GripMotion(motion.track, motion.smoothing), motion.begin, times, case_.setting.channels);
+    auto swing = std::make_unique<loop::SwingHistory>(club_, options,
+                                                      models::GripMotion(motion.track, motion.smoothing), motion.begin,
+                                                      times, case_.setting.channels);
     loop::HistorySetting& setting = case_.setting;
     setting.driven = true;
     std::tie(setting.frequency, setting.ratio) = swing->first_mode();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

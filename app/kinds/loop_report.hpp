@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "app/output.hpp"
-#include "loop/report.hpp"
+#include "hosel/app/output.hpp"
+#include "hosel/loop/report.hpp"
 
 namespace hosel::app {
 

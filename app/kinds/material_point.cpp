@@ -1,13 +1,13 @@
-#include "app/kinds/material_point.hpp"
+#include "hosel/app/kinds/material_point.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_solid.hpp"
-#include "post/figure.hpp"
-#include "solvers/errors.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {
@@ -36,8 +36,9 @@ class MaterialPointJob final : public Job {
     post::Panel panel;
     panel.title = what_;
     post::Series curve;
-    std::string csv = what_ == "uniaxial" ? "time_s,stretch,lateral_stretch,nominal_stress_Pa,cauchy_stress_Pa,dissipated_J_per_m3\n"
-                                          : "time_s,shear,shear_stress_Pa,work_J_per_m3,dissipated_J_per_m3\n";
+    std::string csv = what_ == "uniaxial"
+                          ? "time_s,stretch,lateral_stretch,nominal_stress_Pa,cauchy_stress_Pa,dissipated_J_per_m3\n"
+                          : "time_s,shear,shear_stress_Pa,work_J_per_m3,dissipated_J_per_m3\n";
     std::vector<double> history(static_cast<std::size_t>(solid_.history_size()));
     solid_.start(history);
     double work = 0, dissipated = 0, stress0 = 0, strain0 = 0, last = 0;
@@ -48,7 +49,8 @@ class MaterialPointJob final : public Job {
       dissipated += fem::move_history(solid_, F, step, history);
       if (what_ == "uniaxial") {
         last = r.stress(0, 0);
-        csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t, x, lateral, last, last / (lateral * lateral), dissipated);
+        csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t, x, lateral, last,
+                           last / (lateral * lateral), dissipated);
         curve.x.push_back(x);
       } else {
         last = r.stress(0, 1);
@@ -95,7 +97,8 @@ class MaterialPointJob final : public Job {
     figure.title = "material point";
     figure.panels.push_back(panel);
     if (const std::string why = post::draw(figure, out.path("curve")); !why.empty()) out.say(why);
-    nlohmann::json summary{{"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}, {"work_J_per_m3", work}};
+    nlohmann::json summary{
+        {"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}, {"work_J_per_m3", work}};
     out.say(fmt::format("{}: final stress {:.6g} Pa, dissipated {:.6g} J/m^3", what_, last, dissipated));
     out.write_summary(summary);
   }
@@ -112,7 +115,8 @@ class MaterialPointJob final : public Job {
       if (!(lateral > 0)) break;
       if (std::abs(step) < 1e-14) return lateral;
     }
-    throw solvers::NonConvergence(fmt::format("no lateral stretch leaves the sides free at a stretch of {}: the material collapses", stretch));
+    throw solvers::NonConvergence(
+        fmt::format("no lateral stretch leaves the sides free at a stretch of {}: the material collapses", stretch));
   }
 
   fem::Solid solid_;

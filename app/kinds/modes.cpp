@@ -1,14 +1,14 @@
-#include "app/kinds/modes.hpp"
+#include "hosel/app/kinds/modes.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_solid.hpp"
-#include "fem/harmonic_solid.hpp"
-#include "solvers/modes.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/solvers/modes.hpp"
 
 namespace hosel::app {
 namespace {
@@ -44,7 +44,8 @@ class ModesJob final : public Job {
     double mass = 0;
     {
       fem::Layout layout;
-      mass = fem::HarmonicSolid(layout, mesh, fem::axisymmetric_family(), {fem::single_angle(), 2}, materials, {}).mass();
+      mass =
+          fem::HarmonicSolid(layout, mesh, fem::axisymmetric_family(), {fem::single_angle(), 2}, materials, {}).mass();
     }
     for (auto& m : materials) m.density *= ball_.mass / mass;
     const double unit = std::sqrt(materials.back().instant_shear() / materials.back().density) / ball_.radius;
@@ -55,8 +56,9 @@ class ModesJob final : public Job {
     const auto solve = [&](const std::string& name, int m, const fem::Family& family) {
       fem::System system;
       system.terms.push_back(std::make_unique<fem::HarmonicSolid>(
-          system.layout, mesh, family, fem::SolidQuadrature{m == 0 ? fem::single_angle() : fem::full_circle(4 * m + 5), 2},
-          materials, fem::Placement{}));
+          system.layout, mesh, family,
+          fem::SolidQuadrature{m == 0 ? fem::single_angle() : fem::full_circle(4 * m + 5), 2}, materials,
+          fem::Placement{}));
       const solvers::Modes modes = solvers::modes(system, system.layout.rest(), int(count_) + 2);
       nlohmann::json list = nlohmann::json::array();
       for (const double omega : modes.omega) {

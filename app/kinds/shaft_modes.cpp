@@ -1,17 +1,17 @@
-#include "app/kinds/shaft_modes.hpp"
+#include "hosel/app/kinds/shaft_modes.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_shaft.hpp"
-#include "fem/rigid_body.hpp"
-#include "fem/supports.hpp"
-#include "golf/shaft_library.hpp"
-#include "models/swing.hpp"
-#include "post/vtk_series.hpp"
-#include "solvers/modes.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/models/swing.hpp"
+#include "hosel/post/vtk_series.hpp"
+#include "hosel/solvers/modes.hpp"
 
 namespace hosel::app {
 namespace {
@@ -38,8 +38,11 @@ class ShaftModesJob final : public Job {
   void run(Output& out) override {
     fem::System system;
     const double length = club_.shaft->length() - clamped_;
-    const auto line = mesh::straight(mesh::graded(length, elements_), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-    const fem::SectionLaw law = [sections = fem::shaft_sections(*club_.shaft, shear_), from = clamped_](double s) { return sections(s + from); };
+    const auto line =
+        mesh::straight(mesh::graded(length, elements_), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
+    const fem::SectionLaw law = [sections = fem::shaft_sections(*club_.shaft, shear_), from = clamped_](double s) {
+      return sections(s + from);
+    };
     auto owned = std::make_unique<fem::Beam>(system.layout, line, law, fem::BeamOptions{});
     const fem::Beam& beam = *owned;
     system.terms.push_back(std::move(owned));
@@ -48,17 +51,20 @@ class ShaftModesJob final : public Job {
       const Mat3 R = models::face_to_grip(club_.geometry);
       system.terms.push_back(std::make_unique<fem::RigidBody>(
           "head", tip.translation, tip.rotation,
-          fem::RigidBodyProperties{club_.head.mass, R * club_.head.inertia * R.transpose(), R * (club_.head.cg - club_.geometry.hosel)}));
+          fem::RigidBodyProperties{club_.head.mass, R * club_.head.inertia * R.transpose(),
+                                   R * (club_.head.cg - club_.geometry.hosel)}));
     }
     if (support_ == "clamped")
-      system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
+      system.prescribed.push_back(
+          std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
     fem::State rest = system.layout.rest();
     beam.place(rest);
     const int rigid = support_ == "free" ? 6 : 0;
     const solvers::Modes modes = solvers::modes(system, rest, count_ + rigid);
 
     nlohmann::json summary;
-    std::string csv = "mode,frequency_Hz,frequency_cpm,damping_ratio\n", table = fmt::format("{:>5} {:>12} {:>12} {:>10}\n", "mode", "Hz", "cpm", "damping");
+    std::string csv = "mode,frequency_Hz,frequency_cpm,damping_ratio\n",
+                table = fmt::format("{:>5} {:>12} {:>12} {:>10}\n", "mode", "Hz", "cpm", "damping");
     for (std::size_t i = static_cast<std::size_t>(rigid); i < modes.omega.size(); ++i) {
       const double f = modes.omega[i] / (2 * kPi), zeta = 0.5 * modes.omega[i] * club_.shaft->damping_time;
       const std::size_t number = i - static_cast<std::size_t>(rigid) + 1;
@@ -84,14 +90,17 @@ class ShaftModesJob final : public Job {
       mesh.points.push_back(beam.line()[n].position);
       amplitude.emplace_back(shape.segment<3>(beam.nodes()[n].translation.v));
       largest = std::max(largest, amplitude.back().norm());
-      if (n > 0) mesh.cells.push_back({post::CellShape::line, {static_cast<std::int64_t>(n) - 1, static_cast<std::int64_t>(n)}});
+      if (n > 0)
+        mesh.cells.push_back({post::CellShape::line, {static_cast<std::int64_t>(n) - 1, static_cast<std::int64_t>(n)}});
     }
     post::VtkField radius{"radius", "m", 1, {}};
-    for (const auto& node : beam.line()) radius.values.push_back(club_.shaft->at(node.arc_length + clamped_).outer_radius);
+    for (const auto& node : beam.line())
+      radius.values.push_back(club_.shaft->at(node.arc_length + clamped_).outer_radius);
     post::VtkSeries series(out.path("vtk"), fmt::format("mode_{}", number), post::VtkSeries::Form::surface);
     for (int k = 0; k < 16; ++k) {
       std::vector<Vec3> u;
-      for (const Vec3& a : amplitude) u.push_back(0.1 * club_.shaft->length() / largest * std::sin(2 * kPi * k / 16) * a);
+      for (const Vec3& a : amplitude)
+        u.push_back(0.1 * club_.shaft->length() / largest * std::sin(2 * kPi * k / 16) * a);
       mesh.point_fields = {post::vector_field("displacement", "m", u), radius};
       series.write(k / 16.0, mesh);
     }

@@ -1,4 +1,4 @@
-#include "app/kinds/sweep.hpp"
+#include "hosel/app/kinds/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <numeric>
 #include <random>
 
-#include "app/cases.hpp"
-#include "app/sweep.hpp"
-#include "app/sweep_store.hpp"
-#include "post/csv.hpp"
-#include "post/figure.hpp"
+#include "hosel/app/cases.hpp"
+#include "hosel/app/sweep.hpp"
+#include "hosel/app/sweep_store.hpp"
+#include "hosel/post/csv.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -71,7 +71,8 @@ class SweepJob final : public PointJob {
       Parameter p{t.text("key"), {}};
       if (sample) {
         const auto range = t.numbers("range", 2);
-        for (const double x : latin_column(range[0], range[1], points, random)) p.values.push_back(fmt::format("{}", x));
+        for (const double x : latin_column(range[0], range[1], points, random))
+          p.values.push_back(fmt::format("{}", x));
       } else {
         p.values = t.scalars("values");
         size_ *= p.values.size();
@@ -126,7 +127,8 @@ class SweepJob final : public PointJob {
       for (const std::string& c : columns) {
         csv += ",";
         if (failed) continue;
-        if (!points[i].contains(c)) throw InputError(fmt::format("record: point {} has no number '{}' in its summary", i, c));
+        if (!points[i].contains(c))
+          throw InputError(fmt::format("record: point {} has no number '{}' in its summary", i, c));
         csv += points[i][c].dump();
       }
       csv += "," + (failed ? post::csv_cell(points[i]["error"].get<std::string>()) : "") + "\n";

@@ -1,13 +1,13 @@
-#include "app/kinds/swing.hpp"
+#include "hosel/app/kinds/swing.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/read_blow.hpp"
-#include "app/read_shaft.hpp"
-#include "app/read_swing.hpp"
-#include "post/figure.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_swing.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -31,7 +31,8 @@ class SwingJob final : public Job {
     const fem::Motion motion = [&](double t) { return grip.at(t); };
     models::Swing swing(club_, options_, make_drive(grip_, motion_, motion));
     // The swing starts bent by gravity as held hands would have it, whatever drives it then.
-    models::Swing held(club_, options_, {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
+    models::Swing held(club_, options_,
+                       {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
     const fem::State from = swing.start(motion_.begin, held.equilibrium(motion_.begin));
     std::vector<models::SwingSample> samples;
     {
@@ -41,14 +42,17 @@ class SwingJob final : public Job {
         progress.update((s.time - motion_.begin) / (motion_.end - motion_.begin), fmt::format("t = {:.3f} s", s.time));
       });
     }
-    std::string csv = "time_s,lead_mm,droop_mm,twist_deg,head_speed_mps,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+    std::string csv =
+        "time_s,lead_mm,droop_mm,twist_deg,head_speed_mps,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,"
+        "moment_z_N_m\n";
     post::Series lead{.label = "lead"}, droop{.label = "droop"}, speed{.label = ""};
     double peak_lead = 0, peak_droop = 0;
     for (const auto& s : samples) {
       // The wrench in grip axes, as the first source shows it.
       const Vec3 force = s.grip.rotation.conjugate() * s.force;
-      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.time, 1e3 * s.lead, 1e3 * s.droop,
-                         degrees(s.twist.z()), s.head.velocity.norm(), force.x(), force.y(), force.z(), s.moment.x(), s.moment.y(), s.moment.z());
+      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.time,
+                         1e3 * s.lead, 1e3 * s.droop, degrees(s.twist.z()), s.head.velocity.norm(), force.x(),
+                         force.y(), force.z(), s.moment.x(), s.moment.y(), s.moment.z());
       lead.x.push_back(s.time);
       lead.y.push_back(1e3 * s.lead);
       droop.x.push_back(s.time);
@@ -60,23 +64,40 @@ class SwingJob final : public Job {
     }
     out.write("swing.csv", csv);
     post::Figure figure{.columns = 2};
-    figure.panels.push_back({.title = "hosel in the grip frame", .x_label = "time [s]", .y_label = "deflection [mm]", .series = {lead, droop}, .key = "bottom left"});
-    figure.panels.push_back({.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
+    figure.panels.push_back({.title = "hosel in the grip frame",
+                             .x_label = "time [s]",
+                             .y_label = "deflection [mm]",
+                             .series = {lead, droop},
+                             .key = "bottom left"});
+    figure.panels.push_back(
+        {.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
     if (const std::string why = post::draw(figure, out.path("swing")); !why.empty()) out.say(why);
 
     const models::SwingSample& last = samples.back();
     const Delivery d = models::delivery_of(last.head);
-    summary["at_end"] = {{"time_s", last.time}, {"lead_mm", 1e3 * last.lead}, {"droop_mm", 1e3 * last.droop}, {"twist_deg", degrees(last.twist.z())}};
+    summary["at_end"] = {{"time_s", last.time},
+                         {"lead_mm", 1e3 * last.lead},
+                         {"droop_mm", 1e3 * last.droop},
+                         {"twist_deg", degrees(last.twist.z())}};
     summary["peak"] = {{"lead_mm", 1e3 * peak_lead}, {"droop_mm", 1e3 * peak_droop}};
-    summary["delivery"] = {{"club_speed_mps", d.club_speed}, {"attack_angle_deg", degrees(d.attack_angle)}, {"club_path_deg", degrees(d.club_path)},
-                           {"dynamic_loft_deg", degrees(d.dynamic_loft)}, {"face_angle_deg", degrees(d.face_angle)}, {"dynamic_lie_deg", degrees(models::dynamic_lie(last.head))},
-                           {"head_angular_velocity_rad_per_s", {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
+    summary["delivery"] = {{"club_speed_mps", d.club_speed},
+                           {"attack_angle_deg", degrees(d.attack_angle)},
+                           {"club_path_deg", degrees(d.club_path)},
+                           {"dynamic_loft_deg", degrees(d.dynamic_loft)},
+                           {"face_angle_deg", degrees(d.face_angle)},
+                           {"dynamic_lie_deg", degrees(models::dynamic_lie(last.head))},
+                           {"head_angular_velocity_rad_per_s",
+                            {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
     const solvers::Ledger& l = swing.ledger();
-    summary["energy_J"] = {{"kinetic", l.kinetic}, {"strain", l.strain_total()}, {"viscous", l.viscous}, {"numerical", l.numerical},
-                           {"external", l.external}, {"initial", l.initial}, {"closure", l.closure}};
+    summary["energy_J"] = {{"kinetic", l.kinetic},     {"strain", l.strain_total()}, {"viscous", l.viscous},
+                           {"numerical", l.numerical}, {"external", l.external},     {"initial", l.initial},
+                           {"closure", l.closure}};
     summary["steps"] = swing.counts().steps;
-    out.say(fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg, loft {:.2f} deg, face {:.2f} deg",
-                        last.time, 1e3 * last.lead, 1e3 * last.droop, d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.dynamic_loft), degrees(d.face_angle)));
+    out.say(
+        fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} "
+                    "deg, loft {:.2f} deg, face {:.2f} deg",
+                    last.time, 1e3 * last.lead, 1e3 * last.droop, d.club_speed, degrees(d.attack_angle),
+                    degrees(d.club_path), degrees(d.dynamic_loft), degrees(d.face_angle)));
     out.write_summary(summary);
   }
 

@@ -1,4 +1,4 @@
-#include "app/kinds/tune.hpp"
+#include "hosel/app/kinds/tune.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -10,14 +10,14 @@
 #include <numeric>
 #include <random>
 
-#include "app/read_blow.hpp"
-#include "app/read_options.hpp"
-#include "app/read_parameter.hpp"
-#include "loop/shots.hpp"
-#include "models/registry.hpp"
-#include "post/figure.hpp"
-#include "post/launch_table.hpp"
-#include "solvers/least_squares.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_parameter.hpp"
+#include "hosel/loop/shots.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::app {
 namespace {
@@ -82,7 +82,8 @@ class TuneJob final : public Job {
     for (const std::string& key : noise.keys()) {
       const SplitName split = split_unit(key);
       const post::Channel* c = post::find_channel(split.stem);
-      if (!c || !split.unit) noise.fail(key, fmt::format("no launch quantity with a unit (known: {})", post::channel_names()));
+      if (!c || !split.unit)
+        noise.fail(key, fmt::format("no launch quantity with a unit (known: {})", post::channel_names()));
       channels_.push_back({key, c, split.unit->si, noise.number(key, Range::positive())});
     }
     if (channels_.empty()) data.fail("noise", "name at least one launch quantity and its noise");
@@ -125,30 +126,28 @@ class TuneJob final : public Job {
     const int width = static_cast<int>(channels_.size());
     const int count = static_cast<int>(train_.size()) * width;
     if (count <= static_cast<int>(free_.size()))
-      throw InputError(fmt::format("{}: {} training rows cannot settle {} parameters", shots_file_.string(), train_.size(), free_.size()));
+      throw InputError(fmt::format("{}: {} training rows cannot settle {} parameters", shots_file_.string(),
+                                   train_.size(), free_.size()));
     Eigen::VectorXd start(free_.size());
     std::vector<solvers::Bounds> bounds;
     for (std::size_t i = 0; i < free_.size(); ++i) {
       start[static_cast<Eigen::Index>(i)] = free_[i].start;
       bounds.push_back(free_[i].bounds);
     }
-    out.say(fmt::format("tuning {} parameters of {} on {} shots ({} kept for the test), {} starts", free_.size(), model_,
-                        train_.size(), test_.size(), search_.starts));
+    out.say(fmt::format("tuning {} parameters of {} on {} shots ({} kept for the test), {} starts", free_.size(),
+                        model_, train_.size(), test_.size(), search_.starts));
     const solvers::LeastSquaresFit fit = solvers::least_squares(residuals, count, start, bounds, search_);
     const solvers::Identifiability known = solvers::identifiability(fit.jacobian, bounds);
     report(out, start, fit, known);
   }
 
  private:
-
   void read_data(Output& out) {
     loop::Shots shots;
     try {
       shots = loop::read_shots(loop::read_csv(shots_file_));
       if (!join_by_.empty()) loop::join(shots, loop::read_csv(join_file_), join_by_);
-    } catch (const loop::DataError& e) {
-      throw InputError(e.what());
-    }
+    } catch (const loop::DataError& e) { throw InputError(e.what()); }
     std::vector<std::pair<loop::Input, const loop::Column*>> inputs;
     for (int i = 0; i < loop::kInputs; ++i) {
       const auto input = static_cast<loop::Input>(i);
@@ -212,14 +211,14 @@ class TuneJob final : public Job {
   std::vector<double> predict(std::size_t row, const Eigen::VectorXd& p) const {
     models::Options options = options_;
     Blow blow = blows_[row];
-    for (std::size_t i = 0; i < free_.size(); ++i) free_[i].parameter->set(options, blow, p[static_cast<Eigen::Index>(i)]);
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      free_[i].parameter->set(options, blow, p[static_cast<Eigen::Index>(i)]);
     std::vector<double> out(channels_.size(), kNaN);
     if (!blow.club.head.faults().empty() && model_ != "rigid-planar") return out;
     try {
       const Launch l = models::find(model_)->make(options)->launch(blow);
       for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = (l.*channels_[c].channel->value)();
-    } catch (const std::exception&) {
-    }
+    } catch (const std::exception&) {}
     return out;
   }
 
@@ -251,19 +250,24 @@ class TuneJob final : public Job {
     const double scatter = std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - n)));
     summary["scatter_over_declared_noise"] = scatter;
     summary["costs_of_the_starts"] = fit.costs;
-    out.say(fmt::format("\n{:<28} {:>14} {:>14} {:>12} {:>12}", "parameter", "start", "tuned", "sd (noise)", "sd (scatter)"));
+    out.say(fmt::format("\n{:<28} {:>14} {:>14} {:>12} {:>12}", "parameter", "start", "tuned", "sd (noise)",
+                        "sd (scatter)"));
     std::string csv = "parameter,unit,start,tuned,sd_by_noise,sd_by_scatter,min,max\n";
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[static_cast<std::size_t>(i)];
       const double si = unit_of(*f.parameter), value = fit.parameters[i] / si, sd = known.sd[i] / si;
       const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
       const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
-      out.say(fmt::format("{:<28} {:>14.6g} {:>14.6g} {:>12.3g} {:>12.3g}{}", column(*f.parameter), start[i] / si, value, sd,
-                          sd * std::max(1.0, scatter), edge ? "  at its bound" : ""));
-      csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit, start[i] / si,
-                         value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
-      summary["parameters"].push_back({{"name", column(*f.parameter)}, {"start", start[i] / si}, {"value", value}, {"sd", sd},
-                                       {"sd_by_scatter", sd * std::max(1.0, scatter)}, {"at_bound", edge}});
+      out.say(fmt::format("{:<28} {:>14.6g} {:>14.6g} {:>12.3g} {:>12.3g}{}", column(*f.parameter), start[i] / si,
+                          value, sd, sd * std::max(1.0, scatter), edge ? "  at its bound" : ""));
+      csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit,
+                         start[i] / si, value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
+      summary["parameters"].push_back({{"name", column(*f.parameter)},
+                                       {"start", start[i] / si},
+                                       {"value", value},
+                                       {"sd", sd},
+                                       {"sd_by_scatter", sd * std::max(1.0, scatter)},
+                                       {"at_bound", edge}});
     }
     out.write("parameters.csv", csv);
 
@@ -276,7 +280,8 @@ class TuneJob final : public Job {
       for (Eigen::Index j = 0; j < n; ++j) {
         csv += fmt::format(",{:.4f}", known.correlation(i, j));
         if (j > i && std::abs(known.correlation(i, j)) > 0.95)
-          tied.push_back(fmt::format("{} and {} (correlation {:.3f})", free_[static_cast<std::size_t>(i)].parameter->name,
+          tied.push_back(fmt::format("{} and {} (correlation {:.3f})",
+                                     free_[static_cast<std::size_t>(i)].parameter->name,
                                      free_[static_cast<std::size_t>(j)].parameter->name, known.correlation(i, j)));
       }
       csv += '\n';
@@ -285,26 +290,31 @@ class TuneJob final : public Job {
     summary["condition"] = known.condition;
     summary["inseparable"] = tied;
     summary["blind"] = nlohmann::json::array();
-    out.say(fmt::format("\ncondition number of the whitened, column-scaled Jacobian {:.3g}; scatter {:.2f} times the declared noise",
-                        known.condition, scatter));
+    out.say(fmt::format(
+        "\ncondition number of the whitened, column-scaled Jacobian {:.3g}; scatter {:.2f} times the declared noise",
+        known.condition, scatter));
     for (const std::string& t : tied) out.say("the data cannot separate " + t);
     for (const Eigen::VectorXd& v : known.blind) {
       std::string text;
       for (Eigen::Index i = 0; i < n; ++i)
-        if (std::abs(v[i]) > 0.2) text += fmt::format("{}{:+.2f} {}", text.empty() ? "" : ", ", v[i], free_[static_cast<std::size_t>(i)].parameter->name);
+        if (std::abs(v[i]) > 0.2)
+          text += fmt::format("{}{:+.2f} {}", text.empty() ? "" : ", ", v[i],
+                              free_[static_cast<std::size_t>(i)].parameter->name);
       out.say("the data leave free inside the bounds: " + text + " (shares of the bounds' distance)");
       summary["blind"].push_back(text);
     }
-    if (tied.empty() && known.blind.empty()) out.say("every parameter is separable (no correlation above 0.95, none left free)");
+    if (tied.empty() && known.blind.empty())
+      out.say("every parameter is separable (no correlation above 0.95, none left free)");
 
     // Errors before and after, on both sets.
     post::Figure figure{.title = fmt::format("{} tuned: model minus measured", model_), .columns = 3};
     std::string rows_csv = "shot,set";
-    for (const TuneChannel& c : channels_) rows_csv += fmt::format(",{}__measured,{}__before,{}__after", c.name, c.name, c.name);
+    for (const TuneChannel& c : channels_)
+      rows_csv += fmt::format(",{}__measured,{}__before,{}__after", c.name, c.name, c.name);
     rows_csv += '\n';
     csv = "set,channel,rows,before_mean,before_sd,before_mae,after_mean,after_sd,after_mae\n";
-    out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows", "before: mean +- sd",
-                        "after: mean +- sd", "MAE before", "MAE after"));
+    out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows",
+                        "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"));
     for (const TuneChannel& c : channels_)
       figure.panels.push_back({.x_label = "measured " + c.name, .y_label = "model - measured"});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
@@ -322,19 +332,22 @@ class TuneJob final : public Job {
           const double b = error(row, c, model_before[i]), a = error(row, c, model_after[i]);
           if (std::isfinite(a) && std::isfinite(b)) before[c].push_back(b), after[c].push_back(a);
           else if (c == 0) ++lost;
-          rows_csv += fmt::format(",{:.8g},{:.8g},{:.8g}", measured_[row][c] / channels_[c].si, model_before[i][c] / channels_[c].si,
-                                  model_after[i][c] / channels_[c].si);
+          rows_csv += fmt::format(",{:.8g},{:.8g},{:.8g}", measured_[row][c] / channels_[c].si,
+                                  model_before[i][c] / channels_[c].si, model_after[i][c] / channels_[c].si);
         }
         rows_csv += '\n';
       }
       if (lost) out.say(fmt::format("{} {} rows have no answer from the model and are not counted below", lost, set));
       for (std::size_t c = 0; c < channels_.size(); ++c) {
         const Errors b = errors(before[c]), a = errors(after[c]);
-        out.say(fmt::format("{:<6} {:<18} {:>5} {:>12.4g} +- {:<8.4g} {:>12.4g} +- {:<8.4g} {:>10.4g} {:>10.4g}", set, channels_[c].name,
-                            a.count, b.mean, b.sd, a.mean, a.sd, b.absolute, a.absolute));
-        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", set, channels_[c].name, a.count, b.mean, b.sd, b.absolute,
-                           a.mean, a.sd, a.absolute);
-        summary["errors"].push_back({{"set", set}, {"channel", channels_[c].name}, {"rows", a.count}, {"before", {{"mean", b.mean}, {"sd", b.sd}, {"mae", b.absolute}}},
+        out.say(fmt::format("{:<6} {:<18} {:>5} {:>12.4g} +- {:<8.4g} {:>12.4g} +- {:<8.4g} {:>10.4g} {:>10.4g}", set,
+                            channels_[c].name, a.count, b.mean, b.sd, a.mean, a.sd, b.absolute, a.absolute));
+        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", set, channels_[c].name, a.count,
+                           b.mean, b.sd, b.absolute, a.mean, a.sd, a.absolute);
+        summary["errors"].push_back({{"set", set},
+                                     {"channel", channels_[c].name},
+                                     {"rows", a.count},
+                                     {"before", {{"mean", b.mean}, {"sd", b.sd}, {"mae", b.absolute}}},
                                      {"after", {{"mean", a.mean}, {"sd", a.sd}, {"mae", a.absolute}}}});
         post::Series cloud{.label = fmt::format("{} {:.3g} +- {:.3g}", set, a.mean, a.sd), .style = "points"};
         for (std::size_t i = 0; i < rows->size(); ++i) {

@@ -1,7 +1,7 @@
 /// kind = "tune": parameters of a model against measured shots.
 #pragma once
 
-#include "app/job.hpp"
+#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "fem/materials/symmetric.hpp"
+#include "hosel/fem/materials/symmetric.hpp"
 
 namespace hosel::fem {
 
 /// Second Piola-Kirchhoff stress S = 2 dW/dC [Pa] and tangent 4 d2W/dC2 [Pa] at the right
 /// Cauchy-Green tensor C.
 struct Response {
-  double energy = 0;          ///< [J/m^3]
+  double energy = 0;  ///< [J/m^3]
   Sym stress = Sym::Zero();
   Mat6 tangent = Mat6::Zero();
 };

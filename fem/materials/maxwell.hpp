@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fem/materials/elastic.hpp"
+#include "hosel/fem/materials/elastic.hpp"
 
 namespace hosel::fem {
 
@@ -52,8 +52,8 @@ struct MaxwellBranch {
     // dS = (dS/dA) dA, dA = -(A x A - A (A:x)/3), x = scale gain p (dC - C (Ci:dC)/3). In components
     // (ab, cd) of fourth-order tensors with minor symmetry, projected on both sides.
     Mat6 H = -symmetric_product(A) + (1.0 / 3) * A * A.transpose();
-    H -= (1.0 / 3) * Ci * (twice(C).transpose() * H);   // left projection
-    H -= (1.0 / 3) * (H * twice(C)) * Ci.transpose();   // right projection
+    H -= (1.0 / 3) * Ci * (twice(C).transpose() * H);  // left projection
+    H -= (1.0 / 3) * (H * twice(C)) * Ci.transpose();  // right projection
     out.tangent += 2 * modulus * p * p * scale * gain * H;
   }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fem/materials/elastic.hpp"
+#include "hosel/fem/materials/elastic.hpp"
 
 namespace hosel::fem {
 
@@ -31,7 +31,7 @@ struct Ogden {
     const Eigen::SelfAdjointEigenSolver<Mat3> spectrum(to_matrix(C));
     const Vec3 square = spectrum.eigenvalues();  // of the stretches
     const Mat3& n = spectrum.eigenvectors();
-    const Vec3 x = 0.5 * square.array().log();   // logarithms of the stretches; NaN for an inverted point
+    const Vec3 x = 0.5 * square.array().log();  // logarithms of the stretches; NaN for an inverted point
     const double J = std::exp(x.sum());
     // First and second derivatives by the logarithms.
     Vec3 tau = Vec3::Constant(bulk * (J - 1) * J);
@@ -42,15 +42,14 @@ struct Ogden {
       const double mean = e.sum() / 3;
       out.energy += 2 * mu / (alpha * alpha) * (3 * mean - 3);
       tau += 2 * mu / alpha * (e - Vec3::Constant(mean));
-      H += 2 * mu * (Mat3(e.asDiagonal()) - (e * Vec3::Ones().transpose() + Vec3::Ones() * e.transpose()) / 3 +
-                     Mat3::Constant(mean / 3));
+      H += 2 * mu *
+           (Mat3(e.asDiagonal()) - (e * Vec3::Ones().transpose() + Vec3::Ones() * e.transpose()) / 3 +
+            Mat3::Constant(mean / 3));
     }
     const Vec3 s = tau.cwiseQuotient(square);
     for (int a = 0; a < 3; ++a) out.stress += s[a] * to_sym(n.col(a) * n.col(a).transpose());
     if (!tangent) return;
-    const auto slope = [&](int a, int b) {
-      return (H(a, b) - (a == b ? 2 * tau[a] : 0)) / (square[a] * square[b]);
-    };
+    const auto slope = [&](int a, int b) { return (H(a, b) - (a == b ? 2 * tau[a] : 0)) / (square[a] * square[b]); };
     for (int a = 0; a < 3; ++a) {
       const Sym A = to_sym(n.col(a) * n.col(a).transpose());
       for (int b = 0; b < 3; ++b) out.tangent += slope(a, b) * A * to_sym(n.col(b) * n.col(b).transpose()).transpose();

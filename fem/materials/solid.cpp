@@ -1,4 +1,4 @@
-#include "fem/materials/solid.hpp"
+#include "hosel/fem/materials/solid.hpp"
 
 #include <cmath>
 
@@ -55,10 +55,12 @@ std::vector<std::string> Solid::faults() const {
   if (!(bulk() > 0)) out.emplace_back("a material needs a positive bulk modulus");
   if (!(shear() > 0)) out.emplace_back("a material needs a positive long-term shear modulus");
   if (linear() && !branches.empty())
-    out.emplace_back("small-strain linear elasticity is for comparison with theory and takes no relaxation: use neo-hooke");
+    out.emplace_back(
+        "small-strain linear elasticity is for comparison with theory and takes no relaxation: use neo-hooke");
   if (const auto* ogden = std::get_if<Ogden>(&elastic))
     for (const auto& p : ogden->powers)
-      if (p.exponent == 0 || !std::isfinite(p.exponent)) out.emplace_back("an Ogden exponent must be finite and not zero");
+      if (p.exponent == 0 || !std::isfinite(p.exponent))
+        out.emplace_back("an Ogden exponent must be finite and not zero");
   for (const auto& b : branches) {
     if (!(b.modulus >= 0)) out.emplace_back("a relaxation branch needs a modulus of at least zero");
     if (!(b.time > 0)) out.emplace_back("a relaxation branch needs a positive time");
@@ -67,8 +69,8 @@ std::vector<std::string> Solid::faults() const {
 }
 
 double Solid::shear() const {
-  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.shear(); }, [](const Ogden& o) { return o.shear(); },
-                               [](const Lame& l) { return l.mu; }},
+  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.shear(); },
+                               [](const Ogden& o) { return o.shear(); }, [](const Lame& l) { return l.mu; }},
                     elastic);
 }
 
@@ -106,12 +108,9 @@ void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, st
     if (tangent) out.tangent.setConstant(NAN);
     return;
   }
-  if (const auto* law = std::get_if<Hyperelastic>(&solid.elastic))
-    law->add(C, tangent, r);
-  else if (const auto* powers = std::get_if<Ogden>(&solid.elastic))
-    powers->add(C, tangent, r);
-  else
-    svk->add(C, tangent, r);
+  if (const auto* law = std::get_if<Hyperelastic>(&solid.elastic)) law->add(C, tangent, r);
+  else if (const auto* powers = std::get_if<Ogden>(&solid.elastic)) powers->add(C, tangent, r);
+  else svk->add(C, tangent, r);
   if (!solid.branches.empty()) {
     const double det = determinant(C), p = 1 / std::cbrt(det);
     const Sym Ci = inverse(C, det);

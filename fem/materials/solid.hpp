@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "fem/materials/maxwell.hpp"
-#include "fem/materials/ogden.hpp"
+#include "hosel/fem/materials/maxwell.hpp"
+#include "hosel/fem/materials/ogden.hpp"
 
 namespace hosel::fem {
 

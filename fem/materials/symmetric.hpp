@@ -1,7 +1,7 @@
 /// Symmetric tensors as six numbers (11, 22, 33, 12, 23, 13), tensor components throughout.
 #pragma once
 
-#include "golf/vector.hpp"
+#include "hosel/golf/vector.hpp"
 
 namespace hosel::fem {
 
@@ -27,7 +27,8 @@ inline double determinant(const Sym& s) {
 inline Sym inverse(const Sym& s, double det) {
   return (Sym() << s[1] * s[2] - s[4] * s[4], s[0] * s[2] - s[5] * s[5], s[0] * s[1] - s[3] * s[3],
           s[5] * s[4] - s[3] * s[2], s[3] * s[5] - s[0] * s[4], s[3] * s[4] - s[5] * s[1])
-             .finished() / det;
+             .finished() /
+         det;
 }
 /// a a as a symmetric tensor.
 inline Sym square(const Sym& a) {

@@ -1,10 +1,12 @@
 // The ball's moment of inertia is not the declared one.
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Form> ball_inertia(const Setting&) {
-  Form f{.effect = "ball-inertia", .what = "inertia factor I / (m r^2)", .parameters = {{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}}};
+  Form f{.effect = "ball-inertia",
+         .what = "inertia factor I / (m r^2)",
+         .parameters = {{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}}};
   f.before = [](std::span<const double> p, Trial& t) { t.blow.ball.inertia_factor += p[0]; };
   return {f};
 }

@@ -1,12 +1,13 @@
 // The ball winds up tangentially and gives part of it back: the surfaces part with -e_t times their slip.
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Form> ball_tangential_compliance(const Setting&) {
   const Parameter level{"tangential_restitution", "1", 1, -0.3, 0.8, 0.1};
   const Parameter slope{"tangential_restitution_slope", "s/m", 1, -0.02, 0.02, 0.002};
-  Form constant{.effect = "ball-tangential-compliance", .what = "constant tangential restitution", .parameters = {level}};
+  Form constant{
+      .effect = "ball-tangential-compliance", .what = "constant tangential restitution", .parameters = {level}};
   constant.before = [](std::span<const double> p, Trial& t) { t.blow.contact.tangential_restitution += p[0]; };
   // The slope is about 40 m/s, so that level and slope are nearly independent over usual club speeds.
   Form speed{.effect = "ball-tangential-compliance",

@@ -1,5 +1,5 @@
 // The centre of gravity is not where it is declared.
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
@@ -12,7 +12,10 @@ std::vector<Form> friction_limit(const Setting&) {
   // The limit may reach one shot alone: then only starts a few per cent apart come near it.
   std::vector<std::vector<double>> starts;
   for (double x = 1.4; x < 11.5; x *= 1.025) starts.push_back({x});
-  Form coulomb{.effect = "friction-limit", .what = "Coulomb limit of the impulse", .parameters = {slipperiness}, .starts = starts};
+  Form coulomb{.effect = "friction-limit",
+               .what = "Coulomb limit of the impulse",
+               .parameters = {slipperiness},
+               .starts = starts};
   coulomb.before = [](std::span<const double> p, Trial& t) {
     if (p[0] > 0) t.blow.contact.friction = std::min(t.blow.contact.friction, 1 / p[0]);
   };

@@ -1,8 +1,8 @@
 // The head has an angular velocity at impact: the contact point moves differently from the centre of gravity.
 #include <cmath>
 
-#include "loop/effects/all.hpp"
-#include "models/rigid_eccentric.hpp"
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop::forms {
 namespace {
@@ -42,7 +42,9 @@ std::vector<Form> head_closure(const Setting& setting) {
     return f;
   };
   Form shaft{.effect = "head-closure", .what = "about the shaft", .parameters = {rate("rate_shaft")}};
-  const auto about_shaft = [](double w, const Blow& b) { return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis)); };
+  const auto about_shaft = [](double w, const Blow& b) {
+    return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis));
+  };
   if (setting.head_turns)
     shaft.before = [about_shaft](std::span<const double> p, Trial& t) {
       if (p[0] != 0) t.blow.delivery.head_angular_velocity += about_shaft(p[0], t.blow);
@@ -54,7 +56,8 @@ std::vector<Form> head_closure(const Setting& setting) {
   // A club closes about its shaft, which stands more upright than flat: rates about the horizontal are unusual, and
   // they do to the launch what a shifted centre of gravity does.
   std::vector<Form> all = {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
-                           about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+                           about({1, 2}, "about the vertical and the horizontal"),
+                           about({0, 1, 2}, "about three axes")};
   for (std::size_t k = 1; k < all.size(); ++k) all[k].rarity = 10;
   all.push_back(shaft);
   return all;

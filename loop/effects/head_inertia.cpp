@@ -1,7 +1,7 @@
 // The effective rotational inertia differs: a shaft resists the turn, or the declared tensor is wrong.
 #include <cmath>
 
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
@@ -21,7 +21,9 @@ std::vector<Form> head_inertia(const Setting& setting) {
     };
     return one;
   };
-  Form two{.effect = "head-inertia", .what = "factors about the horizontal and the vertical axis", .parameters = {factor("log_factor_horizontal"), factor("log_factor_vertical")}};
+  Form two{.effect = "head-inertia",
+           .what = "factors about the horizontal and the vertical axis",
+           .parameters = {factor("log_factor_horizontal"), factor("log_factor_vertical")}};
   two.before = [](std::span<const double> p, Trial& t) {
     Mat3& inertia = t.blow.club.head.inertia;
     for (const int k : {0, 1}) {

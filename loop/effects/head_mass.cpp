@@ -1,10 +1,12 @@
 // The head's effective mass differs from the declared one.
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Form> head_mass(const Setting&) {
-  Form f{.effect = "head-mass", .what = "added mass at the centre of gravity", .parameters = {{"added_mass", "g", 1e-3, -0.08, 0.1, 5e-3}}};
+  Form f{.effect = "head-mass",
+         .what = "added mass at the centre of gravity",
+         .parameters = {{"added_mass", "g", 1e-3, -0.08, 0.1, 5e-3}}};
   f.before = [](std::span<const double> p, Trial& t) { t.blow.club.head.mass += p[0]; };
   return {f};
 }

@@ -2,8 +2,8 @@
 // difference that the declared inertia makes in the eccentric rigid impact is added to the launch.
 #include <cmath>
 
-#include "loop/effects/all.hpp"
-#include "models/rigid_eccentric.hpp"
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop::forms {
 namespace {
@@ -33,7 +33,9 @@ std::vector<Form> head_rotation(const Setting& setting) {
     add_difference(turned, fixed, 1, launch);
   };
   // The whole eccentric blow in place of the planar one: face, path and curvature act too.
-  Form whole{.effect = "head-rotation", .what = "free head, with face, path and curvature in three dimensions", .parameters = {freedom}};
+  Form whole{.effect = "head-rotation",
+             .what = "free head, with face, path and curvature in three dimensions",
+             .parameters = {freedom}};
   whole.after = [](std::span<const double> p, const Trial& t, Launch& launch) {
     if (p[0] == 0) return;
     Blow planar = t.blow;

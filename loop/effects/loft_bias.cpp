@@ -1,5 +1,5 @@
 // The recorded loft is not the loft that the ball met.
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
@@ -11,7 +11,9 @@ std::vector<Form> loft_bias(const Setting&) {
   Form scale{.effect = "loft-bias", .what = "in proportion to the loft", .parameters = {gain}};
   scale.before = [](std::span<const double> p, Trial& t) { t.blow.delivery.dynamic_loft *= 1 + p[0]; };
   Form line{.effect = "loft-bias", .what = "constant and in proportion to the loft", .parameters = {offset, gain}};
-  line.before = [](std::span<const double> p, Trial& t) { t.blow.delivery.dynamic_loft += p[0] + p[1] * t.blow.delivery.dynamic_loft; };
+  line.before = [](std::span<const double> p, Trial& t) {
+    t.blow.delivery.dynamic_loft += p[0] + p[1] * t.blow.delivery.dynamic_loft;
+  };
   return {constant, scale, line};
 }
 

@@ -1,12 +1,14 @@
 // The launch monitor's axes are turned against the target frame: it reports the same vectors in its own axes.
 #include <algorithm>
 
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Form> monitor_misalignment(const Setting& setting) {
-  const auto angle = [](const char* name) { return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}; };
+  const auto angle = [](const char* name) {
+    return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)};
+  };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](std::vector<int> axes, const char* what) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};

@@ -1,13 +1,16 @@
 // The resultant normal force does not pass through the ball's centre (the patch wanders while it slides).
-#include "loop/effects/all.hpp"
-#include "models/rigid_eccentric.hpp"
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Form> normal_force_offset(const Setting&) {
   const Parameter offset{"offset", "1", 1, -0.2, 0.2, 0.01};
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
-  Form couple{.effect = "normal-force-offset", .what = "offset over the ball's radius, its couple added to rolling", .parameters = {offset}, .rarity = 3};
+  Form couple{.effect = "normal-force-offset",
+              .what = "offset over the ball's radius, its couple added to rolling",
+              .parameters = {offset},
+              .rarity = 3};
   couple.after = [](std::span<const double> p, const Trial& t, Launch& launch) {
     if (p[0] == 0) return;
     const models::ContactGeometry g = models::contact_geometry(t.blow);
@@ -17,7 +20,10 @@ std::vector<Form> normal_force_offset(const Setting&) {
     launch.spin += p[0] * t.blow.ball.radius * impulse / t.blow.ball.inertia() * slip.normalized().cross(g.normal);
   };
   // Friction closes the slip all the same: then the offset moves impulse from the tangent to the couple.
-  Form closed{.effect = "normal-force-offset", .what = "offset over the ball's radius, rolling kept", .parameters = {offset}, .rarity = 3};
+  Form closed{.effect = "normal-force-offset",
+              .what = "offset over the ball's radius, rolling kept",
+              .parameters = {offset},
+              .rarity = 3};
   closed.before = [](std::span<const double> p, Trial& t) { t.blow.contact.normal_force_offset += p[0]; };
   return {couple, closed};
 }

@@ -1,7 +1,7 @@
 // Restitution drops away from the face centre.
 #include <cmath>
 
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 
@@ -11,7 +11,9 @@ std::vector<Form> restitution_falloff(const Setting&) {
   const auto square = [](const char* axis) { return Parameter{axis, "1/m^2", 1, -60, 900, 50}; };
   Form round{.effect = name, .what = "with the square of the distance", .parameters = {square("falloff")}};
   round.before = [](std::span<const double> p, Trial& t) { t.blow.contact.restitution_falloff += p[0]; };
-  Form oval{.effect = name, .what = "with the squares of toe and high offset", .parameters = {square("falloff_toe"), square("falloff_high")}};
+  Form oval{.effect = name,
+            .what = "with the squares of toe and high offset",
+            .parameters = {square("falloff_toe"), square("falloff_high")}};
   oval.before = [](std::span<const double> p, Trial& t) {
     const Delivery& d = t.blow.delivery;
     t.blow.contact.restitution -= p[0] * d.impact_toe * d.impact_toe + p[1] * d.impact_high * d.impact_high;

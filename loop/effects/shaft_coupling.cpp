@@ -3,7 +3,7 @@
 // the centre and the inertia of both.
 #include <cmath>
 
-#include "loop/effects/all.hpp"
+#include "hosel/loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 namespace {
@@ -15,7 +15,8 @@ void attach(Blow& blow, double mass, double inertia) {
   Head& head = blow.club.head;
   const Vec3 hosel = blow.club.geometry.hosel, axis = blow.club.geometry.shaft_axis;
   const Vec3 cg = (head.mass * head.cg + mass * hosel) / (head.mass + mass);
-  head.inertia += steiner(head.mass, head.cg - cg) + steiner(mass, hosel - cg) + inertia * (Mat3::Identity() - axis * axis.transpose());
+  head.inertia += steiner(head.mass, head.cg - cg) + steiner(mass, hosel - cg) +
+                  inertia * (Mat3::Identity() - axis * axis.transpose());
   head.cg = cg;
   head.mass += mass;
 }
@@ -30,11 +31,14 @@ std::vector<Form> shaft_coupling(const Setting& setting) {
     if (p[0] != 0) attach(t.blow, p[0], 0);
   };
   if (!setting.head_turns) return {};
-  Form both{.effect = "shaft-coupling", .what = "added mass and rotational inertia at the hosel", .parameters = {mass, stiffening}};
+  Form both{.effect = "shaft-coupling",
+            .what = "added mass and rotational inertia at the hosel",
+            .parameters = {mass, stiffening}};
   both.before = [](std::span<const double> p, Trial& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
   };
-  Form stiff{.effect = "shaft-coupling", .what = "added rotational inertia across the shaft", .parameters = {stiffening}};
+  Form stiff{
+      .effect = "shaft-coupling", .what = "added rotational inertia across the shaft", .parameters = {stiffening}};
   stiff.before = [](std::span<const double> p, Trial& t) {
     if (p[0] != 0) attach(t.blow, 0, p[0]);
   };

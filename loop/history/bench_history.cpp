@@ -1,4 +1,4 @@
-#include "loop/history/bench_history.hpp"
+#include "hosel/loop/history/bench_history.hpp"
 
 #include <cmath>
 #include <complex>
@@ -16,7 +16,8 @@ std::vector<Complex> exponentials(Complex s, const std::vector<double>& times, d
   if (times.empty()) return out;
   const double step = times.size() > 1 ? (times.back() - times.front()) / double(times.size() - 1) : 0;
   bool even = true;
-  for (std::size_t i = 0; i < times.size() && even; ++i) even = std::abs(times[i] - times.front() - double(i) * step) < 1e-6 * step;
+  for (std::size_t i = 0; i < times.size() && even; ++i)
+    even = std::abs(times[i] - times.front() - double(i) * step) < 1e-6 * step;
   if (even) {
     const Complex factor = std::exp(s * step);
     Complex now = std::exp(s * (times.front() - origin));
@@ -40,7 +41,8 @@ Complex pole(double omega, double ratio) {
 Complex power(Complex s, int order) { return order == 0 ? Complex(1) : order == 1 ? s : s * s; }
 
 /// Value at a time inside the grid from values and slopes at the samples.
-double hermite(const std::vector<double>& times, const Eigen::VectorXd& y, const Eigen::VectorXd& slope, double t, std::size_t& hint) {
+double hermite(const std::vector<double>& times, const Eigen::VectorXd& y, const Eigen::VectorXd& slope, double t,
+               std::size_t& hint) {
   if (t <= times.front()) return y[0];
   if (t >= times.back()) return y[y.size() - 1];
   while (hint + 2 < times.size() && times[hint + 1] <= t) ++hint;
@@ -53,13 +55,14 @@ double hermite(const std::vector<double>& times, const Eigen::VectorXd& y, const
 
 }  // namespace
 
-BenchHistory::BenchHistory(const Club& club, bool with_head, models::BenchOptions options, const BenchStart& start, std::vector<BenchRecord> records,
-                           const std::vector<HistoryChannel>& channels)
+BenchHistory::BenchHistory(const Club& club, bool with_head, models::BenchOptions options, const BenchStart& start,
+                           std::vector<BenchRecord> records, const std::vector<HistoryChannel>& channels)
     : start_(start), records_(std::move(records)), channels_(channels) {
   std::vector<models::BenchSensor> sensors;
   for (const HistoryChannel& c : channels) {
     using Quantity = models::BenchSensor::Quantity;
-    static constexpr Quantity quantities[] = {Quantity::lead, Quantity::droop, Quantity::shortening, Quantity::twist, Quantity::strain_lead, Quantity::strain_droop};
+    static constexpr Quantity quantities[] = {Quantity::lead,  Quantity::droop,       Quantity::shortening,
+                                              Quantity::twist, Quantity::strain_lead, Quantity::strain_droop};
     sensors.push_back({quantities[int(c.reading)], c.arc_length});
   }
   std::map<double, std::size_t> known;
@@ -82,9 +85,7 @@ bool BenchHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
   std::vector<models::BenchModes> modes;
   try {
     for (const auto& b : benches_) modes.push_back(b->modes(rig.club));
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  } catch (const std::invalid_argument&) { return false; }
   out.resize(records_.size());
   for (std::size_t r = 0; r < records_.size(); ++r) one(modes[bench_of_[r]], rig, records_[r], out[r]);
   return true;
@@ -127,11 +128,13 @@ void BenchHistory::one(const models::BenchModes& modes, const Rig& rig, const Be
       const Complex s = pole(modes.omega[k], modes.ratio[k]);
       // q = Re(amplitude exp(s t)): released from q0 at rest, or with velocity v0.
       const double held = push / (modes.omega[k] * modes.omega[k]);
-      const Complex amplitude = start_.kind == Start::release ? held * Complex(1, s.real() / s.imag()) : push / s.imag() * Complex(0, -1);
+      const Complex amplitude = start_.kind == Start::release ? held * Complex(1, s.real() / s.imag())
+                                                              : push / s.imag() * Complex(0, -1);
       const std::vector<Complex> e = exponentials(s, record.times, start_.at);
       for (std::ptrdiff_t c = 0; c < m; ++c) {
         const HistoryChannel& channel = channels_[std::size_t(c)];
-        const double delay = rig.delay[std::size_t(c)], before = start_.kind == Start::release && channel.order == 0 ? held : 0;
+        const double delay = rig.delay[std::size_t(c)],
+                     before = start_.kind == Start::release && channel.order == 0 ? held : 0;
         const Complex factor = amplitude * power(s, channel.order) * std::exp(-s * delay);
         for (std::ptrdiff_t i = 0; i < n; ++i) {
           const bool moving = record.times[std::size_t(i)] - delay >= start_.at;
@@ -157,7 +160,9 @@ void BenchHistory::one(const models::BenchModes& modes, const Rig& rig, const Be
       for (std::ptrdiff_t i = 0; i < n; ++i) {
         const double a = f[i] - w2 * q - twice * v;
         double jerk = 0;
-        if (i > 0) jerk = (f[i] - f[i - 1]) / (record.times[std::size_t(i)] - record.times[std::size_t(i - 1)]) - w2 * v - twice * a;
+        if (i > 0)
+          jerk = (f[i] - f[i - 1]) / (record.times[std::size_t(i)] - record.times[std::size_t(i - 1)]) - w2 * v -
+                 twice * a;
         const double derivative[] = {q, v, a, jerk};
         for (std::ptrdiff_t c = 0; c < m; ++c) {
           const int order = channels_[std::size_t(c)].order;
@@ -185,7 +190,8 @@ void BenchHistory::one(const models::BenchModes& modes, const Rig& rig, const Be
         continue;
       }
       std::size_t hint = 0;
-      for (std::ptrdiff_t i = 0; i < n; ++i) out.value(i, c) += hermite(record.times, y.col(c), slope.col(c), record.times[std::size_t(i)] - delay, hint);
+      for (std::ptrdiff_t i = 0; i < n; ++i)
+        out.value(i, c) += hermite(record.times, y.col(c), slope.col(c), record.times[std::size_t(i)] - delay, hint);
     }
   }
 }

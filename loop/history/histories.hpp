@@ -1,8 +1,8 @@
 /// The loop on time histories: from records of a club test and a beam model to a verdict, in the words of the contract.
 #pragma once
 
-#include "loop/history/problem.hpp"
-#include "loop/run.hpp"
+#include "hosel/loop/history/problem.hpp"
+#include "hosel/loop/run.hpp"
 
 namespace hosel::loop {
 
@@ -10,10 +10,10 @@ struct HistoryCase {
   std::string title;
   std::string base = "shaft";
   const HistoryModel* model = nullptr;
-  HistorySetting setting;                ///< channels with their declared noise
-  std::vector<HistoryRecord> records;    ///< `train` is filled by the split
-  bool start_unknown = false;            ///< every record has unknowns of its own: stretches of time are held out
-  std::vector<std::string> effects;      ///< declared part of the base; their parameters are fitted
+  HistorySetting setting;              ///< channels with their declared noise
+  std::vector<HistoryRecord> records;  ///< `train` is filled by the split
+  bool start_unknown = false;          ///< every record has unknowns of its own: stretches of time are held out
+  std::vector<std::string> effects;    ///< declared part of the base; their parameters are fitted
   Split split;
   Rules rules;
   std::vector<std::string> notes;

@@ -1,4 +1,4 @@
-#include "loop/history/noise.hpp"
+#include "hosel/loop/history/noise.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -181,7 +181,9 @@ std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, con
       for (std::size_t b = 0; b < band.size(); ++b)
         if (band_count[b] * free >= 8) {
           const double mean = band[b] / band_count[b], dof = 2 * band_count[b] * free;
-          add(c, "band", fmt::format("{:.3g} to {:.3g} Hz", double(std::size_t(1) << b) / (double(size) * step), double(std::size_t(2) << b) / (double(size) * step)),
+          add(c, "band",
+              fmt::format("{:.3g} to {:.3g} Hz", double(std::size_t(1) << b) / (double(size) * step),
+                          double(std::size_t(2) << b) / (double(size) * step)),
               (mean - 1) * std::sqrt(dof / 2), tail(mean * dof, dof), 1);
         }
       std::ranges::fill(band, 0.0);
@@ -191,7 +193,8 @@ std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, con
     add(c, "constant", "", sum / std::sqrt(n), tail(sum * sum / n, 1), 1);
     if (time2 > 0) add(c, "trend", "", slope / std::sqrt(time2), tail(slope * slope / time2, 1), 1);
     if (pairs > 16) add(c, "neighbours", "alike", lag / std::sqrt(pairs), tail(lag * lag / pairs, 1), 1);
-    add(c, "oscillation", fmt::format("at {:.3g} Hz", peak.frequency), std::sqrt(2 * peak.power), std::exp(-peak.power), std::max(1.0, 1.5 * ordinates));
+    add(c, "oscillation", fmt::format("at {:.3g} Hz", peak.frequency), std::sqrt(2 * peak.power), std::exp(-peak.power),
+        std::max(1.0, 1.5 * ordinates));
   }
   for (HistoryFinding& f : found) f.p_adjusted = std::min(1.0, f.p * tests);
   std::ranges::stable_sort(found, {}, &HistoryFinding::p);

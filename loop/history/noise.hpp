@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "loop/history/problem.hpp"
+#include "hosel/loop/history/problem.hpp"
 
 namespace hosel::loop {
 
 struct Colour {
-  double sigma = 0;   ///< standard deviation
-  double rho = 0;     ///< correlation of neighbours, 0 to 0.98
+  double sigma = 0;  ///< standard deviation
+  double rho = 0;    ///< correlation of neighbours, 0 to 0.98
 };
 
 /// From the training stretches of a channel's residuals, by the medians of their periodograms' logarithms: an
@@ -22,10 +22,10 @@ Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
 /// One statistic on the whitened residual of one channel, with its probability under white noise.
 struct HistoryFinding {
   int channel = 0;
-  std::string kind;      ///< constant, trend, oscillation, band, neighbours
-  std::string detail;    ///< "at 4.1 Hz"
-  double signal = 0;     ///< amplitude in units of its standard deviation
-  double p = 1;          ///< of one test, before correction
+  std::string kind;    ///< constant, trend, oscillation, band, neighbours
+  std::string detail;  ///< "at 4.1 Hz"
+  double signal = 0;   ///< amplitude in units of its standard deviation
+  double p = 1;        ///< of one test, before correction
   double p_adjusted = 1;
 };
 

@@ -1,4 +1,4 @@
-#include "loop/history/problem.hpp"
+#include "hosel/loop/history/problem.hpp"
 
 #include <ceres/ceres.h>
 
@@ -10,7 +10,8 @@ namespace {
 
 class Cost final : public ceres::CostFunction {
  public:
-  Cost(const HistoryProblem& problem, const Model& model, double window) : problem_(problem), model_(model), window_(window) {
+  Cost(const HistoryProblem& problem, const Model& model, double window)
+      : problem_(problem), model_(model), window_(window) {
     set_num_residuals(problem.readings());
     mutable_parameter_block_sizes()->push_back(model.size());
   }
@@ -44,7 +45,8 @@ class Cost final : public ceres::CostFunction {
 
 }  // namespace
 
-HistoryProblem::HistoryProblem(const HistoryModel& model, std::vector<HistoryRecord> records, std::vector<HistoryChannel> channels,
+HistoryProblem::HistoryProblem(const HistoryModel& model, std::vector<HistoryRecord> records,
+                               std::vector<HistoryChannel> channels,
                                const std::map<const Form*, const HistoryForm*>& forms)
     : model_(model), records_(std::move(records)), channels_(std::move(channels)), forms_(forms) {
   for (const HistoryRecord& r : records_) readings_ += int(r.measured.size());
@@ -77,7 +79,8 @@ Rig HistoryProblem::rig(const Model& model, const double* p) const {
   return rig;
 }
 
-void HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window, double* out) const {
+void HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window,
+                            double* out) const {
   const auto n = record.measured.rows();
   const double last = record.times.empty() ? 0 : record.times.front() + window;
   for (std::ptrdiff_t c = 0; c < record.measured.cols(); ++c) {
@@ -85,15 +88,16 @@ void HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd& 
     const double one = 1 / channel.noise, rho = channel.colour, next = one / std::sqrt(1 - rho * rho);
     bool before = false;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const bool here = std::isfinite(record.measured(i, c)) && (record.train[std::size_t(i)] != 0) == train && record.times[std::size_t(i)] <= last;
+      const bool here = std::isfinite(record.measured(i, c)) && (record.train[std::size_t(i)] != 0) == train &&
+                        record.times[std::size_t(i)] <= last;
       out[c * n + i] = !here ? 0 : before ? next * (column(i, c) - rho * column(i - 1, c)) : one * column(i, c);
       before = here;
     }
   }
 }
 
-bool HistoryProblem::solve(const Model& model, const double* p, double window, std::vector<Answer>& answers, std::vector<Eigen::VectorXd>& unknowns,
-                           Eigen::VectorXd* z) const {
+bool HistoryProblem::solve(const Model& model, const double* p, double window, std::vector<Answer>& answers,
+                           std::vector<Eigen::VectorXd>& unknowns, Eigen::VectorXd* z) const {
   const Rig setup = rig(model, p);
   if (!model_.answer(setup, answers)) return false;
   if (z) z->resize(readings_);
@@ -118,7 +122,8 @@ bool HistoryProblem::solve(const Model& model, const double* p, double window, s
     whiten(record, e, true, window, w.data());
     if (!a.unknown.empty()) {
       Eigen::MatrixXd U(size, std::ptrdiff_t(a.unknown.size()));
-      for (std::size_t k = 0; k < a.unknown.size(); ++k) whiten(record, a.unknown[k], true, window, U.col(std::ptrdiff_t(k)).data());
+      for (std::size_t k = 0; k < a.unknown.size(); ++k)
+        whiten(record, a.unknown[k], true, window, U.col(std::ptrdiff_t(k)).data());
       Eigen::VectorXd norm = U.colwise().norm();
       // What the channels show of a mode of the other plane is round-off, and no unknown.
       const double faint = 1e-6 * norm.maxCoeff();
@@ -162,7 +167,8 @@ bool HistoryProblem::residuals(const Model& model, const double* p, std::vector<
   out.clear();
   for (std::size_t r = 0; r < records_.size(); ++r) {
     Eigen::MatrixXd e = answers[r].value - records_[r].measured;
-    for (std::size_t k = 0; k < answers[r].unknown.size(); ++k) e += unknowns[r][std::ptrdiff_t(k)] * answers[r].unknown[k];
+    for (std::size_t k = 0; k < answers[r].unknown.size(); ++k)
+      e += unknowns[r][std::ptrdiff_t(k)] * answers[r].unknown[k];
     out.push_back(std::move(e));
   }
   return true;
@@ -203,10 +209,11 @@ Eigen::MatrixXd HistoryProblem::jacobian(const Model& model, const Eigen::Vector
       return good;
     };
     // Of second order: central inside the plausible range, one-sided at its edge, where the model has no answer beyond.
-    const bool low = at[k] - step < q.min, high = at[k] + step > q.max;
+    const bool low = at[k] - step<q.min, high = at[k] + step> q.max;
     const double side = high ? -1 : 1;
     if (low || high) {
-      if (look(0, z) && look(side, one) && look(2 * side, two)) J.col(k) = side * (4 * one - 3 * z - two) / (2 * Cost::kStep);
+      if (look(0, z) && look(side, one) && look(2 * side, two))
+        J.col(k) = side * (4 * one - 3 * z - two) / (2 * Cost::kStep);
     } else if (look(1, one) && look(-1, two)) {
       J.col(k) = (one - two) / (2 * Cost::kStep);
     }
@@ -248,7 +255,8 @@ Fit HistoryProblem::fit(const Model& model, const Eigen::VectorXd& start, double
       const Parameter& q = *parameters[std::size_t(k)];
       out.p[k] = x[k] * q.scale;
       const double margin = 1e-3 * (q.max - q.min);
-      out.at_bound = out.at_bound || (q.max - out.p[k] < margin && q.max > 0) || (out.p[k] - q.min < margin && q.min < 0);
+      out.at_bound = out.at_bound || (q.max - out.p[k] < margin && q.max > 0) ||
+                     (out.p[k] - q.min < margin && q.min < 0);
     }
   } else {
     out.converged = true;

@@ -6,16 +6,16 @@
 #include <memory>
 #include <vector>
 
-#include "loop/fit.hpp"
-#include "loop/history/rig.hpp"
+#include "hosel/loop/fit.hpp"
+#include "hosel/loop/history/rig.hpp"
 
 namespace hosel::loop {
 
 struct HistoryRecord {
-  std::string name;                ///< of the file
-  std::vector<double> times;       ///< [s]
-  Eigen::MatrixXd measured;        ///< samples x channels, header's unit; NaN where missing
-  std::vector<char> train;         ///< per sample
+  std::string name;           ///< of the file
+  std::vector<double> times;  ///< [s]
+  Eigen::MatrixXd measured;   ///< samples x channels, header's unit; NaN where missing
+  std::vector<char> train;    ///< per sample
 };
 
 class HistoryProblem {
@@ -35,8 +35,8 @@ class HistoryProblem {
   /// unknowns of the start at their best; zero where there is no reading. Always readings() long. False where the
   /// model has no answer.
   bool whitened(const Model& model, const double* p, double window, Eigen::VectorXd& z) const;
-  int readings() const { return readings_; }       ///< records x samples x channels
-  int training() const;                            ///< readings that train
+  int readings() const { return readings_; }  ///< records x samples x channels
+  int training() const;                       ///< readings that train
   /// Number of unknowns that every fit contains.
   int unknowns(const Model& model, const double* p) const;
   /// Raw residuals, header's units, samples x channels per record (held-out readings too, unknowns from training).
@@ -51,8 +51,8 @@ class HistoryProblem {
   Rig rig(const Model& model, const double* p) const;
   /// Whitened entries of one column of one record, those outside `window` or of the other set zero.
   void whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window, double* out) const;
-  bool solve(const Model& model, const double* p, double window, std::vector<Answer>& answers, std::vector<Eigen::VectorXd>& unknowns,
-             Eigen::VectorXd* z) const;
+  bool solve(const Model& model, const double* p, double window, std::vector<Answer>& answers,
+             std::vector<Eigen::VectorXd>& unknowns, Eigen::VectorXd* z) const;
 
   const HistoryModel& model_;
   std::vector<HistoryRecord> records_;

@@ -8,23 +8,23 @@
 #include <string_view>
 #include <vector>
 
-#include "loop/effect.hpp"
-#include "models/bench.hpp"
+#include "hosel/loop/effect.hpp"
+#include "hosel/models/bench.hpp"
 
 namespace hosel::loop {
 
 enum class Reading { lead, droop, shortening, twist, strain_lead, strain_droop };
 
 struct HistoryChannel {
-  std::string name;        ///< the header
+  std::string name;  ///< the header
   Reading reading = Reading::lead;
-  int order = 0;           ///< 0 the quantity, 1 its rate, 2 its acceleration
-  double arc_length = 0;   ///< from the butt [m]
-  double si = 1;           ///< one of the header's unit in SI
-  double noise = 0;        ///< standard deviation of one reading, header's unit
-  double colour = 0;       ///< correlation of neighbouring readings
+  int order = 0;          ///< 0 the quantity, 1 its rate, 2 its acceleration
+  double arc_length = 0;  ///< from the butt [m]
+  double si = 1;          ///< one of the header's unit in SI
+  double noise = 0;       ///< standard deviation of one reading, header's unit
+  double colour = 0;      ///< correlation of neighbouring readings
   bool declared = false;
-  double resolution = 0;   ///< header's unit
+  double resolution = 0;  ///< header's unit
 };
 
 /// What effects change; everything zero is the declared test.

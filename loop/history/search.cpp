@@ -1,4 +1,4 @@
-#include "loop/history/search.hpp"
+#include "hosel/loop/history/search.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "loop/history/noise.hpp"
+#include "hosel/loop/history/noise.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -50,12 +50,14 @@ class Search {
       starts.clear();
       for (const Fit& f : fits) {
         if (starts.size() == 3 || !std::isfinite(f.deviance)) break;
-        const bool known = std::ranges::any_of(starts, [&](const Eigen::VectorXd& s) { return (s - f.p).norm() < 1e-3 * (s.norm() + f.p.norm()); });
+        const bool known = std::ranges::any_of(
+            starts, [&](const Eigen::VectorXd& s) { return (s - f.p).norm() < 1e-3 * (s.norm() + f.p.norm()); });
         if (!known) starts.push_back(f.p);
       }
       if (starts.empty()) break;
     }
-    Fit best{.model = model, .p = Eigen::VectorXd::Zero(model.size()), .deviance = std::numeric_limits<double>::infinity()};
+    Fit best{
+        .model = model, .p = Eigen::VectorXd::Zero(model.size()), .deviance = std::numeric_limits<double>::infinity()};
     for (const Eigen::VectorXd& s : starts) {
       Fit f = problem_.fit(model, s, kWhole, problem_.slow() ? 5 : 20);
       if (f.deviance < best.deviance) best = std::move(f);
@@ -102,8 +104,9 @@ class Search {
   }
 
   /// Sets with one more effect than those given: the most promising refitted.
-  std::vector<Candidate> grow(const std::vector<Candidate>& from, std::size_t few, std::size_t many, std::size_t base_forms,
-                              const std::vector<const Form*>& forms, const std::vector<Candidate>& singles) const {
+  std::vector<Candidate> grow(const std::vector<Candidate>& from, std::size_t few, std::size_t many,
+                              std::size_t base_forms, const std::vector<const Form*>& forms,
+                              const std::vector<Candidate>& singles) const {
     struct Plan {
       const Candidate* first;
       const Form* second;
@@ -113,7 +116,8 @@ class Search {
     for (std::size_t k = 0; k < std::min(few, from.size()); ++k) {
       const std::vector<double> gain = promises(from[k].fit, forms);
       for (std::size_t f = 0; f < forms.size(); ++f)
-        if (!std::ranges::count(from[k].effects, forms[f]->effect) && gain[f] > 1) plans.push_back({&from[k], forms[f], from[k].fit.deviance - gain[f]});
+        if (!std::ranges::count(from[k].effects, forms[f]->effect) && gain[f] > 1)
+          plans.push_back({&from[k], forms[f], from[k].fit.deviance - gain[f]});
     }
     std::ranges::stable_sort(plans, {}, &Plan::promise);
     if (plans.size() > many) plans.resize(many);
@@ -129,7 +133,8 @@ class Search {
       return m;
     };
     tbb::parallel_for(std::size_t(0), plans.size(), [&](std::size_t k) {
-      out[k] = judged(problem_.fit(model_of(plans[k]), start_of(plans[k]), kWhole, problem_.slow() ? 4 : 15), base_forms, rules_);
+      out[k] = judged(problem_.fit(model_of(plans[k]), start_of(plans[k]), kWhole, problem_.slow() ? 4 : 15),
+                      base_forms, rules_);
     });
     if (!windows_.empty()) {
       // The best of them once more from the first periods on.
@@ -143,7 +148,8 @@ class Search {
         for (const Candidate& s : singles)
           if (s.fit.model.forms.back() == plans[k].second) {
             Eigen::VectorXd p = Eigen::VectorXd::Zero(starts[0].size());
-            p.tail(std::ptrdiff_t(plans[k].second->parameters.size())) = s.fit.p.tail(std::ptrdiff_t(plans[k].second->parameters.size()));
+            p.tail(std::ptrdiff_t(plans[k].second->parameters.size())) =
+                s.fit.p.tail(std::ptrdiff_t(plans[k].second->parameters.size()));
             starts.push_back(p);
           }
         Candidate again = judged(climb(model_of(plans[k]), starts), base_forms, rules_);
@@ -154,7 +160,8 @@ class Search {
   }
 
   /// The best set with each of its members exchanged for each other form.
-  std::vector<Candidate> exchanged(const Candidate& best, std::size_t base_forms, const std::vector<const Form*>& forms) const {
+  std::vector<Candidate> exchanged(const Candidate& best, std::size_t base_forms,
+                                   const std::vector<const Form*>& forms) const {
     struct Plan {
       Model model;
       Eigen::VectorXd start;
@@ -209,8 +216,8 @@ const Fit& HistorySearch::richest() const {
   return *best;
 }
 
-HistorySearch search(const HistoryProblem& problem, const std::vector<const Form*>& base, const std::vector<const Form*>& candidates, double period,
-                     const Rules& rules) {
+HistorySearch search(const HistoryProblem& problem, const std::vector<const Form*>& base,
+                     const std::vector<const Form*>& candidates, double period, const Rules& rules) {
   HistorySearch s;
   const Search how(problem, period, rules);
   const Model model{base};
@@ -244,7 +251,8 @@ HistorySearch search(const HistoryProblem& problem, const std::vector<const Form
   problem.whitened(model, s.base.p.data(), kWhole, z);
   const std::vector<HistoryFinding> left = history_structure(problem, z);
   const std::vector<double> promised = how.promises(s.base, forms);
-  const bool quiet = (left.empty() || left.front().p_adjusted > 0.01) && (promised.empty() || std::ranges::max(promised) < 0.6 * rules.gain);
+  const bool quiet = (left.empty() || left.front().p_adjusted > 0.01) &&
+                     (promised.empty() || std::ranges::max(promised) < 0.6 * rules.gain);
 
   std::vector<Candidate> all(forms.size());
   tbb::parallel_for(std::size_t(0), forms.size(), [&](std::size_t k) {
@@ -282,12 +290,15 @@ HistorySearch search(const HistoryProblem& problem, const std::vector<const Form
   return s;
 }
 
-void search_triples(const HistoryProblem& problem, const std::vector<const Form*>& candidates, const Rules& rules, HistorySearch& s) {
+void search_triples(const HistoryProblem& problem, const std::vector<const Form*>& candidates, const Rules& rules,
+                    HistorySearch& s) {
   if (s.pairs.empty()) return;
   const Search how(problem, 1e300, rules);
-  std::vector<Candidate> triples = how.grow(s.pairs, problem.slow() ? 1 : 2, problem.slow() ? 2 : 8, s.base.model.forms.size(), candidates, {});
+  std::vector<Candidate> triples =
+      how.grow(s.pairs, problem.slow() ? 1 : 2, problem.slow() ? 2 : 8, s.base.model.forms.size(), candidates, {});
   triples = best_of_each(std::move(triples));
-  if (!triples.empty() && !problem.slow() && s.pairs.front().criterion - triples.front().criterion > rules.further_gain) {
+  if (!triples.empty() && !problem.slow() &&
+      s.pairs.front().criterion - triples.front().criterion > rules.further_gain) {
     std::vector<Candidate> more = how.exchanged(triples.front(), s.base.model.forms.size(), candidates);
     triples.insert(triples.end(), more.begin(), more.end());
   }

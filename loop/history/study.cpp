@@ -1,4 +1,4 @@
-#include "loop/history/study.hpp"
+#include "hosel/loop/history/study.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "loop/median.hpp"
+#include "hosel/loop/median.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -35,7 +35,8 @@ void split(const HistoryCase& c, std::vector<HistoryRecord>& records) {
     std::vector<std::size_t> order(records.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
-    const std::size_t held = std::clamp<std::size_t>(std::size_t(std::lround(fraction * double(records.size()))), 1, records.size() - 1);
+    const std::size_t held =
+        std::clamp<std::size_t>(std::size_t(std::lround(fraction * double(records.size()))), 1, records.size() - 1);
     for (std::size_t k = 0; k < held; ++k) records[order[k]].train.assign(records[order[k]].times.size(), 0);
     return;
   }
@@ -66,7 +67,9 @@ void settle(const std::vector<const Candidate*>& tied, Selection& out) {
   }
 }
 
-bool is_clean(const std::vector<HistoryFinding>& f) { return f.empty() || f.front().p_adjusted > HistoryStudy::kRemaining; }
+bool is_clean(const std::vector<HistoryFinding>& f) {
+  return f.empty() || f.front().p_adjusted > HistoryStudy::kRemaining;
+}
 
 }  // namespace
 
@@ -106,7 +109,9 @@ HistoryStudy::HistoryStudy(const HistoryCase& c) : history_case(c) {
   work();
 }
 
-double HistoryStudy::period() const { return history_case.setting.frequency > 0 ? 2 * kPi / history_case.setting.frequency : 1e300; }
+double HistoryStudy::period() const {
+  return history_case.setting.frequency > 0 ? 2 * kPi / history_case.setting.frequency : 1e300;
+}
 
 std::vector<HistoryFinding> HistoryStudy::test(const Fit& f) const {
   Eigen::VectorXd z;
@@ -146,11 +151,15 @@ bool HistoryStudy::drop_spikes(const Fit& at) {
       const double scale = std::max(1.4826 * median(size), problem->channels()[std::size_t(c)].noise);
       for (std::ptrdiff_t i = 0; i < e[r].rows(); ++i) {
         if (!(std::abs(e[r](i, c)) > 7 * scale)) continue;
-        const auto beside = [&](std::ptrdiff_t k) { return k < 0 || k >= e[r].rows() || !std::isfinite(e[r](k, c)) ? 0.0 : e[r](k, c); };
+        const auto beside = [&](std::ptrdiff_t k) {
+          return k < 0 || k >= e[r].rows() || !std::isfinite(e[r](k, c)) ? 0.0 : e[r](k, c);
+        };
         // A motion moves its neighbours too; two readings in a row may fail together.
         if (std::abs(e[r](i, c) - 0.5 * (beside(i - 2) + beside(i + 2))) < 6 * scale) continue;
-        result.flagged.push_back({offset + int(i), fmt::format("{}", offset + i + 1), problem->channels()[std::size_t(c)].name,
-                                  fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -e[r](i, c), problem->records()[r].times[std::size_t(i)], problem->records()[r].name),
+        result.flagged.push_back({offset + int(i), fmt::format("{}", offset + i + 1),
+                                  problem->channels()[std::size_t(c)].name,
+                                  fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -e[r](i, c),
+                                              problem->records()[r].times[std::size_t(i)], problem->records()[r].name),
                                   int(result.flagged.size()) + 1});
         problem->drop(int(r), int(i), c);
         any = true;
@@ -170,9 +179,7 @@ void HistoryStudy::work() {
   for (int pass = 0; pass < 3; ++pass) {
     found = search(*problem, base, candidates, period(), rules);
     if (!std::isfinite(found.base.deviance)) throw DataError("the model has no answer for these records");
-    if (pass == 0 && drop_spikes(found.richest())) {
-      found = search(*problem, base, candidates, period(), rules);
-    }
+    if (pass == 0 && drop_spikes(found.richest())) { found = search(*problem, base, candidates, period(), rules); }
     select();
     if (result.selection.clean) contradict(result.selection.chosen);
     // The richest model sees the least of an effect in the noise.
@@ -246,9 +253,12 @@ void HistoryStudy::select() {
       if (c.criterion <= level->front().criterion + rules.tie) tied.push_back(&c);
     settle(tied, s);
   }
-  for (const auto* list : {&found.singles, &found.pairs, &found.triples}) s.candidates.insert(s.candidates.end(), list->begin(), list->end());
+  for (const auto* list : {&found.singles, &found.pairs, &found.triples})
+    s.candidates.insert(s.candidates.end(), list->begin(), list->end());
   // Ranked as they are adopted: every further effect must pay for itself.
-  std::ranges::stable_sort(s.candidates, {}, [&](const Candidate& c) { return c.criterion + rules.further_gain * double(c.effects.size()); });
+  std::ranges::stable_sort(s.candidates, {}, [&](const Candidate& c) {
+    return c.criterion + rules.further_gain * double(c.effects.size());
+  });
 }
 
 }  // namespace hosel::loop

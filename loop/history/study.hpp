@@ -1,9 +1,9 @@
 /// The loop on records up to the selection: noise with its colour, spikes, effects.
 #pragma once
 
-#include "loop/history/histories.hpp"
-#include "loop/history/noise.hpp"
-#include "loop/history/search.hpp"
+#include "hosel/loop/history/histories.hpp"
+#include "hosel/loop/history/noise.hpp"
+#include "hosel/loop/history/search.hpp"
 
 namespace hosel::loop {
 

@@ -1,16 +1,21 @@
-#include "loop/history/swing_history.hpp"
+#include "hosel/loop/history/swing_history.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "golf/shaft_library.hpp"
-#include "solvers/errors.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::loop {
 
-SwingHistory::SwingHistory(Club club, const models::SwingOptions& options, models::GripMotion motion, double begin, std::vector<std::vector<double>> times,
-                           const std::vector<HistoryChannel>& channels)
-    : club_(std::move(club)), options_(options), motion_(std::move(motion)), begin_(begin), times_(std::move(times)), channels_(channels) {
+SwingHistory::SwingHistory(Club club, const models::SwingOptions& options, models::GripMotion motion, double begin,
+                           std::vector<std::vector<double>> times, const std::vector<HistoryChannel>& channels)
+    : club_(std::move(club)),
+      options_(options),
+      motion_(std::move(motion)),
+      begin_(begin),
+      times_(std::move(times)),
+      channels_(channels) {
   end_ = begin_;
   for (const auto& t : times_) end_ = std::max(end_, t.back());
 }
@@ -55,14 +60,16 @@ std::vector<models::SwingSample> SwingHistory::simulate(const models::ClubChange
   }
   models::Swing swing(club, options, drive);
   std::vector<models::SwingSample> samples;
-  swing.run(swing.start(begin_, swing.equilibrium(begin_)), end_, [&](const models::SwingSample& s) { samples.push_back(s); });
+  swing.run(swing.start(begin_, swing.equilibrium(begin_)), end_,
+            [&](const models::SwingSample& s) { samples.push_back(s); });
   return samples;
 }
 
 bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
   const models::ClubChange& c = rig.club;
-  const std::vector<double> key = {c.bending, c.torsion, c.damping_time, c.clamp[0], c.clamp[1], c.clamp[2], c.hosel[0], c.hosel[1],
-                                   c.hosel[2], c.tip_mass, c.cg[0], c.cg[1], c.cg[2], c.inertia[0], c.inertia[1], c.inertia[2]};
+  const std::vector<double> key = {c.bending,  c.torsion,    c.damping_time, c.clamp[0],  c.clamp[1], c.clamp[2],
+                                   c.hosel[0], c.hosel[1],   c.hosel[2],     c.tip_mass,  c.cg[0],    c.cg[1],
+                                   c.cg[2],    c.inertia[0], c.inertia[1],   c.inertia[2]};
   std::vector<models::SwingSample> samples;
   {
     const std::lock_guard lock(mutex_);
@@ -71,9 +78,7 @@ bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
   if (samples.empty()) {
     try {
       samples = simulate(c);
-    } catch (const solvers::NonConvergence&) {
-      return false;
-    } catch (const std::invalid_argument&) {
+    } catch (const solvers::NonConvergence&) { return false; } catch (const std::invalid_argument&) {
       return false;
     }
     const std::lock_guard lock(mutex_);
@@ -81,7 +86,10 @@ bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
     known_.emplace(key, samples);
   }
   const auto value = [&](const models::SwingSample& s, Reading r) {
-    return r == Reading::lead ? s.lead : r == Reading::droop ? s.droop : r == Reading::shortening ? s.shortening : s.twist.z();
+    return r == Reading::lead         ? s.lead
+           : r == Reading::droop      ? s.droop
+           : r == Reading::shortening ? s.shortening
+                                      : s.twist.z();
   };
   out.assign(times_.size(), {});
   for (std::size_t r = 0; r < times_.size(); ++r) {
@@ -94,7 +102,8 @@ bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
         const double t = std::clamp(times_[r][i] - rig.delay[k], samples.front().time, samples.back().time);
         while (at + 2 < samples.size() && samples[at + 1].time <= t) ++at;
         while (at > 0 && samples[at].time > t) --at;
-        const std::size_t first = std::min(at > 0 ? at - 1 : 0, samples.size() >= 4 ? samples.size() - 4 : 0), count = std::min<std::size_t>(4, samples.size());
+        const std::size_t first = std::min(at > 0 ? at - 1 : 0, samples.size() >= 4 ? samples.size() - 4 : 0),
+                          count = std::min<std::size_t>(4, samples.size());
         double sum = 0;
         for (std::size_t a = first; a < first + count; ++a) {
           double weight = 1;

@@ -4,17 +4,17 @@
 #include <map>
 #include <mutex>
 
-#include "loop/history/rig.hpp"
-#include "models/grip_motion.hpp"
-#include "models/swing.hpp"
+#include "hosel/loop/history/rig.hpp"
+#include "hosel/models/grip_motion.hpp"
+#include "hosel/models/swing.hpp"
 
 namespace hosel::loop {
 
 class SwingHistory final : public HistoryModel {
  public:
   /// Every record is of the same motion; `times` per record.
-  SwingHistory(Club club, const models::SwingOptions& options, models::GripMotion motion, double begin, std::vector<std::vector<double>> times,
-               const std::vector<HistoryChannel>& channels);
+  SwingHistory(Club club, const models::SwingOptions& options, models::GripMotion motion, double begin,
+               std::vector<std::vector<double>> times, const std::vector<HistoryChannel>& channels);
   bool answer(const Rig& rig, std::vector<Answer>& out) const override;
   bool slow() const override { return true; }
   /// Circular frequency and damping ratio of the first mode with the grip held.

@@ -1,4 +1,4 @@
-#include "loop/history/verdict.hpp"
+#include "hosel/loop/history/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,11 @@ void report_structure(HistoryStudy& study) {
   const auto fill = [&](const std::vector<HistoryFinding>& from, StructureMap& map) {
     for (const HistoryFinding& f : from) {
       s.regressors.push_back({.column = "time_s", .kind = f.kind, .detail = f.detail, .value = {}});
-      map.findings.push_back({.channel = f.channel, .regressor = int(s.regressors.size()) - 1, .statistic = f.signal, .signal = f.signal, .p_adjusted = f.p_adjusted});
+      map.findings.push_back({.channel = f.channel,
+                              .regressor = int(s.regressors.size()) - 1,
+                              .statistic = f.signal,
+                              .signal = f.signal,
+                              .p_adjusted = f.p_adjusted});
     }
     map.p = from.empty() ? 1 : from.front().p_adjusted;
   };
@@ -37,7 +41,8 @@ Eigen::MatrixXd covariance(const HistoryStudy& study, const Fit& f) {
     cov += (sv > 1e-3 ? 1 / (sv * sv) : 1e12) * svd.matrixV().col(k) * svd.matrixV().col(k).transpose();
   }
   for (std::ptrdiff_t a = 0; a < n; ++a)
-    for (std::ptrdiff_t b = 0; b < n; ++b) cov(a, b) *= parameters[std::size_t(a)]->scale * parameters[std::size_t(b)]->scale;
+    for (std::ptrdiff_t b = 0; b < n; ++b)
+      cov(a, b) *= parameters[std::size_t(a)]->scale * parameters[std::size_t(b)]->scale;
   return cov;
 }
 
@@ -81,7 +86,8 @@ void locate(HistoryStudy& study) {
   std::ranges::stable_partition(told, [](const HistoryFinding& f) { return f.kind == "oscillation"; });
   for (const HistoryFinding& f : told) {
     const std::string& channel = study.result.channel_names[std::size_t(f.channel)];
-    if (std::ranges::any_of(study.result.unexplained, [&](const Location& l) { return l.channel == channel; })) continue;
+    if (std::ranges::any_of(study.result.unexplained, [&](const Location& l) { return l.channel == channel; }))
+      continue;
     study.result.unexplained.push_back({channel, "time_s", f.kind + (f.detail.empty() ? "" : " " + f.detail)});
   }
 }
@@ -103,7 +109,9 @@ void detectable(HistoryStudy& study, const Fit& base) {
     }
     const Parameter& q = f->parameters.front();
     const double value = std::sqrt(study.history_case.rules.gain) / column.norm() * q.scale;
-    study.result.minimum_detectable.push_back({f->effect, q.name, q.unit, value < std::max(q.max, -q.min) ? value / q.si : std::numeric_limits<double>::infinity()});
+    study.result.minimum_detectable.push_back(
+        {f->effect, q.name, q.unit,
+         value < std::max(q.max, -q.min) ? value / q.si : std::numeric_limits<double>::infinity()});
   }
 }
 
@@ -126,8 +134,10 @@ Likeness alike(const HistoryStudy& study, const Fit& at) {
 void next_experiment(HistoryStudy& study) {
   NextExperiment& next = study.result.next;
   if (study.result.verdict == Verdict::unexplained && !study.result.unexplained.empty()) {
-    next.text = fmt::format("repeat the record with one thing changed at a time (free length, tip mass, amplitude): {} holds {} that no candidate explains",
-                            study.result.unexplained.front().channel, study.result.unexplained.front().detail);
+    next.text = fmt::format(
+        "repeat the record with one thing changed at a time (free length, tip mass, amplitude): {} holds {} that no "
+        "candidate explains",
+        study.result.unexplained.front().channel, study.result.unexplained.front().detail);
   } else if (study.result.verdict == Verdict::ambiguous) {
     std::vector<std::string> sensors;
     std::string names;
@@ -137,7 +147,10 @@ void next_experiment(HistoryStudy& study) {
         if (const HistoryEffect* h = find_history_effect(e)) sensors.emplace_back(h->sensor);
       }
     next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
-    next.text = fmt::format("this record cannot separate {}: measure {}; or record the same club with a known mass at the tip and with a shorter free length", names, *next.sensor);
+    next.text = fmt::format(
+        "this record cannot separate {}: measure {}; or record the same club with a known mass at the tip and with a "
+        "shorter free length",
+        names, *next.sensor);
   } else if (study.result.verdict == Verdict::insufficient) {
     next.text = "a longer or stronger record: minimum_detectable says how large an effect this one could have shown";
   } else if (study.result.verdict == Verdict::noise_contradicted) {
@@ -186,7 +199,8 @@ void conclude(HistoryStudy& study) {
   study.result.base_score = mean_score(base);
   if (s.level > 0 && study.result.verdict != Verdict::unexplained && mean_score(after) < study.result.base_score) {
     study.result.verdict = Verdict::insufficient;
-    study.result.notes.push_back(fmt::format("{} explained the training part and not what was held out: not adopted", fmt::join(study.result.adopted, ", ")));
+    study.result.notes.push_back(fmt::format("{} explained the training part and not what was held out: not adopted",
+                                             fmt::join(study.result.adopted, ", ")));
     study.result.adopted.clear();
     study.result.ties.clear();
   }
@@ -201,9 +215,12 @@ void conclude(HistoryStudy& study) {
     out.after = errors(*study.problem, ea, c);
     out.scatter = out.after.train_rmse / ch.noise;
     study.result.channels.push_back(out);
-    if (ch.colour > 0) study.result.notes.push_back(fmt::format("{}: neighbouring readings are correlated by {:.2f}; every test counts with that", ch.name, ch.colour));
+    if (ch.colour > 0)
+      study.result.notes.push_back(fmt::format(
+          "{}: neighbouring readings are correlated by {:.2f}; every test counts with that", ch.name, ch.colour));
     if (std::ranges::count(study.contradicted, ch.name))
-      study.result.notes.push_back(fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}", ch.name, study.declared_noise[std::size_t(c)], ch.noise));
+      study.result.notes.push_back(fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}",
+                                               ch.name, study.declared_noise[std::size_t(c)], ch.noise));
   }
   for (std::size_t k = 0; k < std::min<std::size_t>(s.candidates.size(), study.problem->slow() ? 12 : 25); ++k) {
     ScoredCandidate sc{.candidate = s.candidates[k]};
@@ -212,7 +229,8 @@ void conclude(HistoryStudy& study) {
     sc.holdout_score = mean_score(sc.candidate.fit);
     study.result.candidates.push_back(std::move(sc));
   }
-  for (const std::string& e : s.silent) study.result.notes.push_back(fmt::format("{}: these channels would not show it", e));
+  for (const std::string& e : s.silent)
+    study.result.notes.push_back(fmt::format("{}: these channels would not show it", e));
   detectable(study, base);
   study.result.likeness = alike(study, after);
   next_experiment(study);

@@ -1,7 +1,7 @@
 /// From a selection on records to what is said of it.
 #pragma once
 
-#include "loop/history/study.hpp"
+#include "hosel/loop/history/study.hpp"
 
 namespace hosel::loop {
 

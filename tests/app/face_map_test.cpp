@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "command.hpp"
-#include "golf/units.hpp"
-#include "models/rigid_eccentric.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace {
 
@@ -83,7 +83,9 @@ TEST_F(FaceMapRun, EveryPointIsTheModelsOwnAnswer) {
   const Rows rows = csv(dir_ / "out" / "face_map.csv");
   ASSERT_EQ(rows.cells.size(), 2u * 135u);
   hosel::Blow blow;
-  blow.club.head = {.mass = 0.2, .cg = {-0.035, 0, 0.004}, .inertia = hosel::Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(),
+  blow.club.head = {.mass = 0.2,
+                    .cg = {-0.035, 0, 0.004},
+                    .inertia = hosel::Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(),
                     .face = {0.4, 0.35}};
   blow.delivery.club_speed = 45;
   blow.delivery.dynamic_loft = hosel::radians(10);
@@ -108,7 +110,8 @@ TEST_F(FaceMapRun, EveryPointIsTheModelsOwnAnswer) {
 TEST_F(FaceMapRun, HeavierHeadIsItsOwnEquivalentMass) {
   const auto figures = summary().at("effect").at("heavier").at("figures");
   for (const char* name : {"centre", "mean", "min", "max"})
-    EXPECT_NEAR(figures.at(std::string("equivalent_head_mass_") + name + "_g").at("value").get<double>(), 2.5, 1e-3) << name;
+    EXPECT_NEAR(figures.at(std::string("equivalent_head_mass_") + name + "_g").at("value").get<double>(), 2.5, 1e-3)
+        << name;
   EXPECT_GT(figures.at("ball_speed_gain_min_mps").at("value").get<double>(), 0);
   EXPECT_EQ(figures.at("ball_speed_gain_positive_share").at("value").get<double>(), 1);
   // The refinement of this test is another attack angle: every figure then carries a change.
@@ -123,7 +126,8 @@ TEST_F(FaceMapRun, SymmetricHeadGivesASymmetricMap) {
 
 TEST_F(FaceMapRun, ASkewedHeadBreaksTheSymmetry) {
   const auto out = (dir_ / "skewed").string();
-  ASSERT_EQ(command("run " + (dir_ / "case").string() + " --quiet --set 'head.cg_mm=[-35,1,4]' --out " + out).status, 0);
+  ASSERT_EQ(command("run " + (dir_ / "case").string() + " --quiet --set 'head.cg_mm=[-35,1,4]' --out " + out).status,
+            0);
   const auto s = nlohmann::json::parse(content(fs::path(out) / "summary.json"));
   EXPECT_GT(s.at("models").at("rigid-eccentric").at("mirror_error").get<double>(), 1e-3);
 }
@@ -140,8 +144,8 @@ TEST_F(FaceMapRun, FaceSurfaceCarriesEveryChannelWithItsUnit) {
   EXPECT_NEAR(heel_low[2], -0.01875, 1e-12);
   EXPECT_NEAR(heel_low[0], -(0.0375 * 0.0375 / 0.8 + 0.01875 * 0.01875 / 0.7), 1e-12);
   const Rows rows = csv(dir_ / "out" / "face_map.csv"), differences = csv(dir_ / "out" / "differences.csv");
-  const std::map<std::string, std::string> units = {{"ball_speed", "mps"}, {"launch_angle", "deg"}, {"sidespin", "rpm"},
-                                                    {"head_rotation", "rad_per_s"}};
+  const std::map<std::string, std::string> units = {
+      {"ball_speed", "mps"}, {"launch_angle", "deg"}, {"sidespin", "rpm"}, {"head_rotation", "rad_per_s"}};
   for (const auto& [name, unit] : units) {
     vtkDataArray* a = face->GetPointData()->GetArray(("rigid-eccentric." + name).c_str());
     vtkDataArray* d = face->GetPointData()->GetArray(("heavier-minus-rigid-eccentric." + name).c_str());

@@ -30,8 +30,10 @@ namespace fs = std::filesystem;
 
 /// driver-toe with the full club alone on a coarse mesh: all four bodies in a few seconds.
 std::string coarse_full_club() {
-  return "run " HOSEL_SOURCE "/cases/driver-toe --quiet --set 'models=[\"fe-full-club\"]' --set mesh.sector=2 "
-         "--set mesh.rings=2 --set mesh.harmonics=2 --set mesh.antisymmetric=2 --set time.steps_per_contact=40 --set output.steps_per_frame=2 --out ";
+  return "run " HOSEL_SOURCE
+         "/cases/driver-toe --quiet --set 'models=[\"fe-full-club\"]' --set mesh.sector=2 "
+         "--set mesh.rings=2 --set mesh.harmonics=2 --set mesh.antisymmetric=2 --set time.steps_per_contact=40 --set "
+         "output.steps_per_frame=2 --out ";
 }
 
 struct Frame {
@@ -100,8 +102,13 @@ TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
   const double peak_time = history.at("time_s")[std::size_t(peak - force.begin())];
 
   const std::map<std::string, std::vector<Array>> expected = {
-      {"ball", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"contact_traction", 3, "Pa"}, {"cauchy_stress", 6, "Pa"},
-                {"von_mises", 1, "Pa"}, {"contact_pressure", 1, "Pa"}}},
+      {"ball",
+       {{"displacement", 3, "m"},
+        {"velocity", 3, "m/s"},
+        {"contact_traction", 3, "Pa"},
+        {"cauchy_stress", 6, "Pa"},
+        {"von_mises", 1, "Pa"},
+        {"contact_pressure", 1, "Pa"}}},
       {"face", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
       {"head", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
       {"shaft", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"radius", 1, "m"}}}};
@@ -182,7 +189,8 @@ TEST(ImpactCase, KilledRunLeavesSeriesThatOpenAndGoesOn) {
   ASSERT_EQ(again.status, 0) << again.text;
   EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
   const auto speed = [](const fs::path& run) {
-    return nlohmann::json::parse(content(run / "summary.json"))["models"]["fe-full-club"]["ball_speed_mps"].get<double>();
+    return nlohmann::json::parse(content(run / "summary.json"))["models"]["fe-full-club"]["ball_speed_mps"]
+        .get<double>();
   };
   EXPECT_NEAR(speed(out), speed(whole), 1e-4);  // Newton's tolerance: factors are not kept
   const auto times = columns(out / "history.csv").at("time_s"), expected = columns(whole / "history.csv").at("time_s");

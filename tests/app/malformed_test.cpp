@@ -40,19 +40,22 @@ TEST_P(MalformedCase, EndsWithStatusTwoAndOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ten, MalformedCase,
-    testing::Values(
-        Malformed{"unknown_key", "dynamic_loft_deg", "dynamic_lofft_deg", 5, "dynamic_lofft_deg", "did you mean 'dynamic_loft_deg'"},
-        Malformed{"unknown_table", "[head]", "[heads]", 6, "heads", "did you mean '[head]'"},
-        Malformed{"wrong_unit", "club_speed_mps", "club_speed_mm", 4, "club_speed_mm", "expected a speed"},
-        Malformed{"no_unit", "club_speed_mps", "club_speed", 4, "club_speed", "club_speed_mph"},
-        Malformed{"out_of_range", "club_speed_mps = 45.0", "club_speed_mps = 450.0", 4, "club_speed_mps", "0 to 150 mps"},
-        Malformed{"not_a_number", "mass_kg = 0.2", "mass_kg = nan", 7, "mass_kg", "nan"},
-        Malformed{"negative_mass", "mass_kg = 0.2", "mass_kg = -0.2", 7, "mass_kg", "above 0 kg"},
-        Malformed{"impossible_inertia", "4.8e-4", "9.8e-4", 9, "inertia_kg_m2", "exceeds the sum"},
-        Malformed{"text_for_number", "club_speed_mps = 45.0", "club_speed_mps = \"fast\"", 4, "club_speed_mps", "expected a number"},
-        Malformed{"unknown_model", "rigid-eccentric", "rigid-ecentric", 2, "models", "did you mean 'rigid-eccentric'"},
-        Malformed{"not_toml", "[delivery]", "[delivery", 3, "case.toml", "not valid TOML"},
-        Malformed{"unknown_kind", "\"impact\"", "\"impakt\"", 1, "kind", "did you mean 'impact'"}),
+    testing::Values(Malformed{"unknown_key", "dynamic_loft_deg", "dynamic_lofft_deg", 5, "dynamic_lofft_deg",
+                              "did you mean 'dynamic_loft_deg'"},
+                    Malformed{"unknown_table", "[head]", "[heads]", 6, "heads", "did you mean '[head]'"},
+                    Malformed{"wrong_unit", "club_speed_mps", "club_speed_mm", 4, "club_speed_mm", "expected a speed"},
+                    Malformed{"no_unit", "club_speed_mps", "club_speed", 4, "club_speed", "club_speed_mph"},
+                    Malformed{"out_of_range", "club_speed_mps = 45.0", "club_speed_mps = 450.0", 4, "club_speed_mps",
+                              "0 to 150 mps"},
+                    Malformed{"not_a_number", "mass_kg = 0.2", "mass_kg = nan", 7, "mass_kg", "nan"},
+                    Malformed{"negative_mass", "mass_kg = 0.2", "mass_kg = -0.2", 7, "mass_kg", "above 0 kg"},
+                    Malformed{"impossible_inertia", "4.8e-4", "9.8e-4", 9, "inertia_kg_m2", "exceeds the sum"},
+                    Malformed{"text_for_number", "club_speed_mps = 45.0", "club_speed_mps = \"fast\"", 4,
+                              "club_speed_mps", "expected a number"},
+                    Malformed{"unknown_model", "rigid-eccentric", "rigid-ecentric", 2, "models",
+                              "did you mean 'rigid-eccentric'"},
+                    Malformed{"not_toml", "[delivery]", "[delivery", 3, "case.toml", "not valid TOML"},
+                    Malformed{"unknown_kind", "\"impact\"", "\"impakt\"", 1, "kind", "did you mean 'impact'"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Command, MissingFileNamesTheNearestCase) {
@@ -66,7 +69,8 @@ TEST(Command, FinishedRunIsNotOverwrittenUnlessTold) {
   std::ofstream(dir / "case.toml") << kEccentricBlow;
   const std::string arguments = "run " + dir.string() + " --out " + (dir / "out").string();
   ASSERT_EQ(command(arguments).status, 0);
-  for (const char* file : {"case.resolved.toml", "summary.json", "log.txt"}) EXPECT_TRUE(fs::exists(dir / "out" / file));
+  for (const char* file : {"case.resolved.toml", "summary.json", "log.txt"})
+    EXPECT_TRUE(fs::exists(dir / "out" / file));
   const Outcome again = command(arguments);
   EXPECT_EQ(again.status, 2);
   EXPECT_NE(again.text.find("--force"), std::string::npos);

@@ -2,9 +2,9 @@
 // twice, nothing mixed, nothing unconverged passed off as a result.
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <spawn.h>
 #include <unistd.h>
+#include <csignal>
 
 #include <algorithm>
 #include <map>
@@ -65,7 +65,8 @@ std::size_t lines(const fs::path& file) {
 
 TEST(Sweep, KilledTenTimesGivesTheSameTable) {
   const fs::path dir = sweep_case("sweep_killed", kSample);
-  const std::string sweep = (dir / "sweep").string(), whole = (dir / "whole").string(), killed = (dir / "killed").string();
+  const std::string sweep = (dir / "sweep").string(), whole = (dir / "whole").string(),
+                    killed = (dir / "killed").string();
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + whole).status, 0);
 
   std::mt19937 random(20181);
@@ -212,7 +213,8 @@ values = [90, 100.5]
 key = "delivery.dynamic_loft_deg"
 values = [0.0, 20.0, 40.0]
 )");
-  write(dir / "blow" / "case.toml", std::string(kEccentricBlow).replace(kEccentricBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
+  write(dir / "blow" / "case.toml",
+        std::string(kEccentricBlow).replace(kEccentricBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
   // `models` is a list, and a word is not: the error is the case's own.
   const Outcome refused = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
   EXPECT_EQ(refused.status, 2);
@@ -256,11 +258,13 @@ TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
       {"key = \"delivery.club_speed_mps\"\nvalue = [1.0]", "unknown key"},
   };
   for (const auto& [parameter, hint] : wrong) {
-    const fs::path dir = sweep_case("sweep_wrong", "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\n" + parameter + "\n");
+    const fs::path dir =
+        sweep_case("sweep_wrong", "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\n" + parameter + "\n");
     const Outcome o = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
     EXPECT_EQ(o.status, 2) << parameter;
     EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
-    EXPECT_TRUE(o.text.find(hint) != std::string::npos || o.text.find("'values' is missing") != std::string::npos) << o.text;
+    EXPECT_TRUE(o.text.find(hint) != std::string::npos || o.text.find("'values' is missing") != std::string::npos)
+        << o.text;
     EXPECT_FALSE(fs::exists(dir / "out"));
   }
   EXPECT_EQ(command("sweep run " + fresh_directory("no_plan").string()).status, 2);

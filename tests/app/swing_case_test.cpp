@@ -31,15 +31,16 @@ step_ms = 5.0
 
 std::string euler_motion() {
   std::string csv = "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n";
-  for (int i = 0; i < 21; ++i) csv += std::to_string(0.01 * i) + ",0,0," + std::to_string(1 + 1e-4 * i * i) + "," + std::to_string(i) + ",10,0\n";
+  for (int i = 0; i < 21; ++i)
+    csv += std::to_string(0.01 * i) + ",0,0," + std::to_string(1 + 1e-4 * i * i) + "," + std::to_string(i) + ",10,0\n";
   return csv;
 }
 
 struct Bad {
   const char* name;
-  const char* from;   // text of the case or of the motion ...
-  const char* to;     // ... and what stands there instead
-  const char* hint;   // what the line must say
+  const char* from;  // text of the case or of the motion ...
+  const char* to;    // ... and what stands there instead
+  const char* hint;  // what the line must say
 };
 
 class BadSwing : public testing::TestWithParam<Bad> {};
@@ -68,10 +69,8 @@ TEST_P(BadSwing, EndsWithStatusTwoAndOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     Input, BadSwing,
     testing::Values(Bad{"backwards", "\n0.070000", "\n0.030000", "backwards"},
-                    Bad{"gap", "\n0.200000", "\n0.400000", "gap"},
-                    Bad{"gimbal", ",5,10,0\n", ",5,89.9,0\n", "gimbal"},
-                    Bad{"jump", ",5,10,0\n", ",95,10,0\n", "jumps"},
-                    Bad{"empty", ",5,10,0\n", ",,10,0\n", "no number"},
+                    Bad{"gap", "\n0.200000", "\n0.400000", "gap"}, Bad{"gimbal", ",5,10,0\n", ",5,89.9,0\n", "gimbal"},
+                    Bad{"jump", ",5,10,0\n", ",95,10,0\n", "jumps"}, Bad{"empty", ",5,10,0\n", ",,10,0\n", "no number"},
                     Bad{"axes", "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n",
                         "time_s,grip_x_m,grip_y_m,grip_z_m,wrist_deg,x_deg,y_deg\n", "no column 'grip_ex_x'"},
                     Bad{"order", "[0, 500, 1100]", "[1100, 500, 0]", "butt to tip"},
@@ -117,14 +116,18 @@ TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
     return out;
   };
   const auto prescribed = run("prescribed", "");
-  const auto forced = run("forced", "[grip]\ndrive = \"forced\"\nwrench = \"" + (dir / "prescribed" / "swing.csv").string() + "\"\n");
-  const auto hands = run("hands", "[grip]\ndrive = \"hands\"\nstiffness_N_per_m = [1e8, 1e8, 1e8]\nrotational_stiffness_N_m_per_rad = [1e6, 1e6, 1e6]\n");
+  const auto forced =
+      run("forced", "[grip]\ndrive = \"forced\"\nwrench = \"" + (dir / "prescribed" / "swing.csv").string() + "\"\n");
+  const auto hands = run("hands",
+                         "[grip]\ndrive = \"hands\"\nstiffness_N_per_m = [1e8, 1e8, "
+                         "1e8]\nrotational_stiffness_N_m_per_rad = [1e6, 1e6, 1e6]\n");
   const double bent = std::hypot(prescribed.at(1), prescribed.at(2));
   EXPECT_GT(bent, 5);  // mm
   EXPECT_LT(std::hypot(forced.at(1) - prescribed.at(1), forced.at(2) - prescribed.at(2)), 0.02 * bent);
   EXPECT_LT(std::hypot(hands.at(1) - prescribed.at(1), hands.at(2) - prescribed.at(2)), 0.02 * bent);
   std::ofstream(dir / "case.toml") << kCase << "[grip]\ndrive = \"forced\"\nwrench = \"short.csv\"\n";
-  std::ofstream(dir / "short.csv") << "time_s,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n0,0,0,0,0,0,0\n0.1,0,0,0,0,0,0\n";
+  std::ofstream(dir / "short.csv") << "time_s,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n0,"
+                                      "0,0,0,0,0,0\n0.1,0,0,0,0,0,0\n";
   const Outcome o = command("run " + dir.string() + " --out " + (dir / "short").string());
   EXPECT_EQ(o.status, 2) << o.text;
   EXPECT_NE(o.text.find("does not cover"), std::string::npos) << o.text;
@@ -134,7 +137,8 @@ TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
   const auto dir = fresh_directory("swing_skipped");
   for (const std::string name : {"club-6dof", "swing-markers"}) {
     const Outcome o = command("run " + std::string(HOSEL_SOURCE) + "/cases/" + name + " --set " +
-                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there.csv --out " + (dir / name).string());
+                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there.csv --out " +
+                              (dir / name).string());
     EXPECT_EQ(o.status, 0) << o.text;
     EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
   }
@@ -143,7 +147,8 @@ TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
 TEST(ModesCase, FrequencyMachineCountsAsPublished) {
   // A 60 g composite driver shaft with about 200 g at the tip counts about 266 cpm (published).
   const auto dir = fresh_directory("modes");
-  const Outcome o = command("run " + std::string(HOSEL_SOURCE) + "/cases/frequency-machine --out " + (dir / "out").string());
+  const Outcome o =
+      command("run " + std::string(HOSEL_SOURCE) + "/cases/frequency-machine --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 0) << o.text;
   std::ifstream file(dir / "out" / "modes.csv");
   std::string header, row;

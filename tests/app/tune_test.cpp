@@ -6,36 +6,43 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "app/job.hpp"
-#include "golf/units.hpp"
-#include "models/parameters.hpp"
-#include "models/registry.hpp"
-#include "solvers/least_squares.hpp"
+#include "hosel/app/job.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/parameters.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::app {
 namespace {
 
 /// A box of drives on the published test driver, drawn by the seed.
 Blow drive(std::mt19937_64& random) {
-  const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random() >> 11) * 0x1.0p-53; };
+  const auto uniform = [&](double a, double b) {
+    return a + (b - a) * static_cast<double>(random() >> 11) * 0x1.0p-53;
+  };
   Blow b;
   b.club.head.mass = 0.204;
   b.club.head.cg = {-0.0423, 0.001, 0.0029};
   b.club.head.inertia = Vec3(2.843e-4, 4.085e-4, 5.679e-4).asDiagonal();
   b.club.head.face = {0.305, 0.305};
-  b.delivery = {.club_speed = uniform(38, 52), .attack_angle = uniform(-0.05, 0.09), .club_path = uniform(-0.08, 0.08),
-                .dynamic_loft = uniform(0.14, 0.3), .face_angle = uniform(-0.06, 0.06), .impact_toe = uniform(-0.02, 0.02),
+  b.delivery = {.club_speed = uniform(38, 52),
+                .attack_angle = uniform(-0.05, 0.09),
+                .club_path = uniform(-0.08, 0.08),
+                .dynamic_loft = uniform(0.14, 0.3),
+                .face_angle = uniform(-0.06, 0.06),
+                .impact_toe = uniform(-0.02, 0.02),
                 .impact_high = uniform(-0.012, 0.012)};
   return b;
 }
 
 struct Recovery {
-  int joint = 0;             ///< seeds with the truth inside the two-sigma region
-  std::vector<int> single;   ///< per parameter: within two standard deviations
+  int joint = 0;            ///< seeds with the truth inside the two-sigma region
+  std::vector<int> single;  ///< per parameter: within two standard deviations
 };
 
 /// 40 shots a seed, five channels with the noise of the specification's example.
-Recovery recover(const char* model, const std::vector<std::pair<const char*, double>>& truth, double region, int seeds) {
+Recovery recover(const char* model, const std::vector<std::pair<const char*, double>>& truth, double region,
+                 int seeds) {
   const double noise[5] = {0.25, radians(0.2), radians(0.2), 60 * kRadPerSecPerRpm, 60 * kRadPerSecPerRpm};
   Recovery out;
   out.single.assign(truth.size(), 0);
@@ -56,7 +63,8 @@ Recovery recover(const char* model, const std::vector<std::pair<const char*, dou
     const auto launch = [&](const Eigen::VectorXd& p, const Blow& blow, double* v) {
       models::Options o = options;
       Blow b = blow;
-      for (std::size_t i = 0; i < truth.size(); ++i) models::find_parameter(truth[i].first)->set(o, b, p[static_cast<Eigen::Index>(i)]);
+      for (std::size_t i = 0; i < truth.size(); ++i)
+        models::find_parameter(truth[i].first)->set(o, b, p[static_cast<Eigen::Index>(i)]);
       const Launch l = models::find(model)->make(o)->launch(b);
       v[0] = l.ball_speed(), v[1] = l.launch_angle(), v[2] = l.azimuth(), v[3] = l.backspin(), v[4] = l.sidespin();
     };
@@ -86,7 +94,9 @@ Recovery recover(const char* model, const std::vector<std::pair<const char*, dou
 
 TEST(Tune, KnownParametersComeBackRigid) {
   // Two-sigma region of four parameters: chi-squared quantile at 0.9545.
-  const Recovery r = recover("rigid-eccentric", {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}}, 9.716, 20);
+  const Recovery r = recover(
+      "rigid-eccentric",
+      {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}}, 9.716, 20);
   EXPECT_GE(r.joint, 19);
   for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("rigid_" + std::to_string(i), r.single[i]);
 }
@@ -94,14 +104,18 @@ TEST(Tune, KnownParametersComeBackRigid) {
 TEST(Tune, IntervalsCoverWhatTheyClaim) {
   // Two standard deviations hold 95.45 % of a normal's draws; 400 seeds tell that to three sigma of a binomial, 3.1 %.
   const int seeds = 400;
-  const Recovery r = recover("rigid-eccentric", {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}}, 9.716, seeds);
+  const Recovery r =
+      recover("rigid-eccentric",
+              {{"restitution", 0.84}, {"tangential_restitution", 0.15}, {"cg_x", -0.0423}, {"inertia_z", 5.679e-4}},
+              9.716, seeds);
   EXPECT_NEAR(r.joint, 0.9545 * seeds, 0.031 * seeds);
   for (const int inside : r.single) EXPECT_NEAR(inside, 0.9545 * seeds, 0.031 * seeds);
   for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("of_400_" + std::to_string(i), r.single[i]);
 }
 
 TEST(Tune, KnownParametersComeBackVolumetric) {
-  const Recovery r = recover("volumetric", {{"volumetric_damping", 6.42e-3}, {"joint_stiffness", 40.0}, {"cg_x", -0.0423}}, 8.025, 20);
+  const Recovery r =
+      recover("volumetric", {{"volumetric_damping", 6.42e-3}, {"joint_stiffness", 40.0}, {"cg_x", -0.0423}}, 8.025, 20);
   EXPECT_GE(r.joint, 19);
   for (std::size_t i = 0; i < r.single.size(); ++i) RecordProperty("volumetric_" + std::to_string(i), r.single[i]);
 }
@@ -174,12 +188,14 @@ max = 0.8
   for (int i = 0; i < 60; ++i) {
     Blow b;
     b.club.head.mass = 0.26;
-    b.delivery = {.club_speed = 40 + 0.1 * normal(random), .attack_angle = radians(-2), .dynamic_loft = radians(20 + 4 * normal(random))};
+    b.delivery = {.club_speed = 40 + 0.1 * normal(random),
+                  .attack_angle = radians(-2),
+                  .dynamic_loft = radians(20 + 4 * normal(random))};
     b.contact.restitution = 0.8;
     b.contact.tangential_restitution = 0.3;
     const Launch l = models::find("rigid-planar")->make({})->launch(b);
-    shots << i + 1 << ',' << b.delivery.club_speed << ",-2," << degrees(b.delivery.dynamic_loft) << ',' << l.ball_speed() + 0.25 * normal(random)
-          << ',' << rpm(l.spin_rate()) + 60 * normal(random) << '\n';
+    shots << i + 1 << ',' << b.delivery.club_speed << ",-2," << degrees(b.delivery.dynamic_loft) << ','
+          << l.ball_speed() + 0.25 * normal(random) << ',' << rpm(l.spin_rate()) + 60 * normal(random) << '\n';
   }
   shots.close();
   const nlohmann::json s = run(d);
@@ -240,7 +256,8 @@ inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
 
 TEST(RollingIrons, FiguresAndFitsOfTheSecondSource) {
   const auto d = scratch("rolling_irons");
-  std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE) / "cases" / "rolling-irons", d, std::filesystem::copy_options::recursive);
+  std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE) / "cases" / "rolling-irons", d,
+                        std::filesystem::copy_options::recursive);
   const nlohmann::json s = run(d);
   // benchmarks.md 3.1 to 3.4, to the digits printed there.
   EXPECT_NEAR(s["theory"]["spin_coefficient_rpm"].get<double>(), 11205.4001, 1e-3);

@@ -21,7 +21,7 @@ Swing designed_swing(const Session& s, const Json& shot) {
     mean.*c.member = sum / s.shots();
   }
   const std::map<std::string, double> units{{"mps", 1}, {"kmh", 1 / 3.6}, {"mph", 0.44704}, {"deg", M_PI / 180},
-                                            {"rad", 1}, {"mm", 1e-3}, {"m", 1}};
+                                            {"rad", 1}, {"mm", 1e-3},     {"m", 1}};
   for (const auto& [name, value] : shot.items()) {
     const auto cut = name.rfind('_');
     for (const Column& c : s.inputs)
@@ -79,7 +79,8 @@ double shots_needed(const Set& set, const Form& rival, const Json& shots) {
   int added = 0;
   while (added < 4000) {
     const int batch = std::max(static_cast<int>(shots.size()), added);
-    for (int k = 0; k < batch; ++k) add(s, designed_swing(set.session, shots[static_cast<std::size_t>(k) % shots.size()]));
+    for (int k = 0; k < batch; ++k)
+      add(s, designed_swing(set.session, shots[static_cast<std::size_t>(k) % shots.size()]));
     const double now = std::pow(apart(set, rival, s), 2);
     if (now >= wanted * wanted) return added + batch * (wanted * wanted - last) / (now - last);
     last = now;

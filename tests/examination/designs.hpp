@@ -6,7 +6,8 @@
 namespace examination {
 
 struct Answer {
-  bool separable = false;  ///< the designed shots, or as many as the session had at corners of the box, part truth and rival by a = 4.8
+  bool separable = false;  ///< the designed shots, or as many as the session had at corners of the box, part truth and
+                           ///< rival by a = 4.8
   bool sensor = false;     ///< the report names a quantity to measure
   double ordinary = 0;     ///< further shots like the session's until a = 4.8
   double designed = 0;     ///< further shots as the report asks for, repeated in turn; infinite where none help

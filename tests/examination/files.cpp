@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <sys/wait.h>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <fstream>
 #include <mutex>
 #include <stdexcept>
-#include <sys/wait.h>
 #include <thread>
 
 namespace examination {
@@ -29,7 +29,8 @@ std::string cell(double value, double resolution) {
   const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(resolution) - 1e-9)));
   // A slipped unit may need more digits than its column has.
   const double shown = std::stod(fmt::format("{:.{}f}", value, decimals));
-  return std::abs(shown - value) > 1e-3 * resolution + 1e-12 ? fmt::format("{:.3f}", value) : fmt::format("{:.{}f}", value, decimals);
+  return std::abs(shown - value) > 1e-3 * resolution + 1e-12 ? fmt::format("{:.3f}", value)
+                                                             : fmt::format("{:.{}f}", value, decimals);
 }
 
 void put(const fs::path& path, const std::string& text) {
@@ -47,15 +48,17 @@ void write_set(const Set& set, const fs::path& dir) {
   fs::create_directories(folder);
   const Session& s = set.session;
 
-  std::string toml = fmt::format("kind  = \"loop\"\ntitle = \"measured set {}\"\n\n[model]\nbase = \"{}\"\n\n", set.name, s.base);
+  std::string toml =
+      fmt::format("kind  = \"loop\"\ntitle = \"measured set {}\"\n\n[model]\nbase = \"{}\"\n\n", set.name, s.base);
   toml += fmt::format("[ball]\nmass_kg = {}\nradius_mm = {}\ninertia_factor = {}\n\n[head]\n", number(s.ball.mass_kg),
                       number(s.ball.radius_m * 1e3), number(s.ball.inertia_factor));
   if (!s.mass_column) toml += fmt::format("mass_kg = {}\n", number(s.head.mass_kg));
   const Vector3d cg = s.head.cg_m * 1e3;
   toml += fmt::format("cg_mm = [{}, {}, {}]\n", number(cg[0]), number(cg[1]), number(cg[2]));
   const Matrix3d& i = s.head.inertia_kg_m2;
-  toml += fmt::format("inertia_kg_m2 = [[{}, {}, {}], [{}, {}, {}], [{}, {}, {}]]\n", number(i(0, 0)), number(i(0, 1)), number(i(0, 2)),
-                      number(i(1, 0)), number(i(1, 1)), number(i(1, 2)), number(i(2, 0)), number(i(2, 1)), number(i(2, 2)));
+  toml += fmt::format("inertia_kg_m2 = [[{}, {}, {}], [{}, {}, {}], [{}, {}, {}]]\n", number(i(0, 0)), number(i(0, 1)),
+                      number(i(0, 2)), number(i(1, 0)), number(i(1, 1)), number(i(1, 2)), number(i(2, 0)),
+                      number(i(2, 1)), number(i(2, 2)));
   toml += fmt::format("bulge_mm = {}\nroll_mm = {}\n\n", number(s.head.bulge_m * 1e3), number(s.head.roll_m * 1e3));
   toml += "[data]\nshots = \"shots.csv\"\n";
   std::string noise, input;
@@ -66,7 +69,9 @@ void write_set(const Set& set, const fs::path& dir) {
   if (!noise.empty()) toml += "[data.noise]\n" + noise;
   if (!input.empty()) toml += "[data.input_noise]\n" + input;
   if (s.mass_column) toml += fmt::format("[data.join]\nfile = \"club_means.csv\"\nby = \"{}\"\n", s.cluster_column);
-  if (s.split_by_cluster) toml += fmt::format("\n[split]\nholdout_fraction = 0.3333\nseed = {}\nby = \"{}\"\n", 1 + set.index % 7, s.cluster_column);
+  if (s.split_by_cluster)
+    toml += fmt::format("\n[split]\nholdout_fraction = 0.3333\nseed = {}\nby = \"{}\"\n", 1 + set.index % 7,
+                        s.cluster_column);
   put(folder / "case.toml", toml);
 
   std::string csv = "shot";
@@ -77,10 +82,13 @@ void write_set(const Set& set, const fs::path& dir) {
   csv += "\n";
   for (int k = 0; k < s.shots(); ++k) {
     csv += std::to_string(k + 1);
-    if (!s.cluster.empty()) csv += "," + s.cluster_names[static_cast<std::size_t>(s.cluster[static_cast<std::size_t>(k)])];
+    if (!s.cluster.empty())
+      csv += "," + s.cluster_names[static_cast<std::size_t>(s.cluster[static_cast<std::size_t>(k)])];
     for (const Extra& e : s.extras) csv += "," + e.cells[static_cast<std::size_t>(k)];
-    for (std::size_t c = 0; c < s.inputs.size(); ++c) csv += "," + cell(s.recorded_inputs(k, static_cast<int>(c)), s.inputs[c].resolution);
-    for (std::size_t c = 0; c < s.channels.size(); ++c) csv += "," + cell(s.recorded_outputs(k, static_cast<int>(c)), s.channels[c].resolution);
+    for (std::size_t c = 0; c < s.inputs.size(); ++c)
+      csv += "," + cell(s.recorded_inputs(k, static_cast<int>(c)), s.inputs[c].resolution);
+    for (std::size_t c = 0; c < s.channels.size(); ++c)
+      csv += "," + cell(s.recorded_outputs(k, static_cast<int>(c)), s.channels[c].resolution);
     csv += "\n";
   }
   put(folder / "shots.csv", csv);

@@ -18,9 +18,9 @@ struct Truth {
   Nature nature;
   /// Drift of channel c at the end of the session, in noise standard deviations; zero at the first shot.
   Eigen::Matrix<double, drift_channels, 1> drift = Eigen::Matrix<double, drift_channels, 1>::Zero();
-  double drift_power = 1;      ///< shape t^power, t = 0 .. 1 over the session
-  double loft_drift = 0;       ///< rad by the end of the session
-  double level_drift = 0;      ///< restitution level by the end of the session
+  double drift_power = 1;  ///< shape t^power, t = 0 .. 1 over the session
+  double loft_drift = 0;   ///< rad by the end of the session
+  double level_drift = 0;  ///< restitution level by the end of the session
 };
 
 struct FormParameter {

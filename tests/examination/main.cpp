@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void make(std::uint64_t seed, const std::string& stratum, int sets, const std::vector<int>& shots, const fs::path& dir) {
+void make(std::uint64_t seed, const std::string& stratum, int sets, const std::vector<int>& shots,
+          const fs::path& dir) {
   int failed = 0;
   for (int i = 0; i < sets; ++i) {
     try {
@@ -30,7 +31,9 @@ void make(std::uint64_t seed, const std::string& stratum, int sets, const std::v
 
 /// Rows of the project's reference tables (computed elsewhere): the generator's physics against them.
 int verify() {
-  struct Row { double v, attack, path, face, loft, toe, high, speed, launch, azimuth, back, side, rifle; };
+  struct Row {
+    double v, attack, path, face, loft, toe, high, speed, launch, azimuth, back, side, rifle;
+  };
   const Row rows_a[] = {
       {50, 0, 0, 0, 10, 0, 0, 68.7996625, 8.1568547, 0, 2476.09382, 0, 0},
       {50, 3, 0, 0, 13, 0, 0, 68.7996625, 11.1568547, 0, 2476.09382, 0, 0},
@@ -46,9 +49,14 @@ int verify() {
   b.inertia_kg_m2 << 2.9e-4, -2e-5, 3e-5, -2e-5, 4.1e-4, 1e-5, 3e-5, 1e-5, 5.6e-4;
   double worst = 0;
   const auto compare = [&](const Row& r, const Head& head) {
-    const Flight f = strike({r.v, r.attack * deg, r.path * deg, r.face * deg, r.loft * deg, r.toe * 1e-3, r.high * 1e-3}, head, {}, {});
-    const double error[] = {f.speed / r.speed - 1, (f.launch / deg - r.launch) / 10, (f.azimuth / deg - r.azimuth) / 10,
-                            (f.backspin / rpm - r.back) / 3000, (f.sidespin / rpm - r.side) / 3000, (f.riflespin / rpm - r.rifle) / 3000};
+    const Flight f = strike(
+        {r.v, r.attack * deg, r.path * deg, r.face * deg, r.loft * deg, r.toe * 1e-3, r.high * 1e-3}, head, {}, {});
+    const double error[] = {f.speed / r.speed - 1,
+                            (f.launch / deg - r.launch) / 10,
+                            (f.azimuth / deg - r.azimuth) / 10,
+                            (f.backspin / rpm - r.back) / 3000,
+                            (f.sidespin / rpm - r.side) / 3000,
+                            (f.riflespin / rpm - r.rifle) / 3000};
     for (const double e : error) worst = std::max(worst, std::abs(e));
   };
   for (const Row& r : rows_a) compare(r, a);
@@ -64,11 +72,16 @@ int verify() {
     const Flight f = strike({v, attack, 0, 0, loft, 0.01, 0.004}, a, ball, nature);
     const double angle = loft - attack, ratio = ball.mass_kg / a.mass_kg;
     const double e = 0.86 - 0.0029 * v * std::cos(angle);
-    const double vn = v * std::cos(angle) * (1 + e) / (1 + ratio), vp = v * std::sin(angle) / (1 + ratio + 1 / ball.inertia_factor);
-    planar = std::max({planar, std::abs(f.speed / std::hypot(vn, vp) - 1), std::abs(f.launch - (loft - std::atan(vp / vn))),
-                       std::abs(f.backspin / (vp / (ball.inertia_factor * ball.radius_m)) - 1)});
+    const double vn = v * std::cos(angle) * (1 + e) / (1 + ratio),
+                 vp = v * std::sin(angle) / (1 + ratio + 1 / ball.inertia_factor);
+    planar =
+        std::max({planar, std::abs(f.speed / std::hypot(vn, vp) - 1), std::abs(f.launch - (loft - std::atan(vp / vn))),
+                  std::abs(f.backspin / (vp / (ball.inertia_factor * ball.radius_m)) - 1)});
   }
-  fmt::print("rigid-eccentric: largest relative difference to the reference rows {:.1e}\nrigid-planar: to the closed form {:.1e}\n", worst, planar);
+  fmt::print(
+      "rigid-eccentric: largest relative difference to the reference rows {:.1e}\nrigid-planar: to the closed form "
+      "{:.1e}\n",
+      worst, planar);
   return worst < 1e-8 && planar < 1e-12 ? 0 : 1;  // the rows are printed to nine digits
 }
 

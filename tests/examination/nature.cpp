@@ -56,12 +56,12 @@ Flight strike(const Swing& swing, const Head& declared, const Ball& ball, const 
   const Vector3d lever = point - head.cg_m;
   const double mobility = nature.planar ? nature.turning : 1.0;
 
-  const Vector3d velocity = to_global.transpose() * Vector3d(swing.speed * std::cos(swing.attack) * std::cos(swing.path),
-                                                             -swing.speed * std::cos(swing.attack) * std::sin(swing.path),
-                                                             swing.speed * std::sin(swing.attack));
+  const Vector3d velocity = to_global.transpose() *
+                            Vector3d(swing.speed * std::cos(swing.attack) * std::cos(swing.path),
+                                     -swing.speed * std::cos(swing.attack) * std::sin(swing.path),
+                                     swing.speed * std::sin(swing.attack));
   const Vector3d shaft(0, std::cos(58 * M_PI / 180), std::sin(58 * M_PI / 180));
-  const Vector3d omega = to_global.transpose() *
-                         (nature.spin_of_head + nature.closure_per_speed * swing.speed * shaft);
+  const Vector3d omega = to_global.transpose() * (nature.spin_of_head + nature.closure_per_speed * swing.speed * shaft);
 
   const Vector3d surface = velocity + omega.cross(lever);  // the face at the contact point; the ball rests
   const double approach = surface.dot(n);
@@ -75,11 +75,13 @@ Flight strike(const Swing& swing, const Head& declared, const Ball& ball, const 
   const double ref = 0.02;
   e -= nature.falloff_toe * (y / ref) * (y / ref) + nature.falloff_high * (z / ref) * (z / ref) +
        nature.falloff_cone * std::hypot(y, z) / ref;
-  const double rebound = nature.rebound + nature.rebound_per_speed * approach / 35 + nature.rebound_oblique * oblique / 0.4;
+  const double rebound = nature.rebound + nature.rebound_per_speed * approach / 35 +
+                         nature.rebound_oblique * oblique / 0.4;
   const Vector3d shift = nature.offset_m + Vector3d(0, 0, nature.offset_oblique * oblique);
 
   // Unknowns: ball velocity and spin, change of head velocity and spin, impulse on the ball.
-  const double ball_inertia = ball.inertia_factor * nature.ball_inertia_factor * ball.mass_kg * ball.radius_m * ball.radius_m;
+  const double ball_inertia = ball.inertia_factor * nature.ball_inertia_factor * ball.mass_kg * ball.radius_m *
+                              ball.radius_m;
   const Matrix3d normal_part = n * n.transpose();
   const Matrix3d ball_moment = cross(-ball.radius_m * n) + cross(shift) * normal_part;
   const Matrix3d head_moment = -(cross(lever) + cross(shift) * normal_part);

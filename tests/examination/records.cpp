@@ -48,7 +48,8 @@ VectorXd ring(const Rod& rod, double place, const VectorXd& times) {
       else
         for (int d = 0; d < 3; ++d)
           t[d][i] = 2 * (2 * u - 1) * t[d][i - 1] + (d > 0 ? 4 * d * t[d - 1][i - 1] : 0) - t[d][i - 2];
-      const double w[] = {u * u * t[0][i], 2 * u * t[0][i] + u * u * t[1][i], 2 * t[0][i] + 4 * u * t[1][i] + u * u * t[2][i]};
+      const double w[] = {u * u * t[0][i], 2 * u * t[0][i] + u * u * t[1][i],
+                          2 * t[0][i] + 4 * u * t[1][i] + u * u * t[2][i]};
       out[i] = w[derivative] / std::pow(rod.length, derivative);
     }
     const double turn[] = {x, 1, 0};
@@ -71,7 +72,8 @@ VectorXd ring(const Rod& rod, double place, const VectorXd& times) {
     const VectorXd slope = shape(0, 1);
     K += slope * slope.transpose() / rod.root;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(K.topLeftCorner(free, free), M.topLeftCorner(free, free));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(K.topLeftCorner(free, free),
+                                                                 M.topLeftCorner(free, free));
   const VectorXd held = K.topLeftCorner(free, free).ldlt().solve(rod.load * tip.head(free));
   const VectorXd start = modes.eigenvectors().transpose() * M.topLeftCorner(free, free) * held;
   const VectorXd reading = modes.eigenvectors().transpose() * shape(place, 0).head(free);
@@ -123,10 +125,13 @@ Record with(const Test& test, const std::function<void(Rod&)>& change) {
 }
 
 const Mechanism kMechanisms[] = {
-    {"shaft-stiffness", "log_factor_bending", 1, 0.02, [](const Test& t, double x) { return with(t, [x](Rod& r) { r.bending *= std::exp(x); }); }},
+    {"shaft-stiffness", "log_factor_bending", 1, 0.02,
+     [](const Test& t, double x) { return with(t, [x](Rod& r) { r.bending *= std::exp(x); }); }},
     // The loop may add damping of another form: its number is not compared.
-    {"shaft-damping", nullptr, 1, 5e-5, [](const Test& t, double x) { return with(t, [x](Rod& r) { r.relaxation += x; }); }},
-    {"clamp-compliance", "compliance", 1e3, 5e-4, [](const Test& t, double x) { return with(t, [x](Rod& r) { r.root = std::max(x, 1e-9); }); }},
+    {"shaft-damping", nullptr, 1, 5e-5,
+     [](const Test& t, double x) { return with(t, [x](Rod& r) { r.relaxation += x; }); }},
+    {"clamp-compliance", "compliance", 1e3, 5e-4,
+     [](const Test& t, double x) { return with(t, [x](Rod& r) { r.root = std::max(x, 1e-9); }); }},
     {"tip-mass", "mass", 1e3, 2e-3, [](const Test& t, double x) { return with(t, [x](Rod& r) { r.tip_mass = x; }); }},
     {"sensor-delay", "delay", 1e3, 2e-3, [](const Test& t, double x) { return record(t, t.rod, x); }},
     {"sensor-gain", "gain_error", 1, 0.03, [](const Test& t, double x) { return record(t, t.rod, 0, 1 + x); }},
@@ -144,17 +149,20 @@ struct Invention {
 };
 
 const Invention kInventions[] = {
-    {"hum", false, [](const Test& t, double x) {
+    {"hum", false,
+     [](const Test& t, double x) {
        Record y = record(t, t.rod);
        y.col(0).array() += x * (2 * M_PI * 37 * t.times.array()).sin();
        return y;
      }},
-    {"jump of the zero", false, [](const Test& t, double x) {
+    {"jump of the zero", false,
+     [](const Test& t, double x) {
        Record y = record(t, t.rod);
        y.col(0).array() += x * (t.times.array() > 0.6 * t.times[t.times.size() - 1]).cast<double>();
        return y;
      }},
-    {"gain that grows", false, [](const Test& t, double x) {
+    {"gain that grows", false,
+     [](const Test& t, double x) {
        Record y = record(t, t.rod);
        y.col(0).array() *= 1 + x * t.times.array() / t.times[t.times.size() - 1];
        return y;
@@ -164,7 +172,9 @@ const Invention kInventions[] = {
        return Record((y.array() < 0).select(y.array() * (1 - x), y.array()));
      }}};
 
-double distance(const Test& test, const Record& a, const Record& b) { return (a - b).norm() / test.noise * std::sqrt(2.0 / 3); }
+double distance(const Test& test, const Record& a, const Record& b) {
+  return (a - b).norm() / test.noise * std::sqrt(2.0 / 3);
+}
 
 /// What of `y` no sizes of the mechanisms together reach, their effects added: Gauss-Newton from zero.
 double beyond(const Test& test, const std::vector<const Mechanism*>& mechanisms, const Record& y) {
@@ -182,7 +192,9 @@ double beyond(const Test& test, const std::vector<const Mechanism*>& mechanisms,
     MatrixXd slopes(y.size(), n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double h = 1e-3 * mechanisms[std::size_t(k)]->first;
-      slopes.col(k) = ((mechanisms[std::size_t(k)]->make(test, x[k] + h) - mechanisms[std::size_t(k)]->make(test, x[k])) / h).reshaped();
+      slopes.col(k) =
+          ((mechanisms[std::size_t(k)]->make(test, x[k] + h) - mechanisms[std::size_t(k)]->make(test, x[k])) / h)
+              .reshaped();
     }
     VectorXd step = slopes.colPivHouseholderQr().solve((y - at).reshaped().matrix());
     bool moved = false;
@@ -201,7 +213,8 @@ Test draw_test(Random& random) {
   Test t;
   t.rod.bending = std::round(10 * random.uniform(25, 60)) / 10;
   t.rod.load = std::round(10 * random.uniform(1, 4)) / 10;
-  const double step = std::vector{0.0025, 0.002, 0.001}[std::size_t(random.below(3))], length = random.uniform(0.6, 1.5);
+  const double step = std::vector{0.0025, 0.002, 0.001}[std::size_t(random.below(3))],
+               length = random.uniform(0.6, 1.5);
   t.times = VectorXd::LinSpaced(int(length / step), 0, step * (int(length / step) - 1));
   t.channels = random.chance(0.6) ? 2 : 1;
   t.declared = random.chance(0.7);
@@ -231,7 +244,8 @@ double nearest_rival(const Test& test, const Mechanism* own, const Record& y, bo
   return nearest;
 }
 
-void write(const Test& test, const Record& truth, Json key, const std::string& name, Random& random, const fs::path& dir) {
+void write(const Test& test, const Record& truth, Json key, const std::string& name, Random& random,
+           const fs::path& dir) {
   fs::create_directories(dir / "keys");
   std::ofstream(dir / "keys" / (name + ".json")) << key.dump(1) << "\n";
   fs::create_directories(dir / name);
@@ -243,12 +257,20 @@ void write(const Test& test, const Record& truth, Json key, const std::string& n
     csv.print("\n");
   }
   auto toml = fmt::output_file((dir / name / "case.toml").string());
-  toml.print("kind  = \"loop\"\ntitle = \"record {}\"\n\n[model]\nbase = \"shaft\"\n\n[bench]\nstart  = \"release\"\nload_N = [{:.1f}, 0.0, 0.0]\nshear  = false\n\n", name,
-             test.rod.load);
-  toml.print("[shaft]\ndamping_ratio        = 0.005\ndamping_frequency_Hz = 15.9155\n[shaft.table]\narc_length_mm            = [0.0, 1000.0]\n"
-             "bending_stiffness_N_m2   = [{0:.1f}, {0:.1f}]\ntorsional_stiffness_N_m2 = [40.0, 40.0]\nmass_per_length_g_per_m  = [60.0, 60.0]\n"
-             "mean_radius_mm           = [1.0, 1.0]\n\n[data]\nseries = \"tip.csv\"\n", test.rod.bending);
-  if (test.declared) toml.print("[data.noise]\nlead_mm = {0}\n{1}", test.noise, test.channels == 2 ? fmt::format("lead_mid_mm = {}\n", test.noise) : "");
+  toml.print(
+      "kind  = \"loop\"\ntitle = \"record {}\"\n\n[model]\nbase = \"shaft\"\n\n[bench]\nstart  = \"release\"\nload_N = "
+      "[{:.1f}, 0.0, 0.0]\nshear  = false\n\n",
+      name, test.rod.load);
+  toml.print(
+      "[shaft]\ndamping_ratio        = 0.005\ndamping_frequency_Hz = 15.9155\n[shaft.table]\narc_length_mm            "
+      "= [0.0, 1000.0]\n"
+      "bending_stiffness_N_m2   = [{0:.1f}, {0:.1f}]\ntorsional_stiffness_N_m2 = [40.0, 40.0]\nmass_per_length_g_per_m "
+      " = [60.0, 60.0]\n"
+      "mean_radius_mm           = [1.0, 1.0]\n\n[data]\nseries = \"tip.csv\"\n",
+      test.rod.bending);
+  if (test.declared)
+    toml.print("[data.noise]\nlead_mm = {0}\n{1}", test.noise,
+               test.channels == 2 ? fmt::format("lead_mid_mm = {}\n", test.noise) : "");
   if (test.channels == 2) toml.print("\n[sensors.lead_mid_mm]\narc_length_mm = 500.0\n");
 }
 
@@ -258,7 +280,8 @@ void make_records(std::uint64_t seed, int sets, const fs::path& dir) {
   for (const std::string stratum : {"null", "one-effect", "confounded", "outside"})
     for (int i = 0; i < sets; ++i) {
       Random random(mix(mix(mix(seed, "records"), stratum), std::uint64_t(i)));
-      const std::string name = fmt::format("r{:08x}", std::uint32_t(mix(mix(seed, stratum), std::uint64_t(7919 * i + 1))));
+      const std::string name =
+          fmt::format("r{:08x}", std::uint32_t(mix(mix(seed, stratum), std::uint64_t(7919 * i + 1))));
       Json key = {{"stratum", stratum}, {"seed", seed}, {"index", i}};
       for (int attempt = 0;; ++attempt) {
         if (attempt == 100) throw std::runtime_error("records: none of 100 draws meets the conditions of " + stratum);
@@ -268,13 +291,15 @@ void make_records(std::uint64_t seed, int sets, const fs::path& dir) {
         if (stratum == "one-effect") {
           const Mechanism& m = kMechanisms[std::size_t(i) % std::size(kMechanisms)];
           const double a = std::exp(random.uniform(std::log(5.5), std::log(40.0)));
-          const double x = size_of([&](double size) { return nearest_rival(test, &m, m.make(test, size)); }, m.first, a);
+          const double x =
+              size_of([&](double size) { return nearest_rival(test, &m, m.make(test, size)); }, m.first, a);
           if (!(x < 10 * m.first)) continue;
           truth = m.make(test, x);
           key.update({{"effect", m.name}, {"s", distance(test, truth, base)}, {"a", a}});
           if (m.parameter) key.update({{"parameter", m.parameter}, {"value", m.unit * x}});
         } else if (stratum == "confounded") {
-          const Mechanism& m = kMechanisms[std::size_t(std::array{0, 2, 3}[std::size_t(i % 3)])];  // all three change the pitch
+          const Mechanism& m =
+              kMechanisms[std::size_t(std::array{0, 2, 3}[std::size_t(i % 3)])];  // all three change the pitch
           const double s = std::exp(random.uniform(std::log(8.0), std::log(40.0)));
           const double x = size_of([&](double size) { return distance(test, m.make(test, size), base); }, m.first, s);
           truth = m.make(test, x);
@@ -333,7 +358,8 @@ void score_records(const fs::path& dir) {
         for (const Json& p : candidate.at("parameters"))
           if (p.at("name") == key.at("parameter"))
             count("one effect: 95 % interval holds the truth",
-                  std::abs(p.at("value").get<double>() - key.at("value").get<double>()) <= 1.96 * p.at("sd").get<double>());
+                  std::abs(p.at("value").get<double>() - key.at("value").get<double>()) <=
+                      1.96 * p.at("sd").get<double>());
         break;
       }
     } else if (stratum == "confounded") {
@@ -345,7 +371,8 @@ void score_records(const fs::path& dir) {
       count("confounded: a wrong name alone", adopted.size() == 1 && adopted.front() != truth);
     } else {
       bool channel = false;
-      for (const Json& u : report.at("unexplained")) channel = channel || key.at("channels") == "all" || u.at("channel") == key.at("channels");
+      for (const Json& u : report.at("unexplained"))
+        channel = channel || key.at("channels") == "all" || u.at("channel") == key.at("channels");
       count("outside: unexplained, with the channel", report.at("verdict") == "unexplained" && channel);
       count("outside: adoptions", !adopted.empty());
     }

@@ -116,7 +116,8 @@ double oracle_ratio(const Set& set, const Json& report, const fs::path& residual
       ++n;
     }
     for (const auto& reported : report.at("channels"))
-      if (reported.at("name") == ch.header) loop += n * std::pow(reported.at("after").at("holdout_rmse").get<double>() / ch.noise_sd, 2);
+      if (reported.at("name") == ch.header)
+        loop += n * std::pow(reported.at("after").at("holdout_rmse").get<double>() / ch.noise_sd, 2);
   }
   return std::sqrt(loop / best);
 }
@@ -144,7 +145,8 @@ std::optional<double> true_value(const Set& set, const std::string& name, const 
   if (id == "monitor-misalignment/yaw/deg") return x[1] / deg;
   if (effect == "session-drift")
     for (const Channel& c : s.channels)
-      if (name == c.header.substr(0, c.header.rfind('_')) + "_per_session" && unit == c.header.substr(c.header.rfind('_') + 1))
+      if (name == c.header.substr(0, c.header.rfind('_')) + "_per_session" &&
+          unit == c.header.substr(c.header.rfind('_') + 1))
         return x[static_cast<std::size_t>(c.slot)] * c.noise_sd;
   return std::nullopt;
 }
@@ -202,15 +204,15 @@ Json score_sets(const fs::path& dir) {
       o.adopted = names_of(o.report.at("adopted"));
       for (const auto& tie : o.report.at("ties")) o.tied.merge(names_of(tie));
       o.ran = true;
-    } catch (const std::exception& e) {
-      o.trouble = e.what();
-    }
+    } catch (const std::exception& e) { o.trouble = e.what(); }
     outcomes.push_back(std::move(o));
   }
-  if (development && examination_seeds) throw std::runtime_error("development and examination seeds are mixed in " + dir.string());
+  if (development && examination_seeds)
+    throw std::runtime_error("development and examination seeds are mixed in " + dir.string());
 
   std::vector<Line> lines;
-  const auto count = [&](const std::string& stratum, const std::string& what, double goal, bool at_most, const auto& counted, const auto& hit) {
+  const auto count = [&](const std::string& stratum, const std::string& what, double goal, bool at_most,
+                         const auto& counted, const auto& hit) {
     int n = 0, k = 0;
     for (const Outcome& o : outcomes)
       if (o.key["stratum"] == stratum && counted(o)) {
@@ -227,12 +229,14 @@ Json score_sets(const fs::path& dir) {
   const auto covers = [](const Outcome& o) {
     return std::all_of(o.truth.begin(), o.truth.end(), [&](const auto& n) { return o.adopted.contains(n); });
   };
-  for (const auto& [stratum, sets] : strata()) count(stratum, "no report", 0.0, true, any, [](const Outcome& o) { return !o.ran; });
+  for (const auto& [stratum, sets] : strata())
+    count(stratum, "no report", 0.0, true, any, [](const Outcome& o) { return !o.ran; });
   for (const auto& [stratum, sets] : strata())
     if (stratum.starts_with("null")) count(stratum, "adoptions", stratum == "null" ? 0.01 : 0.03, true, any, adopts);
   const auto alone = [&](const Outcome& o) { return o.ran && o.adopted == o.truth && o.tied.empty(); };
   count("one-effect", "named alone, a >= 4.8", 0.93, false, any, alone);
-  count("one-effect", "named alone, a >= 5.5", 0.97, false, [](const Outcome& o) { return o.key["a"] >= 5.5; }, alone);
+  count(
+      "one-effect", "named alone, a >= 5.5", 0.97, false, [](const Outcome& o) { return o.key["a"] >= 5.5; }, alone);
   count("one-effect", "a wrong name", 0.01, true, any, names_other);
   count("one-effect", "in a tie", 1, true, any, [](const Outcome& o) { return o.tied.contains(*o.truth.begin()); });
   count("other-form", "mechanism named", 0.85, false, any, [&](const Outcome& o) { return o.ran && covers(o); });
@@ -241,14 +245,16 @@ Json score_sets(const fs::path& dir) {
   count("two-effects", "a third", 0.02, true, any, names_other);
   count("confounded", "truth in the tie, or named", 0.99, false, any,
         [](const Outcome& o) { return o.tied.contains(*o.truth.begin()) || o.adopted.contains(*o.truth.begin()); });
-  count("confounded", "truth in the tie", 0, false, any, [](const Outcome& o) { return o.tied.contains(*o.truth.begin()); });
+  count("confounded", "truth in the tie", 0, false, any,
+        [](const Outcome& o) { return o.tied.contains(*o.truth.begin()); });
   count("confounded", "a wrong name", 0.01, true, any, names_other);
   const auto located = [](const Outcome& o, bool with_column) {
     if (!o.ran || o.verdict != "unexplained" || !o.report.contains("unexplained")) return false;
     for (const auto& u : o.report["unexplained"]) {
       if (u.value("channel", "") != o.key["channel"].get<std::string>()) continue;
       if (!with_column || o.key["columns"].empty()) return true;
-      const auto regressor = u.contains("regressor") && u["regressor"].is_string() ? u["regressor"].get<std::string>() : std::string();
+      const auto regressor = u.contains("regressor") && u["regressor"].is_string() ? u["regressor"].get<std::string>()
+                                                                                   : std::string();
       for (const auto& c : o.key["columns"])
         if (same_column(regressor, c.get<std::string>())) return true;
     }
@@ -332,11 +338,18 @@ Json score_sets(const fs::path& dir) {
   std::vector<double> seconds;
   for (const Outcome& o : outcomes) {
     const std::string name = o.key["set"], stratum = o.key["stratum"];
-    Json entry = {{"set", name}, {"stratum", stratum}, {"base", o.key["base"]}, {"shots", o.key["shots"]}, {"truth", join(o.truth)},
-                  {"adopted", join(o.adopted)}, {"tied", join(o.tied)}, {"verdict", o.ran ? o.verdict : o.trouble}};
+    Json entry = {{"set", name},
+                  {"stratum", stratum},
+                  {"base", o.key["base"]},
+                  {"shots", o.key["shots"]},
+                  {"truth", join(o.truth)},
+                  {"adopted", join(o.adopted)},
+                  {"tied", join(o.tied)},
+                  {"verdict", o.ran ? o.verdict : o.trouble}};
     for (const char* field : {"s", "a", "rival", "invention", "channel", "columns"})
       if (o.key.contains(field)) entry[field] = o.key[field];
-    if (o.ran && o.report.contains("unexplained") && !o.report["unexplained"].empty()) entry["unexplained"] = o.report["unexplained"];
+    if (o.ran && o.report.contains("unexplained") && !o.report["unexplained"].empty())
+      entry["unexplained"] = o.report["unexplained"];
     if (runs.contains(name)) {
       entry["seconds"] = runs[name]["seconds"];
       entry["status"] = runs[name]["status"];
@@ -348,9 +361,7 @@ Json score_sets(const fs::path& dir) {
         const double ratio = oracle_ratio(set, o.report, dir / "out" / name / "residuals.csv");
         entry["oracle_ratio"] = ratio;
         ratios.push_back(ratio);
-      } catch (const std::exception& e) {
-        entry["oracle_trouble"] = e.what();
-      }
+      } catch (const std::exception& e) { entry["oracle_trouble"] = e.what(); }
     }
     if (o.ran && stratum == "one-effect" && o.adopted == o.truth) {
       try {
@@ -359,9 +370,7 @@ Json score_sets(const fs::path& dir) {
           held += c->second;
           entry["coverage"] = {{"parameters", c->first}, {"held", c->second}};
         }
-      } catch (const std::exception& e) {
-        entry["coverage_trouble"] = e.what();
-      }
+      } catch (const std::exception& e) { entry["coverage_trouble"] = e.what(); }
     }
     if (o.ran && stratum == "confounded" && o.report.contains("next_experiment")) {
       // The pair to part: the truth and the other member of its tie, the nearest where that is among them.
@@ -374,20 +383,24 @@ Json score_sets(const fs::path& dir) {
       }
       if (!rival.empty()) {
         try {
-          const Answer a = judge_answer(make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]), rival, o.report["next_experiment"]);
-          entry["next_experiment"] = {{"rival", rival}, {"separable", a.separable}, {"ordinary", a.ordinary}, {"designed", a.designed}, {"sensor", a.sensor}};
+          const Answer a = judge_answer(make_set(o.key["seed"], stratum, o.key["shots"], o.key["index"]), rival,
+                                        o.report["next_experiment"]);
+          entry["next_experiment"] = {{"rival", rival},
+                                      {"separable", a.separable},
+                                      {"ordinary", a.ordinary},
+                                      {"designed", a.designed},
+                                      {"sensor", a.sensor}};
           (a.separable ? separable : inseparable) += 1;
           if (a.separable) good_designs += a.designed <= a.ordinary / 3;
           else good_sensors += a.sensor;
-        } catch (const std::exception& e) {
-          entry["next_experiment_trouble"] = e.what();
-        }
+        } catch (const std::exception& e) { entry["next_experiment_trouble"] = e.what(); }
       }
     }
     sets.push_back(entry);
   }
   if (compared) lines.push_back({"one-effect", "95 % interval holds the truth", held, compared, 0.92, false});
-  if (separable) lines.push_back({"confounded", "separable: a third of the shots", good_designs, separable, 0.8, false});
+  if (separable)
+    lines.push_back({"confounded", "separable: a third of the shots", good_designs, separable, 0.8, false});
   if (inseparable) lines.push_back({"confounded", "inseparable: quantity named", good_sensors, inseparable, 1, false});
 
   fmt::print("{:<20} {:<34} {:>11} {:>8}  {:<16} {}\n", "stratum", "what", "sets", "share", "95 % interval", "goal");
@@ -398,20 +411,32 @@ Json score_sets(const fs::path& dir) {
     const bool informative = (l.at_most && l.goal >= 1) || (!l.at_most && l.goal <= 0);
     const bool met = l.at_most ? share <= l.goal + 1e-12 : share >= l.goal - 1e-12;
     if (l.what == "no report" && l.hits == 0) continue;
-    const std::string goal = informative ? "" : fmt::format("{} {:.0f} %  {}", l.at_most ? "<=" : ">=", 100 * l.goal, met ? "met" : "MISSED");
-    fmt::print("{:<20} {:<34} {:>5}/{:<5} {:>6.1f} %  {:>5.1f} .. {:<5.1f}   {}\n", l.stratum, l.what, l.hits, l.of, 100 * share, 100 * low, 100 * high, goal);
-    table.push_back({{"stratum", l.stratum}, {"what", l.what}, {"hits", l.hits}, {"of", l.of}, {"interval", {low, high}},
-                     {"goal", informative ? Json() : Json(l.goal)}, {"met", informative ? Json() : Json(met)}});
+    const std::string goal =
+        informative ? ""
+                    : fmt::format("{} {:.0f} %  {}", l.at_most ? "<=" : ">=", 100 * l.goal, met ? "met" : "MISSED");
+    fmt::print("{:<20} {:<34} {:>5}/{:<5} {:>6.1f} %  {:>5.1f} .. {:<5.1f}   {}\n", l.stratum, l.what, l.hits, l.of,
+               100 * share, 100 * low, 100 * high, goal);
+    table.push_back({{"stratum", l.stratum},
+                     {"what", l.what},
+                     {"hits", l.hits},
+                     {"of", l.of},
+                     {"interval", {low, high}},
+                     {"goal", informative ? Json() : Json(l.goal)},
+                     {"met", informative ? Json() : Json(met)}});
   }
   Json result = {{"table", table}, {"sets", sets}};
   if (!ratios.empty()) {
-    result["oracle_ratio"] = {{"sets", ratios.size()}, {"median", percentile(ratios, 0.5)}, {"p95", percentile(ratios, 0.95)}};
-    fmt::print("held-out error over the oracle's, {} sets of 100 shots and more: median {:.3f}, 95th percentile {:.3f} (goal 1.05)\n", ratios.size(),
-               percentile(ratios, 0.5), percentile(ratios, 0.95));
+    result["oracle_ratio"] = {
+        {"sets", ratios.size()}, {"median", percentile(ratios, 0.5)}, {"p95", percentile(ratios, 0.95)}};
+    fmt::print(
+        "held-out error over the oracle's, {} sets of 100 shots and more: median {:.3f}, 95th percentile {:.3f} (goal "
+        "1.05)\n",
+        ratios.size(), percentile(ratios, 0.5), percentile(ratios, 0.95));
   }
   if (!seconds.empty()) {
     result["seconds"] = {{"median", percentile(seconds, 0.5)}, {"p95", percentile(seconds, 0.95)}};
-    fmt::print("wall time per set: median {:.1f} s, 95th percentile {:.1f} s\n", percentile(seconds, 0.5), percentile(seconds, 0.95));
+    fmt::print("wall time per set: median {:.1f} s, 95th percentile {:.1f} s\n", percentile(seconds, 0.5),
+               percentile(seconds, 0.95));
   }
   std::ofstream(dir / "score.json") << result.dump(1) << "\n";
   return result;

@@ -42,13 +42,16 @@ Session draw_session(const SessionOptions& options, Random& random) {
   for (bool body = false; !body;) {
     if (iron) {
       s.head.mass_kg = wedge ? random.uniform(0.28, 0.30) : random.uniform(0.24, 0.275);
-      s.head.cg_m = Vector3d(random.uniform(-0.006, -0.001), random.uniform(-0.002, 0.004), random.uniform(-0.005, 0.003));
+      s.head.cg_m =
+          Vector3d(random.uniform(-0.006, -0.001), random.uniform(-0.002, 0.004), random.uniform(-0.005, 0.003));
       inertia = Vector3d(2.75e-4, 0.58e-4, 2.9e-4).asDiagonal();
       s.head.bulge_m = s.head.roll_m = std::numeric_limits<double>::infinity();
     } else {
       s.head.mass_kg = random.uniform(0.19, 0.21);
-      s.head.cg_m = Vector3d(random.uniform(-0.043, -0.028), random.uniform(-0.003, 0.003), random.uniform(-0.002, 0.005));
-      inertia = Vector3d(random.uniform(2.1e-4, 3.6e-4), random.uniform(2.8e-4, 4.2e-4), random.uniform(4.3e-4, 5.8e-4)).asDiagonal();
+      s.head.cg_m =
+          Vector3d(random.uniform(-0.043, -0.028), random.uniform(-0.003, 0.003), random.uniform(-0.002, 0.005));
+      inertia = Vector3d(random.uniform(2.1e-4, 3.6e-4), random.uniform(2.8e-4, 4.2e-4), random.uniform(4.3e-4, 5.8e-4))
+                    .asDiagonal();
       s.head.bulge_m = random.uniform(0.25, 0.4);
       s.head.roll_m = random.uniform(0.25, 0.4);
     }
@@ -62,7 +65,13 @@ Session draw_session(const SessionOptions& options, Random& random) {
     body = principal[0] > 0 && principal[2] < 0.98 * (principal[0] + principal[1]);
   }
   // The case is written with five significant digits; what it says is what is.
-  const auto tidy = [](double v) { return v == 0 || !std::isfinite(v) ? v : std::stod([&] { char b[32]; std::snprintf(b, sizeof b, "%.4e", v); return std::string(b); }()); };
+  const auto tidy = [](double v) {
+    return v == 0 || !std::isfinite(v) ? v : std::stod([&] {
+      char b[32];
+      std::snprintf(b, sizeof b, "%.4e", v);
+      return std::string(b);
+    }());
+  };
   s.head.mass_kg = tidy(s.head.mass_kg);
   s.head.bulge_m = tidy(s.head.bulge_m);
   s.head.roll_m = tidy(s.head.roll_m);
@@ -77,14 +86,18 @@ Session draw_session(const SessionOptions& options, Random& random) {
     s.split_by_cluster = random.chance(0.5);
     for (int c = 0; c < clusters; ++c)
       s.cluster_names.push_back(s.cluster_column == "club" ? std::to_string(4 + c) + "i"
-                                : s.cluster_column == "session" ? "2026-0" + std::to_string(1 + c) + "-1" + std::to_string(c)
-                                                                : std::string(1, static_cast<char>('A' + c)));
+                                : s.cluster_column == "session"
+                                    ? "2026-0" + std::to_string(1 + c) + "-1" + std::to_string(c)
+                                    : std::string(1, static_cast<char>('A' + c)));
   }
   const double speed0 = wedge ? random.uniform(27, 34) : iron ? random.uniform(34, 40) : random.uniform(39, 49);
   const double loft0 = wedge ? random.uniform(38, 50) : iron ? random.uniform(15, 26) : random.uniform(10, 14.5);
   const double attack0 = iron ? random.uniform(-5, -2) : random.uniform(-1, 3);
-  const double speed_sd = random.uniform(1.5, 3.5), loft_sd = wedge ? random.uniform(3, 6) : iron ? random.uniform(1.5, 4) : random.uniform(1.3, 2.5);
-  const double attack_sd = random.uniform(0.8, 1.8), path_sd = random.uniform(1.5, 3.5), face_sd = random.uniform(1.2, 2.8);
+  const double speed_sd = random.uniform(1.5, 3.5), loft_sd = wedge  ? random.uniform(3, 6)
+                                                              : iron ? random.uniform(1.5, 4)
+                                                                     : random.uniform(1.3, 2.5);
+  const double attack_sd = random.uniform(0.8, 1.8), path_sd = random.uniform(1.5, 3.5),
+               face_sd = random.uniform(1.2, 2.8);
   const double toe_sd = (iron ? random.uniform(5, 9) : random.uniform(7, 12)) * options.impact_spread;
   const double high_sd = (iron ? random.uniform(3, 6) : random.uniform(4, 8)) * options.impact_spread;
   std::vector<double> cluster_speed, cluster_loft, cluster_mass;
@@ -127,11 +140,13 @@ Session draw_session(const SessionOptions& options, Random& random) {
     s.channels.push_back({"spin_rate_rpm", Quantity::spin_rate, 3, rpm, 60, 1});
     s.channels.push_back({"spin_axis_deg", Quantity::spin_axis, 4, deg, 1.0, 0.1});
   }
-  if (random.chance(0.15)) s.channels[static_cast<std::size_t>(random.below(static_cast<int>(s.channels.size())))].declared = false;
+  if (random.chance(0.15))
+    s.channels[static_cast<std::size_t>(random.below(static_cast<int>(s.channels.size())))].declared = false;
 
   const bool all = options.input_noise && random.chance(0.5);
   const auto noisy = [&](double sd) { return all ? sd : 0.0; };
-  s.inputs.push_back({"club_speed_" + speed_name, &Swing::speed, speed_unit, noisy(0.15 / speed_unit), speed_unit == 1 ? 0.01 : 0.1});
+  s.inputs.push_back(
+      {"club_speed_" + speed_name, &Swing::speed, speed_unit, noisy(0.15 / speed_unit), speed_unit == 1 ? 0.01 : 0.1});
   s.inputs.push_back({"attack_angle_deg", &Swing::attack, deg, noisy(0.3), fine});
   s.inputs.push_back({"dynamic_loft_deg", &Swing::loft, deg, options.input_noise ? 0.4 : 0, fine});
   if (!planar) {
@@ -192,7 +207,8 @@ std::vector<Swing> recorded_swings(const Session& s) {
   std::vector<Swing> swings(static_cast<std::size_t>(s.shots()));
   for (int i = 0; i < s.shots(); ++i)
     for (std::size_t k = 0; k < s.inputs.size(); ++k)
-      swings[static_cast<std::size_t>(i)].*s.inputs[k].member = s.recorded_inputs(i, static_cast<int>(k)) * s.inputs[k].unit;
+      swings[static_cast<std::size_t>(i)].*s.inputs[k].member = s.recorded_inputs(i, static_cast<int>(k)) *
+                                                                s.inputs[k].unit;
   return swings;
 }
 
@@ -221,7 +237,8 @@ std::vector<Eigen::MatrixXd> whitening(const Session& s, const std::vector<Swing
     auto moved = swings;
     for (Swing& w : moved) w.*c.member += h;
     const Eigen::MatrixXd slope = (predict(s, moved, base) - at) * (c.unit / h);
-    for (int i = 0; i < n; ++i) sigma[static_cast<std::size_t>(i)] += variance * slope.row(i).transpose() * slope.row(i);
+    for (int i = 0; i < n; ++i)
+      sigma[static_cast<std::size_t>(i)] += variance * slope.row(i).transpose() * slope.row(i);
   }
   for (auto& matrix : sigma) {
     const Eigen::MatrixXd l = matrix.llt().matrixL();
@@ -231,7 +248,8 @@ std::vector<Eigen::MatrixXd> whitening(const Session& s, const std::vector<Swing
 }
 
 Fit fit(const Session& s, const std::vector<Swing>& swings, const std::vector<const Form*>& forms,
-        const Eigen::MatrixXd& target, const std::vector<Eigen::MatrixXd>& w, const std::vector<int>& rows, bool bounded) {
+        const Eigen::MatrixXd& target, const std::vector<Eigen::MatrixXd>& w, const std::vector<int>& rows,
+        bool bounded) {
   const int m = static_cast<int>(s.channels.size()), n = static_cast<int>(rows.size());
   std::vector<FormParameter> parameters;
   std::vector<int> first;
@@ -331,8 +349,10 @@ Fit fit(const Session& s, const std::vector<Swing>& swings, const std::vector<co
       best.value = x;
       best.outputs = at;
       best.sd.clear();
-      const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
-      for (int k = 0; k < p; ++k) best.sd.push_back(std::sqrt(std::max(0.0, inverse(k, k))) * parameters[static_cast<std::size_t>(k)].scale);
+      const Eigen::MatrixXd inverse =
+          (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+      for (int k = 0; k < p; ++k)
+        best.sd.push_back(std::sqrt(std::max(0.0, inverse(k, k))) * parameters[static_cast<std::size_t>(k)].scale);
     }
   }
   return best;

@@ -16,9 +16,9 @@ struct Channel {
   std::string header;
   Quantity quantity;
   int slot;
-  double unit;        ///< SI per recorded unit
-  double noise_sd;    ///< recorded units
-  double resolution;  ///< recorded units
+  double unit;           ///< SI per recorded unit
+  double noise_sd;       ///< recorded units
+  double resolution;     ///< recorded units
   bool declared = true;  ///< whether the case tells the noise
 };
 
@@ -42,15 +42,15 @@ struct Session {
   std::vector<Channel> channels;
   std::vector<Column> inputs;
   std::vector<Extra> extras;
-  std::vector<Swing> swings;           ///< what happened
-  std::vector<double> head_mass_kg;    ///< per shot; all the head's own where no column tells it
-  bool mass_column = false;            ///< per club, in club_means.csv
-  std::vector<int> cluster;            ///< per shot; empty without clusters
+  std::vector<Swing> swings;         ///< what happened
+  std::vector<double> head_mass_kg;  ///< per shot; all the head's own where no column tells it
+  bool mass_column = false;          ///< per club, in club_means.csv
+  std::vector<int> cluster;          ///< per shot; empty without clusters
   std::string cluster_column;
   std::vector<std::string> cluster_names;
   bool split_by_cluster = false;
-  Eigen::MatrixXd recorded_inputs;     ///< shots x inputs, recorded units
-  Eigen::MatrixXd recorded_outputs;    ///< shots x channels, recorded units; NaN = missing
+  Eigen::MatrixXd recorded_inputs;   ///< shots x inputs, recorded units
+  Eigen::MatrixXd recorded_outputs;  ///< shots x channels, recorded units; NaN = missing
   int shots() const { return static_cast<int>(swings.size()); }
 };
 
@@ -59,7 +59,7 @@ struct SessionOptions {
   int shots;
   bool input_noise = false;
   bool clusters = false;
-  bool wedge = false;  ///< an iron of high loft, where a real ball slides
+  bool wedge = false;        ///< an iron of high loft, where a real ball slides
   double impact_spread = 1;  ///< factor on the spread of the impact point
 };
 
@@ -88,7 +88,7 @@ struct Fit {
 /// Fits the forms together to `target` (shots x channels) on the chosen rows by damped Gauss-Newton from every
 /// start, within the plausible range widened by half.
 Fit fit(const Session& session, const std::vector<Swing>& swings, const std::vector<const Form*>& forms,
-        const Eigen::MatrixXd& target, const std::vector<Eigen::MatrixXd>& whitening,
-        const std::vector<int>& rows, bool bounded = true);
+        const Eigen::MatrixXd& target, const std::vector<Eigen::MatrixXd>& whitening, const std::vector<int>& rows,
+        bool bounded = true);
 
 }  // namespace examination

@@ -40,7 +40,10 @@ struct Geometry {
   Eigen::MatrixXd base;
 
   explicit Geometry(const Session& session)
-      : s(session), swings(session.swings), w(whitening(session, swings)), rows(all_rows(session)),
+      : s(session),
+        swings(session.swings),
+        w(whitening(session, swings)),
+        rows(all_rows(session)),
         base(predict(session, swings, base_truth(session))) {}
 
   Eigen::MatrixXd outputs(const std::vector<Form>& forms, const std::vector<std::vector<double>>& x) const {
@@ -63,15 +66,16 @@ std::vector<const Form*> absorbed(const std::string& effect) {
 
 /// Parameters along a random direction of the form, scaled so that the signal is `s`; nothing where that is
 /// outside the plausible range.
-std::optional<std::vector<double>> scaled(const Geometry& g, const Form& f, double s, const std::vector<const Form*>& nuisance,
-                                          Random& random) {
+std::optional<std::vector<double>> scaled(const Geometry& g, const Form& f, double s,
+                                          const std::vector<const Form*>& nuisance, Random& random) {
   const std::size_t p = f.parameters.size();
   std::vector<double> direction(p, 0.0);
   if (f.effect == "session-drift" && f.form == "linear") {
     const auto count = g.s.channels.size();
     const int moved = 1 + random.below(2);
     for (int k = 0; k < moved; ++k)
-      direction[static_cast<std::size_t>(g.s.channels[static_cast<std::size_t>(random.below(static_cast<int>(count)))].slot)] = random.sign();
+      direction[static_cast<std::size_t>(
+          g.s.channels[static_cast<std::size_t>(random.below(static_cast<int>(count)))].slot)] = random.sign();
   } else {
     const int only = p > 1 && random.chance(0.5) ? random.below(static_cast<int>(p)) : -1;
     for (std::size_t k = 0; k < p; ++k) {
@@ -108,7 +112,8 @@ std::optional<std::vector<double>> scaled(const Geometry& g, const Form& f, doub
 Form known(Form f, const std::vector<double>& truth) {
   if (f.starts.empty()) return f;
   f.starts.clear();
-  for (const double factor : {0.92, 0.94, 0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04, 1.06, 1.08}) f.starts.push_back(factor * truth[0]);
+  for (const double factor : {0.92, 0.94, 0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04, 1.06, 1.08})
+    f.starts.push_back(factor * truth[0]);
   return f;
 }
 
@@ -126,7 +131,8 @@ Rival nearest(const Geometry& g, const Eigen::MatrixXd& outputs, const std::vect
     std::vector<const Form*> forms{&f};
     for (const auto* list : {&nuisance, &beside})
       for (const Form* n : *list)
-        if (n->effect != f.effect && !(n->effect == "restitution-level" && f.effect == "restitution-law")) forms.push_back(n);
+        if (n->effect != f.effect && !(n->effect == "restitution-level" && f.effect == "restitution-law"))
+          forms.push_back(n);
     const double d = g.distance(outputs, forms);
     if (d < r.distance) r = {f.effect, d};
     if (d < stop_below) break;
@@ -209,18 +215,44 @@ bool spoil(Session& s, int i, Random& random, double least, Json& notes) {
   if (spin < 0) spin = channel_of(s, "spin_rate");
   std::string what;
   std::vector<std::string> columns;
-  const auto input = [&](int k) -> double& { columns.push_back(s.inputs[static_cast<std::size_t>(k)].header); return s.recorded_inputs(i, k); };
-  const auto output = [&](int k) -> double& { columns.push_back(s.channels[static_cast<std::size_t>(k)].header); return s.recorded_outputs(i, k); };
+  const auto input = [&](int k) -> double& {
+    columns.push_back(s.inputs[static_cast<std::size_t>(k)].header);
+    return s.recorded_inputs(i, k);
+  };
+  const auto output = [&](int k) -> double& {
+    columns.push_back(s.channels[static_cast<std::size_t>(k)].header);
+    return s.recorded_outputs(i, k);
+  };
   switch (random.below(3)) {
     case 0: {
       what = "unit slip";
       const double other = s.channels[0].unit == 1.0 ? 1 / 0.44704 : s.channels[0].unit > 0.4 ? 0.44704 : 1 / 3.6;
       switch (random.below(5)) {
-        case 0: { double& v = output(ball); v = round_to(v * other, 0.1); break; }
-        case 1: { double& v = input(speed); v = round_to(v * other, 0.1); break; }
-        case 2: { double& v = input(loft); v = round_to(v * M_PI / 180, 0.001); break; }
-        case 3: { double& v = output(spin); v = round_to(v * M_PI / 30, 1); break; }
-        default: { double& v = output(launch); v = round_to(v * M_PI / 180, 0.001); break; }
+        case 0: {
+          double& v = output(ball);
+          v = round_to(v * other, 0.1);
+          break;
+        }
+        case 1: {
+          double& v = input(speed);
+          v = round_to(v * other, 0.1);
+          break;
+        }
+        case 2: {
+          double& v = input(loft);
+          v = round_to(v * M_PI / 180, 0.001);
+          break;
+        }
+        case 3: {
+          double& v = output(spin);
+          v = round_to(v * M_PI / 30, 1);
+          break;
+        }
+        default: {
+          double& v = output(launch);
+          v = round_to(v * M_PI / 180, 0.001);
+          break;
+        }
       }
       break;
     }
@@ -228,8 +260,14 @@ bool spoil(Session& s, int i, Random& random, double least, Json& notes) {
       what = "swapped columns";
       switch (random.below(4)) {
         case 0: std::swap(input(attack), input(loft)); break;
-        case 1: if (azimuth < 0) return false; std::swap(output(launch), output(azimuth)); break;
-        case 2: if (side < 0) return false; std::swap(output(spin), output(side)); break;
+        case 1:
+          if (azimuth < 0) return false;
+          std::swap(output(launch), output(azimuth));
+          break;
+        case 2:
+          if (side < 0) return false;
+          std::swap(output(spin), output(side));
+          break;
         default: std::swap(input(speed), output(ball)); break;
       }
       break;
@@ -237,10 +275,26 @@ bool spoil(Session& s, int i, Random& random, double least, Json& notes) {
     default: {
       what = "digit transposition";
       switch (random.below(4)) {
-        case 0: { double& v = output(ball); v = transposed(v, 0.1, random); break; }
-        case 1: { double& v = output(spin); v = transposed(v, 1, random); break; }
-        case 2: { double& v = input(speed); v = transposed(v, s.inputs[static_cast<std::size_t>(speed)].resolution, random); break; }
-        default: { double& v = input(loft); v = transposed(v, s.inputs[static_cast<std::size_t>(loft)].resolution, random); break; }
+        case 0: {
+          double& v = output(ball);
+          v = transposed(v, 0.1, random);
+          break;
+        }
+        case 1: {
+          double& v = output(spin);
+          v = transposed(v, 1, random);
+          break;
+        }
+        case 2: {
+          double& v = input(speed);
+          v = transposed(v, s.inputs[static_cast<std::size_t>(speed)].resolution, random);
+          break;
+        }
+        default: {
+          double& v = input(loft);
+          v = transposed(v, s.inputs[static_cast<std::size_t>(loft)].resolution, random);
+          break;
+        }
       }
     }
   }
@@ -286,7 +340,8 @@ Json spoil_rows(Session& s, double share, double least, Random& random) {
 /// A whole cluster whose column holds something else.
 Json spoil_cluster(Session& s, Random& random) {
   const int club = random.below(static_cast<int>(s.cluster_names.size()));
-  const int loft = column_of(s, "dynamic_loft"), speed = column_of(s, "club_speed"), spin = std::max(channel_of(s, "backspin"), channel_of(s, "spin_rate"));
+  const int loft = column_of(s, "dynamic_loft"), speed = column_of(s, "club_speed"),
+            spin = std::max(channel_of(s, "backspin"), channel_of(s, "spin_rate"));
   const int kind = random.below(4);
   std::string what, column;
   Json rows = Json::array();
@@ -296,13 +351,32 @@ Json spoil_cluster(Session& s, Random& random) {
     double& l = s.recorded_inputs(i, loft);
     double& v = s.recorded_inputs(i, speed);
     switch (kind) {
-      case 0: what = "complement of the loft"; column = s.inputs[static_cast<std::size_t>(loft)].header; l = round_to(90 - l, 0.1); break;
-      case 1: what = "lie angle for the loft"; column = s.inputs[static_cast<std::size_t>(loft)].header; l = round_to(60 + 1.0 * random.normal(), 0.1); break;
-      case 2: what = "another unit of speed"; column = s.inputs[static_cast<std::size_t>(speed)].header; v = round_to(v * (s.inputs[static_cast<std::size_t>(speed)].unit == 1.0 ? 2.236936 : 0.44704), 0.1); break;
-      default: what = "spin a tenth"; column = s.channels[static_cast<std::size_t>(spin)].header; s.recorded_outputs(i, spin) = round_to(s.recorded_outputs(i, spin) / 10, 1); break;
+      case 0:
+        what = "complement of the loft";
+        column = s.inputs[static_cast<std::size_t>(loft)].header;
+        l = round_to(90 - l, 0.1);
+        break;
+      case 1:
+        what = "lie angle for the loft";
+        column = s.inputs[static_cast<std::size_t>(loft)].header;
+        l = round_to(60 + 1.0 * random.normal(), 0.1);
+        break;
+      case 2:
+        what = "another unit of speed";
+        column = s.inputs[static_cast<std::size_t>(speed)].header;
+        v = round_to(v * (s.inputs[static_cast<std::size_t>(speed)].unit == 1.0 ? 2.236936 : 0.44704), 0.1);
+        break;
+      default:
+        what = "spin a tenth";
+        column = s.channels[static_cast<std::size_t>(spin)].header;
+        s.recorded_outputs(i, spin) = round_to(s.recorded_outputs(i, spin) / 10, 1);
+        break;
     }
   }
-  return {{"what", what}, {"columns", {column}}, {"cluster", s.cluster_names[static_cast<std::size_t>(club)]}, {"rows", rows}};
+  return {{"what", what},
+          {"columns", {column}},
+          {"cluster", s.cluster_names[static_cast<std::size_t>(club)]},
+          {"rows", rows}};
 }
 
 // ---- outside the vocabulary ------------------------------------------------------------------------------
@@ -424,7 +498,8 @@ Json derive(Session& s, int which, Random& random) {
     case 0: {  // the loft from the launch, as a linear rule of the instrument
       const double k = random.uniform(0.045, 0.057) / s.channels[static_cast<std::size_t>(ball)].unit;
       for (int i = 0; i < n; ++i)
-        s.recorded_inputs(i, loft) = round_to(s.recorded_outputs(i, launch) + k * s.recorded_outputs(i, spin) / s.recorded_outputs(i, ball), 0.1);
+        s.recorded_inputs(i, loft) = round_to(
+            s.recorded_outputs(i, launch) + k * s.recorded_outputs(i, spin) / s.recorded_outputs(i, ball), 0.1);
       return {{"column", in(loft)}, {"from", {out(launch), out(spin), out(ball)}}};
     }
     case 1: {  // the club speed from the ball speed and a fixed smash factor
@@ -435,13 +510,15 @@ Json derive(Session& s, int which, Random& random) {
     }
     case 2: {  // a further column: spin loft
       Extra e{"spin_loft_deg", {}};
-      for (int i = 0; i < n; ++i) e.cells.push_back(fmt::format("{:.1f}", s.recorded_inputs(i, loft) - s.recorded_inputs(i, attack)));
+      for (int i = 0; i < n; ++i)
+        e.cells.push_back(fmt::format("{:.1f}", s.recorded_inputs(i, loft) - s.recorded_inputs(i, attack)));
       s.extras.push_back(e);
       return {{"column", "spin_loft_deg"}, {"from", {in(loft), in(attack)}}};
     }
     case 3: {  // a further column: smash factor
       Extra e{"smash_factor", {}};
-      for (int i = 0; i < n; ++i) e.cells.push_back(fmt::format("{:.2f}", s.recorded_outputs(i, ball) / s.recorded_inputs(i, speed)));
+      for (int i = 0; i < n; ++i)
+        e.cells.push_back(fmt::format("{:.2f}", s.recorded_outputs(i, ball) / s.recorded_inputs(i, speed)));
       s.extras.push_back(e);
       return {{"column", "smash_factor"}, {"from", {out(ball), in(speed)}}};
     }
@@ -449,12 +526,14 @@ Json derive(Session& s, int which, Random& random) {
       const int face = column_of(s, "face_angle"), path = column_of(s, "club_path"), azimuth = channel_of(s, "azimuth");
       if (face < 0) {
         for (int i = 0; i < n; ++i)
-          s.recorded_outputs(i, launch) = round_to(0.85 * s.recorded_inputs(i, loft) + 0.15 * s.recorded_inputs(i, attack), 0.1);
+          s.recorded_outputs(i, launch) =
+              round_to(0.85 * s.recorded_inputs(i, loft) + 0.15 * s.recorded_inputs(i, attack), 0.1);
         return {{"column", out(launch)}, {"from", {in(loft), in(attack)}}};
       }
       const double k = random.uniform(0.78, 0.86);
       for (int i = 0; i < n; ++i)
-        s.recorded_inputs(i, face) = round_to((s.recorded_outputs(i, azimuth) - (1 - k) * s.recorded_inputs(i, path)) / k, 0.1);
+        s.recorded_inputs(i, face) =
+            round_to((s.recorded_outputs(i, azimuth) - (1 - k) * s.recorded_inputs(i, path)) / k, 0.1);
       return {{"column", in(face)}, {"from", {out(azimuth), in(path)}}};
     }
   }
@@ -471,18 +550,22 @@ std::vector<const Form*> applicable(const std::string& base, const std::vector<F
 
 Json describe(const Form& f, const std::vector<double>& x) {
   Json p = Json::array();
-  for (std::size_t k = 0; k < x.size(); ++k) p.push_back({{"name", f.parameters[k].name}, {"value", x[k]}, {"unit", f.parameters[k].unit}});
+  for (std::size_t k = 0; k < x.size(); ++k)
+    p.push_back({{"name", f.parameters[k].name}, {"value", x[k]}, {"unit", f.parameters[k].unit}});
   return {{"effect", f.effect}, {"form", f.form}, {"parameters", p}};
 }
 
 Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index, int draw) {
-  Random random(mix(mix(mix(mix(seed, stratum), static_cast<std::uint64_t>(shots)), static_cast<std::uint64_t>(index)), static_cast<std::uint64_t>(draw)));
+  Random random(mix(mix(mix(mix(seed, stratum), static_cast<std::uint64_t>(shots)), static_cast<std::uint64_t>(index)),
+                    static_cast<std::uint64_t>(draw)));
   Set set;
   set.stratum = stratum;
   set.seed = seed;
   set.shots = shots;
   set.index = index;
-  set.name = fmt::format("s{:08x}", mix(mix(mix(seed, stratum), static_cast<std::uint64_t>(shots)), static_cast<std::uint64_t>(index)) & 0xffffffffu);
+  set.name = fmt::format(
+      "s{:08x}",
+      mix(mix(mix(seed, stratum), static_cast<std::uint64_t>(shots)), static_cast<std::uint64_t>(index)) & 0xffffffffu);
 
   SessionOptions o{random.chance(0.35) ? "rigid-planar" : "rigid-eccentric", shots};
   o.clusters = random.chance(0.3);
@@ -498,7 +581,8 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
   }
   if (chosen && !(o.base == "rigid-planar" ? chosen->planar : chosen->eccentric))
     o.base = chosen->planar ? "rigid-planar" : "rigid-eccentric";
-  if (chosen && chosen->effect == "head-rotation") o.impact_spread = random.uniform(0.05, 0.4) * std::sqrt(100.0 / shots);
+  if (chosen && chosen->effect == "head-rotation")
+    o.impact_spread = random.uniform(0.05, 0.4) * std::sqrt(100.0 / shots);
   // Two names at random; friction wants the lofts where a ball slides.
   const Form *first = nullptr, *second = nullptr;
   if (stratum == "two-effects") {
@@ -515,11 +599,13 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
   set.session = draw_session(o, random);
   Session& s = set.session;
   if (stratum == "null-club-effects") s.split_by_cluster = true;
-  Json key = {{"set", set.name}, {"stratum", stratum}, {"seed", seed}, {"shots", shots}, {"index", index}, {"base", s.base},
-              {"input_noise", o.input_noise}};
+  Json key = {{"set", set.name}, {"stratum", stratum},          {"seed", seed}, {"shots", shots}, {"index", index},
+              {"base", s.base},  {"input_noise", o.input_noise}};
   Eigen::MatrixXd outputs = predict(s, s.swings, base_truth(s));
-  Noise noise = stratum == "null-heavy-tails" ? Noise::heavy : stratum == "null-growing-spread" ? Noise::growing
-              : stratum == "null-drifting-noise" ? Noise::drifting : Noise::plain;
+  Noise noise = stratum == "null-heavy-tails"      ? Noise::heavy
+                : stratum == "null-growing-spread" ? Noise::growing
+                : stratum == "null-drifting-noise" ? Noise::drifting
+                                                   : Noise::plain;
 
   if (stratum == "one-effect" || stratum == "other-form") {
     const Geometry g(s);
@@ -582,7 +668,8 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     const Form known_a = known(*a, x[0]), known_b = known(*b, x[1]);
     Json distances = Json::array();
     const bool law = a->effect == "restitution-law" || b->effect == "restitution-law";
-    const std::vector<const Form*> nuisance = law ? std::vector<const Form*>{} : std::vector<const Form*>{&calibration()};
+    const std::vector<const Form*> nuisance = law ? std::vector<const Form*>{}
+                                                  : std::vector<const Form*>{&calibration()};
     for (const auto& [kept, dropped] : {std::pair{&known_a, b}, std::pair{&known_b, a}}) {
       std::vector<const Form*> alone{kept};
       alone.insert(alone.end(), nuisance.begin(), nuisance.end());
@@ -623,8 +710,10 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     // Every club has its own small offset in every channel: batches, grips, set-up.
     for (std::size_t c = 0; c < s.channels.size(); ++c) {
       std::vector<double> offset;
-      for (std::size_t k = 0; k < s.cluster_names.size(); ++k) offset.push_back(0.5 * s.channels[c].noise_sd * random.normal());
-      for (int i = 0; i < s.shots(); ++i) outputs(i, static_cast<int>(c)) += offset[static_cast<std::size_t>(s.cluster[static_cast<std::size_t>(i)])];
+      for (std::size_t k = 0; k < s.cluster_names.size(); ++k)
+        offset.push_back(0.5 * s.channels[c].noise_sd * random.normal());
+      for (int i = 0; i < s.shots(); ++i)
+        outputs(i, static_cast<int>(c)) += offset[static_cast<std::size_t>(s.cluster[static_cast<std::size_t>(i)])];
     }
   }
 
@@ -636,7 +725,8 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
       const Json club = spoil_cluster(s, random);
       key["bad_cluster"] = club;
       key["bad_rows"] = Json::array();
-      for (const auto& row : club["rows"]) key["bad_rows"].push_back({{"shot", row}, {"what", club["what"]}, {"columns", club["columns"]}});
+      for (const auto& row : club["rows"])
+        key["bad_rows"].push_back({{"shot", row}, {"what", club["what"]}, {"columns", club["columns"]}});
     } else {
       key["bad_rows"] = spoil_rows(s, random.uniform(0.02, 0.06), 8, random);
     }
@@ -653,11 +743,20 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
 }  // namespace
 
 const std::vector<std::pair<std::string, int>>& strata() {
-  static const std::vector<std::pair<std::string, int>> list{
-      {"null", 400},           {"null-input-noise", 100},  {"null-heavy-tails", 100}, {"null-growing-spread", 100},
-      {"null-drifting-noise", 100}, {"null-bad-rows", 100}, {"null-club-effects", 100}, {"one-effect", 300},
-      {"other-form", 100},     {"two-effects", 100},       {"confounded", 100},       {"outside", 100},
-      {"bad-rows", 100},       {"derived", 50}};
+  static const std::vector<std::pair<std::string, int>> list{{"null", 400},
+                                                             {"null-input-noise", 100},
+                                                             {"null-heavy-tails", 100},
+                                                             {"null-growing-spread", 100},
+                                                             {"null-drifting-noise", 100},
+                                                             {"null-bad-rows", 100},
+                                                             {"null-club-effects", 100},
+                                                             {"one-effect", 300},
+                                                             {"other-form", 100},
+                                                             {"two-effects", 100},
+                                                             {"confounded", 100},
+                                                             {"outside", 100},
+                                                             {"bad-rows", 100},
+                                                             {"derived", 50}};
   return list;
 }
 

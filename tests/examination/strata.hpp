@@ -10,7 +10,7 @@ namespace examination {
 using Json = nlohmann::ordered_json;
 
 struct Set {
-  std::string name;     ///< tells nothing of the stratum
+  std::string name;  ///< tells nothing of the stratum
   std::string stratum;
   std::uint64_t seed;
   int shots, index;

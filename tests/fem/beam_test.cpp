@@ -1,5 +1,5 @@
 // The beam term: derivatives, rigid motion.
-#include "fem/beam.hpp"
+#include "hosel/fem/beam.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,14 @@ namespace hosel::fem {
 namespace {
 
 Section thick() {
-  return {.axial = 3e3, .shear_y = 1.1e3, .shear_z = 0.9e3, .torsion = 40, .bending_y = 50, .bending_z = 70,
-          .mass = 400, .rotary = Vec3(30, 10, 20),
+  return {.axial = 3e3,
+          .shear_y = 1.1e3,
+          .shear_z = 0.9e3,
+          .torsion = 40,
+          .bending_y = 50,
+          .bending_z = 70,
+          .mass = 400,
+          .rotary = Vec3(30, 10, 20),
           .centres = {.elastic = {0.03, -0.05}, .shear = {-0.04, 0.02}, .mass = {0.06, 0.01}}};
 }
 
@@ -20,9 +26,14 @@ Section thick() {
 struct Scrambled {
   explicit Scrambled(double damping_time) {
     const Mat3 frame = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-    beam.emplace(layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
-                 [](double s) { Section q = thick(); q.bending_y *= 1 + s; return q; },
-                 BeamOptions{.gravity = Vec3(1, 2, -9), .damping_time = damping_time});
+    beam.emplace(
+        layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
+        [](double s) {
+          Section q = thick();
+          q.bending_y *= 1 + s;
+          return q;
+        },
+        BeamOptions{.gravity = Vec3(1, 2, -9), .damping_time = damping_time});
     state = layout.rest();
     beam->place(state);
     state.q = layout.advanced(state.q, test::random_vector(layout.size(), 11, 0.4));
@@ -39,14 +50,21 @@ TEST(Beam, ResidualIsTheGradientOfTheEnergyAndTheTangentItsDerivative) {
   test::check_tangent(*s.beam, s.layout, s.state, 1e-5, 1e-8);
   // Gravity is in the force but not in the stored energy.
   Layout layout;
-  const Beam weightless(layout, s.beam->line(), [](double a) { Section q = thick(); q.bending_y *= 1 + a; return q; }, {});
+  const Beam weightless(layout, s.beam->line(),
+                        [](double a) {
+                          Section q = thick();
+                          q.bending_y *= 1 + a;
+                          return q;
+                        },
+                        {});
   test::check_gradient(weightless, layout, s.state, 1e-5, 1e-8);
 }
 
 TEST(Beam, DampingForceIsPowerOfTheStrainRates) {
   // Stress = C (strain + tau rate): d(force)/dtau . v is the dissipated power, so never negative.
   Scrambled undamped(0), damped(1e-3);
-  const Vector f = test::total_residual(*damped.beam, damped.state) - test::total_residual(*undamped.beam, undamped.state);
+  const Vector f = test::total_residual(*damped.beam, damped.state) -
+                   test::total_residual(*undamped.beam, undamped.state);
   const double power = f.dot(damped.state.v);
   EXPECT_GT(power, 0);
   State later = damped.state;

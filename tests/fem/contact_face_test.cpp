@@ -1,8 +1,8 @@
-#include "fem/contact_face.hpp"
+#include "hosel/fem/contact_face.hpp"
 
 #include <gtest/gtest.h>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {
@@ -31,9 +31,9 @@ struct Scene {
     axes.col(0) = -R.col(0);
     axes.col(1) = R.col(2);
     axes.col(2) = axes.col(0).cross(axes.col(1));
-    ball = new HarmonicSolid(system.layout,
-                             mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
-                             family, {symmetric ? half_circle(6) : full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
+    ball = new HarmonicSolid(
+        system.layout, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
+        family, {symmetric ? half_circle(6) : full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
     system.terms.emplace_back(ball);
     x = system.layout.add_vector(3);
     r = system.layout.add_rotation();

@@ -1,9 +1,9 @@
-#include "fem/harmonic_solid.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
 
 #include <gtest/gtest.h>
 
-#include "golf/units.hpp"
-#include "solvers/modes.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/solvers/modes.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {
@@ -28,7 +28,8 @@ SolidQuadrature rule_of(const Family& family, bool symmetric) {
 
 TEST(HarmonicSolid, TangentAndGradient) {
   const Solid viscous{.elastic = Hyperelastic{.c10 = 10e6, .c01 = 2e6, .c20 = 1e6, .bulk = 1e8},
-                      .branches = {{20e6, 1e-4}}, .density = kDensity};
+                      .branches = {{20e6, 1e-4}},
+                      .density = kDensity};
   const struct {
     Family family;
     SolidQuadrature quadrature;
@@ -38,7 +39,8 @@ TEST(HarmonicSolid, TangentAndGradient) {
                {cylindrical_family(2), rule_of(cylindrical_family(2), false)}};
   for (const auto& c : cases) {
     Layout layout;
-    const Placement placement{Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix()};
+    const Placement placement{Vec3(0.1, 0.2, 0.3),
+                              Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix()};
     HarmonicSolid solid(layout, ball(1, 1), c.family, c.quadrature, {viscous}, placement);
     State s = layout.rest();
     s.q = test::random_vector(layout.size(), 1, 5e-4);
@@ -99,8 +101,7 @@ TEST(HarmonicSolid, SphereModes) {
                                                            SolidQuadrature{single_angle(), 2},
                                                            std::vector<Solid>{solid}, Placement{}));
     const solvers::Modes modes = solvers::modes(system, system.layout.rest(), 5);
-    for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_NEAR(modes.omega[i + 1] / unit, torsional[i], 1e-3 * torsional[i]);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(modes.omega[i + 1] / unit, torsional[i], 1e-3 * torsional[i]);
   }
 }
 
@@ -111,7 +112,8 @@ TEST(HarmonicSolid, SphereModesConverge) {
     int m;
     std::size_t at;
   };
-  for (const Row& row : {Row{.3, 2.6462170, 2, 1}, Row{.49, 2.6648287, 2, 1}, Row{.4999, 2.6656143, 2, 1}, Row{.49, 2.50113262, 2, 0}}) {
+  for (const Row& row :
+       {Row{.3, 2.6462170, 2, 1}, Row{.49, 2.6648287, 2, 1}, Row{.4999, 2.6656143, 2, 1}, Row{.49, 2.50113262, 2, 0}}) {
     const Solid solid = neo_hooke(row.nu);
     const double unit = std::sqrt(solid.shear() / kDensity) / kRadius;
     const auto error = [&](int n) {
@@ -166,7 +168,8 @@ TEST(HarmonicSolid, RigidRotationIsExact) {
 /// Momentum, angular momentum and energy of a rigid motion are those of the sphere.
 TEST(HarmonicSolid, RigidMotion) {
   Layout layout;
-  const Placement placement{Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix()};
+  const Placement placement{Vec3(0.1, 0.2, 0.3),
+                            Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix()};
   HarmonicSolid solid(layout, ball(4, 4), cartesian_family(2, 2), rule_of(cartesian_family(2), false), {neo_hooke(.3)},
                       placement);
   State s = layout.rest();

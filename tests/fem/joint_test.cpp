@@ -1,7 +1,7 @@
 // Springs between two nodes: derivatives, and the power of the hands.
 #include <gtest/gtest.h>
 
-#include "fem/supports.hpp"
+#include "hosel/fem/supports.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {
@@ -26,7 +26,9 @@ TEST(SpringJoint, ForceIsTheGradientAndTheTangentItsDerivative) {
   const SpringJoint between("joint", a, b, stiffness(0));
   test::check_gradient(between, layout, s, 1e-5, 1e-8);
   test::check_tangent(between, layout, s, 1e-5, 1e-8);
-  const SpringJoint hands("hands", at_rest(Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3::UnitY()))), b, stiffness(0));
+  const SpringJoint hands("hands",
+                          at_rest(Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3::UnitY()))), b,
+                          stiffness(0));
   test::check_gradient(hands, layout, s, 1e-5, 1e-8);
   test::check_tangent(hands, layout, s, 1e-5, 1e-8);
 }

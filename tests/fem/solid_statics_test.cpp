@@ -4,8 +4,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "fem/harmonic_solid.hpp"
-#include "solvers/statics.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/solvers/statics.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {
@@ -43,8 +43,8 @@ mesh::Meridian distorted_patch() {
 /// Holds chosen equations at chosen values.
 class Held final : public Prescribed {
  public:
-  std::vector<Index> at;         // equations
-  std::vector<Index> offset;     // the same in State::q
+  std::vector<Index> at;      // equations
+  std::vector<Index> offset;  // the same in State::q
   std::vector<double> value;
   const std::vector<Index>& equations() const override { return at; }
   void impose(State& s) const override {
@@ -55,11 +55,12 @@ class Held final : public Prescribed {
 /// A homogeneous deformation imposed on the boundary is found inside, to round-off, for any law.
 TEST(SolidStatics, PatchTest) {
   const Lame stiff = Lame::of(100e6, 0.4999), soft = Lame::of(60e6, 0.3);
-  const std::vector<Solid> laws{{.elastic = LinearElastic{soft}, .branches = {}, .density = 1},
-                                {.elastic = StVenantKirchhoff{soft}, .branches = {}, .density = 1},
-                                {.elastic = Hyperelastic::neo_hooke(stiff), .branches = {}, .density = 1},
-                                {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .c20 = 1e6, .bulk = 1e9}, .branches = {}, .density = 1},
-                                {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1}};
+  const std::vector<Solid> laws{
+      {.elastic = LinearElastic{soft}, .branches = {}, .density = 1},
+      {.elastic = StVenantKirchhoff{soft}, .branches = {}, .density = 1},
+      {.elastic = Hyperelastic::neo_hooke(stiff), .branches = {}, .density = 1},
+      {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .c20 = 1e6, .bulk = 1e9}, .branches = {}, .density = 1},
+      {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1}};
   Mat3 A;  // displacement gradient, symmetric about the plane of axes 1 and 2
   A << 0.06, 0.10, 0, -0.04, -0.05, 0, 0, 0, 0;
   for (const bool planar : {true, false}) {
@@ -71,9 +72,8 @@ TEST(SolidStatics, PatchTest) {
       System system;
       const Family family = planar ? cartesian_family(2) : cartesian_family(1, 1);
       const AngularRule angles = planar ? half_circle(8) : full_circle(12);
-      auto owned = std::make_unique<HarmonicSolid>(
-          system.layout, distorted_patch(), family, SolidQuadrature{angles, 2},
-          std::vector<Solid>{law}, Placement{});
+      auto owned = std::make_unique<HarmonicSolid>(system.layout, distorted_patch(), family, SolidQuadrature{angles, 2},
+                                                   std::vector<Solid>{law}, Placement{});
       const HarmonicSolid& solid = *owned;
       system.terms.push_back(std::move(owned));
       const State rest = system.layout.rest();
@@ -105,8 +105,12 @@ TEST(SolidStatics, PatchTest) {
       // From a disturbed start: the whole displacement at once would turn elements at the boundary inside out.
       State start = exact;
       start.q += test::random_vector(system.layout.q_size(), 1, 1e-6);
-      const auto found = solvers::solve_static(
-          system, start, {.newton = {.residual_relative = 1e-12, .increment_vector = 1e-14, .increment_rotation = 1, .max_iterations = 100}, .load_steps = 4});
+      const auto found = solvers::solve_static(system, start,
+                                               {.newton = {.residual_relative = 1e-12,
+                                                           .increment_vector = 1e-14,
+                                                           .increment_rotation = 1,
+                                                           .max_iterations = 100},
+                                                .load_steps = 4});
       const double size = exact.q.lpNorm<Eigen::Infinity>();
       ASSERT_GT(size, 5e-4);
       EXPECT_LT((found.state.q - exact.q).lpNorm<Eigen::Infinity>(), 1e-11 * size);
@@ -129,7 +133,8 @@ class InnerPressure final : public Term {
     const auto& mesh = solid.mesh();
     std::vector<std::pair<double, int>> ring;  // nodes of the inner surface from one pole to the other
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-      if (mesh.nodes[i].norm() < inner * (1 + 1e-9)) ring.emplace_back(std::atan2(mesh.nodes[i].y(), mesh.nodes[i].x()), static_cast<int>(i));
+      if (mesh.nodes[i].norm() < inner * (1 + 1e-9))
+        ring.emplace_back(std::atan2(mesh.nodes[i].y(), mesh.nodes[i].x()), static_cast<int>(i));
     std::ranges::sort(ring);
     for (std::size_t e = 0; e + 2 < ring.size(); e += 2)
       for (const auto& [x, w] : {std::pair{-std::sqrt(0.6), 5.0 / 9}, {0.0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}}) {
@@ -170,14 +175,18 @@ TEST(SolidStatics, PressurisedThickSphere) {
     System system;
     auto owned = std::make_unique<HarmonicSolid>(
         system.layout, mesh::shell_meridian(a, b, 8, 4), axisymmetric_family(), SolidQuadrature{single_angle(), 2},
-        std::vector<Solid>{{.elastic = LinearElastic{Lame::of(100e6, row.nu)}, .branches = {}, .density = 1}}, Placement{});
+        std::vector<Solid>{{.elastic = LinearElastic{Lame::of(100e6, row.nu)}, .branches = {}, .density = 1}},
+        Placement{});
     const HarmonicSolid& solid = *owned;
     system.terms.push_back(std::move(owned));
     system.terms.push_back(std::make_unique<InnerPressure>(solid, a, p));
     // The equator's plane stays in place: one node of it holds the translation.
-    const auto node = static_cast<int>(std::ranges::find_if(solid.mesh().nodes, [&](const Eigen::Vector2d& x) {
-                                         return std::abs(x.x()) < 1e-9 && x.norm() > b * (1 - 1e-9);
-                                       }) - solid.mesh().nodes.begin());
+    const auto node = static_cast<int>(std::ranges::find_if(solid.mesh().nodes,
+                                                            [&](const Eigen::Vector2d& x) {
+                                                              return std::abs(x.x()) < 1e-9 &&
+                                                                     x.norm() > b * (1 - 1e-9);
+                                                            }) -
+                                       solid.mesh().nodes.begin());
     ASSERT_LT(node, static_cast<int>(solid.mesh().nodes.size()));
     auto held = std::make_unique<Held>();
     held->at = {solid.equation(node, 0)};
@@ -185,7 +194,8 @@ TEST(SolidStatics, PressurisedThickSphere) {
     held->value = {0};
     system.prescribed.push_back(std::move(held));
     const auto found = solvers::solve_static(
-        system, system.layout.rest(), {.newton = {.residual_relative = 1e-10, .increment_vector = 1e-10, .increment_rotation = 1}});
+        system, system.layout.rest(),
+        {.newton = {.residual_relative = 1e-10, .increment_vector = 1e-10, .increment_rotation = 1}});
     const auto u = solid.displacement_fields(found.state);
     for (std::size_t i = 0; i < solid.mesh().nodes.size(); ++i) {
       const Eigen::Vector2d& x = solid.mesh().nodes[i];

@@ -1,4 +1,4 @@
-#include "fem/materials/solid.hpp"
+#include "hosel/fem/materials/solid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,16 +22,21 @@ struct Named {
 std::vector<Named> materials() {
   const Lame l = Lame::of(100e6, 0.49);
   const std::vector<MaxwellBranch> two{{20e6, 1e-4}, {15e6, 3e-5}};
-  return {{"linear", {.elastic = LinearElastic{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
-          {"st-venant-kirchhoff", {.elastic = StVenantKirchhoff{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
-          {"neo-hooke", {.elastic = Hyperelastic::neo_hooke(l), .branches = {}, .density = 1100}},
-          {"mooney-rivlin", {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
-          {"yeoh", {.elastic = Hyperelastic{.c10 = 10e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
-          {"ogden", {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1100}},
-          {"neo-hooke with branches", {.elastic = Hyperelastic::neo_hooke(l), .branches = two, .density = 1100}},
-          {"ogden with branches", {.elastic = Ogden{.powers = {{15e6, 3}}, .bulk = 1e9}, .branches = two, .density = 1100}},
-          {"yeoh with branches",
-           {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 2e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = two, .density = 1100}}};
+  return {
+      {"linear", {.elastic = LinearElastic{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
+      {"st-venant-kirchhoff", {.elastic = StVenantKirchhoff{Lame::of(60e6, 0.3)}, .branches = {}, .density = 1100}},
+      {"neo-hooke", {.elastic = Hyperelastic::neo_hooke(l), .branches = {}, .density = 1100}},
+      {"mooney-rivlin",
+       {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 4e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
+      {"yeoh",
+       {.elastic = Hyperelastic{.c10 = 10e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
+      {"ogden", {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1100}},
+      {"neo-hooke with branches", {.elastic = Hyperelastic::neo_hooke(l), .branches = two, .density = 1100}},
+      {"ogden with branches", {.elastic = Ogden{.powers = {{15e6, 3}}, .bulk = 1e9}, .branches = two, .density = 1100}},
+      {"yeoh with branches",
+       {.elastic = Hyperelastic{.c10 = 10e6, .c01 = 2e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9},
+        .branches = two,
+        .density = 1100}}};
 }
 
 TEST(Solid, EnergyStressTangentAgree) {
@@ -57,8 +62,7 @@ TEST(Solid, EnergyStressTangentAgree) {
         respond(solid, F, Q, dt, history, true, at);
         respond(solid, F + h * D, Q, dt, history, false, plus);
         respond(solid, F - h * D, Q, dt, history, false, minus);
-        const Eigen::Matrix<double, 9, 1> difference =
-            ((plus.stress - minus.stress) / (2 * h)).reshaped();
+        const Eigen::Matrix<double, 9, 1> difference = ((plus.stress - minus.stress) / (2 * h)).reshaped();
         const Eigen::Matrix<double, 9, 1> predicted = at.tangent * D.reshaped();
         EXPECT_LE((difference - predicted).norm(), 1e-7 * predicted.norm()) << name << " dt " << dt;
       }
@@ -85,8 +89,9 @@ TEST(Solid, OgdenHoldsMooneyRivlin) {
 TEST(Solid, NeoHookeUniaxial) {
   Hyperelastic law{.c10 = 33.5570469798658e6 / 2, .bulk = 1666.66666666667e6};
   const Solid solid{.elastic = law, .branches = {}, .density = 1};
-  const double table[6][3] = {{.5, 1.40583200, -5.909099e7}, {.7, 1.19145481, -3.152400e7}, {.9, 1.05303128, -1.006309e7},
-                              {1.1, .95441588, 1.000321e7},  {1.5, .82073098, 5.199507e7},  {2, .71503833, 1.127982e8}};
+  const double table[6][3] = {{.5, 1.40583200, -5.909099e7}, {.7, 1.19145481, -3.152400e7},
+                              {.9, 1.05303128, -1.006309e7}, {1.1, .95441588, 1.000321e7},
+                              {1.5, .82073098, 5.199507e7},  {2, .71503833, 1.127982e8}};
   for (const auto& row : table) {
     double lateral = 1 / std::sqrt(row[0]);
     PointResponse r;
@@ -114,7 +119,8 @@ TEST(Solid, NeoHookeUniaxial) {
 /// that the finite-strain terms (of relative size strain^2) fall below the tolerance.
 class Prony : public testing::Test {
  protected:
-  Solid solid{.elastic = Hyperelastic{.c10 = 10e6, .bulk = 4e9}, .branches = {{10e6, 1e-4}, {10e6, 1e-3}}, .density = 1};
+  Solid solid{
+      .elastic = Hyperelastic{.c10 = 10e6, .bulk = 4e9}, .branches = {{10e6, 1e-4}, {10e6, 1e-3}}, .density = 1};
   static constexpr double scale = 1e-5;
   std::vector<double> history = std::vector<double>(static_cast<std::size_t>(solid.history_size()));
   double work = 0;

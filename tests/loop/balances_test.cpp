@@ -1,12 +1,12 @@
 // One impulse gives the ball velocity and spin: what of a residual some impulse mends, and what none does.
-#include "loop/balances.hpp"
+#include "hosel/loop/balances.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "loop/absorption.hpp"
-#include "models/registry.hpp"
+#include "hosel/loop/absorption.hpp"
+#include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -16,24 +16,33 @@ Balance of(double tangential, double inertia_factor, double loft_error) {
   std::mt19937 random(4);
   std::normal_distribution<double> gauss;
   const auto model = models::find("rigid-eccentric")->make({});
-  std::vector<Channel> channels = {{.name = "ball_speed_mps", .output = Output::ball_speed, .noise = 0.05},
-                                   {.name = "launch_angle_deg", .output = Output::launch_angle, .si = radians(1), .noise = 0.04},
-                                   {.name = "azimuth_deg", .output = Output::azimuth, .si = radians(1), .noise = 0.05},
-                                   {.name = "backspin_rpm", .output = Output::backspin, .si = kRadPerSecPerRpm, .noise = 12},
-                                   {.name = "sidespin_rpm", .output = Output::sidespin, .si = kRadPerSecPerRpm, .noise = 12}};
+  std::vector<Channel> channels = {
+      {.name = "ball_speed_mps", .output = Output::ball_speed, .noise = 0.05},
+      {.name = "launch_angle_deg", .output = Output::launch_angle, .si = radians(1), .noise = 0.04},
+      {.name = "azimuth_deg", .output = Output::azimuth, .si = radians(1), .noise = 0.05},
+      {.name = "backspin_rpm", .output = Output::backspin, .si = kRadPerSecPerRpm, .noise = 12},
+      {.name = "sidespin_rpm", .output = Output::sidespin, .si = kRadPerSecPerRpm, .noise = 12}};
   std::vector<Trial> trials;
   Eigen::MatrixXd measured(60, 5);
   for (int i = 0; i < 60; ++i) {
     Trial t;
-    t.blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
-    t.blow.delivery = {.club_speed = 45 + 3 * gauss(random), .club_path = radians(2 * gauss(random)), .dynamic_loft = radians(14 + 3 * gauss(random)),
-                       .impact_toe = 0.009 * gauss(random), .impact_high = 0.006 * gauss(random)};
+    t.blow.club.head = {.mass = 0.2,
+                        .cg = Vec3(-0.035, 0, 0),
+                        .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                        .face = {0.3, 0.3}};
+    t.blow.delivery = {.club_speed = 45 + 3 * gauss(random),
+                       .club_path = radians(2 * gauss(random)),
+                       .dynamic_loft = radians(14 + 3 * gauss(random)),
+                       .impact_toe = 0.009 * gauss(random),
+                       .impact_high = 0.006 * gauss(random)};
     Blow truth = t.blow;
     truth.contact.tangential_restitution = tangential;
     truth.ball.inertia_factor = inertia_factor;
     truth.delivery.dynamic_loft += loft_error;
     const Launch l = model->launch(truth);
-    for (int c = 0; c < 5; ++c) measured(i, c) = get(l, channels[std::size_t(c)].output) / channels[std::size_t(c)].si + channels[std::size_t(c)].noise * gauss(random);
+    for (int c = 0; c < 5; ++c)
+      measured(i, c) = get(l, channels[std::size_t(c)].output) / channels[std::size_t(c)].si +
+                       channels[std::size_t(c)].noise * gauss(random);
     trials.push_back(t);
   }
   Problem problem(*model, true, trials, channels, measured);
@@ -67,8 +76,8 @@ TEST(Absorption, SharesRivalsAndNullVectors) {
   Eigen::MatrixXd fitted = Eigen::MatrixXd::Zero(6, 1);
   fitted(0, 0) = 2;
   Eigen::VectorXd a = Eigen::VectorXd::Zero(6), b = a, c = a;
-  a << 3, 4, 0, 0, 0, 0;        // 9/25 of it is absorbed
-  b << 0, 2, 1e-3, 0, 0, 0;     // what is left of a, nearly
+  a << 3, 4, 0, 0, 0, 0;     // 9/25 of it is absorbed
+  b << 0, 2, 1e-3, 0, 0, 0;  // what is left of a, nearly
   c << 0, 0, 0, 5, 0, 0;
   const Likeness l = likeness({{"a", "p", a}, {"b", "q", b}, {"c", "r", c}}, fitted);
   ASSERT_EQ(l.absorption.size(), 3u);

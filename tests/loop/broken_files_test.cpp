@@ -12,7 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace hosel::test;
 
-constexpr const char* kHeader = "club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,backspin_rpm\n";
+constexpr const char* kHeader =
+    "club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,backspin_rpm\n";
 constexpr const char* kCase = R"(kind = "loop"
 title = "broken"
 [model]
@@ -26,8 +27,9 @@ shots = "shots.csv"
 /// A row of the given number; `constant`: an input and an output that never change.
 std::string row(int k, bool constant) {
   char text[96];
-  std::snprintf(text, sizeof text, "%.1f,%.1f,%.1f,%.1f,%.1f,%d\n", constant ? 45.0 : 40 + 0.1 * (k % 97), -2 + 0.1 * (k % 41), 10 + 0.1 * (k % 53),
-                constant ? 62.0 : 57 + 0.1 * (k % 89), 9 + 0.1 * (k % 47), 2000 + k % 701);
+  std::snprintf(text, sizeof text, "%.1f,%.1f,%.1f,%.1f,%.1f,%d\n", constant ? 45.0 : 40 + 0.1 * (k % 97),
+                -2 + 0.1 * (k % 41), 10 + 0.1 * (k % 53), constant ? 62.0 : 57 + 0.1 * (k % 89), 9 + 0.1 * (k % 47),
+                2000 + k % 701);
   return text;
 }
 
@@ -77,9 +79,20 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Broken{"empty", [](std::ostream&) {}, nullptr, "empty"},
                     Broken{"header_alone", [](std::ostream& o) { rows(o, 0); }, "insufficient", "\"read\":0"},
                     Broken{"one_row", [](std::ostream& o) { rows(o, 1); }, "insufficient", "\"read\":1"},
-                    Broken{"constant_columns", [](std::ostream& o) { rows(o, 40, true); }, "unexplained", "\"read\":40"},
-                    Broken{"all_missing", [](std::ostream& o) { o << kHeader; for (int k = 0; k < 40; ++k) o << ",,,,,\n"; }, "insufficient", "\"read\":40"},
-                    Broken{"outputs_missing", [](std::ostream& o) { o << kHeader; for (int k = 0; k < 40; ++k) o << 40 + k % 7 << ",0,12,,,\n"; }, "insufficient", "\"read\":40"},
+                    Broken{"constant_columns", [](std::ostream& o) { rows(o, 40, true); }, "unexplained",
+                           "\"read\":40"},
+                    Broken{"all_missing",
+                           [](std::ostream& o) {
+                             o << kHeader;
+                             for (int k = 0; k < 40; ++k) o << ",,,,,\n";
+                           },
+                           "insufficient", "\"read\":40"},
+                    Broken{"outputs_missing",
+                           [](std::ostream& o) {
+                             o << kHeader;
+                             for (int k = 0; k < 40; ++k) o << 40 + k % 7 << ",0,12,,,\n";
+                           },
+                           "insufficient", "\"read\":40"},
                     Broken{"million_rows", [](std::ostream& o) { rows(o, 1'000'000); }, nullptr, "1000000 rows"}),
     [](const auto& info) { return std::string(info.param.name); });
 

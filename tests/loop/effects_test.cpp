@@ -3,17 +3,25 @@
 
 #include <cmath>
 
-#include "loop/fit.hpp"
-#include "models/registry.hpp"
+#include "hosel/loop/fit.hpp"
+#include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
 namespace {
 
 Trial blow_of(int k) {
   Trial t;
-  t.blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0.002, 0.003), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
-  t.blow.delivery = {.club_speed = 38.0 + k, .attack_angle = radians(-2 + 0.5 * k), .club_path = radians(1.0 - 0.3 * k), .dynamic_loft = radians(12 + 3 * k),
-                     .face_angle = radians(0.4 * k - 1), .impact_toe = 0.004 * k - 0.01, .impact_high = 0.006 - 0.002 * k};
+  t.blow.club.head = {.mass = 0.2,
+                      .cg = Vec3(-0.035, 0.002, 0.003),
+                      .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                      .face = {0.3, 0.3}};
+  t.blow.delivery = {.club_speed = 38.0 + k,
+                     .attack_angle = radians(-2 + 0.5 * k),
+                     .club_path = radians(1.0 - 0.3 * k),
+                     .dynamic_loft = radians(12 + 3 * k),
+                     .face_angle = radians(0.4 * k - 1),
+                     .impact_toe = 0.004 * k - 0.01,
+                     .impact_high = 0.006 - 0.002 * k};
   t.order = k / 7.0;
   return t;
 }
@@ -21,13 +29,19 @@ Trial blow_of(int k) {
 class OnModel : public testing::TestWithParam<const char*> {
  protected:
   OnModel() : model(models::find(GetParam())->make({})), turns(std::string(GetParam()) != "rigid-planar") {
-    setting = {turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
+    setting = {
+        turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
     for (const EffectEntry& e : effects())
       for (Form& f : e.forms(setting)) forms.push_back(f);
     std::vector<Channel> channels;
-    const double noise[] = {0.25, 0.2, 0.25, 60, 60}, si[] = {1, kRadPerDeg, kRadPerDeg, kRadPerSecPerRpm, kRadPerSecPerRpm};
+    const double noise[] = {0.25, 0.2, 0.25, 60, 60},
+                 si[] = {1, kRadPerDeg, kRadPerDeg, kRadPerSecPerRpm, kRadPerSecPerRpm};
     for (std::size_t k = 0; k < setting.outputs.size(); ++k)
-      channels.push_back({.name = std::string(stem(setting.outputs[k])), .output = setting.outputs[k], .si = si[k], .noise = noise[k], .declared = true});
+      channels.push_back({.name = std::string(stem(setting.outputs[k])),
+                          .output = setting.outputs[k],
+                          .si = si[k],
+                          .noise = noise[k],
+                          .declared = true});
     std::vector<Trial> trials;
     for (int k = 0; k < 8; ++k) {
       trials.push_back(blow_of(k));
@@ -53,7 +67,8 @@ TEST_P(OnModel, ZeroParametersAreTheBaseBitForBit) {
       double base[5], with[5];
       ASSERT_TRUE(problem->predict(i, Model{}, nullptr, base));
       ASSERT_TRUE(problem->predict(i, m, zero.data(), with));
-      for (int c = 0; c < 5; ++c) EXPECT_EQ(base[c], with[c]) << f.effect << ", " << f.what << ", shot " << i << ", channel " << c;
+      for (int c = 0; c < 5; ++c)
+        EXPECT_EQ(base[c], with[c]) << f.effect << ", " << f.what << ", shot " << i << ", channel " << c;
     }
   }
 }
@@ -74,7 +89,8 @@ TEST_P(OnModel, DerivativesAgreeWithFinerDifferences) {
         return whitened(*problem, rows, m, q);
       };
       const Eigen::VectorXd reference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * 4e-3);
-      EXPECT_LT((J.col(k) - reference).norm(), 1e-4 * (reference.norm() + 1e-3)) << f.effect << ", " << f.what << ", parameter " << k;
+      EXPECT_LT((J.col(k) - reference).norm(), 1e-4 * (reference.norm() + 1e-3))
+          << f.effect << ", " << f.what << ", parameter " << k;
     }
   }
 }
@@ -100,7 +116,8 @@ TEST_P(OnModel, EveryEffectChangesSomethingWhereItCanAct) {
   EXPECT_GT(acting, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Loop, OnModel, testing::Values("rigid-planar", "rigid-eccentric"), [](const auto& p) { return std::string(p.param) == "rigid-planar" ? "planar" : "eccentric"; });
+INSTANTIATE_TEST_SUITE_P(Loop, OnModel, testing::Values("rigid-planar", "rigid-eccentric"),
+                         [](const auto& p) { return std::string(p.param) == "rigid-planar" ? "planar" : "eccentric"; });
 
 }  // namespace
 }  // namespace hosel::loop

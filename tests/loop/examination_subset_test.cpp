@@ -22,8 +22,8 @@ nlohmann::json examine(const std::vector<std::pair<std::string, int>>& strata, c
   fs::remove_all(dir);
   const std::string program = "'" EXAMINATION_COMMAND "' ";
   for (const auto& [stratum, sets] : strata) {
-    const std::string make = program + "make --seed 7 --shots 30,100 --stratum " + stratum + " --sets " + std::to_string(sets) +
-                             " --out '" + dir.string() + "'";
+    const std::string make = program + "make --seed 7 --shots 30,100 --stratum " + stratum + " --sets " +
+                             std::to_string(sets) + " --out '" + dir.string() + "'";
     EXPECT_EQ(std::system(make.c_str()), 0) << make;
   }
   EXPECT_EQ(std::system((program + "run --dir '" + dir.string() + "' --hosel '" HOSEL_COMMAND "'").c_str()), 0);
@@ -50,7 +50,8 @@ Count line(const nlohmann::json& score, const std::string& stratum, const std::s
 }
 
 TEST(ExaminationSubset, NothingHiddenNothingAdopted) {
-  const auto score = examine({{"null", 8}, {"null-input-noise", 4}, {"null-heavy-tails", 4}, {"null-bad-rows", 4}}, "nulls");
+  const auto score =
+      examine({{"null", 8}, {"null-input-noise", 4}, {"null-heavy-tails", 4}, {"null-bad-rows", 4}}, "nulls");
   int adoptions = 0;
   for (const char* stratum : {"null", "null-input-noise", "null-heavy-tails", "null-bad-rows"})
     adoptions += line(score, stratum, "adoptions").hits;

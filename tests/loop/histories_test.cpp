@@ -1,6 +1,6 @@
 // The loop on records of a clamped shaft that this file makes from beam theory: the closed-form modes of a uniform
 // cantilever with a mass at its tip, released from a static load, read at the tip and half way.
-#include "loop/history/histories.hpp"
+#include "hosel/loop/history/histories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 #include <set>
 
-#include "golf/shaft_library.hpp"
-#include "loop/history/bench_history.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/loop/history/bench_history.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -18,13 +18,13 @@ namespace {
 constexpr double kLength = 1, kStiffness = 40, kDensity = 0.06, kDamping = 1e-4, kLoad = 3, kNoise = 0.2;
 
 struct Truth {
-  double stiffness = 1;   ///< factor
-  double tip_mass = 0;    ///< [kg]
-  double ratio = 0;       ///< added damping ratio of every mode
-  double delay = 0;       ///< of the second channel [s]
-  double gain = 0;        ///< of the first
-  double rate = 0;        ///< a tone that no effect has, in the first channel [Hz]
-  double colour = 0;      ///< of the noise
+  double stiffness = 1;  ///< factor
+  double tip_mass = 0;   ///< [kg]
+  double ratio = 0;      ///< added damping ratio of every mode
+  double delay = 0;      ///< of the second channel [s]
+  double gain = 0;       ///< of the first
+  double rate = 0;       ///< a tone that no effect has, in the first channel [Hz]
+  double colour = 0;     ///< of the noise
   unsigned seed = 1;
   double seconds = 1.5;
 };
@@ -36,7 +36,11 @@ double shape(double beta, double x) {
 
 /// Roots of 1 + cos cosh + r beta (cos sinh - sin cosh) = 0.
 std::vector<double> roots(double mass_ratio, int count) {
-  const auto f = [&](double b) { return (1 + std::cos(b) * std::cosh(b) + mass_ratio * b * (std::cos(b) * std::sinh(b) - std::sin(b) * std::cosh(b))) / std::cosh(b); };
+  const auto f = [&](double b) {
+    return (1 + std::cos(b) * std::cosh(b) +
+            mass_ratio * b * (std::cos(b) * std::sinh(b) - std::sin(b) * std::cosh(b))) /
+           std::cosh(b);
+  };
   std::vector<double> out;
   for (double b = 0.1; int(out.size()) < count; b += 0.01) {
     if (f(b) * f(b + 0.01) > 0) continue;
@@ -58,9 +62,12 @@ HistoryRecord record(const Truth& w) {
     const double omega = beta * beta * std::sqrt(w.stiffness * kStiffness / kDensity) / (kLength * kLength);
     double mass = w.tip_mass * std::pow(shape(beta, 1), 2);
     for (int i = 0; i < 4000; ++i) mass += kDensity * kLength / 4000 * std::pow(shape(beta, (i + 0.5) / 4000), 2);
-    const double zeta = 0.5 * omega * kDamping + w.ratio, damped = omega * std::sqrt(1 - zeta * zeta), q0 = kLoad * shape(beta, 1) / (omega * omega * mass);
+    const double zeta = 0.5 * omega * kDamping + w.ratio, damped = omega * std::sqrt(1 - zeta * zeta),
+                 q0 = kLoad * shape(beta, 1) / (omega * omega * mass);
     const auto q = [&](double t) {
-      return t < 0 ? q0 : q0 * std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
+      return t < 0 ? q0
+                   : q0 * std::exp(-zeta * omega * t) *
+                         (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
     };
     for (std::size_t i = 0; i < r.times.size(); ++i) {
       r.measured(std::ptrdiff_t(i), 0) += 1e3 * (1 + w.gain) * shape(beta, 1) * q(r.times[i]);
@@ -72,7 +79,8 @@ HistoryRecord record(const Truth& w) {
     for (std::size_t i = 0; i < r.times.size(); ++i) {
       e = w.colour * e + std::sqrt(1 - w.colour * w.colour) * kNoise * gauss(random);
       r.measured(std::ptrdiff_t(i), c) += e;
-      if (c == 0 && w.rate > 0) r.measured(std::ptrdiff_t(i), 0) += 1.0 * std::sin(2 * 3.14159265358979 * w.rate * r.times[i]);
+      if (c == 0 && w.rate > 0)
+        r.measured(std::ptrdiff_t(i), 0) += 1.0 * std::sin(2 * 3.14159265358979 * w.rate * r.times[i]);
     }
   }
   return r;
@@ -86,10 +94,12 @@ struct Bench {
 Bench bench(const Truth& w, bool declared = true, Start start = Start::release) {
   Bench b;
   Club club;
-  club.shaft = composite_shaft({{0, kStiffness, kStiffness, kDensity, 1e-3}, {kLength, kStiffness, kStiffness, kDensity, 1e-3}});
+  club.shaft =
+      composite_shaft({{0, kStiffness, kStiffness, kDensity, 1e-3}, {kLength, kStiffness, kStiffness, kDensity, 1e-3}});
   club.shaft->damping_time = kDamping;
   HistorySetting& s = b.c.setting;
-  s.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3}, {.name = "lead_mid_mm", .arc_length = 0.5 * kLength, .si = 1e-3}};
+  s.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3},
+                {.name = "lead_mid_mm", .arc_length = 0.5 * kLength, .si = 1e-3}};
   for (HistoryChannel& ch : s.channels)
     if (declared) {
       ch.noise = kNoise;
@@ -97,7 +107,9 @@ Bench bench(const Truth& w, bool declared = true, Start start = Start::release) 
     }
   b.c.records = {record(w)};
   BenchRecord drive{.times = b.c.records.front().times};
-  b.model = std::make_unique<BenchHistory>(club, false, models::BenchOptions{.shear = false}, BenchStart{.kind = start, .force = Vec3(kLoad, 0, 0)}, std::vector{drive}, s.channels);
+  b.model = std::make_unique<BenchHistory>(club, false, models::BenchOptions{.shear = false},
+                                           BenchStart{.kind = start, .force = Vec3(kLoad, 0, 0)}, std::vector{drive},
+                                           s.channels);
   std::tie(s.frequency, s.ratio) = b.model->first_mode();
   s.driven = start != Start::unknown;
   b.c.start_unknown = !s.driven;
@@ -160,9 +172,12 @@ TEST_P(HistoriesName, TheHiddenEffect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, HistoriesName,
-                         testing::Values(Hidden{"shaft-stiffness", {.stiffness = 1.5}, std::log(1.5), 1e-3}, Hidden{"shaft-stiffness", {.stiffness = 0.93}, std::log(0.93), 1e-3},
-                                         Hidden{"shaft-damping", {.ratio = 0.01}, 0.01, 1e-4}, Hidden{"tip-mass", {.tip_mass = 0.008}, 8, 0.1},
-                                         Hidden{"sensor-delay", {.delay = 4e-3}, 4, 0.02}, Hidden{"sensor-gain", {.gain = 0.06}, 0.06, 1e-3}),
+                         testing::Values(Hidden{"shaft-stiffness", {.stiffness = 1.5}, std::log(1.5), 1e-3},
+                                         Hidden{"shaft-stiffness", {.stiffness = 0.93}, std::log(0.93), 1e-3},
+                                         Hidden{"shaft-damping", {.ratio = 0.01}, 0.01, 1e-4},
+                                         Hidden{"tip-mass", {.tip_mass = 0.008}, 8, 0.1},
+                                         Hidden{"sensor-delay", {.delay = 4e-3}, 4, 0.02},
+                                         Hidden{"sensor-gain", {.gain = 0.06}, 0.06, 1e-3}),
                          [](const auto& p) {
                            std::string name = p.param.effect;
                            std::erase(name, '-');
@@ -181,7 +196,8 @@ TEST(Histories, WithAnUnknownStartFrequencyAndShapeStillTell) {
   const Bench stiff = bench({.stiffness = 1.3}, true, Start::unknown);
   const LoopResult r = run(stiff.c);
   EXPECT_NE(r.verdict, Verdict::unexplained);
-  const bool named = r.adopted == Names{"shaft-stiffness"} || (!r.ties.empty() && std::ranges::count(r.ties.front(), "shaft-stiffness"));
+  const bool named = r.adopted == Names{"shaft-stiffness"} ||
+                     (!r.ties.empty() && std::ranges::count(r.ties.front(), "shaft-stiffness"));
   EXPECT_TRUE(named);
   const Bench late = bench({.delay = 4e-3}, true, Start::unknown);
   EXPECT_EQ(run(late.c).adopted, Names{"sensor-delay"});
@@ -231,12 +247,18 @@ struct Turning {
 
   explicit Turning(Start start) {
     Club club;
-    club.shaft = composite_shaft({{0, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}, {kLength, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}});
+    club.shaft = composite_shaft(
+        {{0, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}, {kLength, kStiffness, 1.1 * kStiffness, kDensity, 1e-3}});
     club.shaft->damping_time = kDamping;
-    club.head = {.mass = 0.2, .cg = Vec3(-0.02, 0.004, 0.006), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    club.head = {.mass = 0.2,
+                 .cg = Vec3(-0.02, 0.004, 0.006),
+                 .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                 .face = {0.3, 0.3}};
     HistorySetting setting;
-    setting.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3, .noise = 0.2}, {.name = "droop_mm", .reading = Reading::droop, .arc_length = kLength, .si = 1e-3, .noise = 0.2},
-                        {.name = "twist_deg", .reading = Reading::twist, .arc_length = kLength, .si = kRadPerDeg, .noise = 0.05}};
+    setting.channels = {
+        {.name = "lead_mm", .arc_length = kLength, .si = 1e-3, .noise = 0.2},
+        {.name = "droop_mm", .reading = Reading::droop, .arc_length = kLength, .si = 1e-3, .noise = 0.2},
+        {.name = "twist_deg", .reading = Reading::twist, .arc_length = kLength, .si = kRadPerDeg, .noise = 0.05}};
     HistoryRecord record{.name = "tip.csv"};
     for (int i = 0; i < 300; ++i) record.times.push_back(0.004 * i);
     record.measured = Eigen::MatrixXd::Zero(300, 3);
@@ -249,8 +271,11 @@ struct Turning {
     Rig late(3);
     late.club.bending = -0.1;
     EXPECT_TRUE(BenchHistory(club, true, options, release, {drive}, setting.channels).answer(late, as_declared));
-    for (int c = 0; c < 3; ++c) record.measured.col(c) = as_declared.front().value.col(c) / setting.channels[std::size_t(c)].si;
-    model = std::make_unique<BenchHistory>(club, true, options, start == Start::release ? release : BenchStart{.kind = start}, std::vector{drive}, setting.channels);
+    for (int c = 0; c < 3; ++c)
+      record.measured.col(c) = as_declared.front().value.col(c) / setting.channels[std::size_t(c)].si;
+    model = std::make_unique<BenchHistory>(club, true, options,
+                                           start == Start::release ? release : BenchStart{.kind = start},
+                                           std::vector{drive}, setting.channels);
     std::tie(setting.frequency, setting.ratio) = model->first_mode();
     setting.driven = start != Start::unknown;
     setting.head = setting.turning = true;
@@ -263,7 +288,8 @@ struct Turning {
 };
 
 TEST(Histories, DerivativesAgreeWithFinerDifferences) {
-  constexpr double kFine = 2.5e-4;  // of a scale: modes of the two planes that nearly meet bend a column within a few thousandths
+  constexpr double kFine =
+      2.5e-4;  // of a scale: modes of the two planes that nearly meet bend a column within a few thousandths
   for (const Start start : {Start::release, Start::unknown}) {
     const Turning t(start);
     ASSERT_GT(t.forms.size(), 20U);
@@ -285,12 +311,14 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
           };
           // Of fourth order; one-sided where zero is the least value.
           const bool edge = p[k] - 2 * kFine * q.scale < q.min;
-          const Eigen::VectorXd reference = edge ? Eigen::VectorXd((-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * kFine))
-                                                 : Eigen::VectorXd((8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * kFine));
+          const Eigen::VectorXd reference =
+              edge ? Eigen::VectorXd((-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * kFine))
+                   : Eigen::VectorXd((8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * kFine));
           const Eigen::VectorXd column = t.problem->jacobian(m, p).col(k);
           if (reference.norm() > 1e-3) acting.insert(f.form.effect);
           EXPECT_LT((column - reference).norm(), 1e-4 * (reference.norm() + 1e-3))
-              << f.form.effect << ", " << f.form.what << ", parameter " << k << " at " << place << " scales, start " << int(start) << ", norm " << reference.norm();
+              << f.form.effect << ", " << f.form.what << ", parameter " << k << " at " << place << " scales, start "
+              << int(start) << ", norm " << reference.norm();
         }
       }
     }

@@ -1,7 +1,7 @@
 // The whole loop on small sets made here with the closed form, and on broken input.
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,8 +10,8 @@
 #include <set>
 #include <sstream>
 
-#include "loop/report.hpp"
-#include "models/registry.hpp"
+#include "hosel/loop/report.hpp"
+#include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 
 struct World {
   int shots = 90;
-  double tangential = 0;   ///< hidden tangential restitution
-  double humidity = 0;     ///< hidden: ball speed per per cent [m/s]
-  int swapped = -1;        ///< row whose ball speed is written in mph
-  bool rate = false;       ///< a column spin_rate computed from the other two
+  double tangential = 0;  ///< hidden tangential restitution
+  double humidity = 0;    ///< hidden: ball speed per per cent [m/s]
+  int swapped = -1;       ///< row whose ball speed is written in mph
+  bool rate = false;      ///< a column spin_rate computed from the other two
   unsigned seed = 1;
 };
 
@@ -31,26 +31,38 @@ std::string csv(const World& w) {
   std::mt19937 random(w.seed);
   std::normal_distribution<double> gauss;
   const auto model = models::find("rigid-eccentric")->make({});
-  std::string text = "shot,club_speed_mps,attack_angle_deg,club_path_deg,face_angle_deg,dynamic_loft_deg,impact_toe_mm,impact_high_mm,humidity_pct,"
-                     "ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm";
+  std::string text =
+      "shot,club_speed_mps,attack_angle_deg,club_path_deg,face_angle_deg,dynamic_loft_deg,impact_toe_mm,impact_high_mm,"
+      "humidity_pct,"
+      "ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm";
   text += w.rate ? ",spin_rate_rpm\n" : "\n";
   for (int i = 0; i < w.shots; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    b.club.head = {.mass = 0.2,
+                   .cg = Vec3(-0.035, 0, 0),
+                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                   .face = {0.3, 0.3}};
     Delivery& d = b.delivery;
-    d = {.club_speed = 45 + 3 * gauss(random), .attack_angle = radians(2 * gauss(random)), .club_path = radians(2 * gauss(random)),
-         .dynamic_loft = radians(14 + 3 * gauss(random)), .face_angle = radians(2 * gauss(random)), .impact_toe = 0.009 * gauss(random),
+    d = {.club_speed = 45 + 3 * gauss(random),
+         .attack_angle = radians(2 * gauss(random)),
+         .club_path = radians(2 * gauss(random)),
+         .dynamic_loft = radians(14 + 3 * gauss(random)),
+         .face_angle = radians(2 * gauss(random)),
+         .impact_toe = 0.009 * gauss(random),
          .impact_high = 0.006 * gauss(random)};
     b.contact.tangential_restitution = w.tangential;
     const double humidity = 55 + 12 * gauss(random);
     const Launch l = model->launch(b);
     double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
     if (i == w.swapped) speed /= kMpsPerMph;
-    const double back = std::round(rpm(l.backspin()) + 60 * gauss(random)), side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
+    const double back = std::round(rpm(l.backspin()) + 60 * gauss(random)),
+                 side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
     char line[512];
-    std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1, d.club_speed, degrees(d.attack_angle), degrees(d.club_path),
-                  degrees(d.face_angle), degrees(d.dynamic_loft), 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed, degrees(l.launch_angle()) + 0.2 * gauss(random),
-                  degrees(l.azimuth()) + 0.25 * gauss(random), back, side);
+    std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1,
+                  d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle),
+                  degrees(d.dynamic_loft), 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
+                  degrees(l.launch_angle()) + 0.2 * gauss(random), degrees(l.azimuth()) + 0.25 * gauss(random), back,
+                  side);
     text += line;
     if (w.rate) text += "," + std::to_string(std::lround(std::hypot(back, side)));
     text += "\n";
@@ -74,9 +86,16 @@ class Loop : public testing::Test {
     c.base = "rigid-eccentric";
     c.model = model.get();
     c.head_mass_declared = c.inertia_declared = true;
-    c.blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    c.blow.club.head = {.mass = 0.2,
+                        .cg = Vec3(-0.035, 0, 0),
+                        .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                        .face = {0.3, 0.3}};
     c.shots = shots(text);
-    c.noise = {{"ball_speed_mps", 0.25}, {"launch_angle_deg", 0.2}, {"azimuth_deg", 0.25}, {"backspin_rpm", 60}, {"sidespin_rpm", 60}};
+    c.noise = {{"ball_speed_mps", 0.25},
+               {"launch_angle_deg", 0.2},
+               {"azimuth_deg", 0.25},
+               {"backspin_rpm", 60},
+               {"sidespin_rpm", 60}};
     return c;
   }
   std::unique_ptr<models::ImpactModel> model;
@@ -131,14 +150,17 @@ TEST_F(Loop, AComputedColumnIsFound) {
 std::string with_computed_columns(int shots) {
   std::mt19937 random(11);
   std::normal_distribution<double> gauss;
-  std::string text = "club_speed_mps,club_path_deg,face_angle_deg,dynamic_loft_deg,smash_factor,ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm\n";
+  std::string text =
+      "club_speed_mps,club_path_deg,face_angle_deg,dynamic_loft_deg,smash_factor,ball_speed_mps,launch_angle_deg,"
+      "azimuth_deg,backspin_rpm\n";
   for (int i = 0; i < shots; ++i) {
     const auto tenth = [](double x) { return std::round(10 * x) / 10; };
-    const double club = tenth(45 + 3 * gauss(random)), path = tenth(3 * gauss(random)), azimuth = tenth(2 * gauss(random)), loft = tenth(14 + 2 * gauss(random));
+    const double club = tenth(45 + 3 * gauss(random)), path = tenth(3 * gauss(random)),
+                 azimuth = tenth(2 * gauss(random)), loft = tenth(14 + 2 * gauss(random));
     const double ball = tenth(club * (1.4 + 0.015 * gauss(random))), launch = tenth(0.8 * loft + 0.3 * gauss(random));
     char line[256];
-    std::snprintf(line, sizeof line, "%.1f,%.1f,%.1f,%.1f,%.2f,%.1f,%.1f,%.1f,%.0f\n", club, path, (azimuth - 0.18 * path) / 0.82, loft, ball / club, ball, launch, azimuth,
-                  2500 + 150 * gauss(random));
+    std::snprintf(line, sizeof line, "%.1f,%.1f,%.1f,%.1f,%.2f,%.1f,%.1f,%.1f,%.0f\n", club, path,
+                  (azimuth - 0.18 * path) / 0.82, loft, ball / club, ball, launch, azimuth, 2500 + 150 * gauss(random));
     text += line;
   }
   return text;
@@ -147,7 +169,8 @@ std::string with_computed_columns(int shots) {
 TEST_F(Loop, ARelationIsSolvedForTheColumnThatWasComputed) {
   for (const int n : {40, 120}) {
     std::map<std::string, std::set<std::string>> found;
-    for (const DerivedColumn& d : audit(shots(with_computed_columns(n)), {})) found[d.column] = {d.from.begin(), d.from.end()};
+    for (const DerivedColumn& d : audit(shots(with_computed_columns(n)), {}))
+      found[d.column] = {d.from.begin(), d.from.end()};
     ASSERT_EQ(found.size(), 2U) << n;
     EXPECT_EQ(found["face_angle_deg"], (std::set<std::string>{"azimuth_deg", "club_path_deg"})) << n;
     EXPECT_EQ(found["smash_factor"], (std::set<std::string>{"ball_speed_mps", "club_speed_mps"})) << n;
@@ -161,13 +184,17 @@ TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
   std::normal_distribution<double> gauss;
   for (int i = 0; i < 60; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+    b.club.head = {.mass = 0.2,
+                   .cg = Vec3(-0.035, 0, 0),
+                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
+                   .face = {0.3, 0.3}};
     b.delivery = {.club_speed = 35 + gauss(random), .dynamic_loft = radians(20 + 8 * (i / 12) + gauss(random))};
     b.contact.friction = 0.18;
     const Launch l = model->launch(b);
     char line[512];
-    std::snprintf(line, sizeof line, "c%d,%d,%.2f,0,0,0,%.2f,0,0,50,%.2f,%.2f,0,%.0f,0\n", i / 12, i + 1, b.delivery.club_speed, degrees(b.delivery.dynamic_loft),
-                  l.ball_speed() + 0.25 * gauss(random), degrees(l.launch_angle()) + 0.2 * gauss(random), rpm(l.backspin()) + 60 * gauss(random));
+    std::snprintf(line, sizeof line, "c%d,%d,%.2f,0,0,0,%.2f,0,0,50,%.2f,%.2f,0,%.0f,0\n", i / 12, i + 1,
+                  b.delivery.club_speed, degrees(b.delivery.dynamic_loft), l.ball_speed() + 0.25 * gauss(random),
+                  degrees(l.launch_angle()) + 0.2 * gauss(random), rpm(l.backspin()) + 60 * gauss(random));
     text += line;
   }
   for (unsigned long seed = 1; seed <= 6; ++seed) {
@@ -176,8 +203,7 @@ TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
     const LoopResult r = run(c);
     EXPECT_GT(r.holdout, 0);
     EXPECT_EQ(r.adopted, std::vector<std::string>{"friction-limit"}) << "seed " << seed;
-    for (const UsedShot& u : r.shots)
-      EXPECT_FALSE(u.row >= 48 && u.holdout) << "seed " << seed << ", row " << u.row;
+    for (const UsedShot& u : r.shots) EXPECT_FALSE(u.row >= 48 && u.holdout) << "seed " << seed << ", row " << u.row;
   }
 }
 
@@ -212,7 +238,8 @@ TEST_F(Loop, AWholeClubInAnotherUnitIsOneFinding) {
     const char club = char('A' + i % 5);
     if (club == 'C') {
       const auto a = line.find(','), b = line.find(',', a + 1);
-      line = line.substr(0, a + 1) + std::to_string(std::stod(line.substr(a + 1, b - a - 1)) / kMpsPerMph) + line.substr(b);
+      line = line.substr(0, a + 1) + std::to_string(std::stod(line.substr(a + 1, b - a - 1)) / kMpsPerMph) +
+             line.substr(b);
     }
     clubs += std::string(1, club) + "," + line + "\n";
   }

@@ -1,9 +1,9 @@
 // A free ball at 10,000 rpm: what the integrator and the kinematics of large rotation do to it.
 #include <gtest/gtest.h>
 
-#include "fem/harmonic_solid.hpp"
-#include "golf/units.hpp"
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 
 namespace hosel::models {
 namespace {
@@ -17,10 +17,12 @@ struct Spinning {
   double omega = 10000 * 2 * kPi / 60;
 
   Spinning() {
-    const fem::Solid rubber{.elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, .49)), .branches = {}, .density = kDensity};
+    const fem::Solid rubber{
+        .elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, .49)), .branches = {}, .density = kDensity};
     auto owned = std::make_unique<fem::HarmonicSolid>(
         system.layout, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = 1, .skin = 1, .core = 0.4}),
-        fem::cartesian_family(3), fem::SolidQuadrature{fem::half_circle(10), 2}, std::vector<fem::Solid>{rubber}, fem::Placement{});
+        fem::cartesian_family(3), fem::SolidQuadrature{fem::half_circle(10), 2}, std::vector<fem::Solid>{rubber},
+        fem::Placement{});
     ball = owned.get();
     system.terms.push_back(std::move(owned));
     state = system.layout.rest();
@@ -31,7 +33,8 @@ struct Spinning {
   Eigen::VectorXd turned(const Eigen::VectorXd& q, bool with_reference) const {
     const auto& family = ball->family();
     Eigen::VectorXd out = Eigen::VectorXd::Zero(system.layout.size());
-    const fem::AngularRule circle = fem::full_circle(16);  // the flattened sphere needs harmonic 3 of Cartesian components
+    const fem::AngularRule circle =
+        fem::full_circle(16);  // the flattened sphere needs harmonic 3 of Cartesian components
     fem::State s = system.layout.rest();
     s.q = q;
     const Eigen::MatrixXd U = ball->displacement_fields(s);
@@ -82,14 +85,15 @@ TEST(FreeSpin, CentrifugalEnergyAndAngularMomentum) {
     const Vec3 before = spin.ball->motion(spin.state).angular_momentum;
     const double moment = 8.0 / 15 * kPi * kDensity * std::pow(kRadius, 5) * spin.omega;
     EXPECT_NEAR(before.z(), moment, 5e-3 * moment);  // swollen at the equator, and 2 elements a sector
-    solvers::GeneralizedAlpha solver(spin.system,
-                                     {.rho_inf = 0.8,
-                                      .newton = {.residual_relative = 1e-10, .increment_vector = 1e-12, .increment_rotation = 1},
-                                      .step_max = step,
-                                      .step_min = step / 8,
-                                      .error_vector = INFINITY,
-                                      .error_rotation = INFINITY},
-                                     spin.state);
+    solvers::GeneralizedAlpha solver(
+        spin.system,
+        {.rho_inf = 0.8,
+         .newton = {.residual_relative = 1e-10, .increment_vector = 1e-12, .increment_rotation = 1},
+         .step_max = step,
+         .step_min = step / 8,
+         .error_vector = INFINITY,
+         .error_rotation = INFINITY},
+        spin.state);
     double largest = 0, least = INFINITY;
     while (solver.time() < 1e-3 * (1 - 1e-9)) {
       solver.advance(1e-3);

@@ -1,15 +1,15 @@
 // The bench against the full finite-element eigenproblem, against beam theory, and against statics.
-#include "models/bench.hpp"
+#include "hosel/models/bench.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fem/rigid_body.hpp"
-#include "fem/supports.hpp"
-#include "golf/shaft_library.hpp"
-#include "models/swing.hpp"
-#include "solvers/modes.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/models/swing.hpp"
+#include "hosel/solvers/modes.hpp"
 
 namespace hosel::models {
 namespace {
@@ -33,7 +33,8 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
   Club club = declared;
   club.shaft = scaled(*declared.shaft, std::exp(c.bending), std::exp(c.torsion));
   club.head = changed(club.head, c);
-  const auto line = mesh::straight(mesh::graded(club.shaft->length(), 12), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
+  const auto line = mesh::straight(mesh::graded(club.shaft->length(), 12), Vec3::Zero(),
+                                   mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
   auto owned = std::make_unique<fem::Beam>(system.layout, line, fem::shaft_sections(*club.shaft), fem::BeamOptions{});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
@@ -44,7 +45,8 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
     return k;
   };
   if (c.clamp.norm() > 0)
-    system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", fem::at_rest(Vec3::Zero()), beam.nodes().front(), compliant(c.clamp)));
+    system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", fem::at_rest(Vec3::Zero()), beam.nodes().front(),
+                                                              compliant(c.clamp)));
   else
     system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
   fem::Node head = beam.nodes().back();
@@ -53,11 +55,13 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
     system.terms.push_back(std::make_unique<fem::SpringJoint>("hosel", beam.nodes().back(), head, compliant(c.hosel)));
   }
   const Mat3 R = face_to_grip(club.geometry);
-  system.terms.push_back(std::make_unique<fem::RigidBody>(
-      "head", head.translation, head.rotation,
-      fem::RigidBodyProperties{club.head.mass, R * club.head.inertia * R.transpose(), R * (club.head.cg - club.geometry.hosel)}));
+  system.terms.push_back(
+      std::make_unique<fem::RigidBody>("head", head.translation, head.rotation,
+                                       fem::RigidBodyProperties{club.head.mass, R * club.head.inertia * R.transpose(),
+                                                                R * (club.head.cg - club.geometry.hosel)}));
   if (c.tip_mass > 0)
-    system.terms.push_back(std::make_unique<fem::RigidBody>("weight", head.translation, head.rotation, fem::RigidBodyProperties{c.tip_mass, Mat3::Zero(), Vec3::Zero()}));
+    system.terms.push_back(std::make_unique<fem::RigidBody>(
+        "weight", head.translation, head.rotation, fem::RigidBodyProperties{c.tip_mass, Mat3::Zero(), Vec3::Zero()}));
   fem::State rest = system.layout.rest();
   beam.place(rest);
   if (c.hosel.norm() > 0) rest.q.segment<3>(head.translation.q) = line.back().position;
@@ -82,7 +86,8 @@ TEST(Bench, ModesOfEveryChangeAreThoseOfTheWholeModel) {
   for (std::size_t k = 0; k < changes.size(); ++k) {
     const auto whole = reference(club, changes[k], 7);
     const BenchModes fast = bench.modes(changes[k]);
-    for (int i = 0; i < 7; ++i) EXPECT_NEAR(fast.omega[i] / whole[std::size_t(i)], 1, 2e-5) << "change " << k << ", mode " << i;
+    for (int i = 0; i < 7; ++i)
+      EXPECT_NEAR(fast.omega[i] / whole[std::size_t(i)], 1, 2e-5) << "change " << k << ", mode " << i;
   }
 }
 
@@ -90,10 +95,14 @@ TEST(Bench, BareUniformShaftIsTheCantileverOfBeamTheory) {
   // EI = 40 N m^2, 60 g/m, 1 m; thin, so that shear and rotary inertia do not count.
   Club club;
   club.shaft = composite_shaft({{0, 40, 40, 0.06, 1e-3}, {1, 40, 40, 0.06, 1e-3}});
-  const Bench bench(club, false, {.elements = 16, .shear = false}, {{BenchSensor::Quantity::lead, 1.0}, {BenchSensor::Quantity::strain_lead, 0.25}, {BenchSensor::Quantity::droop, 1.0}});
+  const Bench bench(club, false, {.elements = 16, .shear = false},
+                    {{BenchSensor::Quantity::lead, 1.0},
+                     {BenchSensor::Quantity::strain_lead, 0.25},
+                     {BenchSensor::Quantity::droop, 1.0}});
   const BenchModes m = bench.modes({}, 100);
   const double unit = std::sqrt(40 / 0.06);
-  for (const auto& [k, root] : {std::pair{0, 1.8751040687}, {2, 4.6940911330}, {4, 7.8547574382}}) EXPECT_NEAR(m.omega[k] / (root * root * unit), 1, 2e-4);
+  for (const auto& [k, root] : {std::pair{0, 1.8751040687}, {2, 4.6940911330}, {4, 7.8547574382}})
+    EXPECT_NEAR(m.omega[k] / (root * root * unit), 1, 2e-4);
   // Pushed sideways at the tip with 3 N: sum over modes of the static answer.
   double lead = 0, strain = 0;
   for (int k = 0; k < m.omega.size(); ++k) {
@@ -122,7 +131,8 @@ TEST(Bench, GravityAndTurningStiffenAsThePendulumOnASpring) {
   EXPECT_NEAR(first({}, 0), still, 1e-3 * still);
   EXPECT_NEAR(first({.gravity = Vec3(0, 0, -kGravity)}, 0) - first({}, 0), kGravity, 0.01 * kGravity);
   EXPECT_NEAR(first({.gravity = Vec3(0, 0, kGravity)}, 0) - first({}, 0), -kGravity, 0.01 * kGravity);
-  // About YG the lead direction lies in the plane of turning: rate^2 hub / L. About XG it does not: rate^2 (hub + L) / L.
+  // About YG the lead direction lies in the plane of turning: rate^2 hub / L. About XG it does not: rate^2 (hub + L) /
+  // L.
   const BenchOptions in_plane{.rotation_rate = rate, .rotation_axis = Vec3::UnitY(), .hub = hub};
   const BenchOptions across{.rotation_rate = rate, .rotation_axis = Vec3::UnitX(), .hub = hub};
   EXPECT_DOUBLE_EQ(first(in_plane, 0), first({}, 0));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
@@ -84,18 +84,21 @@ TEST(EnergyLedger, MomentumOfBallAndFreeHeadIsKept) {
     FreeBodyImpact impact = assemble_free_body(blow, options);
     Vec3 linear0 = Vec3::Zero(), angular0 = linear0;
     double linear_gap = 0, angular_gap = 0, force = 0;
-    run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed, [&](const ImpactView& view) {
-      const fem::MeanMotion ball = view.ball.motion(view.state);
-      const Vec3 linear = ball.momentum + impact.head->linear_momentum(view.state);
-      const Vec3 angular = ball.angular_momentum + ball.centre.cross(ball.momentum) + impact.head->angular_momentum(view.state);
-      if (view.state.time == 0) linear0 = linear, angular0 = angular;
-      linear_gap = std::max(linear_gap, (linear - linear0).norm() / linear0.norm());
-      angular_gap = std::max(angular_gap, (angular - angular0).norm());
-      force = std::max(force, view.report.normal_force);
-    });
+    run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed,
+               [&](const ImpactView& view) {
+                 const fem::MeanMotion ball = view.ball.motion(view.state);
+                 const Vec3 linear = ball.momentum + impact.head->linear_momentum(view.state);
+                 const Vec3 angular = ball.angular_momentum + ball.centre.cross(ball.momentum) +
+                                      impact.head->angular_momentum(view.state);
+                 if (view.state.time == 0) linear0 = linear, angular0 = angular;
+                 linear_gap = std::max(linear_gap, (linear - linear0).norm() / linear0.norm());
+                 angular_gap = std::max(angular_gap, (angular - angular0).norm());
+                 force = std::max(force, view.report.normal_force);
+               });
     ASSERT_GT(force, 8e3);
     EXPECT_LT(linear_gap, 1e-10);
-    drift.push_back(angular_gap / (0.4 * blow.ball.mass * blow.ball.radius * blow.ball.radius * 600));  // of the ball's spin
+    drift.push_back(angular_gap /
+                    (0.4 * blow.ball.mass * blow.ball.radius * blow.ball.radius * 600));  // of the ball's spin
   }
   EXPECT_LT(drift[0], 5e-3);
   EXPECT_GT(std::log(drift[0] / drift[1]) / std::log(4.0), 1.5) << drift[0] << " -> " << drift[1];

@@ -1,5 +1,5 @@
 // The whole club against the free head: what the first source found, and limits that must hold.
-#include "models/fe_full_club.hpp"
+#include "hosel/models/fe_full_club.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "models/fe_impact.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::models {
 namespace {

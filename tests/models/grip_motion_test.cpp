@@ -1,5 +1,5 @@
 // benchmarks.md 1.12: the grip's motion between samples and at its end, impact.
-#include "models/grip_motion.hpp"
+#include "hosel/models/grip_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@ GripTrack reference_track(double noise, unsigned seed) {
   for (int i = 0; i <= 72; ++i) {
     const double t = 0.1 - (72 - i) / 723.0;
     track.times.push_back(t);
-    track.positions.push_back(Vec3(std::sin(20 * t), std::cos(15 * t), t * t) + Vec3(normal(random), normal(random), normal(random)));
+    track.positions.push_back(Vec3(std::sin(20 * t), std::cos(15 * t), t * t) +
+                              Vec3(normal(random), normal(random), normal(random)));
     track.attitudes.emplace_back(Eigen::AngleAxisd(40 * t + 200 * t * t, kAxis));
   }
   return track;
@@ -30,7 +31,8 @@ TEST(GripMotion, RatesAreRightUpToImpact) {
   // (0.31 and 730 with a natural one), all for a cubic. A quintic must do better.
   const auto errors = [&](double t) {
     const fem::Pose p = motion.at(t);
-    return std::pair((p.angular_velocity - (40 + 400 * t) * kAxis).norm(), (p.angular_acceleration - 400 * kAxis).norm());
+    return std::pair((p.angular_velocity - (40 + 400 * t) * kAxis).norm(),
+                     (p.angular_acceleration - 400 * kAxis).norm());
   };
   const auto [w_end, a_end] = errors(0.1);
   EXPECT_LT(w_end, 6e-4);

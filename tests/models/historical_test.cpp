@@ -3,10 +3,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "golf/units.hpp"
-#include "models/hinged_head.hpp"
-#include "models/pendulum_club.hpp"
-#include "models/stick_slip.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/hinged_head.hpp"
+#include "hosel/models/pendulum_club.hpp"
+#include "hosel/models/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {
@@ -27,8 +27,12 @@ Blow blow() {
   }
   b.club.shaft = s;
   b.club.geometry.hosel = {-0.01, 0.05, 0.02};
-  b.delivery = {.club_speed = 48, .attack_angle = radians(2), .dynamic_loft = radians(13), .impact_toe = 0.014,
-                .impact_high = 0.004, .head_angular_velocity = {3, -40, 25}};
+  b.delivery = {.club_speed = 48,
+                .attack_angle = radians(2),
+                .dynamic_loft = radians(13),
+                .impact_toe = 0.014,
+                .impact_high = 0.004,
+                .head_angular_velocity = {3, -40, 25}};
   b.contact.friction = 0.4;
   return b;
 }
@@ -40,7 +44,8 @@ Vec3 butt(const Blow& b) {  // global, from the head's cg
 
 TEST(HistoricalClubs, ConstraintsOnlyTakeMobilityAway) {
   const Blow b = blow();
-  const Mat6 free = free_head_mobility(b, contact_geometry(b)), hinged = hinged_mobility(b), rigid = pendulum_mobility(b);
+  const Mat6 free = free_head_mobility(b, contact_geometry(b)), hinged = hinged_mobility(b),
+             rigid = pendulum_mobility(b);
   const auto least = [](const Mat6& m) { return Eigen::SelfAdjointEigenSolver<Mat6>(m).eigenvalues().minCoeff(); };
   EXPECT_GT(least(free - hinged), -1e-9 * free.norm());
   EXPECT_GT(least(hinged - rigid), -1e-9 * free.norm());

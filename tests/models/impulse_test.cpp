@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/hertz_maw.hpp"
-#include "models/rigid_planar.hpp"
-#include "models/stick_slip.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/rigid_planar.hpp"
+#include "hosel/models/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {
@@ -28,15 +28,22 @@ Blow eccentric(double loft) {
   b.club.head.cg = {-0.0423, 0.001, 0.0029};
   b.club.head.inertia << 2.843e-4, 0.530e-4, -0.733e-4, 0.530e-4, 4.085e-4, 0.0005e-4, -0.733e-4, 0.0005e-4, 5.679e-4;
   b.club.head.face = {0.305, 0.305};
-  b.delivery = {.club_speed = 48, .attack_angle = radians(2), .club_path = radians(-3), .dynamic_loft = radians(loft),
-                .face_angle = radians(2), .impact_toe = 0.014, .impact_high = -0.007};
+  b.delivery = {.club_speed = 48,
+                .attack_angle = radians(2),
+                .club_path = radians(-3),
+                .dynamic_loft = radians(loft),
+                .face_angle = radians(2),
+                .impact_toe = 0.014,
+                .impact_high = -0.007};
   return b;
 }
 
 /// Kinetic energy given up, and the two momenta about the contact point.
 double lost_energy(const Blow& b, const Launch& l) {
   const Mat3 I = contact_geometry(b).head_inertia;
-  const auto head = [&](const Vec3& v, const Vec3& w) { return (b.club.head.mass * v.squaredNorm() + w.dot(I * w)) / 2; };
+  const auto head = [&](const Vec3& v, const Vec3& w) {
+    return (b.club.head.mass * v.squaredNorm() + w.dot(I * w)) / 2;
+  };
   return head(b.delivery.velocity(), b.delivery.head_angular_velocity) - head(l.head_velocity, l.head_spin) -
          (b.ball.mass * l.velocity.squaredNorm() + b.ball.inertia() * l.spin.squaredNorm()) / 2;
 }
@@ -136,12 +143,14 @@ struct MawRow {
 
 TEST(HertzMaw, TableOfMawBarberFawcett) {
   // benchmarks.md 2.7. The issue asks for 0.02.
-  const MawRow rows[] = {{.25, .0417, -.0432, -.0491}, {.5, .0479, -.1296, -.1411},   {.75, .0142, -.2521, -.2685},
-                         {1, -.0597, -.4032, -.4234},  {1.25, -.2188, -.6132, -.6354}, {1.5, -.4280, -.8296, -.8511},
-                         {2, -.8372, -1.1750, -1.1901}, {2.5, -1.1623, -1.3672, -1.3707}, {3, -1.3797, -1.3853, -1.3708},
-                         {3.5, -1.4773, -1.1881, -1.1443}, {4, -1.4365, -.7285, -.6667}, {4.5, -1.2176, -.2285, -.1667},
-                         {5, -.7647, .2715, .3333},    {6, .2353, 1.2715, 1.3333}};
-  for (const auto& [springs, steps, tolerance] : {std::tuple{HertzMawOptions{}.springs, HertzMawOptions{}.steps, 0.02}, std::tuple{200, 600, 0.002}}) {
+  const MawRow rows[] = {
+      {.25, .0417, -.0432, -.0491},     {.5, .0479, -.1296, -.1411},      {.75, .0142, -.2521, -.2685},
+      {1, -.0597, -.4032, -.4234},      {1.25, -.2188, -.6132, -.6354},   {1.5, -.4280, -.8296, -.8511},
+      {2, -.8372, -1.1750, -1.1901},    {2.5, -1.1623, -1.3672, -1.3707}, {3, -1.3797, -1.3853, -1.3708},
+      {3.5, -1.4773, -1.1881, -1.1443}, {4, -1.4365, -.7285, -.6667},     {4.5, -1.2176, -.2285, -.1667},
+      {5, -.7647, .2715, .3333},        {6, .2353, 1.2715, 1.3333}};
+  for (const auto& [springs, steps, tolerance] :
+       {std::tuple{HertzMawOptions{}.springs, HertzMawOptions{}.steps, 0.02}, std::tuple{200, 600, 0.002}}) {
     double worst = 0;
     for (const MawRow& r : rows) {
       worst = std::max(worst, std::abs(psi2(0.3, r.psi1, springs, steps) - r.nu30));

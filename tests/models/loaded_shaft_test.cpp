@@ -1,10 +1,10 @@
 // The shaft that the swing bends: carried over from a swing, and found from a delivery with the hands' wrench.
-#include "models/loaded_shaft.hpp"
+#include "hosel/models/loaded_shaft.hpp"
 
 #include <gtest/gtest.h>
 
-#include "models/fe_full_club.hpp"
-#include "models/mounted_shaft.hpp"
+#include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/mounted_shaft.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
@@ -16,8 +16,8 @@ constexpr double kGrowth = 0.9;
 struct SwingEnd {
   Club club = test::driver_club();
   std::vector<SwingSample> samples;
-  LoadedShaft loaded;       // half a millisecond before the end
-  SwingSample from, last;   // there, and at the end
+  LoadedShaft loaded;      // half a millisecond before the end
+  SwingSample from, last;  // there, and at the end
 };
 
 /// The test's swing to t = 0, its club taken over at -0.5 ms.
@@ -25,9 +25,11 @@ SwingEnd swing_end(double lie = 0) {
   SwingEnd out;
   out.club = turned_about_normal(out.club, lie);
   const GripMotion grip(test::swing_track(), 0);
-  Swing swing(out.club, {.elements = kElements, .growth = kGrowth, .step = 2.5e-4, .tolerance = 1e-9}, {.motion = [&](double t) { return grip.at(t); }});
+  Swing swing(out.club, {.elements = kElements, .growth = kGrowth, .step = 2.5e-4, .tolerance = 1e-9},
+              {.motion = [&](double t) { return grip.at(t); }});
   const double at = -0.5e-3;
-  const fem::State s = swing.run(swing.start(-0.35, swing.equilibrium(-0.35)), at, [&](const SwingSample& x) { out.samples.push_back(x); });
+  const fem::State s = swing.run(swing.start(-0.35, swing.equilibrium(-0.35)), at,
+                                 [&](const SwingSample& x) { out.samples.push_back(x); });
   out.from = out.samples.back();
   out.loaded = loaded_by_swing(swing, s, out.samples[out.samples.size() - 2], out.from);
   swing.run(s, 0, [&](const SwingSample& x) { out.last = x; });
@@ -45,8 +47,9 @@ struct Flight {
     const fem::Node node{system.layout.add_vector(3), system.layout.add_rotation()};
     const Mat3 face = d.face_to_global();
     const Vec3 c = club.head.cg - club.geometry.hosel;
-    auto body = std::make_unique<fem::RigidBody>("head", node.translation, node.rotation, fem::RigidBodyProperties{club.head.mass, club.head.inertia, c},
-                                                 mount.loaded ? Vec3(face * mount.loaded->gravity) : Vec3(Vec3::Zero()));
+    auto body = std::make_unique<fem::RigidBody>(
+        "head", node.translation, node.rotation, fem::RigidBodyProperties{club.head.mass, club.head.inertia, c},
+        mount.loaded ? Vec3(face * mount.loaded->gravity) : Vec3(Vec3::Zero()));
     head = body.get();
     system.terms.push_back(std::move(body));
     state = system.layout.rest();
@@ -56,15 +59,25 @@ struct Flight {
     shaft = &mount_shaft(system, state, node, club, mount);
   }
   void fly(double end, double step) {
-    solvers::GeneralizedAlpha scheme(system, {.rho_inf = 0.8, .newton = {.residual_relative = 1e-9, .residual_absolute = 1e-9, .increment_vector = 1e-10, .increment_rotation = 1e-10},
-                                              .step_max = step, .step_min = step / 64, .error_vector = INFINITY, .error_rotation = INFINITY}, state);
+    solvers::GeneralizedAlpha scheme(system,
+                                     {.rho_inf = 0.8,
+                                      .newton = {.residual_relative = 1e-9,
+                                                 .residual_absolute = 1e-9,
+                                                 .increment_vector = 1e-10,
+                                                 .increment_rotation = 1e-10},
+                                      .step_max = step,
+                                      .step_min = step / 64,
+                                      .error_vector = INFINITY,
+                                      .error_rotation = INFINITY},
+                                     state);
     while (scheme.time() < end * (1 - 1e-12)) scheme.advance(end);
     state = scheme.state();
   }
   /// The butt from the tip in the head's axes.
   Vec3 butt() const {
     const fem::Node &a = shaft->nodes().front(), &b = shaft->nodes().back();
-    return fem::rotation(state, b.rotation).conjugate() * Vec3(state.q.segment<3>(a.translation.q) - state.q.segment<3>(b.translation.q));
+    return fem::rotation(state, b.rotation).conjugate() *
+           Vec3(state.q.segment<3>(a.translation.q) - state.q.segment<3>(b.translation.q));
   }
 };
 
@@ -92,7 +105,10 @@ TEST(LoadedShaft, TheSwingGoesOnUnderEveryGrip) {
     const Vec3 before = flight.butt();
     flight.fly(0.5e-3, 2.5e-5);
     EXPECT_LT((flight.head->velocity(flight.state) - end.last.head.velocity).norm(), 2e-3) << int(grip);
-    EXPECT_LT((flight.head->angular_velocity(flight.state) - end.last.head.rotation * end.last.head.angular_velocity).norm(), 0.05) << int(grip);
+    EXPECT_LT(
+        (flight.head->angular_velocity(flight.state) - end.last.head.rotation * end.last.head.angular_velocity).norm(),
+        0.05)
+        << int(grip);
     EXPECT_GT((end.last.head.velocity - end.from.head.velocity).norm(), 0.05);  // and something happened meanwhile
     EXPECT_GT((flight.butt() - before).norm(), 1e-4);
   }
@@ -107,21 +123,25 @@ TEST(LoadedShaft, ASteadyShaftStaysAsItIsOnItsHead) {
   // straight one would.
   Blow blow;
   blow.club = test::driver_club();
-  blow.delivery = {.club_speed = 45, .attack_angle = radians(3), .dynamic_loft = radians(12), .head_angular_velocity = {5, 35, -25}};
+  blow.delivery = {
+      .club_speed = 45, .attack_angle = radians(3), .dynamic_loft = radians(12), .head_angular_velocity = {5, 35, -25}};
   const GripLoad load{.force = {-40, 30, 350}, .moment = {12, -8, 2}};
   const LoadedShaft found = loaded_by_grip(blow, load, 0, kElements, kGrowth, true);
   const double bent = (found.nodes.front().position - blow.club.shaft->length() * blow.club.geometry.shaft_axis).norm();
   EXPECT_GT(bent, 0.01);
-  Flight flight(blow.club, blow.delivery, {.grip = Grip::forced, .elements = kElements, .growth = kGrowth, .loaded = found});
+  Flight flight(blow.club, blow.delivery,
+                {.grip = Grip::forced, .elements = kElements, .growth = kGrowth, .loaded = found});
   const Vec3 before = flight.butt(), v0 = flight.head->velocity(flight.state);
   const double time = 0.5e-3;
   flight.fly(time, 2.5e-5);
   const double moved = (flight.butt() - before).norm();
-  Flight straight(blow.club, blow.delivery, {.grip = Grip::forced, .elements = kElements, .growth = kGrowth, .loaded = [&] {
-                    LoadedShaft s = found;
-                    for (std::size_t i = 0; i < s.nodes.size(); ++i) s.nodes[i] = {.position = shaft_line(blow.club, 0, kElements, kGrowth)[i].position};
-                    return s;
-                  }()});
+  Flight straight(blow.club, blow.delivery,
+                  {.grip = Grip::forced, .elements = kElements, .growth = kGrowth, .loaded = [&] {
+                     LoadedShaft s = found;
+                     for (std::size_t i = 0; i < s.nodes.size(); ++i)
+                       s.nodes[i] = {.position = shaft_line(blow.club, 0, kElements, kGrowth)[i].position};
+                     return s;
+                   }()});
   const Vec3 straight_before = straight.butt();
   straight.fly(time, 2.5e-5);
   EXPECT_LT(moved, 0.02 * (straight.butt() - straight_before).norm());

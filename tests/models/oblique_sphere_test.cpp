@@ -11,7 +11,8 @@ namespace {
 /// to that depth, of even size out to beyond its edge, where stick turns to slip.
 FeImpactOptions small_contact() {
   FeImpactOptions o;
-  o.ball = elastic_ball("sphere", {.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129});
+  o.ball = elastic_ball("sphere",
+                        {.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129});
   o.friction = 0.1;
   o.harmonics = 2;
   o.mesh = {.sector = 10, .rings = 12, .pole = .11, .far = 6, .skin = .05, .core = .4};
@@ -47,7 +48,8 @@ TEST_P(ObliqueSphere, TangentialRebound) {
   EXPECT_LT(std::abs(b.closure), 1e-3);
 }
 INSTANTIATE_TEST_SUITE_P(FourierBall, ObliqueSphere,
-                         testing::Values(Rebound{1, -.584, .1}, Rebound{2, -1.360, .1}, Rebound{3, -1.483, .03}, Rebound{5, .290, 0}),
+                         testing::Values(Rebound{1, -.584, .1}, Rebound{2, -1.360, .1}, Rebound{3, -1.483, .03},
+                                         Rebound{5, .290, 0}),
                          [](const auto& info) { return "Psi" + std::to_string(int(info.param.before)); });
 
 }  // namespace

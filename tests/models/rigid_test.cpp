@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "golf/units.hpp"
-#include "models/rigid_eccentric.hpp"
-#include "models/rigid_planar.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_planar.hpp"
 
 namespace hosel::models {
 namespace {
@@ -50,8 +50,8 @@ class Eccentric : public testing::TestWithParam<Row> {};
 
 TEST_P(Eccentric, ReferenceRow) {
   const Row& row = GetParam();
-  const Launch l = RigidEccentric().launch(blow(row.head == 'A' ? head_a() : head_b(), row.speed, row.attack,
-                                                row.path, row.face, row.loft, row.toe, row.high));
+  const Launch l = RigidEccentric().launch(blow(row.head == 'A' ? head_a() : head_b(), row.speed, row.attack, row.path,
+                                                row.face, row.loft, row.toe, row.high));
   const std::array got = {l.ball_speed(),    degrees(l.launch_angle()), degrees(l.azimuth()),
                           rpm(l.backspin()), rpm(l.sidespin()),         rpm(l.riflespin())};
   for (int i = 0; i < 6; ++i)
@@ -70,8 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{'A', 50, 0, 0, 0, 12, 0, -10, {68.2542186, 7.4994374, 0, 3453.13610, 0, 0}},
         Row{'A', 50, -1, 4, -2, 11, 0, 0, {68.0572782, 8.7779367, -0.8427541, 2958.08862, -1492.09525, -186.91199}},
         Row{'A', 42, -3, -3, 3, 14, 12, -6, {56.1572111, 9.4649126, 4.2558819, 3709.46885, 1152.83596, -83.31975}},
-        Row{'B', 46, 2, 2, -1, 12, 8, 5,
-            {63.1286855, 10.9169153, 1.3165128, 2502.76664, -884.02101, -228.06872}}));
+        Row{'B', 46, 2, 2, -1, 12, 8, 5, {63.1286855, 10.9169153, 1.3165128, 2502.76664, -884.02101, -228.06872}}));
 
 TEST(RigidPlanar, CoefficientOfTheSecondSource) {
   Blow b;
@@ -104,15 +103,14 @@ TEST_P(SevenIrons, BenchmarkTable) {
 }
 
 // benchmarks.md 3.2; lofts are the means of the shots (the printed five digits are rounded).
-INSTANTIATE_TEST_SUITE_P(
-    Benchmark, SevenIrons,
-    testing::Values(ClubRow{"4i", 0.2451, 82.8, -1.3, 12.775, 2731.6, 10.142, 118.89},
-                    ClubRow{"5i", 0.2498, 81.5, -1.8, 16.0833333333, 3398.4, 12.710, 115.47},
-                    ClubRow{"6i", 0.2581, 81.9, -1.2, 18.84, 3817.0, 15.043, 115.23},
-                    ClubRow{"7i", 0.2643, 82.2, -1.9, 22.06, 4545.2, 17.455, 113.17},
-                    ClubRow{"8i", 0.2705, 82.4, -2.1, 25.275, 5164.5, 19.933, 110.89},
-                    ClubRow{"9i", 0.281, 81.9, -2.7, 28.325, 5763.9, 22.162, 107.33},
-                    ClubRow{"PW", 0.2865, 82, -2.5, 32.5, 6427.6, 25.364, 103.44}));
+INSTANTIATE_TEST_SUITE_P(Benchmark, SevenIrons,
+                         testing::Values(ClubRow{"4i", 0.2451, 82.8, -1.3, 12.775, 2731.6, 10.142, 118.89},
+                                         ClubRow{"5i", 0.2498, 81.5, -1.8, 16.0833333333, 3398.4, 12.710, 115.47},
+                                         ClubRow{"6i", 0.2581, 81.9, -1.2, 18.84, 3817.0, 15.043, 115.23},
+                                         ClubRow{"7i", 0.2643, 82.2, -1.9, 22.06, 4545.2, 17.455, 113.17},
+                                         ClubRow{"8i", 0.2705, 82.4, -2.1, 25.275, 5164.5, 19.933, 110.89},
+                                         ClubRow{"9i", 0.281, 81.9, -2.7, 28.325, 5763.9, 22.162, 107.33},
+                                         ClubRow{"PW", 0.2865, 82, -2.5, 32.5, 6427.6, 25.364, 103.44}));
 
 TEST(RigidEccentric, ReducesToPlanarForInfiniteInertiaAndFlatFace) {
   Head h;

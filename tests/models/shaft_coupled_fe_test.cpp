@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "models/fe_full_club.hpp"
-#include "models/shaft_coupled.hpp"
-#include "models/volumetric.hpp"
-#include "solvers/least_squares.hpp"
+#include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/shaft_coupled.hpp"
+#include "hosel/models/volumetric.hpp"
+#include "hosel/solvers/least_squares.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
@@ -56,7 +56,9 @@ TEST(SlowShaftCoupled, ShaftsPartAgreesWithTheFullClubOverTheFace) {
   std::vector<double> width;
   for (const Blow& b : blows) {
     PulseWidth pulse;
-    free.push_back(solve_free_body(b, coarse(), [&](const ImpactView& v) { pulse.add(v.state.time, v.report.normal_force); }).launch);
+    free.push_back(solve_free_body(b, coarse(), [&](const ImpactView& v) {
+                     pulse.add(v.state.time, v.report.normal_force);
+                   }).launch);
     width.push_back(pulse.value());
     full.push_back(solve_full_club(b, {coarse(), {}}).launch);
     ASSERT_GT(*free.back().peak_force, 1e4);
@@ -68,25 +70,27 @@ TEST(SlowShaftCoupled, ShaftsPartAgreesWithTheFullClubOverTheFace) {
   const auto residuals = [&](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
     for (std::size_t i = 0; i < blows.size(); ++i) {
       PulseWidth pulse;
-      const Launch l = volumetric_impact(blows[i], law_of(p), {Integrator::rosenbrock, 1e-6}, nullptr, [&](const ContactSample& c) {
-                         pulse.add(c.time, c.normal_force);
-                       }).launch;
+      const Launch l =
+          volumetric_impact(blows[i], law_of(p), {Integrator::rosenbrock, 1e-6}, nullptr, [&](const ContactSample& c) {
+            pulse.add(c.time, c.normal_force);
+          }).launch;
       r.segment<5>(Eigen::Index(5 * i)) << (l.ball_speed() - free[i].ball_speed()) / 0.2,
-          (*l.contact_time - *free[i].contact_time) / 5e-6, (pulse.value() - width[i]) / 1e-6, (rpm(l.backspin() - free[i].backspin())) / 50,
-          rpm(l.sidespin() - free[i].sidespin()) / 50;
+          (*l.contact_time - *free[i].contact_time) / 5e-6, (pulse.value() - width[i]) / 1e-6,
+          (rpm(l.backspin() - free[i].backspin())) / 50, rpm(l.sidespin() - free[i].sidespin()) / 50;
     }
     return true;
   };
   const std::vector<solvers::Bounds> bounds = {{2, 20}, {1, 20}, {2, 400}, {0.1, 60}, {0.5, 12}, {0.5, 1}};
-  const auto fit = solvers::least_squares(residuals, int(5 * blows.size()), Eigen::VectorXd{{8, 13, 150, 8, 1, 0.6}}, bounds,
-                                          {.starts = 1, .iterations = 100});
+  const auto fit = solvers::least_squares(residuals, int(5 * blows.size()), Eigen::VectorXd{{8, 13, 150, 8, 1, 0.6}},
+                                          bounds, {.starts = 1, .iterations = 100});
   const VolumetricLaw law = law_of(fit.parameters);
   EXPECT_LT(fit.cost, 10);  // 25 residuals in units of 0.2 m/s, 5 us, 1 us, 50 rpm
   struct Change {
     double speed, backspin, sidespin;
   };
   const auto change = [](const Launch& club, const Launch& head) {
-    return Change{club.ball_speed() - head.ball_speed(), rpm(club.backspin() - head.backspin()), rpm(club.sidespin() - head.sidespin())};
+    return Change{club.ball_speed() - head.ball_speed(), rpm(club.backspin() - head.backspin()),
+                  rpm(club.sidespin() - head.sidespin())};
   };
   std::vector<Change> fe, reduced;
   Change largest{0, 0, 0};
@@ -100,9 +104,9 @@ TEST(SlowShaftCoupled, ShaftsPartAgreesWithTheFullClubOverTheFace) {
   }
   EXPECT_GT(largest.speed, 0.1);
   for (std::size_t i = 0; i < blows.size(); ++i) {
-    SCOPED_TRACE(testing::Message() << "point " << i << ": speed " << fe[i].speed << " / " << reduced[i].speed << " m/s, backspin "
-                                    << fe[i].backspin << " / " << reduced[i].backspin << ", sidespin " << fe[i].sidespin << " / "
-                                    << reduced[i].sidespin << " rpm");
+    SCOPED_TRACE(testing::Message() << "point " << i << ": speed " << fe[i].speed << " / " << reduced[i].speed
+                                    << " m/s, backspin " << fe[i].backspin << " / " << reduced[i].backspin
+                                    << ", sidespin " << fe[i].sidespin << " / " << reduced[i].sidespin << " rpm");
     EXPECT_LT(std::abs(reduced[i].backspin - fe[i].backspin), 0.1 * largest.backspin);
     EXPECT_LT(std::abs(reduced[i].sidespin - fe[i].sidespin), 0.1 * largest.sidespin);
     EXPECT_LT(std::abs(reduced[i].speed - fe[i].speed), 0.1 * largest.speed);

@@ -4,8 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/shaft_coupled.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/shaft_coupled.hpp"
 
 namespace hosel::models {
 namespace {
@@ -17,10 +17,16 @@ Shaft tube(double density = 7850) {
   for (int i = 0; i <= n; ++i) {
     const double x = double(i) / n, ro = (0.0152 + (0.0094 - 0.0152) * x) / 2, ri = ro - 0.0004;
     const double A = kPi * (ro * ro - ri * ri), I = kPi / 4 * (std::pow(ro, 4) - std::pow(ri, 4));
-    s.stations.push_back({.arc_length = x, .bending_stiffness_y = 205e9 * I, .bending_stiffness_z = 205e9 * I,
-                          .torsional_stiffness = 79e9 * 2 * I, .axial_stiffness = 205e9 * A,
-                          .shear_stiffness = 0.53 * 79e9 * A, .mass_per_length = density * A,
-                          .rotary_inertia_y = density * I, .rotary_inertia_z = density * I, .outer_radius = ro});
+    s.stations.push_back({.arc_length = x,
+                          .bending_stiffness_y = 205e9 * I,
+                          .bending_stiffness_z = 205e9 * I,
+                          .torsional_stiffness = 79e9 * 2 * I,
+                          .axial_stiffness = 205e9 * A,
+                          .shear_stiffness = 0.53 * 79e9 * A,
+                          .mass_per_length = density * A,
+                          .rotary_inertia_y = density * I,
+                          .rotary_inertia_z = density * I,
+                          .outer_radius = ro});
   }
   return s;
 }

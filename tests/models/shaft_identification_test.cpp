@@ -1,11 +1,11 @@
 // Stiffness scale and damping recovered from noisy synthetic swings.
-#include "models/shaft_identification.hpp"
+#include "hosel/models/shaft_identification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "golf/shaft_library.hpp"
+#include "hosel/golf/shaft_library.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
@@ -62,7 +62,8 @@ TEST(SlowIdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
     EXPECT_NEAR(r.train_after, noise, 0.2 * noise) << seed;
     const Eigen::Vector2d off(std::log(r.bending_scale / truth_scale), std::log(r.damping_time / truth_damping));
     const Eigen::Vector2d variance = r.log_covariance.diagonal();
-    const bool scale = std::abs(off[0]) < 1.96 * std::sqrt(variance[0]), damping = std::abs(off[1]) < 1.96 * std::sqrt(variance[1]);
+    const bool scale = std::abs(off[0]) < 1.96 * std::sqrt(variance[0]),
+               damping = std::abs(off[1]) < 1.96 * std::sqrt(variance[1]);
     scale_inside += scale;
     damping_inside += damping;
     both_inside += scale && damping;
@@ -82,8 +83,8 @@ TEST(SlowIdentifyShaft, TwentySeedsAtASignalToNoiseRatioOfTwenty) {
   RecordProperty("scale_inside", scale_inside);
   RecordProperty("damping_inside", damping_inside);
   RecordProperty("both_inside", both_inside);
-  std::printf("worst scale %.2f %%, damping %.1f %%; inside: scale %d, damping %d, both %d of 20\n", 100 * worst_scale, 100 * worst_damping,
-              scale_inside, damping_inside, both_inside);
+  std::printf("worst scale %.2f %%, damping %.1f %%; inside: scale %d, damping %d, both %d of 20\n", 100 * worst_scale,
+              100 * worst_damping, scale_inside, damping_inside, both_inside);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // The swing: convergence, statics, an independent integrator, and the hands' wrench fed back.
-#include "models/swing.hpp"
+#include "hosel/models/swing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "fem/modal_damping.hpp"
-#include "solvers/ida.hpp"
-#include "solvers/modes.hpp"
+#include "hosel/fem/modal_damping.hpp"
+#include "hosel/solvers/ida.hpp"
+#include "hosel/solvers/modes.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
@@ -44,7 +44,8 @@ TEST(Swing, LeadAndDroopConverge) {
   EXPECT_GT(scale, 0.05);
   double worst = 0;
   for (std::size_t i = 0; i < coarse.size(); ++i)
-    worst = std::max({worst, std::abs(coarse[i].lead - fine[2 * i].lead), std::abs(coarse[i].droop - fine[2 * i].droop)});
+    worst =
+        std::max({worst, std::abs(coarse[i].lead - fine[2 * i].lead), std::abs(coarse[i].droop - fine[2 * i].droop)});
   EXPECT_LT(worst, 0.005 * scale);
   RecordProperty("convergence", std::to_string(worst / scale));
   const Delivery d = delivery_of(fine.back().head);
@@ -79,9 +80,17 @@ TEST(Swing, IdaAgrees) {
   fem::State consistent = from;
   {
     fem::System& system = const_cast<fem::System&>(s.system());
-    const solvers::NewtonOptions newton{.residual_relative = 1e-9, .residual_absolute = 1e-9, .increment_vector = 1e-9, .increment_rotation = 1e-9};
-    consistent = solvers::GeneralizedAlpha(system, {.rho_inf = 0.8, .newton = newton, .step_max = 1e-3, .step_min = 1e-3,
-                                                    .error_vector = INFINITY, .error_rotation = INFINITY}, from).state();
+    const solvers::NewtonOptions newton{
+        .residual_relative = 1e-9, .residual_absolute = 1e-9, .increment_vector = 1e-9, .increment_rotation = 1e-9};
+    consistent = solvers::GeneralizedAlpha(system,
+                                           {.rho_inf = 0.8,
+                                            .newton = newton,
+                                            .step_max = 1e-3,
+                                            .step_min = 1e-3,
+                                            .error_vector = INFINITY,
+                                            .error_rotation = INFINITY},
+                                           from)
+                     .state();
   }
   const fem::Vector none = fem::Vector::Zero(s.system().layout.size());
   const double scale = peak(ours);
@@ -108,9 +117,11 @@ TEST(Swing, TheHandsWrenchFedBackReproducesTheGrip) {
     const double at = std::clamp((t + 1.1) / step, 0.0, static_cast<double>(record.size() - 1));
     const auto k = std::min(static_cast<std::size_t>(at), record.size() - 2);
     const double w = at - static_cast<double>(k);
-    return fem::Wrench{(1 - w) * record[k].force + w * record[k + 1].force, (1 - w) * record[k].moment + w * record[k + 1].moment};
+    return fem::Wrench{(1 - w) * record[k].force + w * record[k + 1].force,
+                       (1 - w) * record[k].moment + w * record[k + 1].moment};
   };
-  Swing forced(driver_club(), {.elements = 10, .step = step}, {.kind = GripDrive::Kind::forced, .motion = motion(), .wrench = wrench});
+  Swing forced(driver_club(), {.elements = 10, .step = step},
+               {.kind = GripDrive::Kind::forced, .motion = motion(), .wrench = wrench});
   double distance = 0, angle = 0;
   forced.run(from, 0, [&](const SwingSample& x) {
     const fem::Pose p = grip().at(x.time);
@@ -129,7 +140,9 @@ TEST(Swing, ModalDampingTakesTheStatedShareOfEachMode) {
   club.shaft->damping_time = 0;
   const std::array ratio{0.02, 0.05};
   const fem::Motion still = fem::at_rest(Vec3::Zero());
-  Swing s(club, {.elements = 6, .step = 5e-4, .rho_inf = 1, .gravity = Vec3::Zero(), .modal_damping = {ratio[0], ratio[1]}}, {.motion = still});
+  Swing s(club,
+          {.elements = 6, .step = 5e-4, .rho_inf = 1, .gravity = Vec3::Zero(), .modal_damping = {ratio[0], ratio[1]}},
+          {.motion = still});
   const fem::Term* damping = nullptr;
   for (const auto& term : s.system().terms)
     if (dynamic_cast<const fem::ModalDamping*>(term.get())) damping = term.get();

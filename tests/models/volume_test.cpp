@@ -1,12 +1,12 @@
 // The overlap of ball and face: closed form against quadrature and finite differences.
-#include "models/volume.hpp"
+#include "hosel/models/volume.hpp"
 
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
-#include "golf/units.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::models {
 namespace {
@@ -54,7 +54,8 @@ TEST_P(OverlapOf, QuadratureAndDifferences) {
     EXPECT_NEAR(o.centroid, q.moment / q.volume, 1e-12 * r);
     const double h = 1e-4 * std::min(d, contained - d);
     const double slope = (8 * (overlap(d + h, r, c).volume - overlap(d - h, r, c).volume) -
-                          (overlap(d + 2 * h, r, c).volume - overlap(d - 2 * h, r, c).volume)) / (12 * h);
+                          (overlap(d + 2 * h, r, c).volume - overlap(d - 2 * h, r, c).volume)) /
+                         (12 * h);
     EXPECT_NEAR(o.area, slope, 1e-7 * o.area);
     const double energy = (overlap_potential(d + h, r, c) - overlap_potential(d - h, r, c)) / (2 * h);
     EXPECT_NEAR(energy, o.volume, 1e-7 * o.volume);

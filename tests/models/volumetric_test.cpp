@@ -1,13 +1,13 @@
 // The volumetric model against its published parameter sets, balances and limits.
-#include "models/volumetric.hpp"
+#include "hosel/models/volumetric.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/rigid_eccentric.hpp"
-#include "post/figure.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::models {
 namespace {
@@ -38,8 +38,13 @@ Head test_driver() {
 Blow eccentric() {
   Blow b;
   b.club.head = test_driver();
-  b.delivery = {.club_speed = 48, .attack_angle = radians(2), .club_path = radians(-3), .dynamic_loft = radians(13),
-                .face_angle = radians(2), .impact_toe = 0.014, .impact_high = -0.007,
+  b.delivery = {.club_speed = 48,
+                .attack_angle = radians(2),
+                .club_path = radians(-3),
+                .dynamic_loft = radians(13),
+                .face_angle = radians(2),
+                .impact_toe = 0.014,
+                .impact_high = -0.007,
                 .head_angular_velocity = {3, -20, 12}};
   return b;
 }
@@ -167,8 +172,12 @@ TEST(Volumetric, TendsToTheEccentricRigidImpact) {
   // The depth, and with it the change of geometry during contact, falls with the cube root of the
   // stiffness: a factor of 100 buys 4.6.
   EXPECT_LT(before, 5e-4);
-  post::Panel panel{.title = "volumetric model towards rigid-eccentric", .x_label = "stiffness over the published one [-]",
-                    .y_label = "relative difference [-]", .log_x = true, .log_y = true, .series = {curve}};
+  post::Panel panel{.title = "volumetric model towards rigid-eccentric",
+                    .x_label = "stiffness over the published one [-]",
+                    .y_label = "relative difference [-]",
+                    .log_x = true,
+                    .log_y = true,
+                    .series = {curve}};
   EXPECT_EQ(post::draw({.panels = {panel}}, std::filesystem::path(testing::TempDir()) / "volumetric_limit"), "");
 }
 

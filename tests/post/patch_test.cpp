@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <map>
 
-#include "golf/units.hpp"
-#include "post/impact_recorder.hpp"
-#include "post/patch_figure.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/post/impact_recorder.hpp"
+#include "hosel/post/patch_figure.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::post {
@@ -49,7 +49,8 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
       const Vec3 there = blow.ball.radius * (std::cos(patch.position[j] / blow.ball.radius) * axes.col(0) +
                                              std::sin(patch.position[j] / blow.ball.radius) * axes.col(1));
       const auto& points = seen.at(patch.time[i]);
-      const auto& nearest = *std::ranges::min_element(points, {}, [&](const fem::ContactPoint& p) { return (p.reference - there).norm(); });
+      const auto& nearest = *std::ranges::min_element(
+          points, {}, [&](const fem::ContactPoint& p) { return (p.reference - there).norm(); });
       EXPECT_EQ(patch.pressure[k], nearest.pressure);
       EXPECT_NEAR(patch.traction[k], nearest.traction.dot(axes.col(1)), 1e-9 * nearest.pressure);
       EXPECT_EQ(patch.slip[k], nearest.slip);

@@ -16,7 +16,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "post/vtk_series.hpp"
+#include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
 namespace {
@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 VtkMesh one_hexahedron() {
   VtkMesh m;
   for (int k = 0; k < 2; ++k)
-    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) m.points.emplace_back(x, y, k + 1e-9);
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
+      m.points.emplace_back(x, y, k + 1e-9);
   m.cells.push_back({CellShape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}});
   m.point_fields.push_back(vector_field("displacement", "m", std::vector<Vec3>(8, Vec3(1e-3, 0, 2e-3))));
   m.cell_fields.push_back({"cauchy_stress", "Pa", 6, {1, 2, 3, 4, 5, 6}});

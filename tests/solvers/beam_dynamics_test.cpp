@@ -3,10 +3,10 @@
 
 #include <Eigen/LU>
 
-#include "fem/rigid_body.hpp"
-#include "solvers/generalized_alpha.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/statics.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
+#include "hosel/solvers/modes.hpp"
+#include "hosel/solvers/statics.hpp"
 #include "tests/support/beams.hpp"
 #include "tests/support/term_checks.hpp"
 
@@ -17,8 +17,14 @@ using solvers::GeneralizedAlpha;
 
 solvers::GeneralizedAlphaOptions fixed(double rho, double h) {
   return {.rho_inf = rho,
-          .newton = {.residual_relative = 1e-8, .residual_absolute = 1e-8, .increment_vector = 1e-7, .increment_rotation = 1e-7},
-          .step_max = h, .step_min = h / 64, .error_vector = kInf, .error_rotation = kInf};
+          .newton = {.residual_relative = 1e-8,
+                     .residual_absolute = 1e-8,
+                     .increment_vector = 1e-7,
+                     .increment_rotation = 1e-7},
+          .step_max = h,
+          .step_min = h / 64,
+          .error_vector = kInf,
+          .error_rotation = kInf};
 }
 
 void run_to(GeneralizedAlpha& scheme, double t) {
@@ -43,7 +49,8 @@ Momentum momentum(const BeamSystem& b, const fem::State& s) {
   Momentum out;
   for (const fem::Node& n : b.beam->nodes()) {
     out.linear += p.segment<3>(n.translation.v);
-    out.angular += at(s, n).cross(Vec3(p.segment<3>(n.translation.v))) + fem::rotation(s, n.rotation) * Vec3(p.segment<3>(n.rotation.v));
+    out.angular += at(s, n).cross(Vec3(p.segment<3>(n.translation.v))) +
+                   fem::rotation(s, n.rotation) * Vec3(p.segment<3>(n.rotation.v));
   }
   return out;
 }
@@ -54,16 +61,26 @@ TEST(SpinUp, TipInTheRotatingFrame) {
   const auto psi = [](double t) {
     const double k = 2 * kPi / 15;
     if (t >= 15) return Vec3(6 * t - 45, 6, 0);
-    return Vec3(0.4 * (t * t / 2 + (std::cos(k * t) - 1) / (k * k)), 0.4 * (t - std::sin(k * t) / k), 0.4 * (1 - std::cos(k * t)));
+    return Vec3(0.4 * (t * t / 2 + (std::cos(k * t) - 1) / (k * k)), 0.4 * (t - std::sin(k * t) / k),
+                0.4 * (1 - std::cos(k * t)));
   };
   b.system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), [&](double t) {
     const Vec3 p = psi(t);
-    return fem::Pose{.rotation = fem::rotation_exp(Vec3(0, 0, p[0])), .angular_velocity = {0, 0, p[1]}, .angular_acceleration = {0, 0, p[2]}};
+    return fem::Pose{.rotation = fem::rotation_exp(Vec3(0, 0, p[0])),
+                     .angular_velocity = {0, 0, p[1]},
+                     .angular_acceleration = {0, 0, p[2]}};
   }));
   GeneralizedAlpha scheme(b.system, fixed(0.8, 0.01), b.rest);
   double lowest = 0, when = 0, steady = 0;
   int samples = 0;
-  const std::array<std::array<double, 2>, 8> table{{{3, -0.21727}, {5, -0.46848}, {6.5, -0.56995}, {8, -0.54284}, {10, -0.36282}, {12, -0.15090}, {15, 0.00131}, {18, -0.00207}}};
+  const std::array<std::array<double, 2>, 8> table{{{3, -0.21727},
+                                                    {5, -0.46848},
+                                                    {6.5, -0.56995},
+                                                    {8, -0.54284},
+                                                    {10, -0.36282},
+                                                    {12, -0.15090},
+                                                    {15, 0.00131},
+                                                    {18, -0.00207}}};
   std::size_t row = 0;
   for (int i = 1; i <= 2000; ++i) {
     run_to(scheme, 0.01 * i);
@@ -90,8 +107,20 @@ struct Flying {
 };
 
 TEST(FlyingRod, Planar) {
-  for (const Flying& c : {Flying{500, {{{2.5, 4.430, -0.785, 5.945, 8.971}, {5, 5.620, 4.764, 15.409, 4.264}, {10, 25.409, 4.790, 15.625, 4.152}, {13, 26.220, -0.956, 27.772, 8.718}}}, -189.28, 0.02},
-                          Flying{100, {{{2.5, 4.963, 4.476, 3.583, 6.112}, {5, 9.783, 8.204, 8.075, 1.760}, {10, 22.974, 6.410, 21.325, 3.612}, {13, 26.798, 3.253, 29.220, 6.329}}}, -229.52, 0.06}}) {
+  for (const Flying& c : {Flying{500,
+                                 {{{2.5, 4.430, -0.785, 5.945, 8.971},
+                                   {5, 5.620, 4.764, 15.409, 4.264},
+                                   {10, 25.409, 4.790, 15.625, 4.152},
+                                   {13, 26.220, -0.956, 27.772, 8.718}}},
+                                 -189.28,
+                                 0.02},
+                          Flying{100,
+                                 {{{2.5, 4.963, 4.476, 3.583, 6.112},
+                                   {5, 9.783, 8.204, 8.075, 1.760},
+                                   {10, 22.974, 6.410, 21.325, 3.612},
+                                   {13, 26.798, 3.253, 29.220, 6.329}}},
+                                 -229.52,
+                                 0.06}}) {
     BeamSystem b(mesh::straight(mesh::graded(10, 20), Vec3(6, 0, 0), mesh::frame_along(Vec3(-6, 8, 0), Vec3(0, 0, 1))),
                  constant(uniform(1e4, 1e4, 500, c.EI, 1, Vec3::Constant(10))));
     bool on = true;
@@ -120,8 +149,9 @@ TEST(FlyingRod, Planar) {
 }
 
 BeamSystem flying_3d(int elements) {
-  BeamSystem b(mesh::straight(mesh::graded(10, elements), Vec3(6, 0, 0), mesh::frame_along(Vec3(-6, 8, 0), Vec3(0, 0, 1))),
-               constant(uniform(1e4, 1e4, 500, 500, 1, Vec3::Constant(10))));
+  BeamSystem b(
+      mesh::straight(mesh::graded(10, elements), Vec3(6, 0, 0), mesh::frame_along(Vec3(-6, 8, 0), Vec3(0, 0, 1))),
+      constant(uniform(1e4, 1e4, 500, 500, 1, Vec3::Constant(10))));
   b.load(b.beam->nodes().front(), [](double t) {
     const double T = t < 2.5 ? 80 * t : t < 5 ? 80 * (5 - t) : 0;
     return fem::Wrench{{T / 10, 0, 0}, {0, -T / 2, -T}};
@@ -136,8 +166,10 @@ TEST(FlyingRod, ThreeDimensional) {
     double t;
     Vec3 loaded, free;
   };
-  for (const Row& r : {Row{2.5, {3.4129, 0.1969, 0.0174}, {4.0238, 8.4956, -0.7330}}, Row{5, {19.5628, 1.5214, -1.5078}, {11.8789, 6.8813, 1.8301}},
-                       Row{8, {30.872, -0.978, 0.365}, {29.863, 8.9485, -0.227}}, Row{10, {44.402, 1.669, -2.065}, {36.409, 6.335, 1.679}}}) {
+  for (const Row& r : {Row{2.5, {3.4129, 0.1969, 0.0174}, {4.0238, 8.4956, -0.7330}},
+                       Row{5, {19.5628, 1.5214, -1.5078}, {11.8789, 6.8813, 1.8301}},
+                       Row{8, {30.872, -0.978, 0.365}, {29.863, 8.9485, -0.227}},
+                       Row{10, {44.402, 1.669, -2.065}, {36.409, 6.335, 1.679}}}) {
     run_to(scheme, r.t);
     // The benchmark's own second-order rod of 20 elements is 0.03 (t = 5) and 0.12 (t = 10) off.
     const double allowed = r.t <= 5 ? 0.03 : 0.12;
@@ -187,8 +219,10 @@ TEST(RightAngleCantilever, PeaksOfElbowAndTip) {
   BeamSystem b(mesh::straight(mesh::graded(10, 10), Vec3::Zero(), Mat3::Identity()), constant(section));
   b.clamp_first();
   const fem::Node elbow = b.tip();
-  auto leg = std::make_unique<fem::Beam>(b.system.layout, mesh::straight(mesh::graded(10, 10), Vec3(10, 0, 0), mesh::frame_along(Vec3(0, 1, 0), Vec3(0, 0, 1))),
-                                         constant(section), fem::BeamOptions{.first = elbow});
+  auto leg = std::make_unique<fem::Beam>(
+      b.system.layout,
+      mesh::straight(mesh::graded(10, 10), Vec3(10, 0, 0), mesh::frame_along(Vec3(0, 1, 0), Vec3(0, 0, 1))),
+      constant(section), fem::BeamOptions{.first = elbow});
   const fem::Node tip = leg->nodes().back();
   b.rest = b.system.layout.rest();
   b.beam->place(b.rest);
@@ -246,13 +280,20 @@ struct Rotor {
 std::vector<double> flap_modes(const Rotor& c) {
   const fem::SectionLaw law = [&](double x) {
     const double h = 1 - c.height_taper * x, w = 1 - c.breadth_taper * x;
-    return fem::Section{.axial = 1e7, .shear_y = kInf, .shear_z = kInf, .torsion = 1, .bending_y = h * h * h * w,
-                        .bending_z = h * h * h * w, .mass = h * w, .rotary = Vec3::Constant(1e-9)};
+    return fem::Section{.axial = 1e7,
+                        .shear_y = kInf,
+                        .shear_z = kInf,
+                        .torsion = 1,
+                        .bending_y = h * h * h * w,
+                        .bending_z = h * h * h * w,
+                        .mass = h * w,
+                        .rotary = Vec3::Constant(1e-9)};
   };
   BeamSystem b(mesh::straight(mesh::graded(1, 20), Vec3(c.hub, 0, 0), Mat3::Identity()), law);
   if (c.tip_mass > 0)
-    b.system.terms.push_back(std::make_unique<fem::RigidBody>("mass", b.tip().translation, b.tip().rotation,
-                                                              fem::RigidBodyProperties{c.tip_mass, 1e-9 * Mat3::Identity(), Vec3::Zero()}));
+    b.system.terms.push_back(
+        std::make_unique<fem::RigidBody>("mass", b.tip().translation, b.tip().rotation,
+                                         fem::RigidBodyProperties{c.tip_mass, 1e-9 * Mat3::Identity(), Vec3::Zero()}));
   for (const fem::Node& n : b.beam->nodes()) {
     const Vec3 x = at(b.rest, n);
     b.rest.v.segment<3>(n.translation.v) = Vec3(0, 0, c.eta).cross(x);
@@ -263,7 +304,10 @@ std::vector<double> flap_modes(const Rotor& c) {
   {
     BeamSystem& held = b;
     held.system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), [&](double) {
-      return fem::Pose{.position = {c.hub, 0, 0}, .velocity = {0, c.eta * c.hub, 0}, .acceleration = {-c.eta * c.eta * c.hub, 0, 0}, .angular_velocity = {0, 0, c.eta}};
+      return fem::Pose{.position = {c.hub, 0, 0},
+                       .velocity = {0, c.eta * c.hub, 0},
+                       .acceleration = {-c.eta * c.eta * c.hub, 0, 0},
+                       .angular_velocity = {0, 0, c.eta}};
     }));
     spun = solvers::solve_static(held.system, b.rest, {.newton = tight(), .load_steps = 1}).state;
     held.system.prescribed.clear();
@@ -273,13 +317,15 @@ std::vector<double> flap_modes(const Rotor& c) {
 }
 
 TEST(RotatingBeam, StiffensAsItShould) {
-  for (const Rotor& c : {Rotor{0, 0, 0, 0, 0, {3.51602, 22.03449, 61.69721}}, Rotor{4, 0, 0, 0, 0, {5.58500, 24.27335, 63.96676}},
-                         Rotor{12, 0, 0, 0, 0, {13.17015, 37.60311, 79.61448}}, Rotor{12, 1, 0, 0, 0, {19.72154, 51.07013, 98.52680}},
-                         Rotor{0, 0, 0, 0.4, 0.4, {4.31878, 20.04998, 51.33463}}, Rotor{4, 0, 0, 0.5, 0, {5.87876, 20.68516, 49.64564}},
-                         Rotor{12, 0, 0, 0.5, 0, {13.47113, 34.08767, 65.52365}}, Rotor{4, 0, 1, 0, 0, {4.54291, 23.02287, 59.29359}},
-                         Rotor{12, 0, 1, 0, 0, {12.48137, 50.85939, 104.09102}}}) {
+  for (const Rotor& c :
+       {Rotor{0, 0, 0, 0, 0, {3.51602, 22.03449, 61.69721}}, Rotor{4, 0, 0, 0, 0, {5.58500, 24.27335, 63.96676}},
+        Rotor{12, 0, 0, 0, 0, {13.17015, 37.60311, 79.61448}}, Rotor{12, 1, 0, 0, 0, {19.72154, 51.07013, 98.52680}},
+        Rotor{0, 0, 0, 0.4, 0.4, {4.31878, 20.04998, 51.33463}}, Rotor{4, 0, 0, 0.5, 0, {5.87876, 20.68516, 49.64564}},
+        Rotor{12, 0, 0, 0.5, 0, {13.47113, 34.08767, 65.52365}}, Rotor{4, 0, 1, 0, 0, {4.54291, 23.02287, 59.29359}},
+        Rotor{12, 0, 1, 0, 0, {12.48137, 50.85939, 104.09102}}}) {
     const auto omega = flap_modes(c);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(omega[i] / c.flap[i], 1, 2e-4) << "eta " << c.eta << " mode " << i + 1;
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(omega[i] / c.flap[i], 1, 2e-4) << "eta " << c.eta << " mode " << i + 1;
   }
   // Southwell's coefficient near standstill.
   const double eta = 0.2, w0 = flap_modes({0, 0, 0, 0, 0, {}})[0], w1 = flap_modes({eta, 0, 0, 0, 0, {}})[0];
@@ -292,9 +338,12 @@ TEST(Waves, ArriveAtTheirOwnSpeed) {
   const double E = 205e9, G = 79e9, rho = 7850;
   for (bool torsion : {false, true}) {
     const int elements = 100;
-    BeamSystem b(mesh::straight(mesh::graded(1, elements), Vec3::Zero(), Mat3::Identity()), [](double) { return b2(Theory::timoshenko)(0.5); });
+    BeamSystem b(mesh::straight(mesh::graded(1, elements), Vec3::Zero(), Mat3::Identity()),
+                 [](double) { return b2(Theory::timoshenko)(0.5); });
     b.clamp_first();
-    b.load(b.tip(), [&](double) { return torsion ? fem::Wrench{.moment = {1, 0, 0}} : fem::Wrench{.force = {1, 0, 0}}; });
+    b.load(b.tip(), [&](double) {
+      return torsion ? fem::Wrench{.moment = {1, 0, 0}} : fem::Wrench{.force = {1, 0, 0}};
+    });
     const double c = std::sqrt((torsion ? G : E) / rho), transit = 1.0 / elements / c;
     const fem::Section s = b2(Theory::timoshenko)(0.5);
     const double plateau = torsion ? 1 / (s.rotary.x() * c) : 1 / (s.mass * c);
@@ -343,8 +392,8 @@ TEST(Waves, TorsionAtTheClamp) {
 }
 
 struct StruckBar {
-  double ratio;         ///< mass of the bar over that of the body
-  double held, parting; ///< largest force at the clamp over rho A c V; end of contact times c / L
+  double ratio;          ///< mass of the bar over that of the body
+  double held, parting;  ///< largest force at the clamp over rho A c V; end of contact times c / L
 };
 class SaintVenant : public testing::TestWithParam<StruckBar> {};
 
@@ -374,8 +423,8 @@ TEST_P(SaintVenant, RigidBodyOnAClampedBar) {
   const fem::Index butt = b.beam->nodes().front().translation.v;
   const auto speed = [&] { return scheme.state().v[b.tip().translation.v]; };
 
-  // Means over a tenth of L/c, not beside a front, which is several elements wide; the ripple behind it leaves 2 % of the
-  // largest force in them.
+  // Means over a tenth of L/c, not beside a front, which is several elements wide; the ripple behind it leaves 2 % of
+  // the largest force in them.
   const int pieces = 10;
   const double window = 0.1;
   const auto mean = [&](auto&& f, double t) {
@@ -399,8 +448,12 @@ TEST_P(SaintVenant, RigidBodyOnAClampedBar) {
     }
     if (parting != 0 || k % 10 == 0 || k % 10 == 9) continue;
     const double t = window * k;
-    if (t < 4) { EXPECT_NEAR(force, mean([&](double x) { return sent(x) + sent(x - 2); }, t), 0.02 * row.held) << "at " << t; }
-    if (t < 5) { EXPECT_NEAR(reaction, mean([&](double x) { return 2 * sent(x - 1); }, t), 0.02 * row.held) << "at " << t; }
+    if (t < 4) {
+      EXPECT_NEAR(force, mean([&](double x) { return sent(x) + sent(x - 2); }, t), 0.02 * row.held) << "at " << t;
+    }
+    if (t < 5) {
+      EXPECT_NEAR(reaction, mean([&](double x) { return 2 * sent(x - 1); }, t), 0.02 * row.held) << "at " << t;
+    }
     ++compared;
   }
   EXPECT_GE(compared, 20);
@@ -414,12 +467,25 @@ INSTANTIATE_TEST_SUITE_P(Table, SaintVenant,
 
 TEST(DrivenBase, TransferToTheTip) {
   BeamSystem b(mesh::straight(mesh::graded(1, 20), Vec3::Zero(), Mat3::Identity()),
-               constant({.axial = 1e6, .shear_y = kInf, .shear_z = kInf, .torsion = 1, .bending_y = 1, .bending_z = 1, .mass = 1, .rotary = Vec3::Constant(1e-9)}));
+               constant({.axial = 1e6,
+                         .shear_y = kInf,
+                         .shear_z = kInf,
+                         .torsion = 1,
+                         .bending_y = 1,
+                         .bending_z = 1,
+                         .mass = 1,
+                         .rotary = Vec3::Constant(1e-9)}));
   DenseSink K(b.system.layout.size()), M(b.system.layout.size());
   b.beam->tangent(b.rest, {1, 0, 0}, K);
   b.beam->tangent(b.rest, {0, 0, 1}, M);
   const auto n = static_cast<Eigen::Index>(b.system.layout.size()) - 6;
-  for (const auto& [w, H] : {std::pair{1.0, 1.13614486}, {2.0, 1.74230989}, {3.0, 5.17628797}, {5.0, -2.14209841}, {10.0, -1.00025348}, {20.0, -4.62361108}, {30.0, 1.43524166}}) {
+  for (const auto& [w, H] : {std::pair{1.0, 1.13614486},
+                             {2.0, 1.74230989},
+                             {3.0, 5.17628797},
+                             {5.0, -2.14209841},
+                             {10.0, -1.00025348},
+                             {20.0, -4.62361108},
+                             {30.0, 1.43524166}}) {
     const Eigen::MatrixXd A = K.matrix - w * w * M.matrix;
     const Eigen::VectorXd u = A.bottomRightCorner(n, n).lu().solve(-A.bottomLeftCorner(n, 6).col(1));
     EXPECT_NEAR(u[n - 5] / H, 1, 1e-3) << w;
@@ -428,7 +494,8 @@ TEST(DrivenBase, TransferToTheTip) {
 
 TEST(RigidMotion, OfTheBaseStrainsNothing) {
   // A beam without mass (but for round-off) that starts with the base's motion follows it stiffly.
-  BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()), constant(uniform(10, 10, 1, 1, 1e-13, Vec3::Constant(1e-15))));
+  BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()),
+               constant(uniform(10, 10, 1, 1, 1e-13, Vec3::Constant(1e-15))));
   const Vec3 w(0.3, 0.5, 2), v(1, 2, 3);
   b.system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), [&](double t) {
     return fem::Pose{.position = t * v, .rotation = fem::rotation_exp(t * w), .velocity = v, .angular_velocity = w};
@@ -438,7 +505,8 @@ TEST(RigidMotion, OfTheBaseStrainsNothing) {
     b.rest.v.segment<3>(n.rotation.v) = w;
   }
   solvers::GeneralizedAlphaOptions options = fixed(0.9, 1e-3);
-  options.newton = {.residual_relative = 0, .residual_absolute = 1e-14, .increment_vector = 1e-12, .increment_rotation = 1e-12};
+  options.newton = {
+      .residual_relative = 0, .residual_absolute = 1e-14, .increment_vector = 1e-12, .increment_rotation = 1e-12};
   GeneralizedAlpha scheme(b.system, options, b.rest);
   run_to(scheme, 1);
   for (const auto& s : b.beam->strains(scheme.state())) EXPECT_LT(s.gamma.norm() + s.kappa.norm(), 1e-12);

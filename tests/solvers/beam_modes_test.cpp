@@ -1,7 +1,7 @@
 // benchmarks.md 1.1 and 1.2: frequencies of tapered beams with and without a body at the tip.
 #include <gtest/gtest.h>
 
-#include "solvers/modes.hpp"
+#include "hosel/solvers/modes.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {
@@ -52,7 +52,8 @@ std::vector<double> frequencies(const ModeCase& c, Theory theory, Kind kind, int
   if (c.tip.mass > 0)
     b.system.terms.push_back(std::make_unique<fem::RigidBody>(
         "head", b.tip().translation, b.tip().rotation,
-        fem::RigidBodyProperties{c.tip.mass, Vec3(c.tip.polar, c.tip.bending, c.tip.bending).asDiagonal(), Vec3::Zero()}));
+        fem::RigidBodyProperties{c.tip.mass, Vec3(c.tip.polar, c.tip.bending, c.tip.bending).asDiagonal(),
+                                 Vec3::Zero()}));
   std::vector<double> out = solvers::modes(b.system, b.rest, 4).omega;
   for (double& f : out) f /= 2 * kPi;
   return out;
@@ -91,11 +92,51 @@ TEST_P(TaperedModes, FourthOrder) {
   }
 }
 
-const ModeCase kB1a{"B1a", b1, 0.5, {}, {{{71.561606, 342.805014, 884.554724, 1692.768225}, {71.548608, 342.468260, 882.391151, 1684.952571}, {71.485103, 340.967064, 873.647223, 1655.531928}}}, {1683.259441, 4083.217882}, {2907.651442, 7782.962111}};
-const ModeCase kB1b{"B1b", b1, 0.5, {0.1, 2e-5, 2e-5}, {{{36.164679, 243.716982, 680.488585, 1272.415709}, {36.162943, 243.609636, 679.578372, 1269.559384}, {36.141229, 242.778937, 674.515306, 1255.543278}}}, {408.791596, 2621.560330}, {1843.939866, 5694.936473}};
-const ModeCase kB2a{"B2a", b2, 1, {}, {{{15.884725, 81.658192, 215.462448, 415.243375}, {15.884053, 81.638022, 215.330775, 414.765824}, {15.879527, 81.512131, 214.563966, 412.108461}}}, {1045.405040, 2487.509668}, {1408.011770, 3881.871037}};
-const ModeCase kB2b{"B2b", b2, 1, {0.2, 3e-4, 5e-4}, {{{4.999572, 52.877444, 131.638910, 237.591078}, {4.999550, 52.872937, 131.616996, 237.504005}, {4.998634, 52.820162, 131.400292, 236.505614}}}, {43.300628, 1601.317571}, {574.022862, 2659.263460}};
-const ModeCase kB2c{"B2c", b2, 1, {0.2865, 3e-4, 5e-4}, {{{4.241009, 52.596962, 131.633576, 237.081666}, {4.240996, 52.592532, 131.611685, 236.995338}, {4.240225, 52.539820, 131.395206, 235.998476}}}, {43.300628, 1601.317571}, {489.830891, 2626.380536}};
+const ModeCase kB1a{"B1a",
+                    b1,
+                    0.5,
+                    {},
+                    {{{71.561606, 342.805014, 884.554724, 1692.768225},
+                      {71.548608, 342.468260, 882.391151, 1684.952571},
+                      {71.485103, 340.967064, 873.647223, 1655.531928}}},
+                    {1683.259441, 4083.217882},
+                    {2907.651442, 7782.962111}};
+const ModeCase kB1b{"B1b",
+                    b1,
+                    0.5,
+                    {0.1, 2e-5, 2e-5},
+                    {{{36.164679, 243.716982, 680.488585, 1272.415709},
+                      {36.162943, 243.609636, 679.578372, 1269.559384},
+                      {36.141229, 242.778937, 674.515306, 1255.543278}}},
+                    {408.791596, 2621.560330},
+                    {1843.939866, 5694.936473}};
+const ModeCase kB2a{"B2a",
+                    b2,
+                    1,
+                    {},
+                    {{{15.884725, 81.658192, 215.462448, 415.243375},
+                      {15.884053, 81.638022, 215.330775, 414.765824},
+                      {15.879527, 81.512131, 214.563966, 412.108461}}},
+                    {1045.405040, 2487.509668},
+                    {1408.011770, 3881.871037}};
+const ModeCase kB2b{"B2b",
+                    b2,
+                    1,
+                    {0.2, 3e-4, 5e-4},
+                    {{{4.999572, 52.877444, 131.638910, 237.591078},
+                      {4.999550, 52.872937, 131.616996, 237.504005},
+                      {4.998634, 52.820162, 131.400292, 236.505614}}},
+                    {43.300628, 1601.317571},
+                    {574.022862, 2659.263460}};
+const ModeCase kB2c{"B2c",
+                    b2,
+                    1,
+                    {0.2865, 3e-4, 5e-4},
+                    {{{4.241009, 52.596962, 131.633576, 237.081666},
+                      {4.240996, 52.592532, 131.611685, 236.995338},
+                      {4.240225, 52.539820, 131.395206, 235.998476}}},
+                    {43.300628, 1601.317571},
+                    {489.830891, 2626.380536}};
 
 INSTANTIATE_TEST_SUITE_P(Benchmark, TaperedModes, testing::Values(kB1a, kB1b, kB2a, kB2b, kB2c),
                          [](const auto& info) { return std::string(info.param.name); });
@@ -105,12 +146,13 @@ TEST(CentreOffsets, SameBeamOnAnotherLine) {
   // what the mesh does, 1e-5 of them with 20 elements.
   const std::array d = {0.006, -0.004};
   const auto modes_with = [&](bool moved) {
-    BeamSystem b(mesh::straight(mesh::graded(1, 20), moved ? Vec3(0, d[0], d[1]) : Vec3(0, 0, 0), Mat3::Identity()), [&](double x) {
-      fem::Section s = b2(Theory::timoshenko)(x);
-      const std::array<double, 2> back = {-d[0], -d[1]};
-      if (moved) s.centres = {back, back, back};
-      return s;
-    });
+    BeamSystem b(mesh::straight(mesh::graded(1, 20), moved ? Vec3(0, d[0], d[1]) : Vec3(0, 0, 0), Mat3::Identity()),
+                 [&](double x) {
+                   fem::Section s = b2(Theory::timoshenko)(x);
+                   const std::array<double, 2> back = {-d[0], -d[1]};
+                   if (moved) s.centres = {back, back, back};
+                   return s;
+                 });
     b.clamp_first();
     return solvers::modes(b.system, b.rest, 8).omega;
   };

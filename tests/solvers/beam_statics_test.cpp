@@ -1,7 +1,7 @@
 // benchmarks.md 1.1 (static compliance) and 1.4 to 1.7: beams bent far.
 #include <gtest/gtest.h>
 
-#include "solvers/statics.hpp"
+#include "hosel/solvers/statics.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {
@@ -21,8 +21,11 @@ TEST(StaticCompliance, TaperedTubeB2) {
     BeamSystem b(mesh::straight(mesh::graded(1, 20), Vec3::Zero(), Mat3::Identity()), b2(Theory::timoshenko));
     b.clamp_first();
     b.load(b.tip(), [w](double) { return w; });
-    const auto r = solve_static(b.system, b.rest, {.newton = {.residual_relative = 1e-8, .residual_absolute = 1e-12,
-                                                              .increment_vector = 1e-9, .increment_rotation = 1e-9}});
+    const auto r = solve_static(b.system, b.rest,
+                                {.newton = {.residual_relative = 1e-8,
+                                            .residual_absolute = 1e-12,
+                                            .increment_vector = 1e-9,
+                                            .increment_rotation = 1e-9}});
     return std::pair(b.tip_displacement(r.state), b.tip_rotation(r.state));
   };
   const double F = 1e-3;
@@ -48,12 +51,16 @@ TEST(StaticCompliance, ForceOffTheCentresBendsAndTwists) {
     BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()), constant(s));
     b.clamp_first();
     b.load(b.tip(), [force](double) { return fem::Wrench{.force = force}; });
-    const auto r = solve_static(b.system, b.rest, {.newton = {.residual_relative = 1e-8, .residual_absolute = 1e-12,
-                                                              .increment_vector = 1e-9, .increment_rotation = 1e-9}});
+    const auto r = solve_static(b.system, b.rest,
+                                {.newton = {.residual_relative = 1e-8,
+                                            .residual_absolute = 1e-12,
+                                            .increment_vector = 1e-9,
+                                            .increment_rotation = 1e-9}});
     return std::pair(b.tip_displacement(r.state), b.tip_rotation(r.state));
   };
   const double bend = F * e / (2 * plain.bending_z), twist = F * e / plain.torsion;
-  // The force on the line is at -e from centres at +e. About z: M = e P, so the tip goes along +y; about y likewise, +z.
+  // The force on the line is at -e from centres at +e. About z: M = e P, so the tip goes along +y; about y likewise,
+  // +z.
   EXPECT_NEAR(tip({.elastic = {e, 0}}, {F, 0, 0}).first.y(), bend, 1e-4 * bend);
   EXPECT_NEAR(tip({.elastic = {0, e}}, {F, 0, 0}).first.z(), bend, 1e-4 * bend);
   // r x F about the shear centre: (-e along y) x (F along z) turns by -F e about x.
@@ -65,10 +72,11 @@ TEST(Elastica, TipForce) {
   struct Row {
     double load, theta, w, u;
   };
-  for (const Row& row : {Row{0.2, 0.0996361630, 0.0663644821, 0.0026465483}, Row{1, 0.4613519497, 0.3017207738, 0.0564332363},
-                         Row{2, 0.7817498316, 0.4934574804, 0.1606417208}, Row{3, 0.9860169467, 0.6032534411, 0.2544201846},
-                         Row{5, 1.2153681176, 0.7137915236, 0.3876283607}, Row{7, 1.3349598575, 0.7673690997, 0.4729274284},
-                         Row{10, 1.4302855388, 0.8106090249, 0.5549955978}}) {
+  for (const Row& row :
+       {Row{0.2, 0.0996361630, 0.0663644821, 0.0026465483}, Row{1, 0.4613519497, 0.3017207738, 0.0564332363},
+        Row{2, 0.7817498316, 0.4934574804, 0.1606417208}, Row{3, 0.9860169467, 0.6032534411, 0.2544201846},
+        Row{5, 1.2153681176, 0.7137915236, 0.3876283607}, Row{7, 1.3349598575, 0.7673690997, 0.4729274284},
+        Row{10, 1.4302855388, 0.8106090249, 0.5549955978}}) {
     BeamSystem b(mesh::straight(mesh::graded(1, 10), Vec3::Zero(), Mat3::Identity()),
                  constant(uniform(1e6, 1e6, 1, 1, 1, Vec3::Ones())));  // EI/(EA L^2) = 1e-6: worth 1e-5
     b.clamp_first();
@@ -95,7 +103,8 @@ TEST(Elastica, TaperedTubeAndOffsetLoad) {
   struct Row {
     double F, ux, uz;
   };
-  for (const Row& row : {Row{10, -0.001337977, 0.045569755}, Row{50, -0.030420692, 0.215466564}, Row{200, -0.228874220, 0.557320901}}) {
+  for (const Row& row :
+       {Row{10, -0.001337977, 0.045569755}, Row{50, -0.030420692, 0.215466564}, Row{200, -0.228874220, 0.557320901}}) {
     BeamSystem b(mesh::straight(mesh::graded(1, 10), Vec3::Zero(), Mat3::Identity()), b2(Theory::timoshenko));
     b.clamp_first();
     b.load(b.tip(), [&](double) { return fem::Wrench{.force = {0, 0, row.F}}; });
@@ -118,7 +127,8 @@ class OffsetForce final : public fem::Term {
   }
   void tangent(const fem::State& s, const fem::Weights& w, fem::TangentSink& sink) const override {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(6, 6);
-    K.bottomRightCorner<3, 3>() = -w.stiffness * skew(arm_) * skew(fem::rotation(s, node_.rotation).conjugate() * force_);
+    K.bottomRightCorner<3, 3>() = -w.stiffness * skew(arm_) *
+                                  skew(fem::rotation(s, node_.rotation).conjugate() * force_);
     sink.add(equations_, equations_, K);
   }
   fem::Energies energies(const fem::State&) const override { return {}; }
@@ -152,21 +162,32 @@ struct Bend {
 
 Vec3 bend45(const Bend& c, int elements, int load_steps, const Mat3& turn) {
   BeamSystem b(mesh::arc(mesh::graded(100 * kPi / 4, elements), 100, Vec3::Zero(), turn),
-               constant({.axial = 1e7, .shear_y = 5e6, .shear_z = 5e6, .torsion = c.GJ, .bending_y = 1e7 / 12,
-                         .bending_z = 1e7 / 12, .mass = 1, .rotary = Vec3::Ones()}));
-  b.system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), fem::at_rest(Vec3::Zero())));
+               constant({.axial = 1e7,
+                         .shear_y = 5e6,
+                         .shear_z = 5e6,
+                         .torsion = c.GJ,
+                         .bending_y = 1e7 / 12,
+                         .bending_z = 1e7 / 12,
+                         .mass = 1,
+                         .rotary = Vec3::Ones()}));
+  b.system.prescribed.push_back(
+      std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), fem::at_rest(Vec3::Zero())));
   b.load(b.tip(), [&](double) { return fem::Wrench{.force = turn * Vec3(0, 0, c.P)}; });
   const auto r = solve_static(b.system, b.rest,
-                              {.newton = {.residual_relative = 1e-12, .residual_absolute = 1e-7, .increment_vector = 1e-7,
+                              {.newton = {.residual_relative = 1e-12,
+                                          .residual_absolute = 1e-7,
+                                          .increment_vector = 1e-7,
                                           .increment_rotation = 1e-9},
                                .load_steps = load_steps});
   return turn.transpose() * b.tip_displacement(r.state);
 }
 
 TEST(Bend45, TipForceOutOfPlane) {
-  for (const Bend& c : {Bend{300, 1e7 / 12, {-11.93156, -7.04454, 40.19189}}, Bend{450, 1e7 / 12, {-18.47212, -10.78114, 48.50293}},
-                        Bend{600, 1e7 / 12, {-23.56024, -13.60452, 53.47486}}, Bend{3000, 1e7 / 12, {-47.68637, -25.05645, 68.53909}},
-                        Bend{300, 7.02885e5, {-12.17475, -7.17671, 40.48026}}, Bend{600, 7.02885e5, {-23.81875, -13.73154, 53.60737}}}) {
+  for (const Bend& c :
+       {Bend{300, 1e7 / 12, {-11.93156, -7.04454, 40.19189}}, Bend{450, 1e7 / 12, {-18.47212, -10.78114, 48.50293}},
+        Bend{600, 1e7 / 12, {-23.56024, -13.60452, 53.47486}}, Bend{3000, 1e7 / 12, {-47.68637, -25.05645, 68.53909}},
+        Bend{300, 7.02885e5, {-12.17475, -7.17671, 40.48026}},
+        Bend{600, 7.02885e5, {-23.81875, -13.73154, 53.60737}}}) {
     // The curve bends towards +y, the benchmark's radial displacement is outwards positive: same sign here.
     const Vec3 u = bend45(c, 10, 6, Mat3::Identity());
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(u[i] / c.u[i], 1, 5e-4) << "P " << c.P << " u" << i;
@@ -188,18 +209,19 @@ TEST(RollUp, EndMomentMakesACircle) {
                    constant(uniform(1e4, 1e4, 2, 2, 1, Vec3::Ones())));
       b.clamp_first();
       b.load(b.tip(), [&](double) { return fem::Wrench{.moment = {0, 0, 2 * angle}}; });
-      const auto r = solve_static(b.system, b.rest, {.newton = {.residual_relative = 1e-13, .residual_absolute = 1e-11,
-                                                                .increment_vector = 1e-11, .increment_rotation = 1e-11},
-                                                     .load_steps = 12});
+      const auto r = solve_static(b.system, b.rest,
+                                  {.newton = {.residual_relative = 1e-13,
+                                              .residual_absolute = 1e-11,
+                                              .increment_vector = 1e-11,
+                                              .increment_rotation = 1e-11},
+                                   .load_steps = 12});
       const Vec3 tip = b.tip_displacement(r.state) + Vec3(1, 0, 0);
       const Vec3 exact(std::sin(angle) / angle, (1 - std::cos(angle)) / angle, 0);
       const Eigen::Quaterniond turned = fem::rotation(r.state, b.tip().rotation);
       EXPECT_LT(turned.angularDistance(fem::rotation_exp(Vec3(0, 0, angle))), 1e-9) << elements;
       // The full circle closes to round-off with any mesh; parts of it to the order of the quadrature.
-      if (angle > 6)
-        EXPECT_LT((tip - exact).norm(), 1e-10) << elements;
-      else
-        EXPECT_LT((tip - exact).norm(), 0.05 * std::pow(angle / elements, 4)) << elements;
+      if (angle > 6) EXPECT_LT((tip - exact).norm(), 1e-10) << elements;
+      else EXPECT_LT((tip - exact).norm(), 0.05 * std::pow(angle / elements, 4)) << elements;
     }
   }
 }
@@ -209,19 +231,31 @@ struct Princeton {
 };
 
 TEST(PrincetonBeam, TwentyOneLoadCases) {
-  for (const Princeton& c :
-       {Princeton{4.448, 0, -0.03391, 5.35950, 0, 0}, {4.448, 30, -1.91679, 4.75103, 39.94938, -0.38223},
-        {4.448, 45, -3.74688, 3.96513, 56.05516, -0.43596}, {4.448, 60, -5.52706, 2.86218, 68.12908, -0.37303},
-        {4.448, 90, -7.25994, 0, 78.08182, 0}, {8.896, 0, -0.13558, 10.71531, 0, 0},
-        {8.896, 30, -7.66081, 10.14716, 79.45603, -1.51145}, {8.896, 45, -14.38931, 8.88879, 109.04151, -1.66503},
-        {8.896, 60, -20.47316, 6.65431, 129.92344, -1.38086}, {8.896, 90, -26.02421, 0, 146.25990, 0},
-        {13.345, 0, -0.30481, 16.06500, 0, 0}, {13.345, 30, -17.16340, 16.77786, 117.90220, -3.32919},
-        {13.345, 45, -30.36109, 15.34216, 156.58774, -3.48469}, {13.345, 60, -41.20635, 11.71634, 181.92109, -2.77660},
-        {13.345, 90, -50.40564, 0, 200.69281, 0}}) {
+  for (const Princeton& c : {Princeton{4.448, 0, -0.03391, 5.35950, 0, 0},
+                             {4.448, 30, -1.91679, 4.75103, 39.94938, -0.38223},
+                             {4.448, 45, -3.74688, 3.96513, 56.05516, -0.43596},
+                             {4.448, 60, -5.52706, 2.86218, 68.12908, -0.37303},
+                             {4.448, 90, -7.25994, 0, 78.08182, 0},
+                             {8.896, 0, -0.13558, 10.71531, 0, 0},
+                             {8.896, 30, -7.66081, 10.14716, 79.45603, -1.51145},
+                             {8.896, 45, -14.38931, 8.88879, 109.04151, -1.66503},
+                             {8.896, 60, -20.47316, 6.65431, 129.92344, -1.38086},
+                             {8.896, 90, -26.02421, 0, 146.25990, 0},
+                             {13.345, 0, -0.30481, 16.06500, 0, 0},
+                             {13.345, 30, -17.16340, 16.77786, 117.90220, -3.32919},
+                             {13.345, 45, -30.36109, 15.34216, 156.58774, -3.48469},
+                             {13.345, 60, -41.20635, 11.71634, 181.92109, -2.77660},
+                             {13.345, 90, -50.40564, 0, 200.69281, 0}}) {
     // y along H, z along T; bending by a force along H is about z.
     BeamSystem b(mesh::straight(mesh::graded(0.508, 10), Vec3::Zero(), Mat3::Identity()),
-                 constant({.axial = 2.84191e6, .shear_y = 9.22099e5, .shear_z = 9.22099e5, .torsion = 3.10334,
-                           .bending_y = 2.42873, .bending_z = 36.2794, .mass = 1, .rotary = Vec3::Ones()}));
+                 constant({.axial = 2.84191e6,
+                           .shear_y = 9.22099e5,
+                           .shear_z = 9.22099e5,
+                           .torsion = 3.10334,
+                           .bending_y = 2.42873,
+                           .bending_z = 36.2794,
+                           .mass = 1,
+                           .rotary = Vec3::Ones()}));
     b.clamp_first();
     const double th = radians(c.theta);
     b.load(b.tip(), [&](double) { return fem::Wrench{.force = c.P * Vec3(0, std::cos(th), std::sin(th))}; });

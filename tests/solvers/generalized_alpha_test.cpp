@@ -1,13 +1,13 @@
 // The time integrator by itself: order, energy ledger, restart, failure.
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "solvers/errors.hpp"
-#include "solvers/statics.hpp"
+#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/statics.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -29,8 +29,7 @@ class ElasticPendulum final : public fem::Term {
   void tangent(const fem::State& s, const fem::Weights& w, fem::TangentSink& sink) const override {
     const Eigen::Vector2d x = s.q;
     const double l = x.norm();
-    const Eigen::Matrix2d K =
-        k_ * ((1 - 1 / l) * Eigen::Matrix2d::Identity() + x * x.transpose() / (l * l * l));
+    const Eigen::Matrix2d K = k_ * ((1 - 1 / l) * Eigen::Matrix2d::Identity() + x * x.transpose() / (l * l * l));
     sink.add(kPlane, kPlane, w.stiffness * K + w.mass * Eigen::Matrix2d::Identity());
   }
   fem::Energies energies(const fem::State& s) const override {
@@ -57,7 +56,10 @@ fem::State start(const fem::System& system) {
 
 GeneralizedAlphaOptions fixed(double rho, double h) {
   return {.rho_inf = rho,
-          .newton = {.residual_relative = 1e-11, .residual_absolute = 1e-11, .increment_vector = 1e-10, .increment_rotation = 1e-10},
+          .newton = {.residual_relative = 1e-11,
+                     .residual_absolute = 1e-11,
+                     .increment_vector = 1e-10,
+                     .increment_rotation = 1e-10},
           .step_max = h,
           .step_min = h / 1024,
           .error_vector = kInf,
@@ -169,7 +171,8 @@ TEST(Statics, NewtonAndKinsolHangThePendulum) {
   fem::System system = pendulum();
   fem::State from = system.layout.rest();
   from.q << 0.3, -1.0;
-  const NewtonOptions newton{.residual_relative = 1e-12, .residual_absolute = 1e-10, .increment_vector = 1e-9, .increment_rotation = 1e-9};
+  const NewtonOptions newton{
+      .residual_relative = 1e-12, .residual_absolute = 1e-10, .increment_vector = 1e-9, .increment_rotation = 1e-9};
   const StaticsReport a = solve_static(system, from, {.newton = newton, .load_steps = 2});
   const StaticsReport b = solve_static_kinsol(system, from, 1e-10);
   const Eigen::Vector2d exact(0, -1 - 9.81 / 1000);

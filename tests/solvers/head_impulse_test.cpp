@@ -3,15 +3,15 @@
 // motion is compared with the modal solution (linear, exact).
 #include <gtest/gtest.h>
 
-#include "solvers/generalized_alpha.hpp"
+#include "hosel/solvers/generalized_alpha.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {
 namespace {
 
 struct Blow {
-  double dy, vz;           // m, m/s
-  Vec3 attached, free;     // rad/s
+  double dy, vz;        // m, m/s
+  Vec3 attached, free;  // rad/s
 };
 
 class HeadImpulse : public testing::TestWithParam<Blow> {};
@@ -33,8 +33,12 @@ TEST_P(HeadImpulse, AttachedMinusFreeToOnePercent) {
     return fem::Wrench{f, arm.cross(f)};
   });
   solvers::GeneralizedAlpha scheme(b.system,
-                                   {.rho_inf = 0.9, .newton = tight(), .step_max = T / 100, .step_min = T / 1e4,
-                                    .error_vector = kInf, .error_rotation = kInf},
+                                   {.rho_inf = 0.9,
+                                    .newton = tight(),
+                                    .step_max = T / 100,
+                                    .step_min = T / 1e4,
+                                    .error_vector = kInf,
+                                    .error_rotation = kInf},
                                    b.rest);
   while (scheme.time() < T * (1 - 1e-12)) scheme.advance(T);
 
@@ -52,7 +56,8 @@ TEST_P(HeadImpulse, AttachedMinusFreeToOnePercent) {
 INSTANTIATE_TEST_SUITE_P(Benchmark, HeadImpulse,
                          testing::Values(Blow{0, -13.95695, {-9.037, 27.937, 4.050}, {0, 0, 0}},
                                          Blow{0.02, -14.13768, {-131.552, 25.723, 9.383}, {-127.113, 6.698, 13.496}},
-                                         Blow{-0.02, -13.77621, {113.479, 30.151, -1.283}, {127.113, -6.698, -13.496}}));
+                                         Blow{
+                                             -0.02, -13.77621, {113.479, 30.151, -1.283}, {127.113, -6.698, -13.496}}));
 
 }  // namespace
 }  // namespace hosel::test

@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "fem/beam.hpp"
-#include "fem/rigid_body.hpp"
-#include "fem/supports.hpp"
-#include "golf/units.hpp"
-#include "solvers/newton.hpp"
+#include "hosel/fem/beam.hpp"
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/fem/supports.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/solvers/newton.hpp"
 
 namespace hosel::test {
 
@@ -67,7 +67,14 @@ inline fem::SectionLaw b2(Theory theory) {
 }
 
 inline fem::Section uniform(double EA, double GA, double GJ, double EI, double mass, const Vec3& rotary) {
-  return {.axial = EA, .shear_y = GA, .shear_z = GA, .torsion = GJ, .bending_y = EI, .bending_z = EI, .mass = mass, .rotary = rotary};
+  return {.axial = EA,
+          .shear_y = GA,
+          .shear_z = GA,
+          .torsion = GJ,
+          .bending_y = EI,
+          .bending_z = EI,
+          .mass = mass,
+          .rotary = rotary};
 }
 
 /// A beam in a system of its own, with its reference placement.

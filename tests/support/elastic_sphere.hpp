@@ -3,22 +3,22 @@
 
 #include <cmath>
 
-#include "golf/units.hpp"
-#include "models/fe_impact.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/fe_impact.hpp"
 
 namespace hosel::test {
 
 /// After contact, in the wall's frame; tangential figures along the incoming slip.
 struct Bounce {
-  double v_n = 0, v_t = 0;      ///< of the centre [m/s]
-  double rim = 0;               ///< radius times spin, rolling along the slip positive [m/s]
-  double contact_time = 0;      ///< [s]
-  double peak_force = 0;        ///< normal [N]
-  double approach = 0;          ///< largest, of the centre [m]
-  double pull = 0, push = 0;    ///< extremes of the tangential force: against the slip, then along it [N]
-  double friction_ratio = 0;    ///< largest resultant tangential over normal force
-  double impulse_ratio = 0;     ///< of the tangential and the normal impulse
-  double closure = 0;           ///< of the energy ledger, over the initial energy
+  double v_n = 0, v_t = 0;    ///< of the centre [m/s]
+  double rim = 0;             ///< radius times spin, rolling along the slip positive [m/s]
+  double contact_time = 0;    ///< [s]
+  double peak_force = 0;      ///< normal [N]
+  double approach = 0;        ///< largest, of the centre [m]
+  double pull = 0, push = 0;  ///< extremes of the tangential force: against the slip, then along it [N]
+  double friction_ratio = 0;  ///< largest resultant tangential over normal force
+  double impulse_ratio = 0;   ///< of the tangential and the normal impulse
+  double closure = 0;         ///< of the energy ledger, over the initial energy
 };
 
 /// `v_n` and `v_t` are the speeds of the ball's centre towards the wall and along it [m/s].

@@ -49,7 +49,8 @@ inline double squeezed_over_hertz(double nu, double approach) {
     Eigen::Matrix2d moved, pulled;  // columns: the two solutions; rows: radial, meridional
     const auto solution = [&](int column, double a, double b, double power) {
       moved.col(column) << a, b;
-      pulled.col(column) << lambda * ((power + 2) * a - L * (L + 1) * b) + 2 * mu * power * a, mu * ((power - 1) * b + a);
+      pulled.col(column) << lambda * ((power + 2) * a - L * (L + 1) * b) + 2 * mu * power * a,
+          mu * ((power - 1) * b + a);
     };
     solution(0, L, 1, L - 1);
     solution(1, (L + 1) * (axial * L - mu * (L + 2)) / L, (axial * (L + 3) - mu * (L + 1)) / L, L + 1);
@@ -62,8 +63,7 @@ inline double squeezed_over_hertz(double nu, double approach) {
   }
 
   // Mean over each ring: the sphere's axial place less the plate's equals what the pressure must push back.
-  const Eigen::VectorXd overlap =
-      0.5 * over_rings(x.cwiseProduct(x)) - (1 - approach) * area;
+  const Eigen::VectorXd overlap = 0.5 * over_rings(x.cwiseProduct(x)) - (1 - approach) * area;
   std::vector<Eigen::Index> active;
   for (Eigen::Index k = 0; k < rings; ++k)
     if (overlap[k] > 0) active.push_back(k);

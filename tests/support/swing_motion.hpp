@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "golf/shaft_library.hpp"
-#include "golf/units.hpp"
-#include "models/grip_motion.hpp"
-#include "models/swing.hpp"
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/grip_motion.hpp"
+#include "hosel/models/swing.hpp"
 
 namespace hosel::test {
 
@@ -31,7 +31,8 @@ inline SwingAngles swing_angles(double rate) {
     const double wrist = -20 * (std::tanh((c - cocked) / 0.15) + 1) * (c - cocked + 0.15) - 0.2 * (y[3] - y[2]);
     Eigen::Matrix2d M;
     M << I1 + m * a * a, mb * a * std::cos(c), mb * a * std::cos(c), I2;
-    const Eigen::Vector2d f(torque - wrist + mb * a * std::sin(c) * y[3] * y[3], wrist - mb * a * std::sin(c) * y[2] * y[2]);
+    const Eigen::Vector2d f(torque - wrist + mb * a * std::sin(c) * y[3] * y[3],
+                            wrist - mb * a * std::sin(c) * y[2] * y[2]);
     const Eigen::Vector2d acc = M.inverse() * f;
     return V(y[2], y[3], acc[0], acc[1]);
   };
@@ -39,8 +40,8 @@ inline SwingAngles swing_angles(double rate) {
   const double h = 1e-4;
   std::vector<V> path{V(1.9, 1.9 + cocked - 0.15, 0, 0)};
   for (double t = 0; path.back()[1] - path.back()[0] > 0.05 && t < 1; t += h) {
-    const V y = path.back(), k1 = slope(t, y), k2 = slope(t + h / 2, y + h / 2 * k1), k3 = slope(t + h / 2, y + h / 2 * k2),
-            k4 = slope(t + h, y + h * k3);
+    const V y = path.back(), k1 = slope(t, y), k2 = slope(t + h / 2, y + h / 2 * k1),
+            k3 = slope(t + h / 2, y + h / 2 * k2), k4 = slope(t + h, y + h * k3);
     path.push_back(y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4));
   }
   const double down = h * static_cast<double>(path.size() - 1);
@@ -61,7 +62,8 @@ inline SwingAngles swing_angles(double rate) {
       // Cubic between the integrator's points.
       const V &p = path[k], &q = path[k + 1];
       for (int c = 0; c < 2; ++c)
-        x[c] = p[c] * (1 + 2 * w) * (1 - w) * (1 - w) + q[c] * w * w * (3 - 2 * w) + h * w * (1 - w) * ((1 - w) * p[c + 2] - w * q[c + 2]) - end[c];
+        x[c] = p[c] * (1 + 2 * w) * (1 - w) * (1 - w) + q[c] * w * w * (3 - 2 * w) +
+               h * w * (1 - w) * ((1 - w) * p[c + 2] - w * q[c + 2]) - end[c];
     }
     out.times.push_back(t);
     out.arms.push_back(x[0]);

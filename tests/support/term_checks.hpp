@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <random>
 
-#include "fem/term.hpp"
+#include "hosel/fem/term.hpp"
 
 namespace hosel::test {
 
@@ -59,7 +59,10 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
       const Eigen::VectorXd difference = (at(h0) - at(-h0)) / (2 * h0);
       const Eigen::VectorXd product = sink.matrix * d;
       EXPECT_LE((difference - product).norm(), tolerance * (product.norm() + difference.norm()) + 1e-30)
-          << "derivative by " << (what == 0 ? "q" : what == 1 ? "v" : "a");
+          << "derivative by "
+          << (what == 0   ? "q"
+              : what == 1 ? "v"
+                          : "a");
     }
   }
 }

@@ -1,7 +1,7 @@
 /// The effects' forms, one function per file of this folder.
 #pragma once
 
-#include "loop/history/rig.hpp"
+#include "hosel/loop/history/rig.hpp"
 
 namespace hosel::loop::history_forms {
 

@@ -1,5 +1,5 @@
 // The head's centre of gravity is not where it is declared.
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
@@ -14,7 +14,8 @@ std::vector<HistoryForm> cg_shift(const HistorySetting& setting) {
     };
     return f;
   };
-  return {along({1}, "towards the heel", 0), along({2}, "up", 0), along({0}, "out of the face", 0), along({1, 2}, "in the face plane", 2)};
+  return {along({1}, "towards the heel", 0), along({2}, "up", 0), along({0}, "out of the face", 0),
+          along({1, 2}, "in the face plane", 2)};
 }
 
 }  // namespace hosel::loop::history_forms

@@ -1,17 +1,23 @@
 // The clamp (or the hands) yields.
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
 std::vector<HistoryForm> clamp_compliance(const HistorySetting& setting) {
   const double unit = setting.compliance;
   const auto form = [&](const char* what, double rarity, Vec3 axes) {
-    HistoryForm f{{.effect = "clamp-compliance", .what = what, .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}}, .rarity = rarity,
-                   .starts = {{0.05 * unit}, {0.3 * unit}}}, {}};
+    HistoryForm f{{.effect = "clamp-compliance",
+                   .what = what,
+                   .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
+                   .rarity = rarity,
+                   .starts = {{0.05 * unit}, {0.3 * unit}}},
+                  {}};
     f.apply = [axes](std::span<const double> p, Rig& r) { r.club.clamp += p[0] * axes; };
     return f;
   };
-  std::vector<HistoryForm> forms = {form("alike in both planes", 0, Vec3(1, 1, 0)), form("in the lead plane", 2, Vec3::UnitY()), form("in the droop plane", 2, Vec3::UnitX())};
+  std::vector<HistoryForm> forms = {form("alike in both planes", 0, Vec3(1, 1, 0)),
+                                    form("in the lead plane", 2, Vec3::UnitY()),
+                                    form("in the droop plane", 2, Vec3::UnitX())};
   if (setting.head) forms.push_back(form("about the shaft", 2, Vec3::UnitZ()));
   return forms;
 }

@@ -1,5 +1,5 @@
 // The joint between shaft tip and head yields.
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
@@ -7,12 +7,17 @@ std::vector<HistoryForm> hosel_compliance(const HistorySetting& setting) {
   if (!setting.head) return {};
   const double unit = setting.compliance;
   const auto form = [&](const char* what, double rarity, Vec3 axes) {
-    HistoryForm f{{.effect = "hosel-compliance", .what = what, .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}}, .rarity = rarity,
-                   .starts = {{0.05 * unit}, {0.3 * unit}}}, {}};
+    HistoryForm f{{.effect = "hosel-compliance",
+                   .what = what,
+                   .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
+                   .rarity = rarity,
+                   .starts = {{0.05 * unit}, {0.3 * unit}}},
+                  {}};
     f.apply = [axes](std::span<const double> p, Rig& r) { r.club.hosel += p[0] * axes; };
     return f;
   };
-  return {form("alike about all axes", 0, Vec3::Ones()), form("across the shaft", 0, Vec3(1, 1, 0)), form("about the shaft", 2, Vec3::UnitZ())};
+  return {form("alike about all axes", 0, Vec3::Ones()), form("across the shaft", 0, Vec3(1, 1, 0)),
+          form("about the shaft", 2, Vec3::UnitZ())};
 }
 
 }  // namespace hosel::loop::history_forms

@@ -1,7 +1,7 @@
 // A channel shows a multiple of what is.
 #include <fmt/format.h>
 
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
@@ -18,7 +18,8 @@ std::vector<HistoryForm> sensor_gain(const HistorySetting& setting) {
   }
   if (setting.driven || n > 1)
     for (std::size_t c = 0; c < n; ++c) {
-      HistoryForm one{{.effect = "sensor-gain", .what = fmt::format("of {}", setting.channels[c].name), .parameters = {gain}}, {}};
+      HistoryForm one{
+          {.effect = "sensor-gain", .what = fmt::format("of {}", setting.channels[c].name), .parameters = {gain}}, {}};
       one.apply = [c](std::span<const double> p, Rig& r) { r.gain[c] += p[0]; };
       forms.push_back(one);
     }

@@ -1,7 +1,7 @@
 // A channel's zero is not zero. Where the start is unknown so are the zeros, and the fit has them anyway.
 #include <fmt/format.h>
 
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
@@ -12,8 +12,11 @@ std::vector<HistoryForm> sensor_offset(const HistorySetting& setting) {
     const HistoryChannel& channel = setting.channels[c];
     // Plausible: a hundred noise units; the scale is the noise, since channels have their own units.
     const double unit = channel.noise * channel.si;
-    HistoryForm one{{.effect = "sensor-offset", .what = fmt::format("of {}", channel.name),
-                     .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si, -100 * unit, 100 * unit, 0.1 * unit}}}, {}};
+    HistoryForm one{{.effect = "sensor-offset",
+                     .what = fmt::format("of {}", channel.name),
+                     .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si,
+                                     -100 * unit, 100 * unit, 0.1 * unit}}},
+                    {}};
     one.apply = [c](std::span<const double> p, Rig& r) { r.offset[c] += p[0]; };
     forms.push_back(one);
   }

@@ -1,7 +1,7 @@
 // Vibrations die away faster or slower than declared. Parameters are damping ratios at the first mode's frequency.
 #include <algorithm>
 
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
@@ -10,13 +10,17 @@ std::vector<HistoryForm> shaft_damping(const HistorySetting& setting) {
   // What is taken away cannot exceed what is declared.
   const Parameter ratio{"damping_ratio", "1", 1, -0.999 * setting.ratio, 0.3, 1e-3};
   const auto form = [&](const char* what, double rarity, auto&& apply) {
-    return HistoryForm{{.effect = "shaft-damping", .what = what, .parameters = {ratio}, .rarity = rarity, .starts = {{0.01}}}, apply};
+    return HistoryForm{
+        {.effect = "shaft-damping", .what = what, .parameters = {ratio}, .rarity = rarity, .starts = {{0.01}}}, apply};
   };
   std::vector<HistoryForm> forms = {
-      form("in proportion to the stiffness", 0, [first](std::span<const double> p, Rig& r) { r.club.damping_time += 2 * p[0] / first; })};
+      form("in proportion to the stiffness", 0,
+           [first](std::span<const double> p, Rig& r) { r.club.damping_time += 2 * p[0] / first; })};
   if (setting.swing) return forms;
-  forms.push_back(form("the same ratio for every mode", 0, [](std::span<const double> p, Rig& r) { r.club.damping_ratio += p[0]; }));
-  forms.push_back(form("in proportion to the mass", 0, [first](std::span<const double> p, Rig& r) { r.club.mass_damping += 2 * p[0] * first; }));
+  forms.push_back(form("the same ratio for every mode", 0,
+                       [](std::span<const double> p, Rig& r) { r.club.damping_ratio += p[0]; }));
+  forms.push_back(form("in proportion to the mass", 0,
+                       [first](std::span<const double> p, Rig& r) { r.club.mass_damping += 2 * p[0] * first; }));
   return forms;
 }
 

@@ -1,16 +1,22 @@
 // The shaft is stiffer or softer than its table.
-#include "loop/history/effects/all.hpp"
+#include "hosel/loop/history/effects/all.hpp"
 
 namespace hosel::loop::history_forms {
 
 std::vector<HistoryForm> shaft_stiffness(const HistorySetting& setting) {
   // Logarithm of the factor: zero is the table, and no factor can turn negative.
   const auto form = [](const char* what, const char* name, auto&& apply) {
-    return HistoryForm{{.effect = "shaft-stiffness", .what = what, .parameters = {{name, "1", 1, -1.2, 1.2, 0.02}}, .starts = {{-0.4}, {-0.2}, {0.2}, {0.4}}}, apply};
+    return HistoryForm{{.effect = "shaft-stiffness",
+                        .what = what,
+                        .parameters = {{name, "1", 1, -1.2, 1.2, 0.02}},
+                        .starts = {{-0.4}, {-0.2}, {0.2}, {0.4}}},
+                       apply};
   };
-  std::vector<HistoryForm> forms = {form("factor on bending", "log_factor_bending", [](std::span<const double> p, Rig& r) { r.club.bending += p[0]; })};
+  std::vector<HistoryForm> forms = {form("factor on bending", "log_factor_bending",
+                                         [](std::span<const double> p, Rig& r) { r.club.bending += p[0]; })};
   if (setting.head && !setting.swing) {
-    forms.push_back(form("factor on torsion", "log_factor_torsion", [](std::span<const double> p, Rig& r) { r.club.torsion += p[0]; }));
+    forms.push_back(form("factor on torsion", "log_factor_torsion",
+                         [](std::span<const double> p, Rig& r) { r.club.torsion += p[0]; }));
     forms.push_back(form("one factor on bending and torsion", "log_factor", [](std::span<const double> p, Rig& r) {
       r.club.bending += p[0];
       r.club.torsion += p[0];
