@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "build_info.hpp"
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/reader.hpp"

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include "build_info.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -79,10 +80,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 
 fs::path data_directory() {
   if (const char* named = std::getenv("HOSEL_DATA")) return named;
-#ifdef HOSEL_SOURCE_DIR
   if (const fs::path beside = fs::path(HOSEL_SOURCE_DIR) / ".." / "shared" / "data"; fs::exists(beside))
     return beside.lexically_normal();
-#endif
   return fs::path("..") / "shared" / "data";
 }
 

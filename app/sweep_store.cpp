@@ -14,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "build_info.hpp"
 #include "hosel/app/reader.hpp"
 
 namespace hosel::app {

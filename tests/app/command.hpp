@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include "build_info.hpp"
 
 namespace hosel::test {
 

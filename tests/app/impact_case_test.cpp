@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "build_info.hpp"
 #include "command.hpp"
 
 namespace hosel::test {
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 
 /// driver-toe with the full club alone on a coarse mesh: all four bodies in a few seconds.
 std::string coarse_full_club() {
-  return "run " HOSEL_SOURCE
+  return "run " HOSEL_SOURCE_DIR
          "/cases/driver-toe --quiet --set 'models=[\"fe-full-club\"]' --set mesh.sector=2 "
          "--set mesh.rings=2 --set mesh.harmonics=2 --set mesh.antisymmetric=2 --set time.steps_per_contact=40 --set "
          "output.steps_per_frame=2 --out ";

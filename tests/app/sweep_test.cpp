@@ -13,6 +13,7 @@
 #include <sstream>
 #include <thread>
 
+#include "build_info.hpp"
 #include "command.hpp"
 
 extern char** environ;

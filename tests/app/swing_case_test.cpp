@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "build_info.hpp"
 #include "tests/app/command.hpp"
 
 namespace hosel::test {
@@ -136,7 +137,7 @@ TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
 TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
   const auto dir = fresh_directory("swing_skipped");
   for (const std::string name : {"club-6dof", "swing-markers"}) {
-    const Outcome o = command("run " + std::string(HOSEL_SOURCE) + "/cases/" + name + " --set " +
+    const Outcome o = command("run " + std::string(HOSEL_SOURCE_DIR) + "/cases/" + name + " --set " +
                               (name == "club-6dof" ? "motion" : "markers") + ".file=not_there.csv --out " +
                               (dir / name).string());
     EXPECT_EQ(o.status, 0) << o.text;
@@ -148,7 +149,7 @@ TEST(ModesCase, FrequencyMachineCountsAsPublished) {
   // A 60 g composite driver shaft with about 200 g at the tip counts about 266 cpm (published).
   const auto dir = fresh_directory("modes");
   const Outcome o =
-      command("run " + std::string(HOSEL_SOURCE) + "/cases/frequency-machine --out " + (dir / "out").string());
+      command("run " + std::string(HOSEL_SOURCE_DIR) + "/cases/frequency-machine --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 0) << o.text;
   std::ifstream file(dir / "out" / "modes.csv");
   std::string header, row;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "build_info.hpp"
 #include "hosel/app/job.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/parameters.hpp"
@@ -256,7 +257,7 @@ inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
 
 TEST(RollingIrons, FiguresAndFitsOfTheSecondSource) {
   const auto d = scratch("rolling_irons");
-  std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE) / "cases" / "rolling-irons", d,
+  std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE_DIR) / "cases" / "rolling-irons", d,
                         std::filesystem::copy_options::recursive);
   const nlohmann::json s = run(d);
   // benchmarks.md 3.1 to 3.4, to the digits printed there.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "build_info.hpp"
 #include "files.hpp"
 #include "records.hpp"
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include "build_info.hpp"
 
 namespace {
 
