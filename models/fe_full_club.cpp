@@ -33,10 +33,10 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   out.head = body.get();
   out.system.terms.push_back(std::move(body));
 
-  fem::FaceCarrier carrier;
+  fem::SurfaceCarrier carrier;
   carrier.translation = out.hosel.translation;
   carrier.rotation = out.hosel.rotation;
-  carrier.face_centre = -hosel;
+  carrier.centre = -hosel;
   out.parts = add_ball(out.system, blow, options.impact, carrier, true);
 
   out.initial = out.system.layout.rest();

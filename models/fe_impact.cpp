@@ -8,6 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hosel/fem/face_surface.hpp"
+#include "hosel/fem/friction/coulomb.hpp"
+#include "hosel/fem/friction/regularised.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
@@ -86,7 +89,7 @@ Encounter encounter(const Blow& blow) {
   return e;
 }
 
-BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& o, const fem::FaceCarrier& carrier,
+BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& o, const fem::SurfaceCarrier& carrier,
                     bool free) {
   if (const auto faults = o.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
   const Encounter e = encounter(blow);
@@ -123,38 +126,19 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
 
   auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian, family,
                                                    fem::SolidQuadrature{rule(angles), 2}, materials, placement);
-  fem::ContactLawAtPoint law;
-  law.normal_stiffness = o.penalty * o.ball.instant_young() / R;
-  law.tangential_stiffness = o.tangential_penalty * law.normal_stiffness;
-  law.friction = axial ? 0 : o.friction;
-  law.transition_speed = o.transition_speed;
-  auto contact = std::make_unique<fem::ContactFace>(*ball, blow.club.head.face, carrier, law, rule(patch),
-                                                    axial    ? fem::Symmetry::axis
-                                                    : planar ? fem::Symmetry::plane
-                                                             : fem::Symmetry::none,
-                                                    o.edge_points);
+  fem::ContactLaws laws{o.penalty * o.ball.instant_young() / R, nullptr};
+  if (!axial && o.friction > 0) {
+    if (o.transition_speed) laws.friction = std::make_unique<fem::RegularisedFriction>(o.friction, *o.transition_speed);
+    else laws.friction = std::make_unique<fem::Coulomb>(o.friction, o.tangential_penalty * laws.normal_stiffness);
+  }
+  const fem::Symmetry symmetry = axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none;
+  auto contact = std::make_unique<fem::Contact>(*ball, std::make_unique<fem::FaceSurface>(blow.club.head.face), carrier,
+                                                std::move(laws), rule(patch), symmetry, o.edge_points);
   BallOnFace parts{ball.get(), contact.get()};
   system.terms.push_back(std::move(ball));
   system.terms.push_back(std::move(contact));
   return parts;
 }
-
-namespace {
-FacePose face_pose(const fem::ContactFace& contact, const fem::State& s) {
-  const fem::FaceCarrier& carrier = contact.carrier();
-  FacePose f{carrier.position, carrier.attitude, Vec3::Zero(), Vec3::Zero()};
-  if (carrier.translation) {
-    f.axes = fem::rotation(s, *carrier.rotation).toRotationMatrix();
-    f.spin = f.axes * s.v.segment<3>(carrier.rotation->v);
-    f.centre = s.q.segment<3>(carrier.translation->q);
-    f.velocity = s.v.segment<3>(carrier.translation->v);
-  }
-  const Vec3 arm = f.axes * carrier.face_centre;
-  f.centre += arm;
-  f.velocity += f.spin.cross(arm);
-  return f;
-}
-}  // namespace
 
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial, const FeImpactOptions& o,
                           double approach_speed, const ImpactObserver& observer, const ImpactCheckpoint* from) {
@@ -196,7 +180,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   const auto observe = [&](const fem::ContactReport& report) {
     if (observer)
       observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
-                face_pose(*parts.contact, solver.state()), expected, parts.shaft, [&] {
+                parts.contact->surface_pose(solver.state()), expected, parts.shaft, [&] {
                   at.solver = solver.checkpoint();
                   return at;
                 }});
@@ -220,7 +204,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     at.last_gap = gap;
     out.compression = std::max(out.compression, gap0 - gap);
     out.penetration = report.penetration;
-    out.creep = report.stick_slip_error;
+    out.creep = report.elastic_slip;
     out.counts = before + solver.counts();
     at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + o.after);
     observe(report);
@@ -270,7 +254,7 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
         "2 or more");
   if (options.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
-  fem::FaceCarrier carrier;
+  fem::SurfaceCarrier carrier;
   fem::Layout::Block x, r;
   if (wall) {
     // In the wall's frame: it stands, the ball comes.
@@ -282,7 +266,7 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
     r = out.system.layout.add_rotation();
     carrier.translation = x;
     carrier.rotation = r;
-    carrier.face_centre = -head.cg;
+    carrier.centre = -head.cg;
     auto body =
         std::make_unique<fem::RigidBody>("head", x, r, fem::RigidBodyProperties{head.mass, head.inertia, Vec3::Zero()});
     out.head = body.get();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hosel/fem/beam.hpp"
-#include "hosel/fem/contact_face.hpp"
+#include "hosel/fem/contact.hpp"
 #include "hosel/fem/rigid_body.hpp"
 #include "hosel/golf/blow.hpp"
 #include "hosel/mesh/meridian.hpp"
@@ -48,7 +48,7 @@ struct FeImpactOptions {
 /// The ball and its contact inside a system; owned by it.
 struct BallOnFace {
   fem::HarmonicSolid* ball = nullptr;
-  fem::ContactFace* contact = nullptr;
+  fem::Contact* contact = nullptr;
   const fem::Beam* shaft = nullptr;  ///< of a full club, for observers
 };
 
@@ -68,15 +68,7 @@ Encounter encounter(const Blow& blow);
 /// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a
 /// shaft. `free` says that the carrier may move out of the blow's plane of symmetry.
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,
-                    const fem::FaceCarrier& carrier, bool free);
-
-/// Where the face stands and how it moves.
-struct FacePose {
-  Vec3 centre = Vec3::Zero();    ///< of the face, global [m]
-  Mat3 axes = Mat3::Identity();  ///< columns: face frame in the global one
-  Vec3 velocity = Vec3::Zero();  ///< of the face centre, global [m/s]
-  Vec3 spin = Vec3::Zero();      ///< global [rad/s]
-};
+                    const fem::SurfaceCarrier& carrier, bool free);
 
 /// What the impact was.
 struct FeImpactResult {
@@ -110,10 +102,10 @@ struct ImpactView {
   const fem::System& system;
   const fem::State& state;
   const fem::HarmonicSolid& ball;
-  const fem::ContactFace& contact;
+  const fem::Contact& contact;
   const fem::ContactReport& report;
   const solvers::Ledger& ledger;
-  FacePose face;
+  fem::SurfacePose face;
   double expected_end = 0;           ///< when Hertz's theory would have contact end [s]
   const fem::Beam* shaft = nullptr;  ///< of a full club
   std::function<ImpactCheckpoint()> checkpoint;

@@ -114,7 +114,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
       columns.push_back(fmt::format("viscous_layer{}_J", layer));
     s.history.emplace(s.directory / "history.csv", columns, s.kept());
   }
-  const models::FacePose face = view.face;
+  const fem::SurfacePose face = view.face;
   const Vec3 force = face.axes.transpose() * view.report.force;
   std::vector<double> row = {view.state.time,
                              force.x(),

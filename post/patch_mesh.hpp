@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hosel/fem/contact_face.hpp"
+#include "hosel/fem/contact.hpp"
 #include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {

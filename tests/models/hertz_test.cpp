@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 
+#include "hosel/fem/face_surface.hpp"
 #include "hosel/solvers/statics.hpp"
 #include "tests/support/elastic_sphere.hpp"
 #include "tests/support/squeezed_sphere.hpp"
@@ -32,15 +33,15 @@ class Squeeze {
     if (q_.size() > 0) state.q = q_;
     std::span<const double> history = history_;
     if (!history_.empty()) solid->restore(history);
-    fem::ContactFace* plate = nullptr;
+    fem::Contact* plate = nullptr;
     for (const double side : {1.0, -1.0}) {
-      fem::FaceCarrier carrier;
+      fem::SurfaceCarrier carrier;
       carrier.position = Vec3(side * (kRadius - approach), 0, 0);
       carrier.attitude = side < 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(kPi, Vec3::UnitZ()).toRotationMatrix();
-      auto contact = std::make_unique<fem::ContactFace>(
-          *solid, Face{}, carrier,
-          fem::ContactLawAtPoint{.normal_stiffness = penalty_ * material_.instant_shear() / kRadius},
-          fem::single_angle(), fem::Symmetry::axis);
+      auto contact =
+          std::make_unique<fem::Contact>(*solid, std::make_unique<fem::FaceSurface>(Face{}), carrier,
+                                         fem::ContactLaws{penalty_ * material_.instant_shear() / kRadius, nullptr},
+                                         fem::single_angle(), fem::Symmetry::axis);
       contact->start(state);
       plate = contact.get();
       system.terms.push_back(std::move(contact));

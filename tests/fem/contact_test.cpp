@@ -1,7 +1,12 @@
-#include "hosel/fem/contact_face.hpp"
+#include "hosel/fem/contact.hpp"
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "hosel/fem/face_surface.hpp"
+#include "hosel/fem/friction/coulomb.hpp"
+#include "hosel/fem/friction/regularised.hpp"
 #include "hosel/golf/units.hpp"
 #include "tests/support/term_checks.hpp"
 
@@ -16,12 +21,12 @@ struct Scene {
   System system;
   HarmonicSolid* ball = nullptr;
   Layout::Block x, r;
-  std::unique_ptr<ContactFace> contact;
+  std::unique_ptr<Contact> contact;
   State s;
   Face face{.bulge = 0.3, .roll = 0.25};
   Vec3 centre;
 
-  explicit Scene(bool symmetric, ContactLawAtPoint law) {
+  Scene(bool symmetric, std::unique_ptr<const FrictionLaw> friction) {
     const Family family = symmetric ? cartesian_family(2) : cartesian_family(2, 1);
     const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
     const Mat3 R = symmetric ? Mat3(Mat3::Identity())
@@ -38,9 +43,10 @@ struct Scene {
     x = system.layout.add_vector(3);
     r = system.layout.add_rotation();
     centre = Vec3(0.01, symmetric ? 0 : 0.004, 0.02);
-    contact = std::make_unique<ContactFace>(*ball, face, FaceCarrier{x, r, centre}, law,
-                                            symmetric ? half_circle(8) : full_circle(14),
-                                            symmetric ? Symmetry::plane : Symmetry::none, 3);
+    contact = std::make_unique<Contact>(*ball, std::make_unique<FaceSurface>(face), SurfaceCarrier{x, r, centre},
+                                        ContactLaws{1e11, std::move(friction)},
+                                        symmetric ? half_circle(8) : full_circle(14),
+                                        symmetric ? Symmetry::plane : Symmetry::none, 3);
     s = system.layout.rest();
     set_rotation(s, r, Eigen::Quaterniond(R));
     const Vec3 spot = face.point(symmetric ? 0 : 0.01, symmetric ? 0 : -0.015);
@@ -57,12 +63,15 @@ struct Scene {
   }
 };
 
-TEST(ContactFace, Tangent) {
-  const ContactLawAtPoint frictionless{.normal_stiffness = 1e11, .friction = 0},
-      coulomb{.normal_stiffness = 1e11, .tangential_stiffness = 5e10, .friction = 0.01},
-      regularised{.normal_stiffness = 1e11, .friction = 0.3, .transition_speed = 1.0};
+TEST(Contact, Tangent) {
+  const std::function<std::unique_ptr<const FrictionLaw>()> frictionless = [] { return nullptr; },
+                                                            coulomb =
+                                                                [] { return std::make_unique<Coulomb>(0.01, 5e10); },
+                                                            regularised = [] {
+                                                              return std::make_unique<RegularisedFriction>(0.3, 1);
+                                                            };
   for (const auto& law : {frictionless, coulomb, regularised}) {
-    Scene scene(false, law);
+    Scene scene(false, law());
     const ContactReport report = scene.contact->report(scene.s);
     ASSERT_GT(report.points, 20);
     ASSERT_GT(report.normal_force, 10);
@@ -72,10 +81,10 @@ TEST(ContactFace, Tangent) {
 }
 
 /// What pushes the ball pushes the head back along the same line: no net force, no net moment.
-TEST(ContactFace, ForcesBalance) {
+TEST(Contact, ForcesBalance) {
   int sliding = 0, sticking = 0;
   for (bool symmetric : {false, true}) {
-    Scene scene(symmetric, {.normal_stiffness = 1e11, .tangential_stiffness = 5e10, .friction = 0.01});
+    Scene scene(symmetric, std::make_unique<Coulomb>(0.01, 5e10));
     Vector inertia = Vector::Zero(scene.system.layout.size()), force = inertia;
     scene.contact->residual(scene.s, inertia, force);
     const auto& layout = scene.system.layout;

@@ -1,0 +1,446 @@
+#include "hosel/fem/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hosel::fem {
+namespace {
+
+std::vector<std::pair<double, double>> gauss(int n) {
+  switch (n) {
+    case 1: return {{0, 2}};
+    case 2: return {{-1 / std::sqrt(3.0), 1}, {1 / std::sqrt(3.0), 1}};
+    case 3: return {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
+    case 4: {
+      const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)), b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
+      const double wa = (18 + std::sqrt(30.0)) / 36, wb = (18 - std::sqrt(30.0)) / 36;
+      return {{-b, wb}, {-a, wa}, {a, wa}, {b, wb}};
+    }
+    case 5: {
+      const double a = std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 3, b = std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 3;
+      const double wa = (322 + 13 * std::sqrt(70.0)) / 900, wb = (322 - 13 * std::sqrt(70.0)) / 900;
+      return {{-b, wb}, {-a, wa}, {0, 128.0 / 225}, {a, wa}, {b, wb}};
+    }
+    default: throw std::invalid_argument("contact: 1 to 5 Gauss points along an edge");
+  }
+}
+
+}  // namespace
+
+Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurface> surface, SurfaceCarrier carrier,
+                 ContactLaws laws, const AngularRule& angles, Symmetry symmetry, int edge_points)
+    : solid_(solid),
+      surface_(std::move(surface)),
+      carrier_(std::move(carrier)),
+      laws_(std::move(laws)),
+      symmetry_(symmetry),
+      own_(surface_->unknowns()),
+      angles_(angles.theta) {
+  if (!(laws_.normal_stiffness > 0)) throw std::invalid_argument("contact: state a positive normal stiffness");
+  if (laws_.friction)
+    if (const auto faults = laws_.friction->faults(); !faults.empty()) throw std::invalid_argument(faults.front());
+  if (carrier_.translation.has_value() != carrier_.rotation.has_value())
+    throw std::invalid_argument("contact: a moving surface needs a position and a rotation");
+  if (own_ && (own_->rotation || own_->size > kSurfaceUnknowns))
+    throw std::invalid_argument("contact: a surface has at most four unknowns of its own, plain numbers");
+  std::vector<Index> carried;
+  if (carrier_.translation)
+    for (const auto* block : {&*carrier_.translation, &*carrier_.rotation})
+      for (Index i = 0; i < 3; ++i) carried.push_back(block->v + i);
+  if (own_)
+    for (Index i = 0; i < own_->size; ++i) carried.push_back(own_->v + i);
+  carried_ = static_cast<Index>(carried.size());
+
+  const Index K = solid.unknowns();
+  for (double theta : angles_) {
+    Directions f(3, K);
+    for (Index k = 0; k < K; ++k)
+      f.col(k) = solid.placement().axes * solid.family()[static_cast<std::size_t>(k)].at(theta);
+    functions_.push_back(f);
+  }
+  const auto rule = gauss(edge_points);
+  for (const auto& nodes : solid.mesh().surface) {
+    Edge edge{nodes, {}, {}};
+    for (int i = 0; i < 3; ++i)
+      for (Index k = 0; k < K; ++k)
+        if (const Index e = solid.equation(nodes[static_cast<std::size_t>(i)], k); e >= 0) {
+          edge.equations.push_back(e);
+          edge.places.push_back(static_cast<int>(i * K + k));
+        }
+    edge.equations.insert(edge.equations.end(), carried.begin(), carried.end());
+    edges_.push_back(std::move(edge));
+    for (const auto& [x, w] : rule) {
+      const Vec3 N(0.5 * x * (x - 1), 0.5 * x * (x + 1), 1 - x * x), dN(x - 0.5, x + 0.5, -2 * x);
+      Eigen::Vector2d at = Eigen::Vector2d::Zero(), along = at;
+      for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector2d& node = solid.mesh().nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])];
+        at += N[i] * node;
+        along += dN[i] * node;
+      }
+      stations_.push_back({edges_.size() - 1, N, at, w * along.norm() * at.y() * angles.weight});
+    }
+  }
+  past_.resize(stations_.size() * angles_.size());
+}
+
+Contact::Moved Contact::moved(const State& s) const {
+  Moved m;
+  m.node = carrier_.position;
+  m.R = carrier_.attitude;
+  if (carrier_.translation) {
+    m.node = s.q.segment<3>(carrier_.translation->q);
+    m.node_velocity = s.v.segment<3>(carrier_.translation->v);
+    m.spin = s.v.segment<3>(carrier_.rotation->v);
+    m.R = rotation(s, *carrier_.rotation).toRotationMatrix();
+  }
+  for (Index i = 0; own_ && i < own_->size; ++i) {
+    m.own[i] = s.q[own_->q + i];
+    m.own_rate[i] = s.v[own_->v + i];
+  }
+  return m;
+}
+
+Vec3 Contact::place(const Moved& m, const Vec3& arm, Travel& travel) const {
+  Vec3 y = arm - carrier_.centre;
+  if (own_) {
+    travel = surface_->travel(y, m.own);
+    y.x() += travel.value;
+  }
+  return y;
+}
+
+Vec3 Contact::in_body(const Kinematics& k, const Vec3& force) { return force + force.x() * k.travel.slope.head<3>(); }
+
+Vec3 Contact::reference(const Station& station, std::size_t angle) const {
+  const auto& [s, rho] = std::pair(station.reference.x(), station.reference.y());
+  return {s, rho * std::cos(angles_[angle]), rho * std::sin(angles_[angle])};
+}
+
+template <class Visit>
+void Contact::visit(const State& s, Visit&& visit) const {
+  const Moved m = moved(s);
+  const Placement& placement = solid_.placement();
+  const Index K = solid_.unknowns();
+  Directions U(3, K), V(3, K);  // one row a node of the edge
+  Vector u(K), v(K);
+  const Edge* edge = nullptr;
+  Kinematics k;
+  for (const Station& station : stations_) {
+    if (edge != &edges_[station.edge]) {
+      edge = &edges_[station.edge];
+      U.setZero();
+      V.setZero();
+      for (std::size_t i = 0; i < edge->places.size(); ++i) {
+        const int node = edge->places[i] / static_cast<int>(K), unknown = edge->places[i] % static_cast<int>(K);
+        U(node, unknown) = s.q[solid_.offset(edge->nodes[static_cast<std::size_t>(node)], unknown)];
+        V(node, unknown) = s.v[edge->equations[i]];
+      }
+    }
+    u.noalias() = U.transpose() * station.shape;
+    v.noalias() = V.transpose() * station.shape;
+    k.station = &station;
+    for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
+      const Directions& f = functions_[k.angle];
+      const Vec3 x = placement.origin + placement.axes * reference(station, k.angle) + f * u;
+      k.arm = m.R.transpose() * (x - m.node);
+      k.relative = m.R.transpose() * (f * v - m.node_velocity);
+      k.rate = k.relative - m.spin.cross(k.arm);
+      k.place = place(m, k.arm, k.travel);
+      k.velocity = k.rate;
+      if (own_)
+        k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
+                          k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
+      k.gap = surface_->gap(k.place);
+      visit(m, std::as_const(k));
+    }
+  }
+}
+
+Contact::Local Contact::respond(const Kinematics& k, bool derivatives) const {
+  Local out;
+  const SurfacePoint at = surface_->at(k.place);
+  const Past& past = past_[k.number];
+  const double en = laws_.normal_stiffness;
+  out.pressure = -en * at.gap;
+  out.force = out.pressure * at.slope;
+  if (derivatives) out.stiffness = en * (at.slope * at.slope.transpose() + at.gap * at.curvature);
+  if (!laws_.friction) return out;
+
+  Slip slip{.pressure = out.pressure, .step = k.place - past.place};
+  slip.tangent = Mat3::Identity() - at.normal * at.normal.transpose();
+  slip.velocity = slip.tangent * k.velocity;
+  // A point that touches first within this step slides from where its straight path met the surface.
+  const bool fresh = !past.touching && past.gap > 0;
+  const double share = fresh ? -at.gap / (past.gap - at.gap) : 1;
+  const Vec3 path = slip.tangent * (k.place - (fresh ? past.place : past.anchor));
+  slip.stretch = share * path;
+  out.friction = laws_.friction->at(slip, derivatives);
+  out.force -= out.friction.traction;
+  if (!derivatives) return out;
+  Mat3 stretching = share * slip.tangent;  // d stretch / d place
+  if (fresh) stretching -= past.gap / ((past.gap - at.gap) * (past.gap - at.gap)) * path * at.slope.transpose();
+  out.stiffness += out.friction.by_stretch * stretching - en * out.friction.by_pressure * at.slope.transpose();
+  out.damping = out.friction.by_velocity;
+  return out;
+}
+
+void Contact::start(const State& s) {
+  visit(s, [&](const Moved&, const Kinematics& k) {
+    Past& past = past_[k.number];
+    past = {};
+    past.place = past.anchor = k.place;
+    past.gap = k.gap;
+    past.touching = !(past.gap > 0);
+  });
+  started_ = true;
+}
+
+void Contact::pattern(std::vector<std::vector<Index>>& blocks) const {
+  for (const Edge& e : edges_) blocks.push_back(e.equations);
+}
+
+void Contact::residual(const State& s, Vector&, Vector& force) const {
+  if (!started_) throw std::logic_error("contact: start() has not been called");
+  const Index K = solid_.unknowns();
+  Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
+  SurfaceUnknowns own = SurfaceUnknowns::Zero();
+  Vector r(K);
+  Mat3 R = Mat3::Identity();
+  visit(s, [&](const Moved& m, const Kinematics& k) {
+    R = m.R;
+    if (k.gap >= 0) return;
+    const Station& station = *k.station;
+    const Vec3 local = station.area * respond(k, false).force, f = in_body(k, local);
+    r.noalias() = functions_[k.angle].transpose() * (m.R * f);
+    const Edge& edge = edges_[station.edge];
+    for (std::size_t i = 0; i < edge.places.size(); ++i)
+      force[edge.equations[i]] -= station.shape[edge.places[i] / K] * r[edge.places[i] % K];
+    total += f;
+    moment += k.arm.cross(f);
+    own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
+  });
+  if (carrier_.translation) {
+    force.segment<3>(carrier_.translation->v) += free_translation() * R * total;
+    force.segment<3>(carrier_.rotation->v) += free_rotation(R) * moment;
+  }
+  if (own_) force.segment(own_->v, own_->size) += own.head(own_->size);
+}
+
+void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const {
+  const Index K = solid_.unknowns(), size = K + carried_;
+  const bool moving = carrier_.translation.has_value();
+  const Local local = respond(k, true);
+  const double area = k.station->area;
+  const Mat3 turn = free_rotation(m.R);
+  const Vec3 force = in_body(k, local.force);
+
+  // Change of the arm, then of the place, by each unknown.
+  Directions arm = Directions::Zero(3, size);
+  arm.leftCols(K).noalias() = m.R.transpose() * functions_[k.angle];
+  if (moving) {
+    arm.middleCols<3>(K) = -m.R.transpose() * free_translation();
+    arm.middleCols<3>(K + 3) = skew(k.arm) * turn;
+  }
+  Directions place = arm;
+  Eigen::Matrix<double, Travel::size, Eigen::Dynamic> travelling;  // of the travel's arguments
+  if (own_) {
+    travelling.setZero(Travel::size, size);
+    travelling.topRows<3>() = arm;
+    for (Index i = 0; i < own_->size; ++i) travelling(3 + i, size - own_->size + i) = 1;
+    place.row(0).noalias() += k.travel.slope.transpose() * travelling;
+  }
+
+  Directions right = (weights.stiffness * local.stiffness + weights.damping * local.damping) * place;
+  if (laws_.friction && laws_.friction->rate_dependent()) {
+    Directions rate = Directions::Zero(3, size);  // of the velocity by each unknown
+    if (moving) {
+      rate = -skew(m.spin) * arm;
+      rate.middleCols<3>(K + 3) += skew(k.relative) * turn;
+    }
+    if (own_) {
+      Eigen::Matrix<double, Travel::size, 1> rates;
+      rates << k.rate, m.own_rate;
+      rate.row(0) += k.travel.slope.head<3>().transpose() * rate + rates.transpose() * k.travel.second * travelling;
+    }
+    right += weights.stiffness * local.damping * rate;
+  }
+  sum.noalias() += area * place.transpose() * right;
+  if (own_)
+    sum.noalias() -= area * weights.stiffness * local.force.x() * travelling.transpose() * k.travel.second * travelling;
+  if (!moving) return;
+  // The force turns with the body, the carrier's own moment excepted; and its arm moves, d(arm x f) = -f x d(arm).
+  const Mat3 turning = area * weights.stiffness * skew(force) * turn;
+  sum.topRows(K + 3).middleCols<3>(K + 3).noalias() += arm.leftCols(K + 3).transpose() * turning;
+  sum.middleRows<3>(K + 3).noalias() += turning.transpose() * arm;
+}
+
+void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
+  if (weights.stiffness == 0 && weights.damping == 0) return;
+  const Index K = solid_.unknowns();
+  const auto angles = angles_.size();
+  // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
+  Eigen::MatrixXd sum, block;
+  const Edge* edge = nullptr;
+  bool touched = false;
+  const auto finish_edge = [&] {
+    if (edge && block.size() > 0) sink.add(edge->equations, edge->equations, block);
+    block.resize(0, 0);
+  };
+  visit(s, [&](const Moved& m, const Kinematics& k) {
+    const Station& station = *k.station;
+    if (k.angle == 0) {
+      if (edge != &edges_[station.edge]) {
+        finish_edge();
+        edge = &edges_[station.edge];
+      }
+      touched = false;
+    }
+    if (k.gap < 0) {
+      if (!touched) sum.setZero(K + carried_, K + carried_);
+      touched = true;
+      add_tangent(m, k, weights, sum);
+    }
+    if (k.angle + 1 < angles || !touched) return;
+    const auto own = static_cast<Index>(edge->places.size()), size = own + carried_;
+    if (block.size() == 0) block = Eigen::MatrixXd::Zero(size, size);
+    const auto source = [&](Index i) {
+      return i < own ? edge->places[static_cast<std::size_t>(i)] % K : K + (i - own);
+    };
+    const auto share = [&](Index i) {
+      return i < own ? station.shape[edge->places[static_cast<std::size_t>(i)] / K] : 1.0;
+    };
+    for (Index j = 0; j < size; ++j)
+      for (Index i = 0; i < size; ++i) block(i, j) += share(i) * share(j) * sum(source(i), source(j));
+  });
+  finish_edge();
+}
+
+Energies Contact::energies(const State& s) const {
+  Energies out;
+  visit(s, [&](const Moved&, const Kinematics& k) {
+    if (k.gap >= 0) return;
+    out.contact += k.station->area * (0.5 * laws_.normal_stiffness * k.gap * k.gap + respond(k, false).friction.stored);
+  });
+  out.friction = friction_work_;
+  return out;
+}
+
+void Contact::accept(const State& s) {
+  visit(s, [&](const Moved&, const Kinematics& k) {
+    Past& past = past_[k.number];
+    const double area = k.station->area;
+    if (k.gap >= 0) {
+      // What the tangential spring still held is lost where a point lets go.
+      friction_work_ += area * past.stored;
+      past = {.place = k.place, .anchor = k.place, .gap = k.gap, .slip = past.slip};
+      return;
+    }
+    const Friction friction = respond(k, false).friction;
+    const double traction = friction.traction.norm();
+    friction_work_ += area * 0.5 * (past.traction + traction) * friction.slip;
+    if (!friction.sliding) elastic_slip_ = std::max(elastic_slip_, friction.elastic.norm());
+    past = {.place = k.place,
+            .anchor = k.place - friction.elastic,
+            .gap = k.gap,
+            .traction = traction,
+            .stored = friction.stored,
+            .slip = past.slip + friction.slip,
+            .touching = true,
+            .sliding = friction.sliding};
+    penetration_ = std::max(penetration_, -k.gap);
+  });
+}
+
+void Contact::save(std::vector<double>& out) const {
+  out.insert(out.end(), {friction_work_, penetration_, elastic_slip_, started_ ? 1.0 : 0.0});
+  for (const Past& p : past_) {
+    out.insert(out.end(), p.place.begin(), p.place.end());
+    out.insert(out.end(), p.anchor.begin(), p.anchor.end());
+    out.insert(out.end(), {p.gap, p.traction, p.stored, p.slip, p.touching ? 1.0 : 0.0, p.sliding ? 1.0 : 0.0});
+  }
+}
+
+void Contact::restore(std::span<const double>& in) {
+  const auto next = [&] {
+    if (in.empty()) throw std::invalid_argument("contact: the history is too short");
+    const double x = in.front();
+    in = in.subspan(1);
+    return x;
+  };
+  friction_work_ = next();
+  penetration_ = next();
+  elastic_slip_ = next();
+  started_ = next() != 0;
+  for (Past& p : past_) {
+    for (double& x : p.place) x = next();
+    for (double& x : p.anchor) x = next();
+    p.gap = next();
+    p.traction = next();
+    p.stored = next();
+    p.slip = next();
+    p.touching = next() != 0;
+    p.sliding = next() != 0;
+  }
+}
+
+ContactReport Contact::report(const State& s) const {
+  ContactReport out;
+  double weight = 0;
+  Vec3 centre = Vec3::Zero();
+  visit(s, [&](const Moved& m, const Kinematics& k) {
+    if (k.gap >= 0) return;
+    const Local local = respond(k, false);
+    const double area = k.station->area;
+    out.force += area * (m.R * in_body(k, local.force));
+    out.normal_force += area * local.pressure;
+    out.pressure = std::max(out.pressure, local.pressure);
+    out.area += area;
+    centre += area * local.pressure * (m.node + m.R * k.arm);
+    weight += area * local.pressure;
+    ++out.points;
+  });
+  out.force = (free_translation() * out.force).eval();
+  const Vec3& origin = solid_.placement().origin;
+  if (weight > 0) out.point = origin + free_translation() * (centre / weight - origin);
+  out.penetration = penetration_;
+  out.elastic_slip = elastic_slip_;
+  return out;
+}
+
+std::vector<ContactPoint> Contact::points(const State& s) const {
+  std::vector<ContactPoint> out;
+  const Placement& placement = solid_.placement();
+  visit(s, [&](const Moved& m, const Kinematics& k) {
+    const Local local = k.gap < 0 ? respond(k, false) : Local{};
+    const Past& past = past_[k.number];
+    out.push_back({placement.origin + placement.axes * reference(*k.station, k.angle), m.node + m.R * k.arm,
+                   m.R * in_body(k, local.force), local.pressure, k.gap, past.slip, k.station->area, past.sliding});
+  });
+  return out;
+}
+
+double Contact::centre_gap(const State& s) const {
+  const Moved m = moved(s);
+  Travel travel;
+  return surface_->gap(place(m, m.R.transpose() * (solid_.motion(s).centre - m.node), travel));
+}
+
+Mat3 Contact::free_translation() const {
+  const Mat3& axes = solid_.placement().axes;
+  switch (symmetry_) {
+    case Symmetry::plane: return Mat3::Identity() - axes.col(2) * axes.col(2).transpose();
+    case Symmetry::axis: return axes.col(0) * axes.col(0).transpose();
+    default: return Mat3::Identity();
+  }
+}
+
+Mat3 Contact::free_rotation(const Mat3& R) const {
+  if (symmetry_ == Symmetry::none) return Mat3::Identity();
+  if (symmetry_ == Symmetry::axis) return Mat3::Zero();
+  const Vec3 b = R.transpose() * solid_.placement().axes.col(2);
+  return b * b.transpose();
+}
+
+}  // namespace hosel::fem

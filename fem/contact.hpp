@@ -1,0 +1,150 @@
+/// Contact and friction between a harmonic solid and a surface.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hosel/fem/contact_surface.hpp"
+#include "hosel/fem/friction/law.hpp"
+#include "hosel/fem/harmonic_solid.hpp"
+
+namespace hosel::fem {
+
+/// What acts at a point. With gap g < 0 the pressure is p = -normal_stiffness g.
+struct ContactLaws {
+  double normal_stiffness = 0;                  ///< penalty per reference area [N/m^3]
+  std::unique_ptr<const FrictionLaw> friction;  ///< none: frictionless
+};
+
+/// Which half of the motion the angles leave to symmetry. The carrier feels the mirror images as well.
+enum class Symmetry {
+  none,   ///< angles over the full circle
+  plane,  ///< half circle; mirror symmetry about the plane of the solid's axes 1 and 2
+  axis,   ///< one angle; everything is symmetric about the solid's axis 1
+};
+
+/// One quadrature point of the patch at the last accepted state.
+struct ContactPoint {
+  Vec3 reference;       ///< material point, global, before the motion [m]
+  Vec3 position;        ///< now, global [m]
+  Vec3 traction;        ///< on the solid per reference area, global [Pa]
+  double pressure = 0;  ///< [Pa]
+  double gap = 0;       ///< positive when apart [m]
+  double slip = 0;      ///< path slid so far [m]
+  double area = 0;      ///< reference area that it stands for [m^2]
+  bool sliding = false;
+};
+
+/// What the patch does at the last accepted state, and its largest errors so far.
+struct ContactReport {
+  Vec3 force = Vec3::Zero();  ///< on the solid, global [N]
+  Vec3 point = Vec3::Zero();  ///< centre of pressure, global [m]
+  double normal_force = 0;    ///< [N]
+  double pressure = 0;        ///< largest [Pa]
+  double area = 0;            ///< of the patch [m^2]
+  double penetration = 0;     ///< largest so far [m]
+  double elastic_slip = 0;    ///< largest of a sticking point so far [m]
+  int points = 0;             ///< in contact
+};
+
+/// Points are Gauss points of the solid's surface edges times equidistant angles. Forces act at the solid's point on
+/// both bodies: equal, opposite, no net moment. Friction is told the path from an anchor that a point leaves on the
+/// surface where it first touches.
+class Contact final : public Term {
+ public:
+  /// `angles`: the rule over theta that suits `symmetry`; `edge_points`: Gauss points along an edge (1..5).
+  Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurface> surface, SurfaceCarrier carrier,
+          ContactLaws laws, const AngularRule& angles, Symmetry symmetry, int edge_points = 4);
+
+  /// Takes the state that the motion starts from; to be called once, before anything else.
+  void start(const State& initial);
+
+  std::string body() const override { return "contact"; }
+  void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  void residual(const State& trial, Vector& inertia, Vector& force) const override;
+  void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  Energies energies(const State& accepted) const override;
+  void accept(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
+
+  SurfacePose surface_pose(const State& s) const { return pose(carrier_, s); }
+  ContactReport report(const State& accepted) const;
+  std::vector<ContactPoint> points(const State& accepted) const;
+  /// Distance of the solid's centre of mass from the surface [m].
+  double centre_gap(const State& s) const;
+
+ private:
+  using Directions = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  struct Edge {
+    std::array<int, 3> nodes;
+    std::vector<Index> equations;  // free ones of the three nodes, then the carrier's six, then the surface's own
+    std::vector<int> places;       // i * K + k of the solid's part
+  };
+  struct Station {  // a Gauss point of an edge; `angles` points follow each other
+    std::size_t edge = 0;
+    Vec3 shape;
+    Eigen::Vector2d reference;  // on the meridian
+    double area = 0;            // reference area x angular weight
+  };
+  struct Past {  // as of the last accepted state, in the surface's axes
+    Vec3 place = Vec3::Zero();
+    Vec3 anchor = Vec3::Zero();  // of the tangential path
+    double gap = 0, traction = 0, stored = 0, slip = 0;
+    bool touching = false, sliding = false;
+  };
+  struct Moved {                                                   // what holds for all points of a state
+    Vec3 node, node_velocity = Vec3::Zero(), spin = Vec3::Zero();  // spin in the body frame
+    Mat3 R;
+    SurfaceUnknowns own = SurfaceUnknowns::Zero(), own_rate = own;
+  };
+  struct Kinematics {  // of one point
+    std::size_t number = 0, angle = 0;
+    const Station* station = nullptr;
+    Vec3 arm;       // body frame, from the node
+    Vec3 relative;  // R^T (velocity of the point - of the node)
+    Vec3 rate;      // of the arm
+    Travel travel;  // of a surface with unknowns
+    Vec3 place;     // in the surface's axes, as if it had not moved
+    Vec3 velocity;  // rate of `place`
+    double gap = 0;
+  };
+  struct Local {  // at one point, in the surface's axes, per area
+    double pressure = 0;
+    Vec3 force = Vec3::Zero();
+    Friction friction;
+    Mat3 stiffness = Mat3::Zero();  // -d force / d place
+    Mat3 damping = Mat3::Zero();    // -d force / d velocity
+  };
+
+  Moved moved(const State& s) const;
+  Vec3 place(const Moved& m, const Vec3& arm, Travel& travel) const;
+  /// The force on the solid in the body frame: `force` works on the place as if the surface had not moved.
+  static Vec3 in_body(const Kinematics& k, const Vec3& force);
+  /// What symmetry leaves of the carrier's translation (global) and rotation (body frame).
+  Mat3 free_translation() const;
+  Mat3 free_rotation(const Mat3& R) const;
+  Vec3 reference(const Station& station, std::size_t angle) const;
+  Local respond(const Kinematics& k, bool derivatives) const;
+  /// Derivatives of -force by the solid's functions at a station, carrier and own unknowns, added up in `sum`.
+  void add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const;
+  template <class Visit>
+  void visit(const State& s, Visit&& visit) const;  // visit(moved, kinematics)
+
+  const HarmonicSolid& solid_;
+  std::unique_ptr<const ContactSurface> surface_;
+  SurfaceCarrier carrier_;
+  ContactLaws laws_;
+  Symmetry symmetry_;
+  std::optional<Layout::Block> own_;
+  Index carried_ = 0;  // equations of carrier and surface
+  std::vector<Edge> edges_;
+  std::vector<Station> stations_;
+  std::vector<double> angles_;
+  std::vector<Directions> functions_;  // 3 x K at each angle, global
+  std::vector<Past> past_;
+  bool started_ = false;
+  double friction_work_ = 0, penetration_ = 0, elastic_slip_ = 0;
+};
+
+}  // namespace hosel::fem
