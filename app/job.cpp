@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hosel/app/kinds/bounce.hpp"
 #include "hosel/app/kinds/calibrate_ball.hpp"
 #include "hosel/app/kinds/clubs.hpp"
 #include "hosel/app/kinds/cross_check.hpp"
@@ -17,6 +18,7 @@
 #include "hosel/app/kinds/sweep.hpp"
 #include "hosel/app/kinds/swing.hpp"
 #include "hosel/app/kinds/tune.hpp"
+#include "hosel/app/kinds/variants.hpp"
 
 namespace hosel::app {
 namespace {
@@ -41,6 +43,9 @@ constexpr std::array kKinds = {
     Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},
+    Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside", read_bounce},
+    Kind{"variants", "one blow in several variants of its case, at one launch angle and one bounce if asked",
+         read_variants},
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 Ball read_ball(Table table) {
   const Ball standard;
   Ball ball;
-  ball.mass = table.quantity("mass", "kg", {1e-3, 1.0}, standard.mass);
+  ball.mass = table.quantity("mass", "kg", {1e-6, 1.0}, standard.mass);
   ball.radius = table.quantity("radius", "mm", {1e-3, 0.1}, standard.radius);
   ball.inertia_factor = table.number("inertia_factor", {0.05, 0.6667}, standard.inertia_factor);
   return ball;

@@ -36,12 +36,14 @@ std::string channel_names() {
   return all;
 }
 
-std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured) {
+std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured,
+                         const MeasuredOblique& ranges) {
+  const bool beside = !measured.empty() || ranges.tangential_restitution || ranges.launch_ratio;
   std::size_t width = 17;
   for (const LaunchColumn& c : columns) width = std::max(width, c.title.size() + 2);
   std::string text = fmt::format("{:<18}", "");
   for (const LaunchColumn& c : columns) text += fmt::format("{:>{}}", c.title, width);
-  if (!measured.empty()) text += fmt::format("{:>{}}", "measured", width);
+  if (beside) text += fmt::format("{:>{}}", "measured", width);
   for (const Channel& channel : kChannels) {
     text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
@@ -51,11 +53,23 @@ std::string launch_table(const std::vector<LaunchColumn>& columns, const Measure
       if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
       text += fmt::format("{:>{}.{}f}", shown, width, channel.decimals);
     }
-    if (measured.empty()) continue;
+    if (!beside) continue;
     const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);
     text += it == measured.end() ? fmt::format("{:>{}}", "-", width)
                                  : fmt::format("{:>{}.{}f}", it->second / channel.si, width, channel.decimals);
   }
+  const auto row = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
+    if (!range && std::ranges::none_of(columns, [&](const LaunchColumn& c) { return (c.oblique.*value).has_value(); }))
+      return;
+    text += fmt::format("\n{:<18}", name);
+    for (const LaunchColumn& c : columns)
+      text += c.oblique.*value ? fmt::format("{:>{}.3f}", *(c.oblique.*value), width)
+                               : fmt::format("{:>{}}", "-", width);
+    if (beside)
+      text += fmt::format("{:>{}}", range ? fmt::format("{:g} to {:g}", range->first, range->second) : "-", width);
+  };
+  row("e_t [-]", &Oblique::tangential_restitution, ranges.tangential_restitution);
+  row("launch ratio [-]", &Oblique::launch_ratio, ranges.launch_ratio);
   return text;
 }
 

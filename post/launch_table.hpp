@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,12 +27,23 @@ std::string channel_names();                         ///< for messages
 
 using Measured = std::vector<std::pair<const Channel*, double>>;  ///< values in SI
 
+/// What a blow says beside its launch; absent where it says nothing (models/oblique.hpp).
+struct Oblique {
+  std::optional<double> tangential_restitution, launch_ratio;
+};
 struct LaunchColumn {
   std::string title;
   Launch launch;
+  Oblique oblique = {};
+};
+/// Ranges that others measured on such blows: lowest and highest.
+using Range = std::optional<std::pair<double, double>>;
+struct MeasuredOblique {
+  Range tangential_restitution, launch_ratio;
 };
 /// A text table: a row per quantity, a column per model, the measurement last where there is one.
-std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {});
+std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
+                         const MeasuredOblique& ranges = {});
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
 nlohmann::json to_json(const Launch& launch);
 

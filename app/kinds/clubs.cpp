@@ -11,8 +11,11 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/app/read_shaft.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots.hpp"
+#include "hosel/models/matched_launch.hpp"
+#include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
@@ -67,6 +70,9 @@ class ClubsJob final : public Job {
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
     if (auto head = root.optional_table("head"))
       blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
+    if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
+    if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
+    calibrated_on_ = root.texts("calibrated_on", std::vector<std::string>{});
     Table data = root.table("data");
     shots_file_ = data.data_file("shots");
     clubs_file_ = data.data_file("clubs");
@@ -227,28 +233,64 @@ class ClubsJob final : public Job {
   }
 
  private:
-  /// Another model club by club, without the theory's curves: it may be dear.
+  /// Another model club by club, without the theory's curves: it may be expensive. At the recorded loft, which a launch
+  /// monitor may have computed from the ball, and at the measured launch angle with the loft unknown.
   void compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out, nlohmann::json& summary) const {
     const auto model = models::find(name)->make(options_);
-    out.say(fmt::format("\n{} (error of spin, launch angle, ball speed)", name));
-    double spin = 0, launch = 0, speed = 0;
+    struct Answer {
+      Blow blow;
+      Launch launch;
+    };
+    std::vector<Answer> recorded, matched;
     Progress progress = out.progress(name);
-    for (std::size_t i = 0; i < clubs.size(); ++i) {
-      const ClubRow& c = clubs[i];
-      progress.update(double(i) / double(clubs.size()), c.name);
-      const Launch l = model->launch(c.blow);
-      const std::array<double, 3> m = {rpm(l.spin_rate()), degrees(l.launch_angle()), l.ball_speed() / kMpsPerMph};
-      out.say(fmt::format("{:<5} {:>10.1f} rpm {:>+7.1f}% {:>9.3f} deg {:>+7.2f} {:>9.2f} mph {:>+7.2f}%", c.name, m[0],
-                          100 * (m[0] / c.mean[1] - 1), m[1], m[1] - c.mean[2], m[2], 100 * (m[2] / c.mean[3] - 1)));
-      summary["beside"][name][c.name] = {{"spin_rate_rpm", m[0]}, {"launch_angle_deg", m[1]}, {"ball_speed_mph", m[2]}};
-      const double n = static_cast<double>(clubs.size());
-      spin += m[0] / c.mean[1] / n;
-      launch += (m[1] - c.mean[2]) / n;
-      speed += (m[2] - c.mean[3]) / n;
+    for (const ClubRow& c : clubs) {
+      progress.update(double(recorded.size()) / double(clubs.size()), c.name);
+      recorded.push_back({c.blow, model->launch(c.blow)});
+      const auto found = models::match_launch_angle(*model, c.blow, radians(c.mean[2]), radians(0.05));
+      matched.push_back({found.blow, found.launch});
     }
     progress.finish();
-    out.say(fmt::format("model / measured spin {:.4f}; bias {:+.3f} deg, {:+.3f} mph", spin, launch, speed));
-    summary["beside"][name]["mean"] = {{"spin_ratio", spin}, {"launch_bias_deg", launch}, {"speed_bias_mph", speed}};
+    for (const auto& [how, answers] :
+         {std::pair{"at the recorded loft", &recorded}, {"at the launch angle measured", &matched}}) {
+      out.say(fmt::format("\n{} {}\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8} {:>7} {:>8}",
+                          name, how, "club", "loft", "spin", "measured", "", "launch", "measured", "", "speed",
+                          "measured", "", "e_t", "ratio"));
+      nlohmann::json& rows = summary["beside"][name][answers == &matched ? "matched_launch" : "recorded_loft"];
+      std::array<double, 2> square{}, unseen{};  // of the relative errors of spin and speed
+      int left = 0;
+      for (std::size_t i = 0; i < clubs.size(); ++i) {
+        const ClubRow& c = clubs[i];
+        const auto& [blow, l] = (*answers)[i];
+        const double spin = rpm(l.spin_rate()), launch = degrees(l.launch_angle()), speed = l.ball_speed() / kMpsPerMph;
+        const double e_t = models::tangential_restitution(blow, l).value_or(NAN);
+        const double ratio = models::launch_ratio(blow, l).value_or(NAN);
+        const std::array<double, 2> off = {spin / c.mean[1] - 1, speed / c.mean[3] - 1};
+        const bool seen = std::ranges::find(calibrated_on_, c.name) != calibrated_on_.end();
+        left += !seen;
+        for (std::size_t k = 0; k < 2; ++k) square[k] += off[k] * off[k], unseen[k] += seen ? 0 : off[k] * off[k];
+        out.say(fmt::format(
+            "{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}% "
+            "{:>7.3f} {:>8.3f}{}",
+            c.name, degrees(blow.delivery.dynamic_loft), spin, c.mean[1], 100 * off[0], launch, c.mean[2],
+            launch - c.mean[2], speed, c.mean[3], 100 * off[1], e_t, ratio, seen ? "  (seen by the calibration)" : ""));
+        rows[c.name] = {{"dynamic_loft_deg", degrees(blow.delivery.dynamic_loft)},
+                        {"spin_rate_rpm", spin},
+                        {"launch_angle_deg", launch},
+                        {"ball_speed_mph", speed},
+                        {"tangential_restitution", e_t},
+                        {"launch_ratio", ratio},
+                        {"seen_by_calibration", seen}};
+      }
+      const auto percent = [](double sum, std::size_t n) { return 100 * std::sqrt(sum / double(n)); };
+      out.say(fmt::format("rms error: spin {:.2f} %, ball speed {:.2f} %", percent(square[0], clubs.size()),
+                          percent(square[1], clubs.size())));
+      rows["rms_pct"] = {{"spin", percent(square[0], clubs.size())}, {"speed", percent(square[1], clubs.size())}};
+      if (calibrated_on_.empty() || left == 0) continue;
+      out.say(fmt::format("on the {} clubs that the calibration did not see: spin {:.2f} %, ball speed {:.2f} %", left,
+                          percent(unseen[0], std::size_t(left)), percent(unseen[1], std::size_t(left))));
+      rows["rms_unseen_pct"] = {{"spin", percent(unseen[0], std::size_t(left))},
+                                {"speed", percent(unseen[1], std::size_t(left))}};
+    }
   }
 
   std::vector<ClubRow> read_rows(Output& out) const {
@@ -269,7 +311,12 @@ class ClubsJob final : public Job {
         c.blow = blow_;
         c.blow.club.head.mass = std::stod(cell("head_mass_kg", k));
         c.blow.delivery.club_speed = std::stod(cell("club_speed_mph", k)) * kMpsPerMph;
-        c.blow.delivery.attack_angle = radians(std::stod(cell("attack_angle_deg", k)));
+        Delivery& d = c.blow.delivery;
+        d.attack_angle = radians(std::stod(cell("attack_angle_deg", k)));
+        d.club_path = radians(std::stod(cell("club_path_deg", k)));
+        d.face_angle = radians(std::stod(cell("face_angle_deg", k)));
+        d.impact_toe = 1e-3 * std::stod(cell("impact_toe_mm", k));
+        d.impact_high = 1e-3 * std::stod(cell("impact_high_mm", k));
         std::array<double, 4> low, high;
         low.fill(INFINITY), high.fill(-INFINITY);
         for (std::size_t row = 0; row < shots.rows(); ++row) {
@@ -317,7 +364,7 @@ class ClubsJob final : public Job {
     }
   }
 
-  std::vector<std::string> beside_;
+  std::vector<std::string> beside_, calibrated_on_;
   models::Options options_;
   std::string model_;
   Blow blow_;

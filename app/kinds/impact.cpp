@@ -10,6 +10,8 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/models/fe_impact.hpp"
+#include "hosel/models/matched_launch.hpp"
+#include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/impact_recorder.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -28,6 +30,7 @@ class ImpactJob final : public Job {
     blow_ = read_blow(root, names);
     const models::Options options = read_options(root, names);
     for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
+    matched_ = root.flag("matched_launch", false);
     if (auto output = root.optional_table("output")) {
       record_.vtk = output->flag("vtk", record_.vtk);
       record_.steps_per_frame = int(output->integer("steps_per_frame", 1, 100000, record_.steps_per_frame));
@@ -37,12 +40,21 @@ class ImpactJob final : public Job {
     }
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
+        if (post::Range* range = key == "tangential_restitution" ? &ranges_.tangential_restitution
+                                 : key == "launch_ratio"         ? &ranges_.launch_ratio
+                                                                 : nullptr) {
+          const auto ends = measured->numbers(key, 2);
+          if (ends[0] > ends[1]) measured->fail(key, "give the lowest and the highest that was measured");
+          *range = std::pair{ends[0], ends[1]};
+          continue;
+        }
         const SplitName split = split_unit(key);
         const post::Channel* channel = post::find_channel(split.stem);
         if (!channel)
           measured->fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
         measured_.emplace_back(channel, measured->quantity(split.stem, std::string(channel->unit)));
       }
+    if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
   }
 
   void run(Output& out) override {
@@ -54,17 +66,25 @@ class ImpactJob final : public Job {
         const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
-        if (const auto e_t = tangential_restitution(outcome.launch))
-          summary["models"][entry.name]["tangential_restitution"] = *e_t;
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
       } else {
         columns.push_back({entry.name, entry.model->launch(blow_)});
         summary["models"][entry.name] = post::to_json(columns.back().launch);
       }
+      note_oblique(blow_, columns.back(), summary["models"][entry.name]);
+      if (!matched_) continue;
+      // The loft may have been computed from the ball: the same again with the loft unknown and the launch angle seen.
+      const models::MatchedLaunch found =
+          models::match_launch_angle(*entry.model, blow_, *launch_angle(), radians(0.03));
+      const double loft = degrees(found.blow.delivery.dynamic_loft);
+      columns.push_back({fmt::format("loft {:.2f}", loft), found.launch});
+      nlohmann::json& said = summary["matched_launch"][entry.name] = post::to_json(found.launch);
+      said["dynamic_loft_deg"] = loft;
+      note_oblique(found.blow, columns.back(), said);
     }
     for (const auto& [channel, value] : measured_)
       summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
-    out.say(post::launch_table(columns, measured_));
+    out.say(post::launch_table(columns, measured_, ranges_));
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
     for (const Entry& entry : models_)
@@ -110,17 +130,16 @@ class ImpactJob final : public Job {
     return outcome;
   }
 
-  /// Slip speed of ball over face at the contact point after the blow, over that before it, reversed: 1 for a perfect
-  /// superball, 0 for rolling. None where there was no slip. The head is taken in the attitude of first contact.
-  std::optional<double> tangential_restitution(const Launch& launch) const {
-    const models::Encounter e = models::encounter(blow_);
-    const Vec3 slip = e.approach - e.normal_speed * e.normal;
-    if (slip.norm() < 1e-9 * e.approach.norm()) return std::nullopt;
-    const Vec3 arm = e.point - (e.face_centre + e.face_axes * blow_.club.head.cg);
-    const Vec3 face = launch.head_velocity +
-                      (std::isfinite(blow_.club.head.mass) ? Vec3(launch.head_spin.cross(arm)) : Vec3::Zero());
-    const Vec3 ball = launch.velocity + launch.spin.cross(-blow_.ball.radius * e.normal);
-    return (ball - face).dot(slip) / slip.squaredNorm();
+  std::optional<double> launch_angle() const {
+    for (const auto& [channel, value] : measured_)
+      if (channel->name == "launch_angle") return value;
+    return std::nullopt;
+  }
+
+  static void note_oblique(const Blow& blow, post::LaunchColumn& column, nlohmann::json& said) {
+    column.oblique = {models::tangential_restitution(blow, column.launch), models::launch_ratio(blow, column.launch)};
+    if (column.oblique.tangential_restitution) said["tangential_restitution"] = *column.oblique.tangential_restitution;
+    if (column.oblique.launch_ratio) said["launch_ratio"] = *column.oblique.launch_ratio;
   }
 
   /// What the solution was and how well its energy adds up: for the person and the summary.
@@ -152,6 +171,8 @@ class ImpactJob final : public Job {
   Blow blow_;
   post::RecorderOptions record_;
   post::Measured measured_;
+  post::MeasuredOblique ranges_;
+  bool matched_ = false;
 };
 
 }  // namespace

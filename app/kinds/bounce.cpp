@@ -1,0 +1,233 @@
+#include "hosel/app/kinds/bounce.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/models/oblique.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+struct Quantity {
+  const char* name;
+  const char* unit;  ///< suffix; empty for a pure number
+  double si;
+  double models::Bounce::*value;
+  const char* label;
+};
+constexpr std::array kQuantities = {
+    Quantity{"tangential_ratio", "", 1, &models::Bounce::tangential_ratio, "tangential velocity, after over before"},
+    Quantity{"tangential_restitution", "", 1, &models::Bounce::tangential_restitution, "tangential restitution"},
+    Quantity{"spin", "rad_per_s", 1, &models::Bounce::spin, "spin [rad/s]"},
+    Quantity{"rebound_angle", "deg", kRadPerDeg, &models::Bounce::rebound_angle, "rebound angle [deg]"},
+    Quantity{"normal_restitution", "", 1, &models::Bounce::normal_restitution, "normal restitution"},
+};
+
+std::string with_unit(const Quantity& q) { return *q.unit ? fmt::format("{}_{}", q.name, q.unit) : q.name; }
+
+/// One set of measured points of one quantity.
+struct Measured {
+  const Quantity* quantity;
+  std::string label;
+  std::vector<double> angles, values, half_ranges;  ///< SI; half_ranges empty where not stated
+};
+
+/// Who bounces: a model, with a ball of the library where it is a finite-element model and several are asked for.
+struct Thrown {
+  std::string name;
+  std::unique_ptr<models::ImpactModel> model;
+};
+
+class BounceJob final : public Job {
+ public:
+  explicit BounceJob(CaseFile& file) {
+    Table root = file.root();
+    title_ = root.text("title", "");
+    const std::vector<std::string> names = read_models(root);
+    ball_ = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    const models::Options options = read_options(root, names);
+    const std::vector<std::string> balls = root.texts("balls", std::vector<std::string>{});
+    for (const std::string& ball : balls)
+      if (std::ranges::find(models::ball_library(), ball, &models::NamedFeBall::name) == models::ball_library().end())
+        root.fail("balls", fmt::format("no ball '{}'; `hosel list` shows them", ball));
+    for (const std::string& name : names) {
+      const models::ModelEntry& entry = *models::find(name);
+      if (balls.empty() || !name.starts_with("fe-")) {
+        thrown_.push_back({name, entry.make(options)});
+        continue;
+      }
+      for (const std::string& ball : balls) {
+        models::Options own = options;
+        own.fe.ball = std::ranges::find(models::ball_library(), ball, &models::NamedFeBall::name)->make();
+        thrown_.push_back({ball, entry.make(own)});
+      }
+    }
+    Table throws = root.table("throws");
+    speeds_ = throws.quantities("speeds", "mps", 0, {0, 200, true});
+    angles_ = throws.quantities("angles", "deg", 0, {1e-3, 1.5}, std::vector<double>{});
+    for (Table t : root.tables("measured")) {
+      std::vector<std::string> known;
+      for (const Quantity& q : kQuantities) known.emplace_back(q.name);
+      const std::string wanted = t.choice("quantity", known);
+      Measured m{.quantity = &*std::ranges::find(kQuantities, wanted, &Quantity::name)};
+      m.label = t.text("label");
+      m.angles = t.quantities("angles", "deg", 0, {1e-3, 1.5});
+      const auto numbers = [&](const std::string& key, std::optional<std::vector<double>> standard) {
+        return *m.quantity->unit ? t.quantities(key, m.quantity->unit, 0, Range::finite(), standard)
+                                 : t.numbers(key, 0, Range::finite(), standard);
+      };
+      m.values = numbers("values", {});
+      m.half_ranges = numbers("half_ranges", std::vector<double>{});
+      if (m.values.size() != m.angles.size()) t.fail("values", "one value for each angle");
+      if (!m.half_ranges.empty() && m.half_ranges.size() != m.angles.size())
+        t.fail("half_ranges", "one half range for each angle, or none");
+      measured_.push_back(std::move(m));
+    }
+    // Compared where it was measured, not between.
+    for (const Measured& m : measured_) angles_.insert(angles_.end(), m.angles.begin(), m.angles.end());
+    std::ranges::sort(angles_);
+    angles_.erase(std::ranges::unique(angles_).begin(), angles_.end());
+    if (angles_.empty()) root.fail("throws", "name at least one angle");
+  }
+
+  void run(Output& out) override {
+    const std::size_t grid = speeds_.size() * angles_.size(), count = thrown_.size() * grid;
+    std::vector<models::Bounce> bounces(count);
+    {
+      Progress progress = out.progress("bounces");
+      std::atomic<std::size_t> done = 0;
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+        const std::size_t at = k % grid;
+        bounces[k] =
+            models::bounce(*thrown_[k / grid].model, ball_, speeds_[at / angles_.size()], angles_[at % angles_.size()]);
+        progress.update(double(++done) / double(count));
+      });
+      progress.finish();
+    }
+    std::string csv = "ball,speed_mps,angle_deg";
+    for (const Quantity& q : kQuantities) csv += "," + with_unit(q);
+    csv += '\n';
+    for (std::size_t k = 0; k < count; ++k) {
+      csv += fmt::format("{},{:.6g},{:.6g}", thrown_[k / grid].name, bounces[k].speed, degrees(bounces[k].angle));
+      for (const Quantity& q : kQuantities) csv += fmt::format(",{:.6g}", bounces[k].*q.value / q.si);
+      csv += '\n';
+    }
+    out.write("bounces.csv", csv);
+    nlohmann::json summary{{"bounces", count}};
+    if (measured_.empty()) table(out, bounces);
+    else compare(out, bounces, summary);
+    if (const std::string missing = post::draw(figure(bounces), out.path("bounces")); !missing.empty())
+      out.say(missing);
+    out.write_summary(summary);
+  }
+
+ private:
+  const models::Bounce& at(const std::vector<models::Bounce>& all, std::size_t thrown, std::size_t speed,
+                           double angle) const {
+    const std::size_t a = std::size_t(std::ranges::find(angles_, angle) - angles_.begin());
+    return all[(thrown * speeds_.size() + speed) * angles_.size() + a];
+  }
+  std::string title(std::size_t thrown, std::size_t speed) const {
+    return speeds_.size() == 1 ? thrown_[thrown].name
+                               : fmt::format("{}, {:g} m/s", thrown_[thrown].name, speeds_[speed]);
+  }
+
+  void table(Output& out, const std::vector<models::Bounce>& all) const {
+    for (std::size_t t = 0; t < thrown_.size(); ++t)
+      for (std::size_t s = 0; s < speeds_.size(); ++s) {
+        out.say(fmt::format("\n{}\n{:>10} {:>10} {:>10} {:>14} {:>16} {:>10}", title(t, s), "angle", "e_t", "ratio",
+                            "spin [rad/s]", "rebound [deg]", "e"));
+        for (const double angle : angles_) {
+          const models::Bounce& b = at(all, t, s, angle);
+          out.say(fmt::format("{:>10.2f} {:>10.3f} {:>10.3f} {:>14.1f} {:>16.2f} {:>10.4f}", degrees(angle),
+                              b.tangential_restitution, b.tangential_ratio, b.spin, degrees(b.rebound_angle),
+                              b.normal_restitution));
+        }
+      }
+  }
+
+  /// Every measured point beside every model; root mean squares of the error, and of it over the measured value.
+  void compare(Output& out, const std::vector<models::Bounce>& all, nlohmann::json& summary) const {
+    for (const Measured& m : measured_) {
+      const Quantity& q = *m.quantity;
+      std::string head = fmt::format("\n{}: {}\n{:>10} {:>10}", with_unit(q), m.label, "angle", "measured");
+      for (std::size_t t = 0; t < thrown_.size(); ++t)
+        for (std::size_t s = 0; s < speeds_.size(); ++s) head += fmt::format(" {:>26}", title(t, s));
+      out.say(head);
+      std::vector<double> square(thrown_.size() * speeds_.size()), relative = square;
+      for (std::size_t i = 0; i < m.angles.size(); ++i) {
+        std::string line = fmt::format("{:>10.2f} {:>10.4g}", degrees(m.angles[i]), m.values[i] / q.si);
+        for (std::size_t k = 0; k < square.size(); ++k) {
+          const double value = at(all, k / speeds_.size(), k % speeds_.size(), m.angles[i]).*q.value;
+          const double off = value - m.values[i];
+          square[k] += off * off / double(m.angles.size());
+          relative[k] += std::pow(off / m.values[i], 2) / double(m.angles.size());
+          line += fmt::format(" {:>12.4g} ({:>+11.3g})", value / q.si, off / q.si);
+        }
+        out.say(line);
+      }
+      std::string line = fmt::format("{:>21}", "rms");
+      for (std::size_t k = 0; k < square.size(); ++k) {
+        line += fmt::format(" {:>14.3g} {:>9.1f} %", std::sqrt(square[k]) / q.si, 100 * std::sqrt(relative[k]));
+        summary["measured"].push_back({{"quantity", with_unit(q)},
+                                       {"label", m.label},
+                                       {"ball", title(k / speeds_.size(), k % speeds_.size())},
+                                       {"rms", std::sqrt(square[k]) / q.si},
+                                       {"rms_relative", std::sqrt(relative[k])}});
+      }
+      out.say(line);
+    }
+  }
+
+  post::Figure figure(const std::vector<models::Bounce>& all) const {
+    post::Figure f{.title = title_, .columns = 2};
+    for (const Quantity& q : kQuantities) {
+      post::Panel p{.x_label = "angle of incidence from the normal [deg]", .y_label = q.label, .key = "bottom right"};
+      for (std::size_t t = 0; t < thrown_.size(); ++t)
+        for (std::size_t s = 0; s < speeds_.size(); ++s) {
+          post::Series line{.label = title(t, s)};
+          for (const double angle : angles_) {
+            line.x.push_back(degrees(angle));
+            line.y.push_back(at(all, t, s, angle).*q.value / q.si);
+          }
+          p.series.push_back(line);
+        }
+      for (const Measured& m : measured_) {
+        if (m.quantity != &q) continue;
+        post::Series points{.label = m.label, .style = "points"};
+        for (std::size_t i = 0; i < m.angles.size(); ++i) {
+          points.x.push_back(degrees(m.angles[i]));
+          points.y.push_back(m.values[i] / q.si);
+          if (!m.half_ranges.empty()) points.error.push_back(m.half_ranges[i] / q.si);
+        }
+        p.series.push_back(points);
+      }
+      if (&q != &kQuantities.back() ||
+          std::ranges::any_of(measured_, [&](const Measured& m) { return m.quantity == &q; }))
+        f.panels.push_back(p);
+    }
+    return f;
+  }
+
+  std::string title_;
+  Ball ball_;
+  std::vector<Thrown> thrown_;
+  std::vector<double> speeds_, angles_;
+  std::vector<Measured> measured_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_bounce(CaseFile& file) { return std::make_unique<BounceJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,10 @@
+/// The kind `bounce`: balls thrown obliquely at a rigid plate.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_bounce(CaseFile& file);
+
+}  // namespace hosel::app

@@ -1,0 +1,207 @@
+#include "hosel/app/kinds/variants.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/models/ball_calibration.hpp"
+#include "hosel/models/matched_launch.hpp"
+#include "hosel/models/oblique.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// What an instrument saw of the blow; absent where it did not look.
+struct Seen {
+  std::optional<double> spin_rate, ball_speed, launch_angle;  ///< SI
+  std::vector<double> launch_ratio;                           ///< of each instrument
+};
+
+struct Variant {
+  std::string name, range;  ///< range: how far the lever goes, in words
+  std::vector<std::string> set;
+  std::string model;
+  Blow blow;
+  models::Options options;
+  Seen seen;
+};
+
+struct Answer {
+  std::string error;
+  double elastic = 1, viscous = 1;  ///< factors on the moduli that keep the bounce
+  double normal_restitution = NAN, contact_time = NAN;
+  double loft = NAN;
+  Launch launch;
+  double e_t = NAN, ratio = NAN;
+};
+
+class VariantsJob final : public Job {
+ public:
+  explicit VariantsJob(CaseFile& file) {
+    const std::vector<Variant> first = read(file.root());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      std::vector<std::string> overrides = first[i].set;  // the command line has the last word
+      overrides.insert(overrides.end(), file.overrides().begin(), file.overrides().end());
+      CaseFile own(file.file(), overrides);
+      variants_.push_back(read(own.root()).at(i));
+      own.root().text("kind");
+      own.root().text("title", "");
+      own.finish();
+    }
+  }
+
+  void run(Output& out) override {
+    std::vector<Answer> answers(variants_.size());
+    answers.front() = answer(variants_.front(), nullptr);
+    if (!answers.front().error.empty())
+      throw InputError(fmt::format("{}: {}", variants_.front().name, answers.front().error));
+    Progress progress = out.progress("variants");
+    std::atomic<std::size_t> done = 1;
+    tbb::parallel_for(std::size_t{1}, variants_.size(), [&](std::size_t i) {
+      answers[i] = answer(variants_[i], &answers.front());
+      progress.update(double(++done) / double(variants_.size()), variants_[i].name);
+    });
+    progress.finish();
+    report(out, answers);
+  }
+
+ private:
+  std::vector<Variant> read(Table root) {
+    const std::vector<std::string> names = read_models(root);
+    Variant base{.model = names.front()};
+    if (names.size() > 1) root.fail("models", "variants of one model are compared");
+    base.blow = read_blow(root, names);
+    base.options = read_options(root, names);
+    if (auto t = root.optional_table("measured")) base.seen = read_seen(*t);
+    matched_ = root.flag("matched_launch", false);
+    if (root.has_quantity("keep_bounce")) bounce_speed_ = root.quantity("keep_bounce", "mps", {1, 100});
+    std::vector<Variant> out;
+    for (Table t : root.tables("variants")) {
+      Variant v = base;
+      v.name = t.text("name");
+      v.range = t.text("range", "");
+      v.set = t.texts("set", std::vector<std::string>{});
+      if (auto own = t.optional_table("measured")) v.seen = read_seen(*own);
+      if (matched_ && !v.seen.launch_angle) t.fail("", "matched_launch needs a measured launch angle");
+      out.push_back(std::move(v));
+    }
+    if (out.empty())
+      root.fail("variants", "name at least one [[variants]]; the first is what the others are compared with");
+    return out;
+  }
+  static Seen read_seen(Table t) {
+    Seen s;
+    if (t.has_quantity("spin_rate")) s.spin_rate = t.quantity("spin_rate", "rpm", Range::positive());
+    if (t.has_quantity("ball_speed")) s.ball_speed = t.quantity("ball_speed", "mps", Range::positive());
+    if (t.has_quantity("launch_angle")) s.launch_angle = t.quantity("launch_angle", "deg", {-1.5, 1.5});
+    s.launch_ratio = t.numbers("launch_ratio", 0, {-1, 2}, std::vector<double>{});
+    return s;
+  }
+
+  Answer answer(const Variant& v, const Answer* reference) const {
+    Answer a;
+    try {
+      models::Options options = v.options;
+      if (bounce_speed_) keep_bounce(options.fe, v.blow.ball, reference, a);
+      const auto model = models::find(v.model)->make(options);
+      Blow blow = v.blow;
+      if (matched_) {
+        auto found = models::match_launch_angle(*model, blow, *v.seen.launch_angle, radians(0.03));
+        blow = std::move(found.blow);
+        a.launch = found.launch;
+      } else {
+        a.launch = model->launch(blow);
+      }
+      a.loft = blow.delivery.dynamic_loft;
+      a.e_t = models::tangential_restitution(blow, a.launch).value_or(NAN);
+      a.ratio = models::launch_ratio(blow, a.launch).value_or(NAN);
+    } catch (const std::exception& e) { a.error = e.what(); }
+    return a;
+  }
+
+  /// A lever that changes the ball's bounce would be judged by that: moduli and branches are scaled until restitution
+  /// and contact time on a wall are the first variant's again.
+  void keep_bounce(models::FeImpactOptions& fe, const Ball& ball, const Answer* reference, Answer& a) const {
+    models::FeImpactOptions axial = fe;
+    axial.harmonics = 0;
+    const models::NormalImpactPoint own = models::normal_impact(axial, ball, *bounce_speed_);
+    a.normal_restitution = own.restitution;
+    a.contact_time = own.contact_time;
+    if (!reference) return;
+    const bool same = std::abs(own.restitution - reference->normal_restitution) < 5e-4 &&
+                      std::abs(own.contact_time / reference->contact_time - 1) < 2e-3;
+    if (same) return;
+    const models::NormalImpactTarget target{.speeds = {*bounce_speed_},
+                                            .restitution = reference->normal_restitution,
+                                            .restitution_slope = 0,
+                                            .restitution_sigma = 5e-4,
+                                            .contact_speed = *bounce_speed_,
+                                            .contact_time = reference->contact_time,
+                                            .contact_time_sigma = 2e-3 * reference->contact_time};
+    const models::BallCalibration fit = models::calibrate_ball(axial, ball, target, true);
+    fe.ball = fit.ball;
+    a.elastic = fit.values[0] / fit.start[0];
+    a.viscous = fit.values[1] / fit.start[1];
+    a.normal_restitution = fit.points.front().restitution;
+    a.contact_time = fit.points.front().contact_time;
+  }
+
+  void report(Output& out, const std::vector<Answer>& answers) const {
+    std::size_t width = 8;
+    for (const Variant& v : variants_) width = std::max(width, v.name.size() + 1);
+    out.say(fmt::format("\n{:<{}} {:>7} {:>7} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {}", "variant", width, "loft",
+                        "launch", "speed", "off [%]", "spin", "off [%]", "e_t", "ratio", "measured ratios"));
+    std::string csv =
+        "variant,dynamic_loft_deg,launch_angle_deg,ball_speed_mps,spin_rate_rpm,tangential_restitution,"
+        "launch_ratio,normal_restitution,contact_time_ms,elastic_factor,viscous_factor,range,error\n";
+    nlohmann::json summary;
+    for (std::size_t i = 0; i < variants_.size(); ++i) {
+      const Variant& v = variants_[i];
+      const Answer& a = answers[i];
+      if (!a.error.empty()) {
+        out.say(fmt::format("{:<{}} {}", v.name, width, a.error));
+        csv += fmt::format("{},,,,,,,,,,,,{}\n", post::csv_cell(v.name), post::csv_cell(a.error));
+        summary["variants"][v.name] = {{"error", a.error}};
+        continue;
+      }
+      const auto off = [](double value, const std::optional<double>& seen) {
+        return seen ? fmt::format("{:>+8.2f}", 100 * (value / *seen - 1)) : fmt::format("{:>8}", "-");
+      };
+      const double speed = a.launch.ball_speed(), spin = a.launch.spin_rate();
+      std::string ratios;
+      for (const double r : v.seen.launch_ratio) ratios += fmt::format("{:g} ", r);
+      out.say(fmt::format("{:<{}} {:>7.2f} {:>7.2f} {:>8.2f} {} {:>8.0f} {} {:>7.3f} {:>7.3f}  {}", v.name, width,
+                          degrees(a.loft), degrees(a.launch.launch_angle()), speed, off(speed, v.seen.ball_speed),
+                          rpm(spin), off(spin, v.seen.spin_rate), a.e_t, a.ratio, ratios));
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},\n",
+                         post::csv_cell(v.name), degrees(a.loft), degrees(a.launch.launch_angle()), speed, rpm(spin),
+                         a.e_t, a.ratio, a.normal_restitution, 1e3 * a.contact_time, a.elastic, a.viscous,
+                         post::csv_cell(v.range));
+      summary["variants"][v.name] = {{"dynamic_loft_deg", degrees(a.loft)},
+                                     {"launch_angle_deg", degrees(a.launch.launch_angle())},
+                                     {"ball_speed_mps", speed},
+                                     {"spin_rate_rpm", rpm(spin)},
+                                     {"tangential_restitution", a.e_t},
+                                     {"launch_ratio", a.ratio}};
+    }
+    out.write("variants.csv", csv);
+    out.write_summary(summary);
+  }
+
+  std::vector<Variant> variants_;
+  bool matched_ = false;
+  std::optional<double> bounce_speed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_variants(CaseFile& file) { return std::make_unique<VariantsJob>(file); }
+
+}  // namespace hosel::app

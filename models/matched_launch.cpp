@@ -1,0 +1,25 @@
+#include "hosel/models/matched_launch.hpp"
+
+#include <cmath>
+
+#include "hosel/solvers/errors.hpp"
+
+namespace hosel::models {
+
+MatchedLaunch match_launch_angle(const ImpactModel& model, Blow blow, double launch_angle, double tolerance) {
+  MatchedLaunch out{.blow = std::move(blow)};
+  double& loft = out.blow.delivery.dynamic_loft;
+  double slope = 0.7, last_loft = 0, last_angle = 0;  // of a gripping ball: launch ratios are 0.6 to 0.85
+  while (out.blows < 8) {
+    out.launch = model.launch(out.blow);
+    const double angle = out.launch.launch_angle();
+    if (std::abs(angle - launch_angle) <= tolerance) return ++out.blows, out;
+    if (out.blows++ > 0 && loft != last_loft) slope = (angle - last_angle) / (loft - last_loft);
+    last_loft = loft;
+    last_angle = angle;
+    loft += (launch_angle - angle) / slope;
+  }
+  throw solvers::NonConvergence("no loft of this blow gives the launch angle that was measured");
+}
+
+}  // namespace hosel::models
