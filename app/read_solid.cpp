@@ -1,17 +1,62 @@
 #include "hosel/app/read_solid.hpp"
 
+#include <algorithm>
 #include <array>
+
+#include "hosel/fem/materials/hyperelastic.hpp"
+#include "hosel/fem/materials/linear_elastic.hpp"
+#include "hosel/fem/materials/ogden.hpp"
+#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
 
 namespace hosel::app {
 namespace {
 
+fem::Lame read_lame(Table& t) {
+  const double young = t.quantity("young", "MPa", Range::positive());
+  return fem::Lame::of(young, t.number("poisson", {-0.9, 0.49999}));
+}
+
+/// c10 and the bulk modulus, which every polynomial law has.
+fem::Hyperelastic read_polynomial(Table& t) {
+  const double c10 = t.quantity("c10", "MPa", Range::positive());
+  return {.c10 = c10, .bulk = t.quantity("bulk", "MPa", Range::positive())};
+}
+
+fem::Elastic neo_hooke(Table& t) {
+  return t.has_quantity("c10") ? read_polynomial(t) : fem::Hyperelastic::neo_hooke(read_lame(t));
+}
+
+fem::Elastic mooney_rivlin(Table& t) {
+  fem::Hyperelastic law = read_polynomial(t);
+  law.c01 = t.quantity("c01", "MPa", Range::non_negative());
+  return law;
+}
+
+fem::Elastic yeoh(Table& t) {
+  fem::Hyperelastic law = read_polynomial(t);
+  law.c20 = t.quantity("c20", "MPa");
+  law.c30 = t.quantity("c30", "MPa", Range::finite(), 0.0);
+  return law;
+}
+
+fem::Elastic ogden(Table& t) {
+  fem::Ogden law{.bulk = t.quantity("bulk", "MPa", Range::positive())};
+  const auto moduli = t.quantities("moduli", "MPa", 0, Range::finite());
+  const auto exponents = t.numbers("exponents", moduli.size(), Range::finite());
+  for (std::size_t i = 0; i < moduli.size(); ++i) law.powers.push_back({moduli[i], exponents[i]});
+  return law;
+}
+
+fem::Elastic st_venant_kirchhoff(Table& t) { return fem::StVenantKirchhoff{read_lame(t)}; }
+fem::Elastic linear(Table& t) { return fem::LinearElastic{read_lame(t)}; }
+
 constexpr std::array kLaws = {
-    NamedLaw{"neo-hooke", "c10 and bulk modulus, or Young's modulus and Poisson's ratio"},
-    NamedLaw{"mooney-rivlin", "c10, c01 and bulk modulus"},
-    NamedLaw{"yeoh", "c10, c20, c30 and bulk modulus"},
-    NamedLaw{"ogden", "moduli and exponents of principal stretches, and bulk modulus"},
-    NamedLaw{"st-venant-kirchhoff", "Green's strain, linear: Young's modulus and Poisson's ratio"},
-    NamedLaw{"linear", "small strain: Young's modulus and Poisson's ratio"},
+    NamedLaw{"neo-hooke", "c10 and bulk modulus, or Young's modulus and Poisson's ratio", neo_hooke},
+    NamedLaw{"mooney-rivlin", "c10, c01 and bulk modulus", mooney_rivlin},
+    NamedLaw{"yeoh", "c10, c20, c30 and bulk modulus", yeoh},
+    NamedLaw{"ogden", "moduli and exponents of principal stretches, and bulk modulus", ogden},
+    NamedLaw{"st-venant-kirchhoff", "Green's strain, linear: Young's modulus and Poisson's ratio", st_venant_kirchhoff},
+    NamedLaw{"linear", "small strain: Young's modulus and Poisson's ratio", linear},
 };
 
 }  // namespace
@@ -19,36 +64,14 @@ constexpr std::array kLaws = {
 std::span<const NamedLaw> solid_laws() { return kLaws; }
 
 fem::Solid read_solid(Table table) {
-  const Range positive = Range::positive(), some = Range::non_negative();
-  fem::Solid solid;
-  solid.density = table.quantity("density", "kg_per_m3", positive, 1129.0);
-  std::vector<std::string> laws;
-  for (const NamedLaw& l : kLaws) laws.emplace_back(l.name);
-  const std::string law = table.choice("law", laws, "neo-hooke");
-  if (law == "mooney-rivlin" || law == "yeoh" || (law == "neo-hooke" && table.has_quantity("c10"))) {
-    fem::Hyperelastic h;
-    h.c10 = table.quantity("c10", "MPa", positive);
-    h.bulk = table.quantity("bulk", "MPa", positive);
-    if (law == "mooney-rivlin") h.c01 = table.quantity("c01", "MPa", some);
-    if (law == "yeoh") {
-      h.c20 = table.quantity("c20", "MPa");
-      h.c30 = table.quantity("c30", "MPa", Range::finite(), 0.0);
-    }
-    solid.elastic = h;
-  } else if (law == "ogden") {
-    fem::Ogden o{.bulk = table.quantity("bulk", "MPa", positive)};
-    const auto moduli = table.quantities("moduli", "MPa", 0, Range::finite());
-    const auto exponents = table.numbers("exponents", moduli.size(), Range::finite());
-    for (std::size_t i = 0; i < moduli.size(); ++i) o.powers.push_back({moduli[i], exponents[i]});
-    solid.elastic = o;
-  } else {
-    const auto lame = fem::Lame::of(table.quantity("young", "MPa", positive), table.number("poisson", {-0.9, 0.49999}));
-    if (law == "neo-hooke") solid.elastic = fem::Hyperelastic::neo_hooke(lame);
-    if (law == "st-venant-kirchhoff") solid.elastic = fem::StVenantKirchhoff{lame};
-    if (law == "linear") solid.elastic = fem::LinearElastic{lame};
-  }
-  const auto moduli = table.quantities("branch_moduli", "MPa", 0, some, std::vector<double>{});
-  const auto times = table.quantities("branch_times", "ms", moduli.size(), positive, std::vector<double>{});
+  const double density = table.quantity("density", "kg_per_m3", Range::positive(), 1129.0);
+  std::vector<std::string> names;
+  for (const NamedLaw& l : kLaws) names.emplace_back(l.name);
+  const std::string name = table.choice("law", names, "neo-hooke");
+  const auto law = std::ranges::find(kLaws, name, &NamedLaw::name);
+  fem::Solid solid{.elastic = law->read(table), .branches = {}, .density = density};
+  const auto moduli = table.quantities("branch_moduli", "MPa", 0, Range::non_negative(), std::vector<double>{});
+  const auto times = table.quantities("branch_times", "ms", moduli.size(), Range::positive(), std::vector<double>{});
   if (moduli.size() != times.size()) table.fail("branch_times_ms", "one relaxation time for each branch modulus");
   for (std::size_t i = 0; i < moduli.size(); ++i) solid.branches.push_back({moduli[i], times[i]});
   if (const auto faults = solid.faults(); !faults.empty()) table.fail("law", faults.front());

@@ -11,7 +11,8 @@ namespace hosel::app {
 
 struct NamedLaw {
   std::string_view name;
-  std::string_view what;  ///< one sentence for `hosel list`
+  std::string_view what;           ///< one sentence for `hosel list`
+  fem::Elastic (*read)(Table& t);  ///< its constants from the material's table
 };
 std::span<const NamedLaw> solid_laws();
 

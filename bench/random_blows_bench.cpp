@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/solvers/errors.hpp"

@@ -15,6 +15,15 @@ function(hosel_floor name)
     target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict
                            # Designated initialisers leave out what has a default.
                            "$<$<BOOL:${HOSEL_WERROR}>:-Werror;-Wno-missing-field-initializers>")
+    # Floors with the same flags share one precompiled header, the first one's.
+    if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+      target_compile_options(hosel_${name} PRIVATE -Wno-array-bounds)  # false alarms inside Eigen's AVX-512 packets
+    endif()
+    if(name MATCHES "^(mesh|fem|solvers|models|post)$")
+      target_precompile_headers(hosel_${name} REUSE_FROM hosel_golf)
+    else()
+      target_precompile_headers(hosel_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
+    endif()
   endif()
   add_library(hosel::${name} ALIAS hosel_${name})
   set_target_properties(hosel_${name} PROPERTIES EXPORT_NAME ${name})

@@ -25,7 +25,7 @@ constexpr std::array kGauss4 = {-0.86113631159405257522, -0.33998104358485626480
 constexpr std::array kWeight4 = {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263,
                                  0.34785484513745385737};
 
-/// Shear that does not yield: stiff against the bending of one element, so that the frequencies move by
+/// Shear-rigid: stiff against the bending of one element, so that the frequencies move by
 /// less than 1e-5 of what the mesh does, and the tangent stays well conditioned.
 constexpr double kHeldShear = 1e5;
 

@@ -43,7 +43,7 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
   for (const Solid& m : materials_) {
     if (const auto faults = m.faults(); !faults.empty())
       throw std::invalid_argument("harmonic solid: " + faults.front());
-    corotated_ = corotated_ || m.linear();
+    corotated_ = corotated_ || m.elastic.corotated();
   }
   dissipated_.assign(materials_.size(), 0);
 

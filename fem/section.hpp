@@ -22,7 +22,7 @@ struct Section {
 using SectionLaw = std::function<Section(double)>;
 
 /// Sections of a shaft from its table. Rayleigh beam theory where `shear` is false: rotary inertia
-/// counts, shear does not yield.
+/// counts, shear-rigid.
 SectionLaw shaft_sections(const Shaft& shaft, bool shear = true);
 
 }  // namespace hosel::fem

@@ -18,10 +18,9 @@ using Logs = std::vector<double>;
 FeBall scaled(FeBall ball, const Logs& logs) {
   const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = logs.size() > 2 ? std::exp(logs[2]) : 1;
   for (BallLayer& layer : ball.layers) {
-    auto* law = std::get_if<fem::Hyperelastic>(&layer.material.elastic);
-    if (!law || layer.material.branches.empty())
-      throw std::invalid_argument("calibration needs hyperelastic layers with relaxation branches");
-    for (double* c : {&law->c10, &law->c01, &law->c20, &law->c30}) *c *= elastic;
+    if (layer.material.branches.empty())
+      throw std::invalid_argument("calibration needs layers with relaxation branches");
+    layer.material.elastic = layer.material.elastic.stiffened(elastic);
     for (auto& b : layer.material.branches) {
       b.modulus *= viscous;
       b.time *= time;
@@ -132,10 +131,10 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
 
   BallCalibration out;
   out.ball = scaled(options.ball, logs);
-  const auto& law0 = std::get<fem::Hyperelastic>(options.ball.layers.front().material.elastic);
-  const auto& branch0 = options.ball.layers.front().material.branches.front();
+  const fem::Solid& first = options.ball.layers.front().material;
+  const fem::MaxwellBranch& branch0 = first.branches.front();
   out.names = {"long-term shear modulus [Pa]", "branch shear modulus [Pa]", "branch time [s]"};
-  out.start = {law0.shear(), branch0.modulus, branch0.time};
+  out.start = {first.shear(), branch0.modulus, branch0.time};
   out.names.resize(logs.size());
   out.start.resize(logs.size());
   for (std::size_t p = 0; p < logs.size(); ++p) out.values.push_back(out.start[p] * std::exp(logs[p]));

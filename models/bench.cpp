@@ -19,7 +19,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What yields, in the order of the factors.
+/// Compliances, in the order of the factors.
 enum Compliance { kBending, kTorsion, kClamp, kHosel = kClamp + 3, kCompliances = kHosel + 3 };
 
 /// Of a rigid body about a point from which its centre lies at c.
@@ -167,7 +167,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   const Vec3 cg = with_head ? Vec3(turn * (club.head.cg - club.geometry.hosel)) : Vec3::Zero();
   const double head = with_head ? club.head.mass : 0;
 
-  // Beam alone: flexibility apart by what yields.
+  // Beam alone: flexibility apart by compliance.
   Assembly plain, stiff;
   assemble(plain, *club.shaft, options);
   assemble(stiff, scaled(*club.shaft, 2, 1), options);

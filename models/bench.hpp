@@ -1,7 +1,7 @@
 /// A shaft clamped on the bench, with or without its head: small vibrations, fast enough to be fitted.
 ///
 /// Axes are the grip's: ZG along the shaft from tip to butt, XG the lead direction, YG the droop direction. A
-/// cantilever is statically determinate, so its flexibility F is a sum over what yields (bending, torsion, the
+/// cantilever is statically determinate, so its flexibility F is a sum of compliances (bending, torsion, the
 /// clamp, the hosel), each with a factor of its own, and zero compliance is as regular as any other. With the mass
 /// matrix M the modes are F M u = u / omega^2, projected on a basis V that holds the modes and static responses of
 /// several such clubs (Rayleigh-Ritz on the inverse operator).

@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "hosel/fem/materials/hyperelastic.hpp"
+
 namespace hosel::models {
 
 std::vector<std::string> FeBall::faults() const {

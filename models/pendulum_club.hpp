@@ -7,7 +7,7 @@ namespace hosel::models {
 
 /// The club as one rigid pendulum: head and a rigid straight rod with the shaft's mass per length, free
 /// to turn about its butt in all directions; the butt keeps the velocity that the club's motion gives it.
-/// After the cylinder pendulum of Tanaka et al. (the first source document's [2]). Contact as stick-slip.
+/// After the cylinder pendulum of Tanaka et al. (reference [2] of [@shaft-influence]). Contact as stick-slip.
 /// Throws std::invalid_argument where the club has no shaft.
 class PendulumClub final : public ImpactModel {
  public:

@@ -1,4 +1,4 @@
-/// The other way round: stiffness and damping of a shaft from measured deflections in the swing.
+/// Inverse problem: stiffness and damping of a shaft from measured deflections in the swing.
 #pragma once
 
 #include <Eigen/Core>

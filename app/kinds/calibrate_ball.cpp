@@ -8,6 +8,7 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_solid.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/models/ball_calibration.hpp"
 #include "hosel/post/figure.hpp"
 
@@ -21,6 +22,9 @@ class CalibrateBallJob final : public Job {
     Table ball = root.table("ball");
     ball_ = read_ball(ball);
     options_.ball = read_fe_ball(ball, models::range_ball());
+    for (const models::BallLayer& layer : options_.ball.layers)
+      if (!layer.material.elastic.as<fem::Hyperelastic>())
+        ball.fail("layers", "calibration fits neo-hooke, mooney-rivlin and yeoh layers");
     options_.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) {
       options_.mesh.sector = int(mesh->integer("sector", 1, 64, options_.mesh.sector));
@@ -129,7 +133,7 @@ class CalibrateBallJob final : public Job {
                         hold_times_ ? "# branch times were held" : "# branch times were fitted", ball_.mass,
                         1e3 * ball_.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
-      const auto& law = std::get<fem::Hyperelastic>(layer.material.elastic);
+      const auto& law = *layer.material.elastic.as<fem::Hyperelastic>();
       std::vector<double> moduli, times;
       for (const auto& b : layer.material.branches) moduli.push_back(b.modulus / 1e6), times.push_back(b.time * 1e3);
       const char* name = law.c01 != 0 ? "mooney-rivlin" : law.c20 != 0 || law.c30 != 0 ? "yeoh" : "neo-hooke";

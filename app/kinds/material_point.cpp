@@ -15,9 +15,8 @@ namespace {
 /// Stretch or shear over time: what the point is driven along.
 class MaterialPointJob final : public Job {
  public:
-  explicit MaterialPointJob(CaseFile& file) {
+  explicit MaterialPointJob(CaseFile& file) : solid_(read_solid(file.root().table("material"))) {
     Table root = file.root();
-    solid_ = read_solid(root.table("material"));
     Table path = root.table("path");
     what_ = path.choice("kind", {"uniaxial", "shear", "relaxation", "hysteresis"});
     if (what_ == "uniaxial") {

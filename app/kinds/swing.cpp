@@ -48,7 +48,7 @@ class SwingJob final : public Job {
     post::Series lead{.label = "lead"}, droop{.label = "droop"}, speed{.label = ""};
     double peak_lead = 0, peak_droop = 0;
     for (const auto& s : samples) {
-      // The wrench in grip axes, as the first source shows it.
+      // The wrench in grip axes, as [@shaft-influence] shows it.
       const Vec3 force = s.grip.rotation.conjugate() * s.force;
       csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.time,
                          1e3 * s.lead, 1e3 * s.droop, degrees(s.twist.z()), s.head.velocity.norm(), force.x(),

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hosel/fem/materials/elastic.hpp"
+#include "hosel/fem/materials/elastic_law.hpp"
 
 namespace hosel::fem {
 
@@ -25,6 +25,15 @@ struct Ogden {
     double sum = 0;
     for (const Power& p : powers) sum += p.modulus;
     return sum;
+  }
+  double bulk_modulus() const { return bulk; }
+  void stiffen(double factor) {
+    for (Power& p : powers) p.modulus *= factor;
+  }
+  std::vector<std::string> faults() const {
+    for (const Power& p : powers)
+      if (p.exponent == 0 || !std::isfinite(p.exponent)) return {"an Ogden exponent must be finite and not zero"};
+    return {};
   }
 
   void add(const Sym& C, bool tangent, Response& out) const {

@@ -5,11 +5,6 @@
 namespace hosel::fem {
 namespace {
 
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-
 using ConstSym = Eigen::Map<const Sym>;
 
 /// P = F S and its tangent from those of S.
@@ -31,22 +26,6 @@ void push(const Mat3& F, const Response& r, bool tangent, PointResponse& out) {
       for (int i = 0; i < 3; ++i) out.tangent(i + 3 * I, i + 3 * K) += S(I, K);
 }
 
-void respond_linear(const LinearElastic& law, const Mat3& F, const Mat3& Q, bool tangent, PointResponse& out) {
-  const Mat3 H = Q.transpose() * F;
-  const Mat3 e = 0.5 * (H + H.transpose()) - Mat3::Identity();
-  const double trace = e.trace();
-  out.energy = 0.5 * law.lambda * trace * trace + law.mu * e.squaredNorm();
-  out.stress = law.lambda * trace * Q + 2 * law.mu * Q * e;
-  if (!tangent) return;
-  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> q(Q.data());
-  out.tangent.noalias() = law.lambda * q * q.transpose();
-  for (int I = 0; I < 3; ++I)
-    for (int i = 0; i < 3; ++i)
-      for (int K = 0; K < 3; ++K)
-        for (int k = 0; k < 3; ++k)
-          out.tangent(i + 3 * I, k + 3 * K) += law.mu * ((i == k && I == K ? 1.0 : 0.0) + Q(i, K) * Q(k, I));
-}
-
 }  // namespace
 
 std::vector<std::string> Solid::faults() const {
@@ -54,13 +33,10 @@ std::vector<std::string> Solid::faults() const {
   if (!(density > 0)) out.emplace_back("a material needs a positive density");
   if (!(bulk() > 0)) out.emplace_back("a material needs a positive bulk modulus");
   if (!(shear() > 0)) out.emplace_back("a material needs a positive long-term shear modulus");
-  if (linear() && !branches.empty())
+  if (elastic.corotated() && !branches.empty())
     out.emplace_back(
         "small-strain linear elasticity is for comparison with theory and takes no relaxation: use neo-hooke");
-  if (const auto* ogden = std::get_if<Ogden>(&elastic))
-    for (const auto& p : ogden->powers)
-      if (p.exponent == 0 || !std::isfinite(p.exponent))
-        out.emplace_back("an Ogden exponent must be finite and not zero");
+  for (auto& fault : elastic.faults()) out.push_back(std::move(fault));
   for (const auto& b : branches) {
     if (!(b.modulus >= 0)) out.emplace_back("a relaxation branch needs a modulus of at least zero");
     if (!(b.time > 0)) out.emplace_back("a relaxation branch needs a positive time");
@@ -68,22 +44,10 @@ std::vector<std::string> Solid::faults() const {
   return out;
 }
 
-double Solid::shear() const {
-  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.shear(); },
-                               [](const Ogden& o) { return o.shear(); }, [](const Lame& l) { return l.mu; }},
-                    elastic);
-}
-
 double Solid::instant_shear() const {
   double sum = shear();
   for (const auto& b : branches) sum += b.modulus;
   return sum;
-}
-
-double Solid::bulk() const {
-  return std::visit(Overloaded{[](const Hyperelastic& h) { return h.bulk; }, [](const Ogden& o) { return o.bulk; },
-                               [](const Lame& l) { return l.bulk(); }},
-                    elastic);
 }
 
 void Solid::start(std::span<double> history) const {
@@ -97,20 +61,17 @@ void Solid::start(std::span<double> history) const {
 
 void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, std::span<const double> history,
              bool tangent, PointResponse& out) {
-  if (const auto* law = std::get_if<LinearElastic>(&solid.elastic)) return respond_linear(*law, F, frame, tangent, out);
-  const Sym C = to_sym(F.transpose() * F);
-  Response r;
-  const auto* svk = std::get_if<StVenantKirchhoff>(&solid.elastic);
+  if (solid.elastic.corotated()) return solid.elastic.respond(F, frame, tangent, out);
   // det C cannot tell an inverted point from an upright one: only F can.
-  if (!svk && !(F.determinant() > 0)) {
+  if (!solid.elastic.bears_inversion() && !(F.determinant() > 0)) {
     out.energy = NAN;
     out.stress.setConstant(NAN);
     if (tangent) out.tangent.setConstant(NAN);
     return;
   }
-  if (const auto* law = std::get_if<Hyperelastic>(&solid.elastic)) law->add(C, tangent, r);
-  else if (const auto* powers = std::get_if<Ogden>(&solid.elastic)) powers->add(C, tangent, r);
-  else svk->add(C, tangent, r);
+  const Sym C = to_sym(F.transpose() * F);
+  Response r;
+  solid.elastic.add(C, tangent, r);
   if (!solid.branches.empty()) {
     const double det = determinant(C), p = 1 / std::cbrt(det);
     const Sym Ci = inverse(C, det);

@@ -260,7 +260,7 @@ TEST(RollingIrons, FiguresAndFitsOfTheSecondSource) {
   std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE_DIR) / "cases" / "rolling-irons", d,
                         std::filesystem::copy_options::recursive);
   const nlohmann::json s = run(d);
-  // benchmarks.md 3.1 to 3.4, to the digits printed there.
+  // [@rolling-irons], to the digits printed there.
   EXPECT_NEAR(s["theory"]["spin_coefficient_rpm"].get<double>(), 11205.4001, 1e-3);
   EXPECT_NEAR(s["theory"]["spin_coefficient_other_ball_rpm"].get<double>(), 11119.72, 0.01);
   EXPECT_NEAR(s["theory"]["launch_peak_deg"].get<double>(), 44.683, 1e-3);

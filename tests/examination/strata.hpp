@@ -20,7 +20,7 @@ struct Set {
   Json key;
 };
 
-/// Names of the strata with the number of sets that the issue asks for.
+/// Names of the strata with the number of sets at full scale.
 const std::vector<std::pair<std::string, int>>& strata();
 
 /// Draws a set. Throws std::runtime_error where none of many draws meets the stratum's conditions.

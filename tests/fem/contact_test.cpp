@@ -7,6 +7,7 @@
 #include "hosel/fem/face_surface.hpp"
 #include "hosel/fem/friction/coulomb.hpp"
 #include "hosel/fem/friction/regularised.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/golf/units.hpp"
 #include "tests/support/term_checks.hpp"
 

@@ -1,4 +1,5 @@
 #include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +55,7 @@ TEST(HarmonicSolid, TangentAndGradient) {
   }
 }
 
-/// Benchmark 2.1: omega R / c_s of the free sphere; the spheroidal modes of degree l appear in the harmonics
+/// [@sphere-modes]: omega R / c_s of the free sphere; the spheroidal modes of degree l appear in the harmonics
 /// m = 0...l alike.
 struct ModeTable {
   double nu;

@@ -1,4 +1,8 @@
 #include "hosel/fem/materials/solid.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
+#include "hosel/fem/materials/linear_elastic.hpp"
+#include "hosel/fem/materials/ogden.hpp"
+#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +89,7 @@ TEST(Solid, OgdenHoldsMooneyRivlin) {
   }
 }
 
-/// Benchmark 2.3: stretch, lateral stretch, Cauchy stress of uniaxial tension, W = mu/2 (I1'-3) + K/2 (J-1)^2.
+/// [@neo-hooke]: stretch, lateral stretch, Cauchy stress of uniaxial tension, W = mu/2 (I1'-3) + K/2 (J-1)^2.
 TEST(Solid, NeoHookeUniaxial) {
   Hyperelastic law{.c10 = 33.5570469798658e6 / 2, .bulk = 1666.66666666667e6};
   const Solid solid{.elastic = law, .branches = {}, .density = 1};
@@ -115,7 +119,7 @@ TEST(Solid, NeoHookeUniaxial) {
   EXPECT_NEAR(r.stress(0, 0), -1.7173317268e8, 1);
 }
 
-/// Benchmark 2.4: G = 20 + 10 e^(-t/1e-4) + 10 e^(-t/1e-3) MPa in shear. Strains are scaled down so far
+/// [@prony]: G = 20 + 10 e^(-t/1e-4) + 10 e^(-t/1e-3) MPa in shear. Strains are scaled down so far
 /// that the finite-strain terms (of relative size strain^2) fall below the tolerance.
 class Prony : public testing::Test {
  protected:

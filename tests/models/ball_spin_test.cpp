@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "hosel/fem/harmonic_solid.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/solvers/generalized_alpha.hpp"
 

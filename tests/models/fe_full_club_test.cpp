@@ -1,4 +1,4 @@
-// The whole club against the free head: what the first source found, and limits that must hold.
+// The whole club against the free head: what [@shaft-influence] found, and limits that must hold.
 #include "hosel/models/fe_full_club.hpp"
 
 #include <gtest/gtest.h>

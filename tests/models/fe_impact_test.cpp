@@ -38,7 +38,7 @@ FeImpactOptions coarse(int harmonics) {
 }
 
 TEST(FeImpact, NormalBlowOnAWall) {
-  // Issue's bands for a golf ball at 45 m/s: 8-20 kN, 0.40-0.55 ms; restitution falls with speed.
+  // Bands of golf balls at 45 m/s: 8-20 kN, 0.40-0.55 ms; restitution falls with speed.
   double last = 1;
   for (double v : {20.0, 45.0}) {
     const FeOutcome out = solve_free_body(wall_blow(v), coarse(0));

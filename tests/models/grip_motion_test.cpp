@@ -1,4 +1,4 @@
-// benchmarks.md 1.12: the grip's motion between samples and at its end, impact.
+// [@moving-beams]: the grip's motion between samples and at its end, impact.
 #include "hosel/models/grip_motion.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,11 @@
-// Normal contact of elastic and viscoelastic spheres: benchmarks 2.5 and 2.6.
+// Normal contact of elastic and viscoelastic spheres: [@finite-hertz] and [@viscoelastic-hertz].
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 
 #include "hosel/fem/face_surface.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
+#include "hosel/fem/materials/linear_elastic.hpp"
 #include "hosel/solvers/statics.hpp"
 #include "tests/support/elastic_sphere.hpp"
 #include "tests/support/squeezed_sphere.hpp"
@@ -204,8 +206,8 @@ TEST(Hertz, ViscoelasticIndentation) {
   EXPECT_NEAR(force / elastic.force(d), 26.375543 / 31.160545, 2e-3);
 }
 
-/// Benchmark 2.6: the impact of a Zener ball at 1 m/s. Contact time and force depart as the elastic ball's do at
-/// that speed, by 0.970 and 1.046.
+/// [@viscoelastic-hertz]: the impact of a Zener ball at 1 m/s. Contact time and force depart as the elastic ball's do
+/// at that speed, by 0.970 and 1.046.
 TEST(Hertz, ZenerImpact) {
   struct Row {
     double tau, e, time, force;

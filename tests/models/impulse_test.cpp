@@ -142,7 +142,7 @@ struct MawRow {
 };
 
 TEST(HertzMaw, TableOfMawBarberFawcett) {
-  // benchmarks.md 2.7. The issue asks for 0.02.
+  // [@maw].
   const MawRow rows[] = {
       {.25, .0417, -.0432, -.0491},     {.5, .0479, -.1296, -.1411},      {.75, .0142, -.2521, -.2685},
       {1, -.0597, -.4032, -.4234},      {1.25, -.2188, -.6132, -.6354},   {1.5, -.4280, -.8296, -.8511},
@@ -162,7 +162,7 @@ TEST(HertzMaw, TableOfMawBarberFawcett) {
 }
 
 TEST(HertzMaw, HertzImpact) {
-  // benchmarks.md 2.5: nu = 0.3, 1 m/s.
+  // [@finite-hertz]: nu = 0.3, 1 m/s.
   Blow b;
   b.club.head.mass = kInf;
   b.club.head.inertia = kInf * Mat3::Identity();

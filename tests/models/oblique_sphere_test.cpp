@@ -2,6 +2,7 @@
 // case elastic-oblique.
 #include <gtest/gtest.h>
 
+#include "hosel/fem/materials/linear_elastic.hpp"
 #include "tests/support/elastic_sphere.hpp"
 
 namespace hosel::models {

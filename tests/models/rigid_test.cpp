@@ -102,7 +102,7 @@ TEST_P(SevenIrons, BenchmarkTable) {
   EXPECT_NEAR(l.ball_speed() / kMpsPerMph, c.speed_mph, 5e-3);
 }
 
-// benchmarks.md 3.2; lofts are the means of the shots (the printed five digits are rounded).
+// [@rolling-irons]; lofts are the means of the shots (the printed five digits are rounded).
 INSTANTIATE_TEST_SUITE_P(Benchmark, SevenIrons,
                          testing::Values(ClubRow{"4i", 0.2451, 82.8, -1.3, 12.775, 2731.6, 10.142, 118.89},
                                          ClubRow{"5i", 0.2498, 81.5, -1.8, 16.0833333333, 3398.4, 12.710, 115.47},

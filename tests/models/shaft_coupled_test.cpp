@@ -10,7 +10,7 @@
 namespace hosel::models {
 namespace {
 
-/// benchmarks.md 1.1 B2: steel tube, 1 m, outer diameter 15.2 to 9.4 mm, wall 0.4 mm.
+/// [@tapered-beams] B2: steel tube, 1 m, outer diameter 15.2 to 9.4 mm, wall 0.4 mm.
 Shaft tube(double density = 7850) {
   Shaft s;
   const int n = 400;
@@ -65,12 +65,12 @@ TEST(ShaftImpedance, FrequenciesWithAnOffsetHead) {
   const Linear system(b3());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(system.K, system.M);
   const double expected[] = {4.834560, 4.839484, 43.035187, 47.591993, 53.366517, 113.212817, 139.396535, 225.530033};
-  for (int i = 0; i < 8; ++i)  // benchmarks.md 1.2; the 400 linear pieces cost some 1e-6
+  for (int i = 0; i < 8; ++i)  // [@offset-head]; the 400 linear pieces cost some 1e-6
     EXPECT_NEAR(std::sqrt(modes.eigenvalues()[i]) / (2 * kPi), expected[i], 1e-5 * expected[i]);
 }
 
 TEST(ShaftImpedance, HeadStruckByAHalfSine) {
-  // benchmarks.md 1.3: velocity of the cg and spin at the end of the blow.
+  // [@head-impulse]: velocity of the cg and spin at the end of the blow.
   struct Row {
     double dy, vz;
     Vec3 spin;
@@ -144,7 +144,7 @@ TEST(ShaftCoupled, EnergyBalanceAndSigns) {
     EXPECT_LT(std::abs(r.energy.gap()), 1e-9);
     EXPECT_GT(r.energy.stored_shaft, 0.01);
     EXPECT_EQ(r.energy.lost_shaft > 0, damping > 0);
-    // First source: more ball speed, less turning of the head, a weaker gear effect (hook spin at the toe).
+    // [@shaft-influence]: more ball speed, less turning of the head, a weaker gear effect (hook spin at the toe).
     const VolumetricResult free = volumetric_impact(b, {}, {Integrator::rosenbrock, 1e-10});
     EXPECT_GT(r.launch.ball_speed(), free.launch.ball_speed());
     EXPECT_LT((r.launch.head_spin - b.delivery.head_angular_velocity).norm(),

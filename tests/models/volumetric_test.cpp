@@ -64,7 +64,7 @@ TEST_P(Published, RestitutionTimeForceDepth) {
     const double tolerance = integrator == Integrator::cvode ? 1e-8 : VolumetricOptions{}.tolerance;
     const Launch l = volumetric_impact(b, law, {integrator, tolerance}).launch;
     const double e = (l.velocity.x() - l.head_velocity.x()) / row.speed;
-    // The issue asks for 0.1 %; the values are printed to four to six digits.
+    // To 0.1 %: the values are printed to four to six digits.
     EXPECT_NEAR(e, row.e, 1e-3 * row.e);
     EXPECT_NEAR(*l.contact_time * 1e3, row.milliseconds, 1e-3 * row.milliseconds);
     EXPECT_NEAR(*l.peak_force * 1e-3, row.kilonewtons, 1e-3 * row.kilonewtons);

@@ -1,4 +1,4 @@
-// benchmarks.md 1.8 to 1.12 and 5: flexible beams in motion.
+// [@moving-beams], [@waves] and [@integrators]: flexible beams in motion.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -460,7 +460,7 @@ TEST_P(SaintVenant, RigidBodyOnAClampedBar) {
   EXPECT_NEAR(parting, row.parting, 0.01 * row.parting);
 }
 
-// benchmarks.md 1.11
+// [@waves]
 INSTANTIATE_TEST_SUITE_P(Table, SaintVenant,
                          testing::Values(StruckBar{0.25, 3.2130, 5.8996}, StruckBar{0.5, 2.7358, 4.7086},
                                          StruckBar{1, 2.2707, 3.0677}, StruckBar{2, 2.0363, 2.5046}));

@@ -1,4 +1,4 @@
-// benchmarks.md 1.1 and 1.2: frequencies of tapered beams with and without a body at the tip.
+// [@tapered-beams] and [@offset-head]: frequencies of tapered beams with and without a body at the tip.
 #include <gtest/gtest.h>
 
 #include "hosel/solvers/modes.hpp"

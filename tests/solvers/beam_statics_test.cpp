@@ -1,4 +1,4 @@
-// benchmarks.md 1.1 (static compliance) and 1.4 to 1.7: beams bent far.
+// [@tapered-beams] (static compliance) and [@elastica]: beams bent far.
 #include <gtest/gtest.h>
 
 #include "hosel/solvers/statics.hpp"

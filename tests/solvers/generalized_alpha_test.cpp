@@ -15,7 +15,7 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const std::vector<Index> kPlane{0, 1};
 
-/// benchmarks.md 5: x'' = -k (1 - 1/|x|) x + (0, -9.81), unit mass.
+/// [@integrators]: x'' = -k (1 - 1/|x|) x + (0, -9.81), unit mass.
 class ElasticPendulum final : public fem::Term {
  public:
   explicit ElasticPendulum(double stiffness = 1000) : k_(stiffness) {}
@@ -76,7 +76,7 @@ double pendulum_error(double rho, int steps) {
 class Order : public testing::TestWithParam<std::array<double, 3>> {};
 
 TEST_P(Order, IsTwoWithTheErrorOfTheReference) {
-  // benchmarks.md 5 prints the errors for 1500 and 12000 steps to three digits (state norm there is
+  // [@integrators] prints the errors for 1500 and 12000 steps to three digits (state norm there is
   // the position's); 5 % covers the last digit's and the start-up's freedom.
   const auto [rho, coarse, fine] = GetParam();
   const double e1 = pendulum_error(rho, 1500), e2 = pendulum_error(rho, 3000), e3 = pendulum_error(rho, 12000);

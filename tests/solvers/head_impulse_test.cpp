@@ -1,4 +1,4 @@
-// benchmarks.md 1.3: the shaft's influence in its purest form. The head of B3 on the clamped shaft is
+// [@head-impulse]: the shaft's influence in its purest form. The head of B3 on the clamped shaft is
 // struck along -z by a half sine of 0.45 ms and 2.9 N s; what the shaft takes from the free head's
 // motion is compared with the modal solution (linear, exact).
 #include <gtest/gtest.h>

@@ -1,45 +1,12 @@
-/// Elastic laws at a point: a free energy per reference volume, its stress and its tangent.
+/// Polynomials of the isochoric invariants: neo-Hooke, Mooney-Rivlin, Yeoh.
 #pragma once
 
 #include <cmath>
 
-#include "hosel/fem/materials/symmetric.hpp"
+#include "hosel/fem/materials/elastic_law.hpp"
+#include "hosel/fem/materials/lame.hpp"
 
 namespace hosel::fem {
-
-/// Second Piola-Kirchhoff stress S = 2 dW/dC [Pa] and tangent 4 d2W/dC2 [Pa] at the right
-/// Cauchy-Green tensor C.
-struct Response {
-  double energy = 0;  ///< [J/m^3]
-  Sym stress = Sym::Zero();
-  Mat6 tangent = Mat6::Zero();
-};
-
-/// First Lame parameter and shear modulus of linear elasticity [Pa].
-struct Lame {
-  double lambda = 0, mu = 0;
-  static Lame of(double young, double poisson) {
-    return {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))};
-  }
-  double bulk() const { return lambda + 2 * mu / 3; }
-};
-
-/// Linear elasticity: stress lambda tr(e) + 2 mu e of the small strain e = sym(R^T F) - 1, where R is
-/// the body's mean rotation. Only for comparison with small-strain theory; a solid keeps R.
-struct LinearElastic : Lame {};
-
-/// W = lambda/2 tr(E)^2 + mu E:E of the Green strain E: softens and collapses in strong compression.
-struct StVenantKirchhoff : Lame {
-  void add(const Sym& C, bool tangent, Response& out) const {
-    const Sym E = 0.5 * (C - sym_identity());
-    const double trace = E[0] + E[1] + E[2];
-    out.energy += 0.5 * lambda * trace * trace + mu * contract(E, E);
-    out.stress += lambda * trace * sym_identity() + 2 * mu * E;
-    if (!tangent) return;
-    out.tangent.topLeftCorner<3, 3>().array() += lambda;
-    out.tangent.diagonal() += (Sym() << 2 * mu, 2 * mu, 2 * mu, mu, mu, mu).finished();
-  }
-};
 
 /// W = c10 (I1' - 3) + c01 (I2' - 3) + c20 (I1' - 3)^2 + c30 (I1' - 3)^3 + K/2 (J - 1)^2 of the
 /// invariants of C' = J^(-2/3) C: neo-Hooke (c10 = mu/2), Mooney-Rivlin (c10, c01), Yeoh (c10, c20,
@@ -48,8 +15,13 @@ struct Hyperelastic {
   double c10 = 0, c01 = 0, c20 = 0, c30 = 0;  ///< [Pa]
   double bulk = 0;                            ///< K [Pa]
 
-  static Hyperelastic neo_hooke(const Lame& l) { return {.c10 = l.mu / 2, .bulk = l.bulk()}; }
+  static Hyperelastic neo_hooke(const Lame& l) { return {.c10 = l.mu / 2, .bulk = l.bulk_modulus()}; }
   double shear() const { return 2 * (c10 + c01); }
+  double bulk_modulus() const { return bulk; }
+  void stiffen(double factor) {
+    for (double* c : {&c10, &c01, &c20, &c30}) *c *= factor;
+  }
+  std::vector<std::string> faults() const { return {}; }
 
   void add(const Sym& C, bool tangent, Response& out) const {
     const double det = determinant(C), J = std::sqrt(det);  // NaN for an inverted point: no step accepts it
