@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/import/import.hpp"
 #include "hosel/app/job.hpp"
 #include "hosel/app/sweep.hpp"
 #include "hosel/solvers/errors.hpp"
@@ -73,6 +74,19 @@ int main(int argc, char** argv) {
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
   new_command->callback([&] { app::copy_case(a.from, a.case_dir); });
+
+  app::ImportOptions import;
+  CLI::App* import_command = cli.add_subcommand("import", "make a case of the loop from a launch monitor's export");
+  import_command->add_option("FILE", import.file, "CSV or JSON as exported")->required();
+  import_command->add_option("--out", import.out, "the new case directory")->required();
+  import_command->add_option("--units", import.units, "imperial or metric, where the file names no units");
+  import_command->add_option("--club", import.club,
+                             "only the shots with this club; or the club of all shots, where the file names none");
+  import_command->add_option("--column", import.columns, "'header=quantity_unit', by hand (repeatable)")->take_all();
+  import_command->add_option("--keep", import.keep, "an unknown column that may explain something (repeatable)")
+      ->take_all();
+  import_command->add_option("--dictionary", import.dictionary, "header names of your own, beside the shipped ones");
+  import_command->callback([&] { app::import_shots(import); });
 
   CLI::App* sweep = cli.add_subcommand("sweep", "the points of a sweep or a face map, in shards on several machines");
   sweep->require_subcommand(1);

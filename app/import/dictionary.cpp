@@ -1,0 +1,121 @@
+#include "hosel/app/import/dictionary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "build_info.hpp"
+#include "hosel/app/import/cells.hpp"
+#include "hosel/app/reader.hpp"
+
+namespace hosel::app {
+
+namespace fs = std::filesystem;
+
+std::string plain(std::string_view text) {
+  std::string out;
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '(' || c == '[') ++depth;
+    if (depth == 0) {
+      if (std::isalnum(static_cast<unsigned char>(c))) out += char(std::tolower(static_cast<unsigned char>(c)));
+      else if (!out.empty() && out.back() != ' ' && static_cast<unsigned char>(c) < 0x80) out += ' ';
+    }
+    if ((c == ')' || c == ']') && depth > 0) --depth;
+  }
+  while (!out.empty() && out.back() == ' ') out.pop_back();
+  return out;
+}
+
+void Dictionary::read(const fs::path& file) {
+  CaseFile text(file);
+  Table root = text.root();
+  const auto plains = [](std::vector<std::string> words) {
+    for (std::string& w : words) w = plain(w);
+    return words;
+  };
+  for (Table& t : root.tables("quantity")) {
+    MonitorQuantity q;
+    q.name = t.text("name");
+    Table unit = t.table("unit");
+    q.imperial = unit.text("imperial");
+    q.metric = unit.text("metric");
+    const auto range = t.numbers("plausible", 2);
+    q.low = range[0], q.high = range[1];
+    q.side = t.flag("side", false);
+    q.headers = plains(t.texts("headers"));
+    quantities_.push_back(std::move(q));
+  }
+  if (auto t = root.optional_table("bookkeeping"))
+    for (const std::string& key : t->keys()) {
+      const auto words = plains(t->texts(key));
+      auto& known = bookkeeping_[key];
+      known.insert(known.end(), words.begin(), words.end());
+    }
+  for (Table& t : root.tables("club"))
+    clubs_.push_back({plains(t.texts("names")), t.number("head_mass_kg", {0.1, 0.5}), t.number("loft_deg", {0, 70}),
+                      t.text("head", "iron")});
+  if (auto t = root.optional_table("head"))
+    for (const std::string& key : t->keys()) {
+      Table head = t->table(key);
+      const Vec3 cg = head.vector("cg", "mm") * 1e3;
+      const Mat3 I = head.matrix("inertia", "kg_m2");
+      heads_[key] = {fmt::format("[{:g}, {:g}, {:g}]", cg.x(), cg.y(), cg.z()),
+                     fmt::format("[[{:g}, {:g}, {:g}], [{:g}, {:g}, {:g}], [{:g}, {:g}, {:g}]]", I(0, 0), I(0, 1),
+                                 I(0, 2), I(1, 0), I(1, 1), I(1, 2), I(2, 0), I(2, 1), I(2, 2))};
+    }
+  for (Table& t : root.tables("layout"))
+    layouts_.push_back(
+        {t.text("name"), plain(t.text("has", "")), t.text("preamble", ""), t.choice("units", {"imperial", "metric"})});
+  text.finish();
+}
+
+fs::path shipped_dictionary() {
+  const fs::path beside = fs::path(HOSEL_SOURCE_DIR) / "app" / "import" / "launch_monitors.toml";
+  return fs::exists(beside) ? beside : fs::path(HOSEL_INSTALLED_CASES).parent_path() / "launch_monitors.toml";
+}
+
+const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const {
+  const std::string word = plain(header);
+  const auto blank = header.find_last_of(" _");  // `Ball Speed mph`
+  const bool tail = blank != std::string::npos && !unit_of(header.substr(blank + 1)).empty() && header.back() != ')';
+  const std::string without = tail ? plain(std::string_view(header).substr(0, blank)) : word;
+  for (const MonitorQuantity& q : quantities_)
+    if (std::ranges::count(q.headers, word) || std::ranges::count(q.headers, without) || word == plain(q.name) ||
+        without == plain(q.name))
+      return &q;
+  return nullptr;
+}
+
+std::string Dictionary::bookkeeping_of(const std::string& header) const {
+  for (const auto& [name, words] : bookkeeping_)
+    if (std::ranges::count(words, plain(header))) return name;
+  return "";
+}
+
+void Dictionary::learn(const std::string& header, std::string_view quantity) {
+  if (quantity.empty()) bookkeeping_["ignored"].push_back(plain(header));
+  for (MonitorQuantity& q : quantities_)
+    if (q.name == quantity) q.headers.push_back(plain(header));
+}
+
+const MonitorQuantity* Dictionary::quantity(std::string_view name) const {
+  const auto at = std::ranges::find(quantities_, name, &MonitorQuantity::name);
+  return at == quantities_.end() ? nullptr : &*at;
+}
+
+std::vector<std::string> Dictionary::quantity_names() const {
+  std::vector<std::string> out;
+  for (const MonitorQuantity& q : quantities_) out.push_back(q.name);
+  return out;
+}
+
+const NominalClub* Dictionary::club(const std::string& name) const {
+  const std::string word = plain(name);
+  for (const NominalClub& c : clubs_)
+    if (std::ranges::count(c.names, word)) return &c;
+  return nullptr;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,66 @@
+/// What launch monitors call things: quantities, bookkeeping, clubs, layouts, from launch_monitors.toml.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hosel::app {
+
+struct MonitorQuantity {
+  std::string name, imperial, metric;
+  double low = 0, high = 0;  ///< of a column's median [SI]
+  bool side = false;         ///< cells may end in L or R, toe or heel
+  std::vector<std::string> headers;
+};
+struct NominalClub {
+  std::vector<std::string> names;
+  double head_mass = 0;  ///< [kg]
+  double loft = 0;       ///< at impact [deg]
+  std::string head;      ///< one of Dictionary::heads
+};
+/// The head that a case begins with, as its TOML has it.
+struct NominalHead {
+  std::string cg_mm, inertia_kg_m2;
+};
+/// A vendor's file that names no units.
+struct MonitorLayout {
+  std::string name;
+  std::string has;       ///< a header that only it has
+  std::string preamble;  ///< how its first line begins
+  std::string units;     ///< imperial, metric
+};
+
+class Dictionary {
+ public:
+  /// Entries of `file` count before those read later.
+  void read(const std::filesystem::path& file);
+
+  /// A header that a person names: of this quantity, or, with none, of no interest.
+  void learn(const std::string& header, std::string_view quantity);
+
+  const MonitorQuantity* quantity_of(const std::string& header) const;
+  const MonitorQuantity* quantity(std::string_view name) const;
+  std::vector<std::string> quantity_names() const;
+  std::string bookkeeping_of(const std::string& header) const;  ///< "" where it is none
+  const NominalClub* club(const std::string& name) const;
+  const std::vector<MonitorLayout>& layouts() const { return layouts_; }
+  const std::map<std::string, NominalHead>& heads() const { return heads_; }
+
+ private:
+  std::vector<MonitorQuantity> quantities_;
+  std::map<std::string, std::vector<std::string>> bookkeeping_;
+  std::vector<NominalClub> clubs_;
+  std::vector<MonitorLayout> layouts_;
+  std::map<std::string, NominalHead> heads_;
+};
+
+/// Where the shipped dictionary is: in the tree, else installed.
+std::filesystem::path shipped_dictionary();
+
+/// Lower case, without what stands in brackets, single blanks for punctuation.
+std::string plain(std::string_view text);
+
+}  // namespace hosel::app

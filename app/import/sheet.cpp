@@ -1,0 +1,231 @@
+#include "hosel/app/import/sheet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/import/cells.hpp"
+#include "hosel/app/reader.hpp"
+
+namespace hosel::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+void append_utf8(std::string& out, unsigned c) {
+  if (c < 0x80) {
+    out += char(c);
+  } else if (c < 0x800) {
+    out += char(0xC0 | (c >> 6));
+    out += char(0x80 | (c & 0x3F));
+  } else {
+    out += char(0xE0 | (c >> 12));
+    out += char(0x80 | ((c >> 6) & 0x3F));
+    out += char(0x80 | (c & 0x3F));
+  }
+}
+
+bool valid_utf8(std::string_view s) {
+  for (std::size_t i = 0; i < s.size();) {
+    const auto c = static_cast<unsigned char>(s[i]);
+    const std::size_t n = c < 0x80 ? 1 : c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : c >= 0xC2 ? 2 : 0;
+    if (n == 0 || i + n > s.size()) return false;
+    for (std::size_t k = 1; k < n; ++k)
+      if ((static_cast<unsigned char>(s[i + k]) & 0xC0) != 0x80) return false;
+    i += n;
+  }
+  return true;
+}
+
+/// The file as UTF-8 without a byte-order mark: UTF-8, UTF-16 with a mark, else Latin-1.
+std::string read_text(const fs::path& file) {
+  constexpr std::uintmax_t most = 64u << 20;
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) throw InputError(fmt::format("{}: no such file", file.string()));
+  if (fs::file_size(file, none) > most)
+    throw InputError(fmt::format("{}: more than 64 MiB: this is no launch monitor's session", file.string()));
+  std::ifstream in(file, std::ios::binary);
+  std::string raw((std::istreambuf_iterator<char>(in)), {});
+  const auto byte = [&](std::size_t i) { return unsigned(static_cast<unsigned char>(raw[i])); };
+  if (raw.size() >= 2 && ((byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) == 0xFE && byte(1) == 0xFF))) {
+    const bool little = byte(0) == 0xFF;
+    std::string out;
+    for (std::size_t i = 2; i + 1 < raw.size(); i += 2)
+      append_utf8(out, little ? byte(i) | byte(i + 1) << 8 : byte(i) << 8 | byte(i + 1));
+    return out;
+  }
+  if (raw.starts_with("\xEF\xBB\xBF")) raw.erase(0, 3);
+  if (raw.find('\0') != std::string::npos) throw InputError(fmt::format("{}: not a text file", file.string()));
+  if (valid_utf8(raw)) return raw;
+  std::string out;
+  for (std::size_t i = 0; i < raw.size(); ++i) append_utf8(out, byte(i));
+  return out;
+}
+
+std::vector<Row> split(const std::string& text, char delimiter) {
+  std::vector<Row> rows;
+  Row row;
+  std::string cell;
+  bool quoted = false;
+  const auto end_row = [&] {
+    row.push_back(trimmed(cell));
+    cell.clear();
+    if (std::ranges::any_of(row, [](const std::string& c) { return !c.empty(); })) rows.push_back(row);
+    row.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c != '"') cell += c;
+      else if (i + 1 < text.size() && text[i + 1] == '"') cell += text[++i];
+      else quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == delimiter) {
+      row.push_back(trimmed(cell));
+      cell.clear();
+    } else if (c == '\n' || c == '\r') {
+      end_row();
+    } else {
+      cell += c;
+    }
+  }
+  end_row();
+  return rows;
+}
+
+void flatten(const nlohmann::json& node, const std::string& path, std::map<std::string, std::string>& out) {
+  if (node.is_object()) {
+    for (const auto& [key, value] : node.items()) flatten(value, path.empty() ? key : path + " " + key, out);
+  } else if (node.is_string()) {
+    out[path] = node.get<std::string>();
+  } else if (node.is_number() || node.is_boolean()) {
+    out[path] = node.dump();
+  }
+}
+
+/// The longest list of objects anywhere in the document: the shots. A lone object is one shot.
+const nlohmann::json* list_of_shots(const nlohmann::json& node) {
+  const nlohmann::json* best = nullptr;
+  if (node.is_array() && !node.empty() && node.front().is_object()) best = &node;
+  if (node.is_structured())
+    for (const auto& child : node)
+      if (const auto* inner = list_of_shots(child); inner && (!best || inner->size() > best->size())) best = inner;
+  return best;
+}
+
+Sheet read_json(const std::string& text, const fs::path& file) {
+  nlohmann::json document;
+  try {
+    document = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what()));
+  }
+  nlohmann::json shots = nlohmann::json::array({document});
+  if (const auto* list = list_of_shots(document)) shots = *list;
+  Sheet sheet;
+  std::vector<std::map<std::string, std::string>> flat;
+  for (const auto& shot : shots) {
+    flat.emplace_back();
+    flatten(shot, "", flat.back());
+    for (const auto& [key, value] : flat.back())
+      if (!std::ranges::count(sheet.names, key)) sheet.names.push_back(key);
+  }
+  for (auto& shot : flat) {
+    Row row;
+    for (const std::string& name : sheet.names) row.push_back(shot.contains(name) ? shot[name] : "");
+    sheet.rows.push_back(std::move(row));
+  }
+  return sheet;
+}
+
+std::size_t known_cells(const Dictionary& d, const Row& row) {
+  return std::size_t(std::ranges::count_if(
+      row, [&](const std::string& c) { return d.quantity_of(c) || !d.bookkeeping_of(c).empty(); }));
+}
+
+Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
+  Sheet best;
+  std::size_t most = 1;
+  if (text.starts_with("sep=") || text.starts_with("SEP=")) text.erase(0, text.find('\n') + 1);
+  for (const char delimiter : {',', ';', '\t', '|'}) {
+    const std::vector<Row> rows = split(text, delimiter);
+    for (std::size_t h = 0; h < std::min<std::size_t>(rows.size(), 30); ++h) {
+      const std::size_t known = known_cells(d, rows[h]);
+      if (known <= most) continue;
+      most = known;
+      best = {};
+      best.names = rows[h];
+      best.preamble = h;
+      best.delimiter = delimiter == '\t' ? "tab" : std::string(1, delimiter);
+      for (std::size_t r = 0; r < h; ++r)
+        for (const MonitorLayout& l : d.layouts())
+          if (!l.preamble.empty() && rows[r].front().starts_with(l.preamble))
+            best.layout = l.name, best.family = l.units;
+      best.rows.assign(rows.begin() + long(h) + 1, rows.end());
+    }
+  }
+  if (most < 2)
+    throw InputError(
+        fmt::format("{}: no row of the first 30 looks like the header of shots (two known names at least); "
+                    "--dictionary FILE or --column 'header=quantity_unit' help",
+                    file.string()));
+  while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
+  // A row of units is one whose cells are units or empty.
+  if (!best.rows.empty()) {
+    const Row& first = best.rows.front();
+    const auto named = std::ranges::count_if(first, [](const std::string& c) { return !unit_of(c).empty(); });
+    const bool only = std::ranges::all_of(first, [](const std::string& c) {
+      return c.empty() || c == "[]" || c == "()" || c == "-" || !unit_of(c).empty();
+    });
+    if (named > 0 && only) {
+      best.units = first;
+      best.rows.erase(best.rows.begin());
+    }
+  }
+  const std::size_t width = best.names.size();
+  std::erase_if(best.rows, [&](Row& row) {
+    row.resize(std::max(width, row.size()));
+    if (std::ranges::equal(row.begin(), row.begin() + long(width), best.names.begin(), best.names.end())) {
+      ++best.headers_again;
+      return true;
+    }
+    // Summaries stand where the club's or the shot's name would.
+    for (std::size_t c = 0; c < width; ++c) {
+      const std::string role = d.bookkeeping_of(best.names[c]);
+      if (c != 0 && role != "club" && role != "shot") continue;
+      const std::string word = plain(row[c]);
+      static const std::vector<std::string> words = {"average",     "avg",   "mean",   "std", "st dev", "deviation",
+                                                     "consistency", "total", "median", "max", "min"};
+      if (std::ranges::any_of(words, [&](const std::string& w) { return word == w || word.starts_with(w + " "); })) {
+        ++best.summaries;
+        return true;
+      }
+    }
+    return false;
+  });
+  return best;
+}
+
+}  // namespace
+
+Sheet read_sheet(const fs::path& file, const Dictionary& d) {
+  const std::string text = read_text(file);
+  const auto first = text.find_first_not_of(" \t\r\n");
+  const bool json = first != std::string::npos &&
+                    (text[first] == '{' || (text[first] == '[' && text.find('{') != std::string::npos));
+  Sheet sheet = json ? read_json(text, file) : read_table(text, d, file);
+  if (sheet.rows.empty()) throw InputError(fmt::format("{}: a header, but no shots", file.string()));
+  for (const MonitorLayout& l : d.layouts())
+    if (!l.has.empty())
+      for (const std::string& name : sheet.names)
+        if (plain(name) == l.has) sheet.layout = l.name, sheet.family = l.units;
+  return sheet;
+}
+
+}  // namespace hosel::app

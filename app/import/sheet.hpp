@@ -1,0 +1,27 @@
+/// A launch monitor's file as rows of cells, whatever its encoding, separators and decoration.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hosel/app/import/dictionary.hpp"
+
+namespace hosel::app {
+
+using Row = std::vector<std::string>;
+
+struct Sheet {
+  Row names;
+  std::vector<Row> rows;  ///< as long as `names`, or longer
+  Row units;              ///< of a row of units; empty: there is none
+  std::string layout;     ///< of the dictionary; empty: none that is known
+  std::string family;     ///< units of that layout: imperial, metric
+  std::string delimiter = "JSON";
+  std::size_t preamble = 0, summaries = 0, headers_again = 0;  ///< rows passed over
+};
+
+/// Throws InputError in one sentence.
+Sheet read_sheet(const std::filesystem::path& file, const Dictionary& dictionary);
+
+}  // namespace hosel::app
