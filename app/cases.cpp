@@ -11,6 +11,7 @@
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/loop/effect.hpp"
 #include "hosel/loop/history/rig.hpp"
+#include "hosel/models/flight_laws.hpp"
 #include "hosel/models/registry.hpp"
 
 namespace hosel::app {
@@ -69,6 +70,7 @@ std::vector<ListSection> everything() {
           {"models", entries(models::registry())},
           {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
           {"balls (ball.model)", entries(models::ball_library())},
+          {"flight laws (flight.law)", entries(models::flight_laws())},
           {"shafts (shaft.name)", entries(shaft_library())},
           {"effects on shots", entries(loop::effects())},
           {"effects on histories", entries(loop::history_effects())},

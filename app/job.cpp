@@ -8,6 +8,7 @@
 #include "hosel/app/kinds/cross_check.hpp"
 #include "hosel/app/kinds/curves.hpp"
 #include "hosel/app/kinds/face_map.hpp"
+#include "hosel/app/kinds/flight.hpp"
 #include "hosel/app/kinds/identify_shaft.hpp"
 #include "hosel/app/kinds/impact.hpp"
 #include "hosel/app/kinds/loaded_club.hpp"
@@ -30,6 +31,7 @@ std::unique_ptr<Job> read_either_modes(CaseFile& file) {
 
 constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
+    Kind{"flight", "where balls of given launches go, by several laws, with an error budget", read_flights},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by", read_face_map},
     Kind{"curves", "launch against a parameter, or force histories, for a family of another", read_curves},
     Kind{"cross-check", "several models over a grid of blows, each against a reference", read_cross_check},

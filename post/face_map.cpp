@@ -15,21 +15,44 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<MapQuantity> make_quantities() {
+using OfLaunch = std::function<std::optional<double>(const Launch&)>;
+
+std::vector<MapQuantity> launch_quantities() {
   std::vector<MapQuantity> all;
+  const auto add = [&](std::string name, std::string unit, double si, OfLaunch value) {
+    all.push_back(
+        {std::move(name), std::move(unit), si, false, [value = std::move(value)](const FaceMap& map, std::size_t p) {
+           return map.launches[p] ? value(*map.launches[p]) : std::nullopt;
+         }});
+  };
   for (const Channel& c : channels())
-    all.push_back({std::string(c.name), std::string(c.unit), c.si,
-                   [value = c.value](const Launch& l) -> std::optional<double> { return (l.*value)(); }});
-  all.push_back(
-      {"head_speed", "mps", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_velocity.norm(); }});
-  all.push_back(
-      {"head_rotation", "rad_per_s", 1.0, [](const Launch& l) -> std::optional<double> { return l.head_spin.norm(); }});
+    add(std::string(c.name), std::string(c.unit), c.si, [value = c.value](const Launch& l) { return (l.*value)(); });
+  add("head_speed", "mps", 1.0, [](const Launch& l) { return l.head_velocity.norm(); });
+  add("head_rotation", "rad_per_s", 1.0, [](const Launch& l) { return l.head_spin.norm(); });
   for (int axis = 0; axis < 3; ++axis)
-    all.push_back({fmt::format("head_spin_{}", "xyz"[axis]), "rad_per_s", 1.0,
-                   [axis](const Launch& l) -> std::optional<double> { return l.head_spin[axis]; }});
-  all.push_back({"contact_time", "ms", 1e-3, [](const Launch& l) { return l.contact_time; }});
-  all.push_back({"peak_force", "N", 1.0, [](const Launch& l) { return l.peak_force; }});
-  all.push_back({"peak_compression", "mm", 1e-3, [](const Launch& l) { return l.peak_compression; }});
+    add(fmt::format("head_spin_{}", "xyz"[axis]), "rad_per_s", 1.0,
+        [axis](const Launch& l) { return l.head_spin[axis]; });
+  add("contact_time", "ms", 1e-3, [](const Launch& l) { return l.contact_time; });
+  add("peak_force", "N", 1.0, [](const Launch& l) { return l.peak_force; });
+  add("peak_compression", "mm", 1e-3, [](const Launch& l) { return l.peak_compression; });
+  return all;
+}
+
+std::optional<double> lost_carry(const FaceMap& map, std::size_t p) {
+  double longest = 0;
+  for (const auto& f : map.flights)
+    if (f) longest = std::max(longest, f->flight.carry);
+  return map.flights[p] ? std::optional(longest - map.flights[p]->flight.carry) : std::nullopt;
+}
+
+std::vector<MapQuantity> all_quantities(DistanceUnit unit) {
+  std::vector<MapQuantity> all = launch_quantities();
+  for (const FlightChannel& c : flight_channels(unit))
+    all.push_back(
+        {std::string(c.name), std::string(c.unit), c.si, true, [value = c.value](const FaceMap& map, std::size_t p) {
+           return map.flights[p] ? value(*map.flights[p]) : std::nullopt;
+         }});
+  all.push_back({"lost_carry", std::string(suffix(unit)), size(unit), true, lost_carry});
   return all;
 }
 
@@ -41,11 +64,12 @@ using Column = std::function<std::vector<double>(const FaceMap&, const MapQuanti
 
 std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, const Column& column) {
   std::string out = "model,impact_toe_mm,impact_high_mm";
-  for (const MapQuantity& q : map_quantities()) out += fmt::format(",{}_{}", q.name, q.unit);
+  if (!maps.empty())
+    for (const MapQuantity& q : map_quantities(*maps.front())) out += fmt::format(",{}_{}", q.name, q.unit);
   out += '\n';
   for (const FaceMap* map : maps) {
     std::vector<std::vector<double>> columns;
-    for (const MapQuantity& q : map_quantities()) columns.push_back(column(*map, q));
+    for (const MapQuantity& q : map_quantities(*map)) columns.push_back(column(*map, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
       out += fmt::format("{},{:.6g},{:.6g}", csv_cell(map->title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
       for (const auto& c : columns)
@@ -58,16 +82,18 @@ std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, c
 
 }  // namespace
 
-std::span<const MapQuantity> map_quantities() {
-  static const std::vector<MapQuantity> all = make_quantities();
-  return all;
+std::span<const MapQuantity> map_quantities(const FaceMap& map) {
+  static const std::vector<MapQuantity> launch = launch_quantities(), yards = all_quantities(DistanceUnit::yards),
+                                        metres = all_quantities(DistanceUnit::metres);
+  if (map.flights.empty()) return launch;
+  return map.distances == DistanceUnit::yards ? yards : metres;
 }
 
 std::vector<double> values(const FaceMap& map, const MapQuantity& q) {
   std::vector<double> out;
   out.reserve(map.launches.size());
-  for (const auto& launch : map.launches) {
-    const auto x = launch ? q.value(*launch) : std::nullopt;
+  for (std::size_t p = 0; p < map.launches.size(); ++p) {
+    const auto x = q.value(map, p);
     out.push_back(x ? *x / q.si : kNone);
   }
   if (nowhere(out)) out.clear();
@@ -126,7 +152,7 @@ VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<
       mesh.cells.push_back({CellShape::quad, {a, b, b + 1, a + 1}});  // normal out of the face
     }
   for (const FaceMap& m : maps)
-    for (const MapQuantity& q : map_quantities()) {
+    for (const MapQuantity& q : map_quantities(m)) {
       if (auto v = values(m, q); !v.empty())
         mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), q.unit, 1, std::move(v)});
       if (m.title == reference.title) continue;

@@ -11,6 +11,7 @@
 #include "hosel/golf/face.hpp"
 #include "hosel/golf/launch.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/flight_table.hpp"
 #include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
@@ -31,15 +32,20 @@ struct FaceGrid {
 struct FaceMap {
   std::string title;
   std::vector<std::optional<Launch>> launches;
+  std::vector<std::optional<ShotFlight>> flights = {};  ///< one a grid point, or none at all
+  DistanceUnit distances = DistanceUnit::yards;
 };
 
-/// What a map shows: the launch channels, and head and contact after the blow.
+/// What a map shows: the launch channels, head and contact after the blow; the flight, and how much carry is lost
+/// against the map's longest.
 struct MapQuantity {
-  std::string name, unit;                                     ///< unit as a suffix
-  double si;                                                  ///< one of the unit in SI
-  std::function<std::optional<double>(const Launch&)> value;  ///< SI; absent where the model has none
+  std::string name, unit;  ///< unit as a suffix
+  double si;               ///< one of the unit in SI
+  bool of_flight;
+  std::function<std::optional<double>(const FaceMap&, std::size_t point)> value;  ///< SI; absent where there is none
 };
-std::span<const MapQuantity> map_quantities();
+/// Those of the launch alone, or with those of the flight in its unit.
+std::span<const MapQuantity> map_quantities(const FaceMap& map);
 
 /// The quantity over the grid in its unit, NaN where there is none; empty if it is nowhere.
 std::vector<double> values(const FaceMap& map, const MapQuantity& quantity);

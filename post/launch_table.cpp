@@ -70,6 +70,17 @@ std::string launch_table(const std::vector<LaunchColumn>& columns, const Measure
   };
   row("e_t [-]", &Oblique::tangential_restitution, ranges.tangential_restitution);
   row("launch ratio [-]", &Oblique::launch_ratio, ranges.launch_ratio);
+  const auto flown = std::ranges::find_if(columns, [](const LaunchColumn& c) { return c.flight.has_value(); });
+  if (flown == columns.end()) return text;
+  for (const FlightChannel& channel : flight_channels(flown->flight->unit)) {
+    if (!channel.value(*flown->flight)) continue;
+    text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit));
+    for (const LaunchColumn& c : columns) {
+      const auto x = c.flight ? channel.value(*c.flight) : std::nullopt;
+      text += x ? fmt::format("{:>{}.{}f}", *x / channel.si, width, channel.decimals)
+                : fmt::format("{:>{}}", "-", width);
+    }
+  }
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hosel/golf/launch.hpp"
+#include "hosel/post/flight_table.hpp"
 
 namespace hosel::post {
 
@@ -35,13 +36,15 @@ struct LaunchColumn {
   std::string title;
   Launch launch;
   Oblique oblique = {};
+  std::optional<ShotFlight> flight = {};
 };
 /// Ranges that others measured on such blows: lowest and highest.
 using Range = std::optional<std::pair<double, double>>;
 struct MeasuredOblique {
   Range tangential_restitution, launch_ratio;
 };
-/// A text table: a row per quantity, a column per model, the measurement last where there is one.
+/// A text table: a row per quantity, a column per model, the measurement last where there is one; then the flights,
+/// where the columns have them.
 std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
                          const MeasuredOblique& ranges = {});
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.

@@ -81,6 +81,18 @@ Field negative(Field f) {
   return f;
 }
 
+/// What the club changes of a distance, in its unit; empty unless every ball of both maps flew.
+Field flight_gain(const FaceMap& club, const FaceMap& free, double models::Flight::*distance) {
+  const auto flew = [](const FaceMap& m) {
+    return !m.flights.empty() && std::ranges::all_of(m.flights, [](const auto& f) { return f.has_value(); });
+  };
+  if (!flew(club) || !flew(free)) return {};
+  Field out;
+  for (std::size_t p = 0; p < club.flights.size(); ++p)
+    out.push_back((club.flights[p]->flight.*distance - free.flights[p]->flight.*distance) / size(club.distances));
+  return out;
+}
+
 }  // namespace
 
 ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& free) {
@@ -153,6 +165,19 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
       {"azimuth_slope_club_deg_per_mm", azimuth_club.toe},
       {"azimuth_slope_difference_deg_per_mm", azimuth_club.toe - azimuth_free.toe},
   };
+  const Field carry = flight_gain(club, free, &models::Flight::carry),
+              aside = flight_gain(club, free, &models::Flight::side);
+  if (!carry.empty()) {
+    const auto add = [&](std::string_view name, double value) {
+      out.figures.push_back({fmt::format("{}_{}", name, suffix(club.distances)), value});
+    };
+    add("carry_gain_centre", at(g, carry, 0, 0));
+    add("carry_gain_mean", mean(carry));
+    add("carry_gain_min", *std::ranges::min_element(carry));
+    add("carry_gain_max", *std::ranges::max_element(carry));
+    add("side_difference_toe", at(g, aside, toe, 0));
+    add("side_difference_heel", at(g, aside, -toe, 0));
+  }
   out.statements = {
       {"the ball is faster with the club over the whole face", share == 1},
       {"the gain grows towards the heel, upwards, and is larger at the high heel than at the centre",
@@ -221,8 +246,11 @@ std::vector<std::size_t> coarse_points(const FaceGrid& g) {
 FaceGrid coarse(const FaceGrid& g) { return {g.width, g.height, 3, 3}; }
 
 FaceMap coarse(const FaceGrid& g, const FaceMap& map) {
-  FaceMap out{map.title, {}};
-  for (const std::size_t p : coarse_points(g)) out.launches.push_back(map.launches[p]);
+  FaceMap out{.title = map.title, .launches = {}, .distances = map.distances};
+  for (const std::size_t p : coarse_points(g)) {
+    out.launches.push_back(map.launches[p]);
+    if (!map.flights.empty()) out.flights.push_back(map.flights[p]);
+  }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/models/registry.hpp"
@@ -20,7 +21,8 @@
 namespace hosel::app {
 namespace {
 
-constexpr std::array kChannels = {"ball_speed", "launch_angle", "azimuth", "backspin", "sidespin"};
+constexpr std::array kChannels = {"ball_speed", "launch_angle", "azimuth",     "backspin",     "sidespin",
+                                  "carry",      "side",         "flight_time", "landing_angle"};  // where they fly
 
 /// What a blow consists of, beside the launch: the quantities that can explain a difference.
 struct Quantity {
@@ -63,6 +65,9 @@ class CrossCheckJob final : public Job {
     reference_ = static_cast<std::size_t>(std::ranges::find(models_, reference) - models_.begin());
     blow_ = read_blow(root, models_);
     options_ = read_options(root, models_);
+    const std::optional<FlightSetup> flight = read_optional_flight(root);
+    for (const char* name : kChannels)
+      if (auto c = find_shot_channel(name, flight, blow_.ball)) channels_.push_back(std::move(*c));
     for (Table t : root.tables("grid")) axes_.push_back(read_axis(t));
     if (axes_.empty()) root.fail("grid", "name at least one [[grid]] axis");
     points_ = 1;
@@ -121,8 +126,7 @@ class CrossCheckJob final : public Job {
           "\n## {}\n\n| channel | mean | rms | largest | where | reference there | differs most "
           "|\n|---|---|---|---|---|---|---|\n",
           models_[m]);
-      for (const char* name : kChannels) {
-        const post::Channel& c = *post::find_channel(name);
+      for (const ShotChannel& c : channels_) {
         double mean = 0, square = 0, largest = 0;
         std::size_t where = points_, count = 0;
         for (std::size_t k = 0; k < points_; ++k) {
@@ -158,7 +162,7 @@ class CrossCheckJob final : public Job {
         }
         csv += '\n';
         page += fmt::format("| {} [{}] | {:+.4g} | {:.4g} | {:+.4g} | {} | {:.5g} | {} |\n", c.name, c.unit, mean,
-                            square, largest, place, (answers[reference_][where].launch.*c.value)() / c.si, cause);
+                            square, largest, place, c.value(answers[reference_][where].launch) / c.si, cause);
         out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit,
                             place, cause));
         summary["differences"].push_back({{"model", models_[m]},
@@ -196,16 +200,16 @@ class CrossCheckJob final : public Job {
     for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].parameter->set(options, blow, axes_[a].values[at[a]]);
   }
   double difference(const std::vector<std::vector<Answer>>& answers, std::size_t m, std::size_t k,
-                    const post::Channel& c) const {
+                    const ShotChannel& c) const {
     const Answer &mine = answers[m][k], &theirs = answers[reference_][k];
     if (!mine.good || !theirs.good) return std::numeric_limits<double>::quiet_NaN();
-    return ((mine.launch.*c.value)() - (theirs.launch.*c.value)()) / c.si;
+    return (c.value(mine.launch) - c.value(theirs.launch)) / c.si;
   }
 
   void write_points(Output& out, const std::vector<std::vector<Answer>>& answers) const {
     std::string csv = "model";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
-    for (const char* name : kChannels) csv += fmt::format(",{}_{}", name, post::find_channel(name)->unit);
+    for (const ShotChannel& c : channels_) csv += fmt::format(",{}_{}", c.name, c.unit);
     csv += ",contact_time_ms,peak_force_kN,normal_impulse_N_s,tangential_impulse_N_s,head_rotation_rad_per_s\n";
     for (std::size_t m = 0; m < models_.size(); ++m)
       for (std::size_t k = 0; k < points_; ++k) {
@@ -215,10 +219,7 @@ class CrossCheckJob final : public Job {
         const std::vector<std::size_t> at = index(k);
         for (std::size_t i = 0; i < axes_.size(); ++i)
           csv += fmt::format(",{:.8g}", axes_[i].values[at[i]] / axes_[i].si);
-        for (const char* name : kChannels) {
-          const post::Channel& c = *post::find_channel(name);
-          csv += fmt::format(",{:.8g}", (a.launch.*c.value)() / c.si);
-        }
+        for (const ShotChannel& c : channels_) csv += fmt::format(",{:.8g}", c.value(a.launch) / c.si);
         for (std::size_t q = 0; q < kQuantities.size(); ++q)
           csv += std::isfinite(a.quantity[q]) ? fmt::format(",{:.8g}", a.quantity[q] / kQuantities[q].si)
                                               : std::string(",");
@@ -243,9 +244,8 @@ class CrossCheckJob final : public Job {
                    .panel_width = 520,
                    .panel_height = 400};
     const Axis& x = axes_[0];
-    for (const char* name : kChannels) {
-      const post::Channel& c = *post::find_channel(name);
-      std::string plain(name);
+    for (const ShotChannel& c : channels_) {
+      std::string plain(c.name);
       std::ranges::replace(plain, '_', ' ');
       post::Panel p{.title = plain, .x_label = x.label};
       const std::string with_unit = fmt::format("difference [{}]", c.unit);
@@ -279,6 +279,7 @@ class CrossCheckJob final : public Job {
   Blow blow_;
   models::Options options_;
   std::vector<Axis> axes_;
+  std::vector<ShotChannel> channels_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/models/hertz_maw.hpp"
@@ -34,10 +35,14 @@ class CurvesJob final : public Job {
       return;
     }
     x_ = read_axis(root.table("x"));
+    const std::optional<FlightSetup> flight = read_optional_flight(root);
     for (const std::string& name : root.texts("channels")) {
-      const post::Channel* c = post::find_channel(name);
-      if (!c) root.fail("channels", fmt::format("no launch quantity '{}' (known: {})", name, post::channel_names()));
-      channels_.push_back(c);
+      const auto c = find_shot_channel(name, flight, blow_.ball);
+      if (!c)
+        root.fail("channels", fmt::format("no launch quantity '{}' (known: {}; with a [flight]: carry, side, apex, "
+                                          "flight_time, landing_angle, and total with its turf)",
+                                          name, post::channel_names()));
+      channels_.push_back(*c);
     }
     if (channels_.empty()) root.fail("channels", "name at least one launch quantity");
   }
@@ -54,15 +59,15 @@ class CurvesJob final : public Job {
 
   void curves(Output& out) const {
     std::string csv = fmt::format("model,{},{}", column(*family_.parameter), column(*x_.parameter));
-    for (const post::Channel* c : channels_) csv += fmt::format(",{}_{}", c->name, c->unit);
+    for (const ShotChannel& c : channels_) csv += fmt::format(",{}_{}", c.name, c.unit);
     csv += '\n';
     post::Figure figure{.columns = 2};
-    for (const post::Channel* c : channels_)
+    for (const ShotChannel& c : channels_)
       for (const std::string& m : models_) {
-        std::string name(c->name);
+        std::string name(c.name);
         std::ranges::replace(name, '_', ' ');
         figure.panels.push_back(
-            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c->unit), .key = "top left"});
+            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c.unit), .key = "top left"});
       }
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)
@@ -73,9 +78,10 @@ class CurvesJob final : public Job {
           Blow blow = blow_;
           family_.parameter->set(options, blow, f);
           x_.parameter->set(options, blow, x);
-          Launch launch;
+          std::vector<double> values;
           try {
-            launch = models::find(models_[m])->make(options)->launch(blow);
+            const Launch launch = models::find(models_[m])->make(options)->launch(blow);
+            for (const ShotChannel& c : channels_) values.push_back(c.value(launch) / c.si);
           } catch (const std::exception& e) {
             failed.push_back(fmt::format("{}, {} {:g}, {} {:g}: {}", models_[m], column(*family_.parameter),
                                          f / family_.si, column(*x_.parameter), x / x_.si, e.what()));
@@ -83,10 +89,9 @@ class CurvesJob final : public Job {
           }
           csv += fmt::format("{},{:.8g},{:.8g}", models_[m], f / family_.si, x / x_.si);
           for (std::size_t c = 0; c < channels_.size(); ++c) {
-            const double value = (launch.*channels_[c]->value)() / channels_[c]->si;
-            csv += fmt::format(",{:.8g}", value);
+            csv += fmt::format(",{:.8g}", values[c]);
             lines[c].x.push_back(x / x_.si);
-            lines[c].y.push_back(value);
+            lines[c].y.push_back(values[c]);
           }
           csv += '\n';
         }
@@ -170,7 +175,7 @@ class CurvesJob final : public Job {
   models::Options options_;
   Axis family_, x_;
   bool history_ = false;
-  std::vector<const post::Channel*> channels_;
+  std::vector<ShotChannel> channels_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/sweep.hpp"
 #include "hosel/app/sweep_store.hpp"
@@ -65,6 +66,7 @@ struct Layer {
   std::string title;
   std::unique_ptr<models::ImpactModel> model;
   Blow blow;
+  std::optional<FlightSetup> flight;
   bool refined = false;
 };
 
@@ -127,6 +129,7 @@ class FaceMapJob final : public PointJob {
     std::vector<post::FaceMap> all;
     for (const Layer& layer : layers_) all.push_back({layer.title, {}});
     for (std::size_t i = 0; i < points.size(); ++i) all[work_[i].layer].launches.push_back(launch_from(points[i]));
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) add_flights(layers_[layer], all[layer]);
     const std::vector<post::FaceMap> maps(all.begin(), all.begin() + long(maps_));
     const post::FaceMap& reference = maps[reference_];
 
@@ -148,6 +151,10 @@ class FaceMapJob final : public PointJob {
       if (whole) m["mirror_error"] = post::mirror_error(grid_, map);
       const auto& centre = map.launches[post::coarse_points(grid_)[4]];
       if (centre) m["centre"] = post::to_json(*centre);
+      if (!map.flights.empty()) {
+        const auto& flight = map.flights[post::coarse_points(grid_)[4]];
+        if (flight) m["centre"].update(post::to_json(*flight));
+      }
       draw(out, map);
       hosel(out, points, std::size_t(&map - maps.data()));
       if (&map == &maps[reference_]) continue;
@@ -167,6 +174,7 @@ class FaceMapJob final : public PointJob {
     std::size_t reference = 0;
     double extra_mass = 0;
     std::vector<std::string> refinement;
+    std::optional<FlightSetup> flight;
   };
 
   /// Every key that a face map knows.
@@ -198,6 +206,7 @@ class FaceMapJob final : public PointJob {
     for (const Variant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
     s.options = read_options(root, asked);
+    s.flight = read_optional_flight(root);
     if (s.blow.delivery.impact_toe != 0 || s.blow.delivery.impact_high != 0)
       root.fail("delivery", "the grid says where the ball meets the face: impact_toe and impact_high stay out");
     return s;
@@ -211,17 +220,36 @@ class FaceMapJob final : public PointJob {
     root.text("kind", "face-map");
     root.text("title", "");
     const Settings own = read(root);
-    Layer layer{variant.title, models::find(variant.model)->make(own.options), own.blow, refined};
+    Layer layer{variant.title, models::find(variant.model)->make(own.options), own.blow, own.flight, refined};
     again.finish();
     identity_ += variant.title + '\n' + variant.model + '\n' + again.resolved();
     layers_.push_back(std::move(layer));
   }
 
-  /// Every quantity of a map, or of its difference to another.
+  /// Where each ball of a map goes, if the case asks. A ball that cannot reach the landing has no flight.
+  static void add_flights(const Layer& layer, post::FaceMap& map) {
+    if (!layer.flight) return;
+    map.distances = layer.flight->unit;
+    for (const auto& launch : map.launches) {
+      map.flights.emplace_back();
+      if (!launch) continue;
+      try {
+        map.flights.back() = layer.flight->follow(*launch, layer.blow.ball);
+      } catch (const std::invalid_argument&) {}
+    }
+  }
+
   void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference = nullptr) const {
+    draw(out, map, reference, false);
+    if (!map.flights.empty()) draw(out, map, reference, true);
+  }
+
+  /// Every quantity of a map, or of its difference to another: those of the launch, or those of the flight.
+  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference, bool of_flight) const {
     const std::string what = reference ? fmt::format("{} minus {}", map.title, reference->title) : map.title;
     post::Figure figure{.title = what + "; " + post::kFaceView, .columns = 3, .panel_width = 640, .panel_height = 330};
-    for (const post::MapQuantity& q : post::map_quantities()) {
+    for (const post::MapQuantity& q : post::map_quantities(map)) {
+      if (q.of_flight != of_flight) continue;
       const auto v = reference ? post::differences(map, *reference, q) : post::values(map, q);
       if (v.empty()) continue;
       const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
@@ -229,7 +257,9 @@ class FaceMapJob final : public PointJob {
           post::face_panel(grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", q.name, unit),
                            fmt::format("[{}]", unit), reference != nullptr));
     }
-    picture(out, figure, fmt::format("figures/{}{}", reference ? "difference-" : "map-", file_name(map.title)));
+    picture(out, figure,
+            fmt::format("figures/{}{}{}", of_flight ? "flight-" : "", reference ? "difference-" : "map-",
+                        file_name(map.title)));
   }
 
   /// What the shaft does to the head at every point: force and moment over time, and their impulses as maps.

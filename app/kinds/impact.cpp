@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/models/matched_launch.hpp"
@@ -55,6 +56,7 @@ class ImpactJob final : public Job {
         measured_.emplace_back(channel, measured->quantity(split.stem, std::string(channel->unit)));
       }
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
+    flight_ = read_optional_flight(root);
   }
 
   void run(Output& out) override {
@@ -82,6 +84,12 @@ class ImpactJob final : public Job {
       said["dynamic_loft_deg"] = loft;
       note_oblique(found.blow, columns.back(), said);
     }
+    if (flight_)
+      for (post::LaunchColumn& c : columns) {
+        c.flight = flight_->follow(c.launch, blow_.ball);
+        nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
+        said["budget"] = report_flight(out, *flight_, c.title, c.launch, blow_.ball);
+      }
     for (const auto& [channel, value] : measured_)
       summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
     out.say(post::launch_table(columns, measured_, ranges_));
@@ -173,6 +181,7 @@ class ImpactJob final : public Job {
   post::Measured measured_;
   post::MeasuredOblique ranges_;
   bool matched_ = false;
+  std::optional<FlightSetup> flight_;
 };
 
 }  // namespace

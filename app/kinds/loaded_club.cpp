@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
@@ -56,6 +57,7 @@ class LoadedClubJob final : public Job {
     mount.growth = swing_.growth;
     mount.shear = swing_.shear;
     mount.grip_point = swing_.grip_point;
+    flight_ = read_optional_flight(root);
     Table points = root.table("points");
     toe_ = points.quantities("impact_toe", "mm", 0);
     high_ = points.quantities("impact_high", "mm", toe_.size());
@@ -106,6 +108,7 @@ class LoadedClubJob final : public Job {
       nlohmann::json point = {{"impact_toe_mm", 1e3 * toe_[k]}, {"impact_high_mm", 1e3 * high_[k]}};
       for (const Answer& a : answers) {
         columns.push_back({a.name, a.launch});
+        if (flight_) columns.back().flight = flight_->follow(a.launch, blow_.ball);
         table += fmt::format("{:g},{:g},{}", 1e3 * toe_[k], 1e3 * high_[k], post::csv_cell(a.name));
         for (const post::Channel& c : post::channels()) table += fmt::format(",{:.9g}", (a.launch.*c.value)() / c.si);
         const fem::Wrench impulse = a.hosel.impulse();
@@ -114,6 +117,7 @@ class LoadedClubJob final : public Job {
           table += a.hosel.times.empty() ? ",,," : fmt::format(",{:.6g},{:.6g},{:.6g}", v.x(), v.y(), v.z());
         table += "\n";
         point["clubs"][a.name] = post::to_json(a.launch);
+        if (flight_) point["clubs"][a.name].update(post::to_json(*columns.back().flight));
         if (!a.hosel.times.empty())
           point["clubs"][a.name]["hosel_impulse"] = {
               {"force_N_s", {impulse.force.x(), impulse.force.y(), impulse.force.z()}},
@@ -313,6 +317,7 @@ class LoadedClubJob final : public Job {
   models::SwingOptions swing_;
   models::Options solve_;
   std::vector<double> toe_, high_;
+  std::optional<FlightSetup> flight_;
 };
 
 }  // namespace

@@ -1,0 +1,125 @@
+#include "hosel/app/kinds/flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
+#include "hosel/post/launch_table.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// Ball speed and direction; the spin by its components or by rate and tilt.
+Launch read_launch(Table table) {
+  const double speed = table.quantity("ball_speed", "mps", {0, 120, true});
+  const double up = table.quantity("launch_angle", "deg", {-kPi / 2, kPi / 2});
+  const double right = table.quantity("azimuth", "deg", {-kPi / 2, kPi / 2}, 0);
+  Launch l;
+  l.velocity = speed * Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
+  double back = 0, side = 0;
+  if (table.has_quantity("spin_rate")) {
+    const double rate = table.quantity("spin_rate", "rpm", Range::non_negative());
+    const double axis = table.quantity("spin_axis", "deg", {-kPi, kPi}, 0);
+    back = rate * std::cos(axis);
+    side = rate * std::sin(axis);
+  } else {
+    back = table.quantity("backspin", "rpm");
+    side = table.quantity("sidespin", "rpm", Range::finite(), 0);
+  }
+  l.spin = Vec3(table.quantity("riflespin", "rpm", Range::finite(), 0), -back, -side);
+  return l;
+}
+
+class FlightJob final : public Job {
+ public:
+  explicit FlightJob(CaseFile& file) {
+    Table root = file.root();
+    setup_ = root.has("flight") ? read_flight(root.table("flight")) : FlightSetup{};
+    if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
+    for (Table t : root.tables("launch")) {
+      Shot s{t.text("name"), read_launch(t), {}};
+      if (std::ranges::find(shots_, s.name, &Shot::name) != shots_.end())
+        t.fail("name", fmt::format("'{}' is there twice", s.name));
+      if (auto measured = t.optional_table("measured"))
+        for (const post::FlightChannel& c : post::flight_channels(setup_.unit))
+          if (measured->has_quantity(c.name))
+            s.measured.emplace_back(&c, measured->quantity(c.name, std::string(c.unit)));
+      shots_.push_back(std::move(s));
+    }
+    if (shots_.empty()) root.fail("launch", "name at least one [[launch]]");
+  }
+
+  void run(Output& out) override {
+    nlohmann::json summary;
+    std::string csv = "launch,law";
+    const auto channels = post::flight_channels(setup_.unit);
+    for (const post::FlightChannel& c : channels) csv += fmt::format(",{}_{}", c.name, c.unit);
+    csv += ",outside_law_range\n";
+    std::vector<post::LaunchColumn> columns;
+    std::vector<post::NamedFlight> flights;
+    for (const Shot& s : shots_) {
+      const post::ShotFlight shot = setup_.follow(s.launch, ball_, 0.05);
+      columns.push_back({s.name, s.launch, shot});
+      flights.push_back({s.name, shot});
+      nlohmann::json& j = summary["launches"][s.name];
+      j = post::to_json(shot);
+      j["budget"] = report_flight(out, setup_, s.name, s.launch, ball_);
+      compare(out, s, shot, j);
+      const auto row = [&](const std::string& law, const post::ShotFlight& f) {
+        csv += fmt::format("{},{}", s.name, law);
+        for (const post::FlightChannel& c : channels) {
+          const auto x = c.value(f);
+          csv += x ? fmt::format(",{:.8g}", *x / c.si) : std::string(",");
+        }
+        csv += fmt::format(",{:.4g}\n", f.flight.outside);
+      };
+      row(setup_.conditions.law.name, shot);
+      for (const models::FlightLaw& law : setup_.others) {
+        FlightSetup other = setup_;
+        other.conditions.law = law;
+        row(law.name, other.follow(s.launch, ball_));
+      }
+    }
+    out.say("\n" + post::launch_table(columns));
+    out.write("flights.csv", csv);
+    if (shots_.size() > 1)
+      if (const std::string why =
+              post::draw(post::trajectory_figure(setup_.conditions.law.name, flights), out.path("figures/flights"));
+          !why.empty())
+        out.say(why);
+    out.write_summary(summary);
+  }
+
+ private:
+  struct Shot {
+    std::string name;
+    Launch launch;
+    std::vector<std::pair<const post::FlightChannel*, double>> measured;  ///< SI
+  };
+
+  static void compare(Output& out, const Shot& s, const post::ShotFlight& shot, nlohmann::json& j) {
+    std::string text;
+    for (const auto& [c, value] : s.measured) {
+      const auto x = c->value(shot);
+      if (!x) continue;
+      j["measured"][fmt::format("{}_{}", c->name, c->unit)] = value / c->si;
+      text += fmt::format("{}{} {:+.{}f} {}", text.empty() ? "" : ", ", c->name, (*x - value) / c->si, c->decimals,
+                          c->unit);
+    }
+    if (!text.empty()) out.say(fmt::format("{}, minus measured: {}", s.name, text));
+  }
+
+  FlightSetup setup_;
+  Ball ball_;
+  std::vector<Shot> shots_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_flights(CaseFile& file) { return std::make_unique<FlightJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,10 @@
+/// `kind = "flight"`: where balls of given launches go.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_flights(CaseFile& file);
+
+}  // namespace hosel::app

@@ -1,0 +1,199 @@
+#include "hosel/app/read_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/golf/units.hpp"
+#include "hosel/loop/csv.hpp"
+#include "hosel/post/launch_table.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// Columns reynolds, spin_ratio, drag, lift; rows of one Reynolds number follow each other.
+models::TableLaw read_coefficients(Table& table) {
+  const std::filesystem::path file = table.file("coefficients");
+  models::TableLaw law;
+  try {
+    const loop::Sheet sheet = loop::read_csv(file);
+    const auto column = [&](std::string_view name) -> const std::vector<std::string>& {
+      const auto it = std::ranges::find(sheet.names, name);
+      if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", file.string(), name));
+      return sheet.columns[std::size_t(it - sheet.names.begin())];
+    };
+    const auto &reynolds = column("reynolds"), &spin = column("spin_ratio"), &drag = column("drag"),
+               &lift = column("lift");
+    for (std::size_t i = 0; i < sheet.rows(); ++i) {
+      const double re = std::stod(reynolds[i]);
+      if (law.rows.empty() || law.rows.back().reynolds != re) law.rows.push_back({re, {}, {}, {}});
+      law.rows.back().spin.push_back(std::stod(spin[i]));
+      law.rows.back().drag.push_back(std::stod(drag[i]));
+      law.rows.back().lift.push_back(std::stod(lift[i]));
+    }
+  } catch (const loop::DataError& e) { throw InputError(e.what()); } catch (const std::logic_error&) {
+    throw InputError(fmt::format("{}: a cell is not a number", file.string()));
+  }
+  if (const auto faults = law.faults(); !faults.empty()) table.fail("coefficients", faults.front());
+  return law;
+}
+
+models::FlightLaw published(Table& table, std::string_view key, const std::string& name) {
+  if (const auto* entry = models::find_flight_law(name)) return entry->make();
+  std::vector<std::string> known;
+  for (const auto& l : models::flight_laws()) known.emplace_back(l.name);
+  const std::string near = nearest(name, known);
+  table.fail(key, near.empty() ? fmt::format("no flight law '{}'; `hosel list` shows them", name)
+                               : fmt::format("no flight law '{}'; did you mean '{}'?", name, near));
+}
+
+models::FlightLaw read_law(Table& table) {
+  models::FlightLaw law;
+  const std::string name = table.text("law", "ferguson-2022");
+  if (name == "table") {
+    law = {.name = "table",
+           .source = "the case",
+           .reynolds = {},
+           .spin = {},
+           .form = read_coefficients(table),
+           .decay = {.rate = table.number("spin_decay_per_s", {0, 2})}};
+  } else {
+    law = published(table, "law", name);
+    if (table.has("spin_decay_per_s")) law.decay = {.rate = table.number("spin_decay_per_s", {0, 2})};
+  }
+  law.drag_scale = table.number("drag_scale", {0, 10}, 1.0);
+  law.lift_scale = table.number("lift_scale", {0, 10}, 1.0);
+  return law;
+}
+
+models::Air read_air(Table& table) {
+  if (table.has_quantity("density"))
+    return {.density = table.quantity("density", "kg_per_m3", {0, 5}), .viscosity = models::Air{}.viscosity};
+  models::Weather w;
+  w.temperature = 273.15 + table.number("temperature_degC", {-40, 60}, 15.0);
+  w.humidity = table.quantity("humidity", "pct", Range::fraction(), 0.5);
+  const double altitude = table.quantity("altitude", "m", {-500, 9000}, 0.0);
+  w.pressure = table.quantity("pressure", "hPa", {2e4, 1.2e5}, models::standard_pressure(altitude));
+  return models::air(w);
+}
+
+models::Wind read_wind(Table table) {
+  models::Wind w;
+  w.speed = table.quantity("speed", "mps", {0, 50});
+  w.towards = table.quantity("towards", "deg", {-2 * kPi, 2 * kPi});
+  const std::string profile = table.choice("profile", {"logarithmic", "uniform"}, "logarithmic");
+  w.profile = profile == "uniform" ? models::WindProfile::uniform : models::WindProfile::logarithmic;
+  if (w.profile == models::WindProfile::uniform) return w;
+  w.reference = table.quantity("height", "m", {0.1, 200}, w.reference);
+  w.roughness = table.quantity("roughness", "m", {1e-4, 5}, w.roughness);
+  return w;
+}
+
+models::LaunchError read_launch_error(Table table) {
+  models::LaunchError e{.source = table.text("source")};
+  e.ball_speed = table.quantity("ball_speed", "mps", Range::non_negative(), 0);
+  e.launch_angle = table.quantity("launch_angle", "deg", Range::non_negative(), 0);
+  e.azimuth = table.quantity("azimuth", "deg", Range::non_negative(), 0);
+  e.backspin = table.quantity("backspin", "rpm", Range::non_negative(), 0);
+  e.sidespin = table.quantity("sidespin", "rpm", Range::non_negative(), 0);
+  e.spin_rate = table.quantity("spin_rate", "rpm", Range::non_negative(), 0);
+  e.spin_axis = table.quantity("spin_axis", "deg", Range::non_negative(), 0);
+  return e;
+}
+
+std::string file_name(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+  return name;
+}
+
+}  // namespace
+
+FlightSetup read_flight(Table table) {
+  FlightSetup s;
+  s.unit = table.choice("units", {"yards", "metres"}, "yards") == "yards" ? post::DistanceUnit::yards
+                                                                          : post::DistanceUnit::metres;
+  s.conditions.law = read_law(table);
+  for (const std::string& name : table.texts("beside", std::vector<std::string>{}))
+    s.others.push_back(published(table, "beside", name));
+  s.conditions.air = read_air(table);
+  s.options.tolerance = table.number("tolerance", {1e-12, 1e-3}, s.options.tolerance);
+  if (auto wind = table.optional_table("wind")) s.conditions.wind = read_wind(*wind);
+  if (auto ground = table.optional_table("ground")) {
+    s.conditions.ground.height = ground->quantity("height", "m", {-500, 500}, 0);
+    s.conditions.ground.slope = ground->quantity("slope", "deg", {-radians(45), radians(45)}, 0);
+  }
+  if (auto turf = table.optional_table("turf")) {
+    models::BounceRoll t;
+    t.friction = turf->number("friction", {0, 2}, t.friction);
+    t.rolling = turf->number("rolling", {0.01, 1}, t.rolling);
+    t.rolling_low = turf->number("rolling_low", {0.01, t.rolling}, t.rolling_low);
+    t.rolling_high = turf->number("rolling_high", {t.rolling, 2}, t.rolling_high);
+    s.turf = t;
+    if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
+  }
+  for (Table t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t));
+  return s;
+}
+
+std::optional<FlightSetup> read_optional_flight(Table root) {
+  if (auto table = root.optional_table("flight")) return read_flight(*table);
+  return {};
+}
+
+post::ShotFlight FlightSetup::follow(const Launch& launch, const Ball& ball, double sample) const {
+  post::ShotFlight s{
+      models::fly(launch, ball, conditions, {.tolerance = options.tolerance, .sample = sample}), {}, unit};
+  if (turf) s.run = models::run_out(s.flight.landing, ball, conditions.ground, *turf);
+  return s;
+}
+
+std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::optional<FlightSetup>& flight,
+                                             const Ball& ball) {
+  if (const post::Channel* c = post::find_channel(name))
+    return ShotChannel{std::string(name), std::string(c->unit), c->si,
+                       [value = c->value](const Launch& l) { return (l.*value)(); }};
+  if (!flight) return {};
+  for (const post::FlightChannel& c : post::flight_channels(flight->unit))
+    if (c.name == name && (name != "total" || flight->turf))
+      return ShotChannel{
+          std::string(name), std::string(c.unit), c.si,
+          [setup = *flight, ball, value = c.value](const Launch& l) { return *value(setup.follow(l, ball)); }};
+  return {};
+}
+
+models::FlightBudget FlightSetup::budget(const Launch& launch, const Ball& ball) const {
+  return models::flight_budget(launch, ball, conditions, options, errors, others);
+}
+
+nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
+                             const Ball& ball) {
+  constexpr double sample = 0.05;  // [s]
+  std::vector<post::NamedFlight> flights = {{setup.conditions.law.name, setup.follow(launch, ball, sample)}};
+  for (const models::FlightLaw& law : setup.others) {
+    FlightSetup other = setup;
+    other.conditions.law = law;
+    flights.push_back({law.name, other.follow(launch, ball, sample)});
+  }
+  const models::FlightBudget budget = setup.budget(launch, ball);
+  out.say(fmt::format("\n{}, {} in air of {:.4f} kg/m^3:\n{}", name, setup.conditions.law.name,
+                      setup.conditions.air.density, post::budget_table(budget, setup.errors, setup.unit)));
+  const models::Flight& flight = flights.front().shot.flight;
+  if (flight.outside > 0)
+    out.say(
+        fmt::format("{}: {:.0f} % of the flight is outside the range of {} (Re {:.0f} to {:.0f}, spin ratio {:.3f} "
+                    "to {:.3f}; {})",
+                    name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
+                    flight.spin.low, flight.spin.high, setup.conditions.law.source));
+  const std::string file = file_name(name);
+  if (const std::string why = post::draw(post::trajectory_figure(name, flights), out.path("figures/flight-" + file));
+      !why.empty())
+    out.say(why);
+  post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)
+      .write(flight.time, post::trajectory_mesh(flight));
+  return post::to_json(budget, setup.errors, setup.unit);
+}
+
+}  // namespace hosel::app

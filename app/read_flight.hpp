@@ -1,0 +1,42 @@
+/// The optional `[flight]` of a case: how far the ball goes after the blow.
+#pragma once
+
+#include <functional>
+
+#include "hosel/app/output.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/post/trajectory.hpp"
+
+namespace hosel::app {
+
+struct FlightSetup {
+  models::FlightConditions conditions;
+  models::FlightOptions options;
+  std::optional<models::BounceRoll> turf;
+  post::DistanceUnit unit = post::DistanceUnit::yards;
+  std::vector<models::LaunchError> errors;
+  std::vector<models::FlightLaw> others;  ///< laws shown beside
+
+  post::ShotFlight follow(const Launch& launch, const Ball& ball, double sample = 0) const;
+  models::FlightBudget budget(const Launch& launch, const Ball& ball) const;
+};
+
+FlightSetup read_flight(Table table);
+std::optional<FlightSetup> read_optional_flight(Table root);
+
+/// A quantity of the launch or of the flight after it, by name.
+struct ShotChannel {
+  std::string name, unit;
+  double si;
+  std::function<double(const Launch&)> value;  ///< SI; throws as the flight does
+};
+/// Absent where nothing has this name, or where it belongs to a flight and there is none.
+std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::optional<FlightSetup>& flight,
+                                             const Ball& ball);
+
+/// The error budget as a table, the trajectories by every law as figure and lines for ParaView in OUT; returns the
+/// budget for the summary. `name` begins the files' names. Says where a law is used outside its range.
+nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
+                             const Ball& ball);
+
+}  // namespace hosel::app

@@ -1,0 +1,151 @@
+#include "hosel/models/flight_laws.hpp"
+
+#include <algorithm>
+
+namespace hosel::models {
+namespace {
+
+FlightLaw ferguson_2022() {
+  return {.name = "ferguson-2022",
+          .source =
+              "Ferguson, McNally and McPhee (2022), fitted to tracked shots of all clubs; its range in Re is not "
+              "known to us, and beyond S = 0.52 its lift falls",
+          .reynolds = {4e4, 2.5e5},
+          .spin = {0, 0.52},
+          .form = PolynomialLaw{.drag = {0.1304, 0.9287, -0.8259}, .lift = {0.0504, 1.2031, -1.1490}},
+          .decay = {.moment = 0.01}};
+}
+
+FlightLaw smits_smith_1994() {
+  return {.name = "smits-smith-1994",
+          .source =
+              "Smits and Smith (1994), Science and Golf II, as quoted in US patent 11230375; wind tunnel, "
+              "for driver shots",
+          .reynolds = {7e4, 2.1e5},
+          .spin = {0.08, 0.2},
+          .form = SineLaw{.drag = 0.24,
+                          .drag_spin = 0.18,
+                          .drag_wave = 0.06,
+                          .start = 9e4,
+                          .span = 2e5,
+                          .lift = 0.54,
+                          .power = 0.4},
+          .decay = {.travel = 2e-5}};
+}
+
+FlightLaw lyu_2018() {
+  return {
+      .name = "lyu-2018",
+      .source = "Lyu, Kensrud, Smith and Tosaya (2018), Proceedings 2:238, figures 3b and 4b: one ball in still air",
+      .reynolds = {7.5e4, 2e5},
+      .spin = {0.04, 0.32},
+      .form = PolynomialLaw{.drag = {0.56}, .lift = {0, 1.99, -3.25}, .drag_reynolds = {-5.40e-6, 1.91e-11}},
+      .decay = {.rate = 0.04}};  // what its trajectories take, from a radar maker's newsletter
+}
+
+FlightLaw bearman_harvey_1976() {
+  return {.name = "bearman-harvey-1976",
+          .source =
+              "Bearman and Harvey (1976), Aeronaut. Q. 27:112, figures 7 and 8: hexagonal dimples, 2000 to 6000 "
+              "rpm, as read off for NTNU's course TKT4140; 41.1 mm, 1.5e-5 m^2/s",
+          .reynolds = {3.75e4, 2.414e5},
+          .spin = {0.0489, 0.9425},
+          .form = TableLaw{{
+              {3.750e4,
+               {0.3142, 0.4712, 0.6283, 0.7854, 0.9425},
+               {0.3624, 0.4203, 0.4288, 0.4848, 0.5180},
+               {0.1040, 0.3624, 0.4005, 0.4130, 0.4644}},
+              {5.920e4,
+               {0.1993, 0.2989, 0.3985, 0.4981, 0.5978},
+               {0.2885, 0.3658, 0.4003, 0.4314, 0.4406},
+               {0.1846, 0.3362, 0.3640, 0.3894, 0.4227}},
+              {8.190e4,
+               {0.1439, 0.2159, 0.2879, 0.3599, 0.4318},
+               {0.2765, 0.3169, 0.3490, 0.3728, 0.3882},
+               {0.2460, 0.3049, 0.3347, 0.3496, 0.3724}},
+              {1.052e5,
+               {0.1121, 0.1681, 0.2242, 0.2802, 0.3362},
+               {0.2529, 0.2822, 0.3084, 0.3316, 0.3517},
+               {0.1984, 0.2475, 0.2862, 0.3119, 0.3393}},
+              {1.285e5,
+               {0.0918, 0.1377, 0.1835, 0.2294, 0.2753},
+               {0.2472, 0.2655, 0.2852, 0.3062, 0.3285},
+               {0.1762, 0.2073, 0.2384, 0.2695, 0.3005}},
+              {1.512e5,
+               {0.0780, 0.1170, 0.1559, 0.1949, 0.2339},
+               {0.2481, 0.2578, 0.2710, 0.2876, 0.3076},
+               {0.1538, 0.1856, 0.2149, 0.2418, 0.2662}},
+              {1.729e5,
+               {0.0682, 0.1023, 0.1364, 0.1705, 0.2046},
+               {0.2467, 0.2560, 0.2659, 0.2765, 0.2877},
+               {0.1418, 0.1702, 0.1977, 0.2246, 0.2507}},
+              {1.970e5,
+               {0.0599, 0.0898, 0.1197, 0.1497, 0.1796},
+               {0.2470, 0.2550, 0.2630, 0.2710, 0.2790},
+               {0.1360, 0.1584, 0.1807, 0.2031, 0.2254}},
+              {2.197e5,
+               {0.0537, 0.0805, 0.1073, 0.1342, 0.1610},
+               {0.2470, 0.2538, 0.2605, 0.2673, 0.2740},
+               {0.1280, 0.1485, 0.1690, 0.1895, 0.2100}},
+              {2.414e5,
+               {0.0489, 0.0733, 0.0977, 0.1221, 0.1466},
+               {0.2470, 0.2538, 0.2605, 0.2673, 0.2740},
+               {0.1276, 0.1464, 0.1582, 0.1791, 0.2000}},
+          }},
+          .decay = {.travel = 2e-5}};  // Penner (2001), Am. J. Phys. 69:563, which flies with this table
+}
+
+constexpr std::array kLaws = {
+    FlightLawEntry{"ferguson-2022", "polynomials in the spin ratio, from tracked shots of all clubs", ferguson_2022},
+    FlightLawEntry{"smits-smith-1994", "driver shots in a wind tunnel", smits_smith_1994},
+    FlightLawEntry{"lyu-2018", "one modern ball in still air: drag over Re, lift over the spin ratio", lyu_2018},
+    FlightLawEntry{"bearman-harvey-1976", "table of a ball with hexagonal dimples, wind tunnel", bearman_harvey_1976},
+};
+
+/// The spin ratio at one end of the measured rows, at any Reynolds number.
+double end_of_row(const TableLaw& table, double reynolds, double (*end)(const std::vector<double>&)) {
+  const auto above = std::ranges::upper_bound(table.rows, reynolds, {}, &TableLaw::Row::reynolds);
+  if (above == table.rows.begin()) return end(above->spin);
+  if (above == table.rows.end()) return end(table.rows.back().spin);
+  const auto below = above - 1;
+  const double share = (reynolds - below->reynolds) / (above->reynolds - below->reynolds);
+  return std::lerp(end(below->spin), end(above->spin), share);
+}
+
+}  // namespace
+
+bool TableLaw::holds(double reynolds, double spin) const {
+  return rows.front().reynolds <= reynolds && reynolds <= rows.back().reynolds &&
+         end_of_row(*this, reynolds, [](const std::vector<double>& x) { return x.front(); }) <= spin &&
+         spin <= end_of_row(*this, reynolds, [](const std::vector<double>& x) { return x.back(); });
+}
+
+std::vector<std::string> TableLaw::faults() const {
+  const auto rise = [](const auto& x, auto&& of) {
+    return std::ranges::adjacent_find(x, std::ranges::greater_equal{}, of) == x.end();
+  };
+  std::vector<std::string> out;
+  if (rows.size() < 2) out.push_back("a table of coefficients has at least two Reynolds numbers");
+  if (!rise(rows, &Row::reynolds)) out.push_back("the Reynolds numbers of a table of coefficients rise");
+  for (const Row& r : rows) {
+    if (r.spin.size() < 2) out.push_back("each Reynolds number of a table has at least two spin ratios");
+    if (!rise(r.spin, std::identity{})) out.push_back("the spin ratios of one Reynolds number rise");
+    if (r.drag.size() != r.spin.size() || r.lift.size() != r.spin.size())
+      out.push_back("each spin ratio of a table has its drag and lift");
+  }
+  return out;
+}
+
+bool FlightLaw::holds(double re, double s) const {
+  if (const auto* table = std::get_if<TableLaw>(&form)) return table->holds(re, s);
+  return reynolds.low <= re && re <= reynolds.high && spin.low <= s && s <= spin.high;
+}
+
+std::span<const FlightLawEntry> flight_laws() { return kLaws; }
+
+const FlightLawEntry* find_flight_law(std::string_view name) {
+  const auto it = std::ranges::find(kLaws, name, &FlightLawEntry::name);
+  return it == kLaws.end() ? nullptr : &*it;
+}
+
+}  // namespace hosel::models

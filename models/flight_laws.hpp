@@ -1,0 +1,115 @@
+/// Drag, lift and loss of spin of a ball in flight, as data: what a paper printed, where it holds, who printed it.
+///
+/// With the air's speed v past the ball, F_D = 1/2 rho A C_D v^2 against it and F_L = 1/2 rho A C_L v^2 along
+/// spin x v (with its sine: spin along the path lifts nothing). Re = rho v d / mu; S = spin r / v of the whole spin.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace hosel::models {
+
+template <class T>
+struct Coefficients {
+  T drag, lift;
+};
+
+/// C_D = d0 + d1 S + d2 S^2 + e1 Re + e2 Re^2 and C_L = l0 + l1 S + l2 S^2.
+struct PolynomialLaw {
+  std::array<double, 3> drag{}, lift{};
+  std::array<double, 2> drag_reynolds{};
+
+  template <class T>
+  Coefficients<T> at(const T& reynolds, const T& spin) const {
+    return {drag[0] + spin * (drag[1] + spin * drag[2]) + reynolds * (drag_reynolds[0] + reynolds * drag_reynolds[1]),
+            lift[0] + spin * (lift[1] + spin * lift[2])};
+  }
+};
+
+/// C_D = d0 + d1 S + d2 sin(pi (Re - start) / span) and C_L = l S^power.
+struct SineLaw {
+  double drag, drag_spin, drag_wave, start, span, lift, power;
+
+  template <class T>
+  Coefficients<T> at(const T& reynolds, const T& spin) const {
+    using std::pow, std::sin;
+    return {drag + drag_spin * spin + drag_wave * sin(3.14159265358979323846 * (reynolds - start) / span),
+            lift * pow(spin, power)};
+  }
+};
+
+/// Measured coefficients: a row a Reynolds number, each with its own spin ratios. Straight lines between; beyond the
+/// outermost values these hold.
+struct TableLaw {
+  struct Row {
+    double reynolds;
+    std::vector<double> spin, drag, lift;  ///< of one length; spin ratios rise
+  };
+  std::vector<Row> rows;  ///< Reynolds numbers rise
+
+  template <class T>
+  Coefficients<T> at(const T& reynolds, const T& spin) const {
+    const auto along = [](const std::vector<double>& x, const std::vector<double>& y, const T& where) {
+      if (where <= x.front()) return T(y.front());
+      if (where >= x.back()) return T(y.back());
+      std::size_t i = 1;
+      while (where > x[i]) ++i;
+      return T(y[i - 1] + (y[i] - y[i - 1]) / (x[i] - x[i - 1]) * (where - x[i - 1]));
+    };
+    const auto row = [&](const Row& r) {
+      return Coefficients<T>{along(r.spin, r.drag, spin), along(r.spin, r.lift, spin)};
+    };
+    if (reynolds <= rows.front().reynolds) return row(rows.front());
+    if (reynolds >= rows.back().reynolds) return row(rows.back());
+    std::size_t i = 1;
+    while (reynolds > rows[i].reynolds) ++i;
+    const Coefficients<T> low = row(rows[i - 1]), high = row(rows[i]);
+    const T share = (reynolds - rows[i - 1].reynolds) / (rows[i].reynolds - rows[i - 1].reynolds);
+    return {low.drag + share * (high.drag - low.drag), low.lift + share * (high.lift - low.lift)};
+  }
+  bool holds(double reynolds, double spin) const;  ///< inside what was measured
+  /// Sentences on what is wrong with the table; empty where all is well.
+  std::vector<std::string> faults() const;
+};
+
+/// spin' = -(rate + travel v / r + rho A d r v moment / (2 I)) spin; a published law uses one of the three.
+struct SpinDecay {
+  double rate = 0;    ///< [1/s]
+  double travel = 0;  ///< per radius of path
+  double moment = 0;  ///< of C_M = moment S, with M = 1/2 rho A d C_M v^2
+};
+
+struct FlightLaw {
+  std::string name, source;
+  struct Range {
+    double low, high;
+  };
+  Range reynolds, spin;  ///< where the source has it measured
+  std::variant<PolynomialLaw, SineLaw, TableLaw> form;
+  SpinDecay decay;
+  double drag_scale = 1, lift_scale = 1;
+
+  bool holds(double re, double s) const;  ///< inside what the source has measured
+  template <class T>
+  Coefficients<T> at(const T& re, const T& s) const {
+    Coefficients<T> c = std::visit([&](const auto& law) { return law.at(re, s); }, form);
+    c.drag *= drag_scale;
+    c.lift *= lift_scale;
+    return c;
+  }
+};
+
+struct FlightLawEntry {
+  std::string_view name, what;
+  FlightLaw (*make)();
+};
+/// The published laws. Adding one: its function and a line in flight_laws.cpp.
+std::span<const FlightLawEntry> flight_laws();
+const FlightLawEntry* find_flight_law(std::string_view name);  ///< nullptr where there is none
+
+}  // namespace hosel::models

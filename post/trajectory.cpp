@@ -1,0 +1,73 @@
+#include "hosel/post/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hosel/golf/units.hpp"
+
+namespace hosel::post {
+
+Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flights) {
+  const DistanceUnit unit = flights.front().shot.unit;
+  const std::string_view shown = suffix(unit);
+  Figure figure{.title = std::move(title), .columns = 1, .panel_width = 900, .panel_height = 340};
+  Panel side{.title = "from the side",
+             .x_label = fmt::format("towards the target [{}]", shown),
+             .y_label = fmt::format("height [{}]", shown),
+             .key = "outside right"},
+      top = side;
+  top.title = "from above";
+  top.y_label = fmt::format("left  <-  [{}]  ->  right", shown);
+  for (const NamedFlight& f : flights) {
+    Series height{.label = f.title}, right = height;
+    const auto add = [&](const Vec3& x) {
+      height.x.push_back(x.x() / size(unit));
+      height.y.push_back(x.z() / size(unit));
+      right.x.push_back(x.x() / size(unit));
+      right.y.push_back((0 - x.y()) / size(unit));
+    };
+    for (const models::FlightPoint& p : f.shot.flight.path) add(p.position);
+    if (f.shot.run)
+      for (const Vec3& x : f.shot.run->path) add(x);
+    side.series.push_back(std::move(height));
+    top.series.push_back(std::move(right));
+  }
+  figure.panels = {std::move(side)};
+  // Balls that fly straight have no second view.
+  const auto curves = [](const Series& s) {
+    return std::ranges::any_of(s.y, [](double y) { return std::abs(y) > 1e-6; });
+  };
+  if (std::ranges::any_of(top.series, curves)) figure.panels.push_back(std::move(top));
+  return figure;
+}
+
+VtkMesh trajectory_mesh(const models::Flight& flight) {
+  VtkMesh mesh;
+  std::vector<Vec3> velocity, spin;
+  VtkField time{"time", "s", 1, {}}, reynolds{"reynolds", "", 1, {}}, ratio{"spin_ratio", "", 1, {}},
+      drag{"drag_coefficient", "", 1, {}}, lift{"lift_coefficient", "", 1, {}};
+  for (const models::FlightPoint& p : flight.path) {
+    mesh.points.push_back(p.position);
+    velocity.push_back(p.velocity);
+    spin.push_back(p.spin);
+    time.values.push_back(p.time);
+    reynolds.values.push_back(p.reynolds);
+    ratio.values.push_back(p.spin_ratio);
+    drag.values.push_back(p.coefficients.drag);
+    lift.values.push_back(p.coefficients.lift);
+  }
+  for (std::int64_t i = 1; i < std::int64_t(mesh.points.size()); ++i)
+    mesh.cells.push_back({CellShape::line, {i - 1, i}});
+  mesh.point_fields = {vector_field("velocity", "m/s", velocity),
+                       vector_field("spin", "rad/s", spin),
+                       time,
+                       reynolds,
+                       ratio,
+                       drag,
+                       lift};
+  return mesh;
+}
+
+}  // namespace hosel::post

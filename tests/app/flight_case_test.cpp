@@ -1,0 +1,107 @@
+// [flight] in a case: where the ball goes after any blow, in the units asked for.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel::test;
+
+nlohmann::json run(const std::string& name, const std::string& text, Outcome* outcome = nullptr) {
+  const fs::path dir = fresh_directory(name);
+  write(dir / "case" / "case.toml", text);
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  if (outcome) *outcome = o;
+  EXPECT_EQ(o.status, 0) << o.text;
+  return o.status ? nlohmann::json{} : nlohmann::json::parse(content(dir / "out" / "summary.json"));
+}
+
+TEST(FlightCase, IsTheSameBallInYardsAndInMetres) {
+  const auto yards = run("flight_yards",
+                         kEccentricBlow + "[flight]\nunits = \"yards\"\n[flight.turf]\n")["flights"]["rigid-eccentric"];
+  const auto metres =
+      run("flight_metres", kEccentricBlow + "[flight]\nunits = \"metres\"\n")["flights"]["rigid-eccentric"];
+  ASSERT_GT(metres["carry_m"], 100);
+  for (const char* name : {"carry", "apex", "side"})
+    EXPECT_NEAR(0.9144 * yards[std::string(name) + "_yd"].get<double>(), metres[std::string(name) + "_m"].get<double>(),
+                1e-9);
+  EXPECT_EQ(yards["flight_time_s"], metres["flight_time_s"]);
+  EXPECT_GT(yards["total_yd"], yards["carry_yd"]);
+  EXPECT_FALSE(metres.contains("total_m"));
+}
+
+TEST(FlightCase, LeavesACaseWithoutItAlone) {
+  Outcome with, without;
+  const auto a = run("flight_none", kEccentricBlow, &without),
+             b = run("flight_some", kEccentricBlow + "[flight]\n", &with);
+  EXPECT_FALSE(a.contains("flights"));
+  EXPECT_EQ(without.text.find("carry"), std::string::npos);
+  EXPECT_NE(with.text.find("carry [yd]"), std::string::npos);
+  EXPECT_EQ(a["models"]["rigid-eccentric"]["ball_speed_mps"], b["models"]["rigid-eccentric"]["ball_speed_mps"]);
+}
+
+TEST(FlightCase, WeatherWindAndHeightActAsTheyDo) {
+  const auto carry = [](const std::string& name, const std::string& flight) {
+    return run(name, kEccentricBlow + "[flight]\n" + flight)["flights"]["rigid-eccentric"]["carry_yd"].get<double>();
+  };
+  const double calm = carry("flight_calm", "");
+  EXPECT_GT(carry("flight_warm", "temperature_degC = 35.0\n"), calm + 1);
+  EXPECT_GT(carry("flight_high", "altitude_m = 1600.0\n"), calm + 5);
+  EXPECT_LT(carry("flight_head", "[flight.wind]\nspeed_mps = 5.0\ntowards_deg = 180.0\n"), calm - 5);
+  EXPECT_GT(carry("flight_drop", "[flight.ground]\nheight_m = -10.0\n"), calm + 3);
+}
+
+const std::string kLaunches = R"(kind = "flight"
+[[launch]]
+name = "drive"
+ball_speed_mph = 165.0
+launch_angle_deg = 11.0
+spin_rate_rpm = 2600.0
+spin_axis_deg = 8.0
+measured = {carry_yd = 270.0}
+[[launch]]
+name = "wedge"
+ball_speed_mph = 100.0
+launch_angle_deg = 26.0
+backspin_rpm = 9000.0
+[flight]
+beside = ["smits-smith-1994"]
+[[flight.launch_error]]
+source = "radar"
+ball_speed_mph = 0.5
+)";
+
+TEST(FlightCase, ReportsErrorsAndWarnsOutsideTheLaw) {
+  Outcome o;
+  const auto s = run("flight_kind", kLaunches, &o);
+  const auto& drive = s["launches"]["drive"];
+  EXPECT_GT(drive["side_yd"], 5);  // fade goes right
+  const auto& carry = drive["budget"]["carry_yd"];
+  EXPECT_LT(carry["integration"], 1e-2);
+  // A drive gains 1.5 to 2.5 yd a mile per hour.
+  EXPECT_NEAR(carry["launch"]["radar"].get<double>(), 1.0, 0.3);
+  EXPECT_NE(carry["laws"]["smits-smith-1994"], carry["value"]);
+  EXPECT_EQ(drive["outside_law_range"], 0);
+  EXPECT_GT(s["launches"]["wedge"]["outside_law_range"], 0.1);
+  EXPECT_NE(o.text.find("wedge: "), std::string::npos);
+  EXPECT_NE(o.text.find("outside the range of ferguson-2022"), std::string::npos);
+}
+
+TEST(FlightCase, ABadTableIsOneLine) {
+  for (const auto& [text, says] : {std::pair{"law = \"fergusen-2022\"\n", "did you mean 'ferguson-2022'"},
+                                   {"units = \"feet\"\n", "allowed: yards, metres"},
+                                   {"temperature_degC = 99.0\n", "out of range"},
+                                   {"[flight.wind]\nspeed_mps = 3.0\n", "towards"},
+                                   {"[flight.turf]\n[flight.ground]\nslope_deg = 2.0\n", "level ground"}}) {
+    const fs::path dir = fresh_directory("flight_bad");
+    write(dir / "case.toml", kEccentricBlow + "[flight]\n" + text);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2) << text;
+    EXPECT_NE(o.text.find(says), std::string::npos) << o.text;
+  }
+}
+
+}  // namespace
