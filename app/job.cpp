@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hosel/app/kinds/ball_rule.hpp"
 #include "hosel/app/kinds/bounce.hpp"
 #include "hosel/app/kinds/calibrate_ball.hpp"
 #include "hosel/app/kinds/clubs.hpp"
@@ -32,6 +33,8 @@ std::unique_ptr<Job> read_either_modes(CaseFile& file) {
 constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside", read_impact},
     Kind{"flight", "where balls of given launches go, by several laws, with an error budget", read_flights},
+    Kind{"ball-rule", "a ball at a distance limit under old and new test conditions, and what players lose",
+         read_ball_rule},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by", read_face_map},
     Kind{"curves", "launch against a parameter, or force histories, for a family of another", read_curves},
     Kind{"cross-check", "several models over a grid of blows, each against a reference", read_cross_check},

@@ -63,7 +63,7 @@ class FlightJob final : public Job {
     std::vector<post::NamedFlight> flights;
     for (const Shot& s : shots_) {
       const post::ShotFlight shot = setup_.follow(s.launch, ball_, 0.05);
-      columns.push_back({s.name, s.launch, shot});
+      columns.push_back({.title = s.name, .launch = s.launch, .flight = shot});
       flights.push_back({s.name, shot});
       nlohmann::json& j = summary["launches"][s.name];
       j = post::to_json(shot);

@@ -1,0 +1,206 @@
+#include "hosel/app/kinds/ball_rule.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/solvers/errors.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// A machine's drive: the club's speed is the model's business, launch angle and spin are prescribed.
+struct Test {
+  double club_speed, launch_angle, spin_rate;
+};
+
+struct Player {
+  std::string name;
+  double club_speed, dynamic_loft;
+  std::vector<double> published;  ///< lowest and highest loss [m]; may be empty
+};
+
+/// A ball as it may be changed: factors on drag, lift and the speed at which it leaves the face.
+struct Change {
+  double drag = 1, lift = 1, speed = 1;
+};
+
+/// One way to change a ball.
+struct Remedy {
+  const char* name;
+  double Change::*factor;
+  double low, high;
+};
+constexpr std::array kRemedies = {Remedy{"drag", &Change::drag, 0.5, 2}, Remedy{"lift", &Change::lift, 0.2, 1.3},
+                                  Remedy{"speed", &Change::speed, 0.7, 1.2}};
+
+class BallRuleJob final : public Job {
+ public:
+  explicit BallRuleJob(CaseFile& file) {
+    Table root = file.root();
+    std::vector<std::string> names;
+    for (const auto& m : models::registry()) names.emplace_back(m.name);
+    const std::string model = root.choice("model", names);
+    blow_ = read_blow(root, {model});
+    model_ = models::find(model)->make(read_options(root, {model}));
+    setup_ = read_flight(root.table("flight"));
+    if (!setup_.turf) root.fail("flight", "the rule limits the total distance: a [flight.turf] is needed");
+    Table rule = root.table("rule");
+    limit_ = rule.quantity("limit", "yd", {50, 500});
+    old_ = read_test(rule.table("old"));
+    new_ = read_test(rule.table("new"));
+    for (Table t : root.tables("player")) {
+      players_.push_back({t.text("name"),
+                          t.quantity("club_speed", "mph", {10, 100}),
+                          t.quantity("dynamic_loft", "deg", {0, kPi / 2}),
+                          {}});
+      if (t.has_quantity("published_loss"))
+        players_.back().published = t.quantities("published_loss", "yd", 2, Range::non_negative());
+    }
+    if (players_.empty()) root.fail("player", "name at least one [[player]]");
+  }
+
+  void run(Output& out) override {
+    nlohmann::json summary;
+    // The ball at the limit: its drag such that the old test ends there.
+    const Change today{.drag = solve(kRemedies[0], {}, old_)};
+    const double reach = total(today, machine(new_, today));
+    out.say(fmt::format(
+        "old test: {:.1f} mph of ball speed; the ball at the limit of {:.0f} yd has {:.3f} times the drag "
+        "of {}\nnew test: {:.1f} mph of ball speed; the same ball reaches {:.1f} yd: {:.1f} too many",
+        machine(old_, today).ball_speed() / kMpsPerMph, limit_ / yard(), today.drag, setup_.conditions.law.name,
+        machine(new_, today).ball_speed() / kMpsPerMph, reach / yard(), (reach - limit_) / yard()));
+    summary["drag_at_the_limit"] = today.drag;
+    summary["new_test_total_yd"] = reach / yard();
+    std::string head = fmt::format("{:<28}{:>12}{:>12}{:>12}{:>12}", "loss of total distance [yd]", "club [mph]",
+                                   "ball [mph]", "carry [yd]", "total [yd]");
+    std::string csv = "player,club_speed_mph,ball_speed_mph,carry_yd,total_yd";
+    std::vector<Change> changed;
+    for (const Remedy& r : kRemedies) {
+      Change c = today;
+      c.*r.factor = solve(r, today, new_);
+      changed.push_back(c);
+      const double factor = c.*r.factor / (today.*r.factor);
+      head += fmt::format("{:>14}", fmt::format("{} x {:.3f}", r.name, factor));
+      csv += fmt::format(",loss_by_{}_yd", r.name);
+      summary["factors"][r.name] = factor;
+    }
+    out.say("\n" + head + "     published");
+    csv += ",published_low_yd,published_high_yd\n";
+    post::Figure figure{
+        .title = fmt::format("a ball at {:.0f} yd under the old test, changed to be so under the new", limit_ / yard()),
+        .panel_width = 900,
+        .panel_height = 520};
+    post::Panel panel{.x_label = "club speed [mph]", .y_label = "loss of total distance [yd]", .key = "top left"};
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      panel.series.push_back({.label = fmt::format("by {}", kRemedies[k].name), .style = "linespoints"});
+    post::Series published{.label = "published for such players"};
+    for (const Player& p : players_) {
+      const Launch launch = drive(p, today);
+      const post::ShotFlight shot = follow(today, launch);
+      std::string line = fmt::format("{:<28}{:>12.0f}{:>12.1f}{:>12.1f}{:>12.1f}", p.name, p.club_speed / kMpsPerMph,
+                                     launch.ball_speed() / kMpsPerMph, shot.flight.carry / yard(),
+                                     shot.run->total / yard());
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}", p.name, p.club_speed / kMpsPerMph,
+                         launch.ball_speed() / kMpsPerMph, shot.flight.carry / yard(), shot.run->total / yard());
+      for (std::size_t k = 0; k < changed.size(); ++k) {
+        const double loss = (shot.run->total - total(changed[k], drive(p, changed[k]))) / yard();
+        line += fmt::format("{:>14.1f}", loss);
+        csv += fmt::format(",{:.4g}", loss);
+        summary["players"][p.name][fmt::format("loss_by_{}_yd", kRemedies[k].name)] = loss;
+        panel.series[k].x.push_back(p.club_speed / kMpsPerMph);
+        panel.series[k].y.push_back(loss);
+      }
+      if (p.published.empty()) {
+        csv += ",,\n";
+      } else {
+        const double low = p.published[0] / yard(), high = p.published[1] / yard();
+        line += fmt::format("{:>14}", fmt::format("{:g} to {:g}", low, high));
+        csv += fmt::format(",{:g},{:g}\n", low, high);
+        published.x.push_back(p.club_speed / kMpsPerMph);
+        published.y.push_back((low + high) / 2);
+        published.error.push_back((high - low) / 2);
+      }
+      out.say(line);
+    }
+    if (!published.x.empty()) panel.series.push_back(published);
+    figure.panels = {panel};
+    out.write("losses.csv", csv);
+    if (const std::string why = post::draw(figure, out.path("figures/losses")); !why.empty()) out.say(why);
+    out.write_summary(summary);
+  }
+
+ private:
+  static double yard() { return post::size(post::DistanceUnit::yards); }
+
+  static Test read_test(Table t) {
+    return {t.quantity("club_speed", "mph", {10, 100}), t.quantity("launch_angle", "deg", {0, kPi / 2}),
+            t.quantity("spin_rate", "rpm", Range::positive())};
+  }
+
+  Launch drive(const Player& p, const Change& c) const {
+    Blow blow = blow_;
+    blow.delivery.club_speed = p.club_speed;
+    blow.delivery.dynamic_loft = p.dynamic_loft;
+    Launch l = model_->launch(blow);
+    l.velocity *= c.speed;
+    return l;
+  }
+
+  Launch machine(const Test& t, const Change& c) const {
+    Blow blow = blow_;
+    blow.delivery.club_speed = t.club_speed;
+    const double speed = c.speed * model_->launch(blow).ball_speed();
+    Launch l;
+    l.velocity = speed * Vec3(std::cos(t.launch_angle), 0, std::sin(t.launch_angle));
+    l.spin = {0, -t.spin_rate, 0};
+    return l;
+  }
+
+  post::ShotFlight follow(const Change& c, const Launch& launch) const {
+    FlightSetup s = setup_;
+    s.conditions.law.drag_scale *= c.drag;
+    s.conditions.law.lift_scale *= c.lift;
+    return s.follow(launch, blow_.ball);
+  }
+
+  double total(const Change& c, const Launch& launch) const { return follow(c, launch).run->total; }
+
+  /// The factor with which the test ends at the limit. A bounce more or less makes the total jump by centimetres: the
+  /// factor is found as well as it can be.
+  double solve(const Remedy& r, Change c, const Test& test) const {
+    const auto excess = [&](double factor) {
+      c.*r.factor = factor;
+      return total(c, machine(test, c)) - limit_;
+    };
+    const double low = excess(r.low), high = excess(r.high);
+    if (low * high > 0)
+      throw solvers::NonConvergence(
+          fmt::format("no factor on {} from {:g} to {:g} brings the ball to the limit: {:.1f} "
+                      "and {:.1f} yd",
+                      r.name, r.low, r.high, (low + limit_) / yard(), (high + limit_) / yard()));
+    std::uintmax_t most = 200;
+    const auto [a, b] = boost::math::tools::toms748_solve(excess, r.low, r.high, low, high,
+                                                          boost::math::tools::eps_tolerance<double>(30), most);
+    return (a + b) / 2;
+  }
+
+  Blow blow_;
+  std::unique_ptr<models::ImpactModel> model_;
+  FlightSetup setup_;
+  double limit_ = 0;
+  Test old_{}, new_{};
+  std::vector<Player> players_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_ball_rule(CaseFile& file) { return std::make_unique<BallRuleJob>(file); }
+
+}  // namespace hosel::app
