@@ -184,9 +184,9 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
   if (flight.outside > 0)
     out.say(
         fmt::format("{}: {:.0f} % of the flight is outside the range of {} (Re {:.0f} to {:.0f}, spin ratio {:.3f} "
-                    "to {:.3f}; {})",
+                    "to {:.3f})",
                     name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
-                    flight.spin.low, flight.spin.high, setup.conditions.law.source));
+                    flight.spin.low, flight.spin.high));
   const std::string file = file_name(name);
   if (const std::string why = post::draw(post::trajectory_figure(name, flights), out.path("figures/flight-" + file));
       !why.empty())

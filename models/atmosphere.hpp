@@ -10,7 +10,7 @@ struct Weather {
 };
 
 /// Pressure at an altitude [m] in the standard atmosphere's lowest layer [Pa].
-/// Source: U.S. Standard Atmosphere (1976), equation 33a, to 11 km.
+/// Source: [@standard-atmosphere], to 11 km.
 double standard_pressure(double altitude);
 
 /// What the weather makes of the air.
@@ -21,8 +21,8 @@ struct Air {
 
 /// Density by CIPM-2007 with 400 ppm of carbon dioxide, viscosity of dry air by Sutherland's formula. The air's
 /// density is that of the launch all along the flight: it falls by 0.3 % up to an apex of 30 m.
-/// Source: Picard, Davis, Glaeser and Fujii (2008), Metrologia 45:149 (stated for 15 to 27 degC and 600 to 1100 hPa,
-/// there to 2.2e-5); Sutherland (1893) with the constants of White, Viscous Fluid Flow.
+/// Source: [@cipm-2007] (stated for 15 to 27 degC and 600 to 1100 hPa, there to 2.2e-5); Sutherland (1893) with the
+/// constants of White, Viscous Fluid Flow.
 Air air(const Weather& weather);
 
 enum class WindProfile {

@@ -5,6 +5,9 @@
 namespace hosel::models {
 namespace {
 
+/// [@ferguson-2022]. The moment's reference length is taken as the diameter: in standard air its spin then dies out as
+/// in
+/// [@smits-smith-1994], within 2 %.
 FlightLaw ferguson_2022() {
   return {.name = "ferguson-2022",
           .source =
@@ -16,6 +19,7 @@ FlightLaw ferguson_2022() {
           .decay = {.moment = 0.01}};
 }
 
+/// [@smits-smith-1994]
 FlightLaw smits_smith_1994() {
   return {.name = "smits-smith-1994",
           .source =
@@ -33,6 +37,7 @@ FlightLaw smits_smith_1994() {
           .decay = {.travel = 2e-5}};
 }
 
+/// [@lyu-2018]
 FlightLaw lyu_2018() {
   return {
       .name = "lyu-2018",
@@ -43,6 +48,7 @@ FlightLaw lyu_2018() {
       .decay = {.rate = 0.04}};  // what its trajectories take, from a radar maker's newsletter
 }
 
+/// [@bearman-harvey-1976]
 FlightLaw bearman_harvey_1976() {
   return {.name = "bearman-harvey-1976",
           .source =
@@ -92,7 +98,7 @@ FlightLaw bearman_harvey_1976() {
                {0.2470, 0.2538, 0.2605, 0.2673, 0.2740},
                {0.1276, 0.1464, 0.1582, 0.1791, 0.2000}},
           }},
-          .decay = {.travel = 2e-5}};  // Penner (2001), Am. J. Phys. 69:563, which flies with this table
+          .decay = {.travel = 2e-5}};  // [@penner-2001] flies with this table
 }
 
 constexpr std::array kLaws = {

@@ -54,7 +54,8 @@ class FlightJob final : public Job {
   }
 
   void run(Output& out) override {
-    nlohmann::json summary;
+    const models::FlightLaw& used = setup_.conditions.law;
+    nlohmann::json summary = {{"law", {{"name", used.name}, {"source", used.source}}}};
     std::string csv = "launch,law";
     const auto channels = post::flight_channels(setup_.unit);
     for (const post::FlightChannel& c : channels) csv += fmt::format(",{}_{}", c.name, c.unit);

@@ -268,8 +268,7 @@ TEST(Flight, WithoutSpinHasNoDerivativeByIt) {
 }
 
 TEST(Air, DensityOfTheStandardFormula) {
-  // Independent of CIPM-2007: the real-gas psychrometrics of Hyland and Wexler (1983), as the package Psychro.jl
-  // documents them for 20 degC and 1 atm.
+  // Independent of CIPM-2007: the real-gas psychrometrics of [@hyland-wexler], at 20 degC and 1 atm.
   EXPECT_NEAR(models::air({.temperature = 293.15, .pressure = 101325, .humidity = 0}).density, 1.2044776705,
               1e-3 * 1.2);
   EXPECT_NEAR(models::air({.temperature = 293.15, .pressure = 101325, .humidity = 0.7}).density, 1.1971436091,
@@ -280,7 +279,7 @@ TEST(Air, DensityOfTheStandardFormula) {
 }
 
 TEST(Air, PressureFallsAsInTheStandardAtmosphere) {
-  // U.S. Standard Atmosphere (1976), Table I.
+  // Table I of [@standard-atmosphere].
   EXPECT_NEAR(models::standard_pressure(0), 101325, 1);
   EXPECT_NEAR(models::standard_pressure(1000), 89876, 2);
   EXPECT_NEAR(models::standard_pressure(2000), 79501, 2);
@@ -319,7 +318,7 @@ TEST(FlightLaw, TablesAreChecked) {
 }
 
 /// Means of the PGA Tour on a radar, twelve clubs: ball speed [mph], launch angle [deg], spin [rpm]; carry and apex
-/// [yd], landing angle [deg]. TrackMan's published averages (2010s).
+/// [yd], landing angle [deg]. [@tour-averages]
 constexpr std::array<std::array<double, 6>, 12> kTour = {{{167, 10.9, 2686, 275, 32, 38},
                                                           {158, 9.2, 3655, 243, 30, 43},
                                                           {152, 9.4, 4350, 230, 31, 47},
