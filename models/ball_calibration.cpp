@@ -1,21 +1,18 @@
 #include "hosel/models/ball_calibration.hpp"
 
-#include <ceres/ceres.h>
-
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::models {
 namespace {
 
-/// Logarithms of the factors on long-term moduli, branch moduli and, the third if there is one, branch times.
-using Logs = std::vector<double>;
-
-FeBall scaled(FeBall ball, const Logs& logs) {
+/// `logs` of the factors on long-term moduli, branch moduli and, the third if there is one, branch times.
+FeBall scaled(FeBall ball, const Eigen::VectorXd& logs) {
   const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = logs.size() > 2 ? std::exp(logs[2]) : 1;
   for (BallLayer& layer : ball.layers) {
     if (layer.material.branches.empty())
@@ -28,72 +25,6 @@ FeBall scaled(FeBall ball, const Logs& logs) {
   }
   return ball;
 }
-
-/// Residuals over sigmas with a one-sided difference Jacobian: the contact's discreteness leaves noise of
-/// about 1e-4 in e, so the step is large.
-class Residuals final : public ceres::CostFunction {
- public:
-  Residuals(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target, int parameters,
-            const std::function<void(int, double)>& progress)
-      : options_(options), ball_(ball), target_(target), progress_(progress) {
-    set_num_residuals(static_cast<int>(target.speeds.size()) + 1);
-    mutable_parameter_block_sizes()->push_back(parameters);
-  }
-
-  std::vector<NormalImpactPoint> points(const Logs& logs) const {
-    FeImpactOptions o = options_;
-    o.ball = scaled(options_.ball, logs);
-    std::vector<NormalImpactPoint> out;
-    for (const double v : target_.speeds) {
-      out.push_back(normal_impact(o, ball_, v));
-      out.back().target = target_.restitution + target_.restitution_slope * v;
-    }
-    return out;
-  }
-
-  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    try {
-      const int parameters = parameter_block_sizes().front();
-      const Logs at(x[0], x[0] + parameters);
-      values(at, residuals);
-      if (!jacobians || !jacobians[0]) return true;
-      std::vector<double> moved(static_cast<std::size_t>(num_residuals()));
-      for (int p = 0; p < parameters; ++p) {
-        Logs y = at;
-        constexpr double h = 0.05;
-        y[static_cast<std::size_t>(p)] += h;
-        values(y, moved.data());
-        for (int i = 0; i < num_residuals(); ++i)
-          jacobians[0][i * parameters + p] = (moved[static_cast<std::size_t>(i)] - residuals[i]) / h;
-      }
-      return true;
-    } catch (const solvers::NonConvergence&) {
-      return false;  // Ceres takes a shorter step
-    }
-  }
-
-  int evaluations() const { return evaluations_; }
-
- private:
-  void values(const Logs& x, double* residuals) const {
-    const auto all = points(x);
-    double cost = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      residuals[i] = (all[i].restitution - all[i].target) / target_.restitution_sigma;
-      if (all[i].speed == target_.contact_speed)
-        residuals[all.size()] = (all[i].contact_time - target_.contact_time) / target_.contact_time_sigma;
-    }
-    for (int i = 0; i < num_residuals(); ++i) cost += 0.5 * residuals[i] * residuals[i];
-    ++evaluations_;
-    if (progress_) progress_(evaluations_, cost);
-  }
-
-  const FeImpactOptions& options_;
-  const Ball& ball_;
-  const NormalImpactTarget& target_;
-  const std::function<void(int, double)>& progress_;
-  mutable int evaluations_ = 0;
-};
 
 }  // namespace
 
@@ -110,47 +41,74 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
                                bool hold_times, const std::function<void(int, double)>& progress) {
   if (std::find(target.speeds.begin(), target.speeds.end(), target.contact_speed) == target.speeds.end())
     throw std::invalid_argument("calibration: the speed of the contact time must be one of the speeds");
-  const int parameters = hold_times ? 2 : 3;
-  Logs logs(static_cast<std::size_t>(parameters), 0.0);
-  Residuals residuals(options, ball, target, parameters, progress);
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  problem.AddResidualBlock(&residuals, nullptr, logs.data());
-  for (int p = 0; p < parameters; ++p) {
-    problem.SetParameterLowerBound(logs.data(), p, -3);
-    problem.SetParameterUpperBound(logs.data(), p, 3);
-  }
-  ceres::Solver::Options solver;
-  solver.max_num_iterations = 12;
-  solver.function_tolerance = solver.parameter_tolerance = 1e-2;  // where the noise of e begins
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
+  const auto points = [&](const Eigen::VectorXd& logs) {
+    FeImpactOptions o = options;
+    o.ball = scaled(options.ball, logs);
+    std::vector<NormalImpactPoint> all;
+    for (const double v : target.speeds) {
+      all.push_back(normal_impact(o, ball, v));
+      all.back().target = target.restitution + target.restitution_slope * v;
+    }
+    return all;
+  };
+  int evaluations = 0;
+  const auto residuals = [&](const Eigen::VectorXd& logs, Eigen::VectorXd& r) {
+    try {
+      Eigen::Index i = 0;
+      for (const NormalImpactPoint& p : points(logs)) {
+        r[i++] = (p.restitution - p.target) / target.restitution_sigma;
+        if (p.speed == target.contact_speed)
+          r[r.size() - 1] = (p.contact_time - target.contact_time) / target.contact_time_sigma;
+      }
+    } catch (const solvers::NonConvergence&) {
+      return false;  // the search takes a shorter step
+    }
+    ++evaluations;
+    if (progress) progress(evaluations, 0.5 * r.squaredNorm());
+    return true;
+  };
+  // One-sided differences: the contact's discreteness leaves noise of about 1e-4 in e, so the step is large.
+  const auto linearised = [&](const Eigen::VectorXd& logs, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
+    constexpr double h = 0.05;
+    if (!residuals(logs, r)) return false;
+    J.resize(r.size(), logs.size());
+    Eigen::VectorXd moved(r.size());
+    for (Eigen::Index p = 0; p < logs.size(); ++p) {
+      if (!residuals(logs + h * Eigen::VectorXd::Unit(logs.size(), p), moved)) return false;
+      J.col(p) = (moved - r) / h;
+    }
+    return true;
+  };
+  const Eigen::Index parameters = hold_times ? 2 : 3, count = Eigen::Index(target.speeds.size()) + 1;
+  const std::optional<solvers::Minimum> best =
+      solvers::minimise({.residuals = int(count),
+                         .bounds = std::vector<solvers::Bounds>(std::size_t(parameters), {-3, 3, 1}),
+                         .value = residuals,
+                         .linearised = linearised},
+                        Eigen::VectorXd::Zero(parameters),
+                        {.iterations = 12, .cost = 1e-2, .parameters = 1e-2});  // where the noise of e begins
+  if (!best) throw solvers::NonConvergence("calibration: no impact of the ball to begin with");
 
   BallCalibration out;
+  const Eigen::VectorXd& logs = best->parameters;
   out.ball = scaled(options.ball, logs);
   const fem::Solid& first = options.ball.layers.front().material;
   const fem::MaxwellBranch& branch0 = first.branches.front();
   out.names = {"long-term shear modulus [Pa]", "branch shear modulus [Pa]", "branch time [s]"};
   out.start = {first.shear(), branch0.modulus, branch0.time};
-  out.names.resize(logs.size());
-  out.start.resize(logs.size());
-  for (std::size_t p = 0; p < logs.size(); ++p) out.values.push_back(out.start[p] * std::exp(logs[p]));
-  out.points = residuals.points(logs);
-  const int rows = residuals.num_residuals();
-  std::vector<double> r(static_cast<std::size_t>(rows));
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(rows, parameters);
-  const double* x = logs.data();
-  double* jacobian = J.data();
-  if (!residuals.Evaluate(&x, r.data(), &jacobian))
+  out.names.resize(std::size_t(parameters));
+  out.start.resize(std::size_t(parameters));
+  for (Eigen::Index p = 0; p < parameters; ++p) out.values.push_back(out.start[std::size_t(p)] * std::exp(logs[p]));
+  out.points = points(logs);
+  Eigen::VectorXd r(count);
+  Eigen::MatrixXd J;
+  if (!linearised(logs, r, J))
     throw solvers::NonConvergence("calibration: the impact does not converge at the fitted parameters");
-  out.covariance = (J.transpose() * J).inverse();
-  for (double v : r) out.cost += 0.5 * v * v;
-  out.evaluations = residuals.evaluations();
-  out.converged = summary.termination_type == ceres::CONVERGENCE;
-  out.report = summary.BriefReport();
+  out.covariance = solvers::covariance(J, 0);
+  out.cost = 0.5 * r.squaredNorm();
+  out.evaluations = evaluations;
+  out.converged = best->converged;
+  out.report = best->report;
   return out;
 }
 

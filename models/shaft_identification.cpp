@@ -1,6 +1,5 @@
 #include "hosel/models/shaft_identification.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -95,7 +94,7 @@ ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const
   out.bending_scale = std::exp(fit.parameters[0]);
   out.damping_time = guess * std::exp(fit.parameters[1]);
   const double variance = 2 * fit.cost / static_cast<double>(samples - 2);
-  out.log_covariance = variance * Eigen::Matrix2d(fit.jacobian.transpose() * fit.jacobian).inverse();
+  out.log_covariance = variance * solvers::covariance(fit.jacobian, 0);
   out.train_after = rms(true, out.bending_scale, out.damping_time);
   out.shortened_steps = shortened;
   out.holdout_after = rms(false, out.bending_scale, out.damping_time);

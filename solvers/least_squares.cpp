@@ -13,155 +13,177 @@
 namespace hosel::solvers {
 namespace {
 
-/// The whole problem as one cost function of parameters scaled to (0, 1), differences taken inside the
-/// bounds.
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Scales the blocks so that the plain sum of squares is the loss; the derivatives likewise.
+void apply(const Loss& loss, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+  if (std::isinf(loss.knee)) return;
+  for (Eigen::Index i = 0; i < r.size(); i += loss.block) {
+    auto z = r.segment(i, loss.block);
+    const double s = z.squaredNorm();
+    if (!(s > loss.knee)) continue;
+    const double value = loss(s), g = std::sqrt(value / s);
+    if (J) {
+      auto rows = J->middleRows(i, loss.block);
+      const double slope = (loss.weight(s) * s - value) / (g * s * s);  // twice the derivative of g
+      rows = (g * rows + slope * (z * (z.transpose() * rows))).eval();
+    }
+    z *= g;
+  }
+}
+
+/// Central, shifted at a bound.
+bool differences(const LeastSquares& problem, const Eigen::VectorXd& p, Eigen::MatrixXd& jacobian) {
+  jacobian.resize(problem.residuals, p.size());
+  Eigen::VectorXd moved = p, up(problem.residuals), down(problem.residuals);
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    const Bounds& b = problem.bounds[std::size_t(k)];
+    const double h = problem.step * b.scale, middle = std::clamp(p[k], b.low + h, b.high - h);
+    moved[k] = middle + h;
+    if (!problem.value(moved, up)) return false;
+    moved[k] = middle - h;
+    if (!problem.value(moved, down)) return false;
+    moved[k] = p[k];
+    jacobian.col(k) = (up - down) / (2 * h);
+  }
+  return true;
+}
+
+/// The whole problem as one cost function of parameters in units of their scale.
 class Cost final : public ceres::CostFunction {
  public:
-  Cost(const Residuals& residuals, int count, const std::vector<Bounds>& bounds, double step)
-      : residuals_(residuals), bounds_(bounds), step_(step) {
-    set_num_residuals(count);
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(bounds.size()));
+  explicit Cost(const LeastSquares& problem) : problem_(problem), scale_(std::ptrdiff_t(problem.bounds.size())) {
+    for (Eigen::Index k = 0; k < scale_.size(); ++k) scale_[k] = problem.bounds[std::size_t(k)].scale;
+    set_num_residuals(problem.residuals);
+    mutable_parameter_block_sizes()->push_back(int(scale_.size()));
   }
 
-  Eigen::VectorXd physical(const double* x) const {
-    Eigen::VectorXd p(bounds_.size());
-    for (std::size_t i = 0; i < bounds_.size(); ++i) p[i] = bounds_[i].low + x[i] * (bounds_[i].high - bounds_[i].low);
-    return p;
-  }
+  const Eigen::VectorXd& scale() const { return scale_; }
 
-  bool differences(const double* x, Eigen::MatrixXd& jacobian) const {
-    const int n = static_cast<int>(bounds_.size());
-    jacobian.resize(num_residuals(), n);
-    std::vector<double> y(x, x + n);
-    Eigen::VectorXd up(num_residuals()), down(num_residuals());
-    for (int i = 0; i < n; ++i) {
-      // Central, shifted at a bound.
-      const double middle = std::clamp(x[i], step_, 1 - step_);
-      y[i] = middle + step_;
-      if (!residuals_(physical(y.data()), up)) return false;
-      y[i] = middle - step_;
-      if (!residuals_(physical(y.data()), down)) return false;
-      jacobian.col(i) = (up - down) / (2 * step_);
-      y[i] = x[i];
-    }
-    return true;
-  }
-
-  bool Evaluate(double const* const* x, double* r, double** J) const override {
-    Eigen::VectorXd value(num_residuals());
-    if (!residuals_(physical(x[0]), value)) return false;
-    Eigen::Map<Eigen::VectorXd>(r, num_residuals()) = value;
-    if (J && J[0]) {
-      Eigen::MatrixXd jacobian;
-      if (!differences(x[0], jacobian)) return false;
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-          J[0], num_residuals(), static_cast<int>(bounds_.size())) = jacobian;
-    }
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(x[0], scale_.size()).cwiseProduct(scale_);
+    Eigen::VectorXd r(problem_.residuals);
+    Eigen::MatrixXd J;
+    const bool derive = jacobians && jacobians[0];
+    if (!(derive && problem_.linearised ? problem_.linearised(p, r, J) : problem_.value(p, r))) return false;
+    if (derive && !problem_.linearised && !differences(problem_, p, J)) return false;
+    apply(problem_.loss, r, derive ? &J : nullptr);
+    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    if (derive) Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J * scale_.asDiagonal();
     return true;
   }
 
  private:
-  const Residuals& residuals_;
-  std::vector<Bounds> bounds_;
-  double step_;
+  const LeastSquares& problem_;
+  Eigen::VectorXd scale_;
 };
-
-/// Ceres' losses act on a block; here every residual counts for itself, so the loss is applied before.
-Residuals robust(const Residuals& plain, double knee) {
-  return [&plain, knee](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
-    if (!plain(p, r)) return false;
-    for (double& v : r)
-      if (std::abs(v) > knee) v = std::copysign(std::sqrt(2 * knee * std::abs(v) - knee * knee), v);
-    return true;
-  };
-}
 
 }  // namespace
 
-LeastSquaresFit least_squares(const Residuals& plain, int count, const Eigen::VectorXd& start,
-                              const std::vector<Bounds>& bounds, const LeastSquaresOptions& options) {
-  const int n = static_cast<int>(bounds.size());
-  for (const Bounds& b : bounds)
+double Loss::operator()(double s) const {
+  if (s <= knee) return s;
+  return tail == Tail::linear ? 2 * std::sqrt(knee * s) - knee : knee * (1 + std::log(std::min(s, cap) / knee));
+}
+
+double Loss::weight(double s) const {
+  if (s <= knee) return 1;
+  return tail == Tail::linear ? std::sqrt(knee / s) : s <= cap ? knee / s : 0;
+}
+
+double Loss::sum(const Eigen::VectorXd& r) const {
+  double total = 0;
+  for (Eigen::Index i = 0; i < r.size(); i += block) total += (*this)(r.segment(i, block).squaredNorm());
+  return total;
+}
+
+std::optional<Minimum> minimise(const LeastSquares& problem, const Eigen::VectorXd& start, const Tolerances& until) {
+  for (const Bounds& b : problem.bounds)
     if (!(b.low < b.high) || !std::isfinite(b.high - b.low))
       throw std::invalid_argument("least squares: bounds must be finite, low below high");
-  const Residuals residuals = options.huber > 0 ? robust(plain, options.huber) : plain;
-  Cost cost(residuals, count, bounds, options.step);
+  Cost cost(problem);
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem search(keep);
+  Eigen::VectorXd x = start.cwiseQuotient(cost.scale());
+  search.AddResidualBlock(&cost, nullptr, x.data());
+  for (int k = 0; k < int(x.size()); ++k) {
+    const Bounds& b = problem.bounds[std::size_t(k)];
+    x[k] = std::clamp(start[k], b.low, b.high) / b.scale;
+    search.SetParameterLowerBound(x.data(), k, b.low / b.scale);
+    search.SetParameterUpperBound(x.data(), k, b.high / b.scale);
+  }
+  ceres::Solver::Options how;
+  how.linear_solver_type = ceres::DENSE_QR;
+  how.max_num_iterations = until.iterations;
+  how.function_tolerance = until.cost;
+  how.parameter_tolerance = until.parameters;
+  how.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(how, &search, &summary);
+  if (!summary.IsSolutionUsable()) return {};
+  return Minimum{x.cwiseProduct(cost.scale()), summary.final_cost, summary.termination_type == ceres::CONVERGENCE,
+                 summary.BriefReport()};
+}
 
+LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen::VectorXd& start,
+                              const std::vector<Bounds>& bounds, const LeastSquaresOptions& options) {
+  LeastSquares problem{.residuals = count, .bounds = bounds, .value = residuals, .step = options.step};
+  if (options.huber > 0) problem.loss.knee = options.huber * options.huber;
   std::mt19937_64 random(options.seed);
   const auto uniform = [&] { return (random() >> 11) * 0x1.0p-53; };
-  struct Run {
-    std::vector<double> x;
-    double cost;
-    bool converged;
-  };
-  std::vector<Run> runs;
+  std::vector<Minimum> found;
   for (int k = 0; k < options.starts; ++k) {
-    std::vector<double> x(n);
-    for (int i = 0; i < n; ++i)
-      x[i] = k == 0 ? std::clamp((start[i] - bounds[i].low) / (bounds[i].high - bounds[i].low), 0.0, 1.0)
-                    : 0.05 + 0.9 * uniform();
-    ceres::Problem problem(keep);
-    problem.AddResidualBlock(&cost, nullptr, x.data());
-    for (int i = 0; i < n; ++i) {
-      problem.SetParameterLowerBound(x.data(), i, 0);
-      problem.SetParameterUpperBound(x.data(), i, 1);
+    Eigen::VectorXd p = start;
+    for (Eigen::Index i = 0; k > 0 && i < p.size(); ++i) {
+      const Bounds& b = bounds[std::size_t(i)];
+      p[i] = b.low + (0.05 + 0.9 * uniform()) * (b.high - b.low);
     }
-    ceres::Solver::Options how;
-    how.linear_solver_type = ceres::DENSE_QR;
-    how.max_num_iterations = options.iterations;
-    how.function_tolerance = 1e-9;
-    how.parameter_tolerance = 1e-8;
-    how.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(how, &problem, &summary);
-    if (summary.IsSolutionUsable())
-      runs.push_back({x, summary.final_cost, summary.termination_type == ceres::CONVERGENCE});
+    if (auto minimum = minimise(problem, p, {.iterations = options.iterations})) found.push_back(*std::move(minimum));
   }
-  if (runs.empty()) throw NonConvergence("least squares: no start has an answer");
-  std::ranges::sort(runs, {}, &Run::cost);
-  if (!runs.front().converged)
+  if (found.empty()) throw NonConvergence("least squares: no start has an answer");
+  std::ranges::stable_sort(found, {}, &Minimum::cost);
+  if (!found.front().converged)
     throw NonConvergence("least squares: the best start has not converged; allow more iterations");
-  LeastSquaresFit fit;
-  fit.parameters = cost.physical(runs.front().x.data());
-  fit.cost = runs.front().cost;
-  fit.converged = true;
-  for (const Run& r : runs) fit.costs.push_back(r.cost);
-  const Cost unrobust(plain, count, bounds, options.step);
-  if (!unrobust.differences(runs.front().x.data(), fit.jacobian))
+  LeastSquaresFit fit{.parameters = found.front().parameters, .cost = found.front().cost, .costs = {}, .jacobian = {}};
+  for (const Minimum& m : found) fit.costs.push_back(m.cost);
+  if (!differences(problem, fit.parameters, fit.jacobian))
     throw NonConvergence("least squares: no derivative at the solution");
-  for (int i = 0; i < n; ++i) fit.jacobian.col(i) /= bounds[i].high - bounds[i].low;
   return fit;
+}
+
+Eigen::MatrixXd covariance(const Eigen::MatrixXd& J, double least, const Eigen::MatrixXd* scores) {
+  const Eigen::Index n = J.cols();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeFullV);
+  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(n, n), unknown = known;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double s = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
+    const Eigen::MatrixXd part = svd.matrixV().col(k) * svd.matrixV().col(k).transpose();
+    if (s > least) known += part / (s * s);
+    else unknown += part.unaryExpr([](double x) { return std::abs(x) > 1e-12 ? x * INFINITY : 0.0; });
+  }
+  if (scores) known = (known * *scores * known).eval();
+  return known + unknown;
 }
 
 Identifiability identifiability(const Eigen::MatrixXd& whitened, const std::vector<Bounds>& bounds) {
   const int n = static_cast<int>(whitened.cols());
   Eigen::VectorXd scale(n);
-  for (int i = 0; i < n; ++i) scale[i] = bounds[i].high - bounds[i].low;
+  for (int i = 0; i < n; ++i) scale[i] = bounds[i].scale;
   const Eigen::MatrixXd scaled = whitened * scale.asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
   Identifiability out;
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  for (int k = 0; k < n; ++k) {
-    const double s = svd.singularValues()[k];
-    const Eigen::VectorXd v = svd.matrixV().col(k);
-    if (!(s > 1)) out.blind.push_back(v);  // sd along v above the bounds' distance
-    const double variance = s > 1e-12 * svd.singularValues()[0] ? 1 / (s * s) : INFINITY;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        if (const double part = v[i] * v[j]; std::isfinite(variance) || std::abs(part) > 1e-12)
-          covariance(i, j) += variance * part;
-  }
-  out.sd = covariance.diagonal().cwiseSqrt().cwiseProduct(scale);
+  for (int k = 0; k < n; ++k)
+    if (!(svd.singularValues()[k] > 1)) out.blind.push_back(svd.matrixV().col(k));  // sd above the bounds' distance
+  const Eigen::MatrixXd spread = covariance(scaled, 1e-12 * svd.singularValues()[0]);
+  out.sd = spread.diagonal().cwiseSqrt().cwiseProduct(scale);
   out.correlation = Eigen::MatrixXd::Identity(n, n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       if (i != j) {
-        const double c = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+        const double c = spread(i, j) / std::sqrt(spread(i, i) * spread(j, j));
         // Two parameters of one blind direction: wholly tied, with the sign of their product.
-        out.correlation(i, j) =
-            std::isfinite(c) ? c : (std::isinf(covariance(i, j)) ? std::copysign(1.0, covariance(i, j)) : 0.0);
+        out.correlation(i, j) = std::isfinite(c) ? c
+                                                 : (std::isinf(spread(i, j)) ? std::copysign(1.0, spread(i, j)) : 0.0);
       }
   Eigen::MatrixXd unit = scaled;
   for (int i = 0; i < n; ++i)
