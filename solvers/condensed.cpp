@@ -2,7 +2,6 @@
 
 #include <cholmod.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -30,20 +29,17 @@ std::vector<int> DenseTangent::touched() const {
   return out;
 }
 
-Eigen::MatrixXd DenseTangent::on(const std::vector<int>& kept) const {
-  const auto n = static_cast<Index>(kept.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
-  const auto place = [&](int r) { return r < 0 ? -1 : std::ranges::lower_bound(kept, r) - kept.begin(); };
-  std::vector<Index> rows, columns;
+Eigen::MatrixXd DenseTangent::on(const std::vector<int>& places, Index kept) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kept, kept);
+  const auto place = [&](int row) { return row < 0 ? -1 : places[static_cast<std::size_t>(row)]; };
+  std::vector<int> rows;
   for (const Block& b : blocks_) {
     rows.clear();
-    columns.clear();
     for (int r : b.rows) rows.push_back(place(r));
-    for (int c : b.columns) columns.push_back(place(c));
-    for (std::size_t j = 0; j < columns.size(); ++j)
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        if (rows[i] >= 0 && columns[j] >= 0)
-          out(rows[i], columns[j]) += b.values(static_cast<Index>(i), static_cast<Index>(j));
+    for (std::size_t j = 0; j < b.columns.size(); ++j)
+      if (const int column = place(b.columns[j]); column >= 0)
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          if (rows[i] >= 0) out(rows[i], column) += b.values(static_cast<Index>(i), static_cast<Index>(j));
   }
   return out;
 }
@@ -55,8 +51,8 @@ struct CondensedFactorisation::State {
   std::vector<int> kept, order;  // order: row of each pivot
   std::vector<int> place;        // entry of the tangent's values of each entry of `lower`
   bool ready = false;
+  std::vector<int> places;      // of each row among the kept, in the order of the pivots
   Eigen::MatrixXd root, schur;  // L of the kept rows; L L^T
-  Eigen::PartialPivLU<Eigen::MatrixXd> dense;
 
   State() {
     cholmod_start(&common);
@@ -188,51 +184,46 @@ CondensedFactorisation& CondensedFactorisation::operator=(CondensedFactorisation
 
 bool CondensedFactorisation::ready() const { return state_->ready; }
 void CondensedFactorisation::forget() { state_->ready = false; }
-const std::vector<int>& CondensedFactorisation::kept() const { return state_->kept; }
+std::span<const int> CondensedFactorisation::kept() const { return std::span(state_->order).last(state_->kept.size()); }
+const std::vector<int>& CondensedFactorisation::places() const { return state_->places; }
+const Eigen::MatrixXd& CondensedFactorisation::schur() const { return state_->schur; }
 
-bool CondensedFactorisation::factorise(const SparseTangent& smooth, std::vector<int> kept) {
+bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector<int>& kept) {
   State& s = *state_;
   s.ready = false;
   if (!s.factor || kept != s.kept) {
-    s.kept = std::move(kept);
-    s.analyse(smooth);
+    s.kept = kept;
+    s.analyse(a);
+    s.places.assign(s.order.size(), -1);
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      s.places[static_cast<std::size_t>(s.order[s.order.size() - kept.size() + i])] = static_cast<int>(i);
   }
-  s.read_values(smooth);
+  s.read_values(a);
   cholmod_factorize(s.lower, s.factor, &s.common);
   if (s.common.status == CHOLMOD_OUT_OF_MEMORY)
     throw NonConvergence("not enough memory to factorise the tangent matrix");
   if (s.common.status != CHOLMOD_OK) return false;
-  // In the order of the pivots; `kept` itself is ascending.
   s.read_root();
   s.ready = true;
-  renew_dense(Eigen::MatrixXd::Zero(static_cast<Index>(s.kept.size()), static_cast<Index>(s.kept.size())));
   return true;
 }
 
-void CondensedFactorisation::renew_dense(const Eigen::MatrixXd& c) {
-  State& s = *state_;
-  const auto m = static_cast<Index>(s.kept.size());
-  Eigen::MatrixXd sum = s.schur;
-  std::vector<Index> at(s.kept.size());
-  for (std::size_t i = 0; i < at.size(); ++i)
-    at[i] = std::ranges::lower_bound(s.kept, s.order[s.order.size() - at.size() + i]) - s.kept.begin();
-  for (Index j = 0; j < m; ++j)
-    for (Index i = 0; i < m; ++i) sum(i, j) += c(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)]);
-  if (m > 0) s.dense.compute(sum);
-}
-
-Vector CondensedFactorisation::solve(const Vector& right) const {
+Vector CondensedFactorisation::eliminate(const Vector& right) const {
   const State& s = *state_;
-  const auto m = static_cast<Index>(s.kept.size());
   Vector y(right.size());
   for (Index i = 0; i < y.size(); ++i) y[i] = right[s.order[static_cast<std::size_t>(i)]];
-  y = s.half_solve(CHOLMOD_L, std::move(y));
-  if (m > 0) {
-    const Vector b = s.root.triangularView<Eigen::Lower>() * y.tail(m);
-    y.tail(m) = s.root.triangularView<Eigen::Lower>().transpose() * s.dense.solve(b);
-  }
-  y = s.half_solve(CHOLMOD_Lt, std::move(y));
-  Vector x(right.size());
+  return s.half_solve(CHOLMOD_L, std::move(y));
+}
+
+Vector CondensedFactorisation::condensed(const Vector& eliminated) const {
+  return state_->root.triangularView<Eigen::Lower>() * eliminated.tail(state_->root.rows());
+}
+
+Vector CondensedFactorisation::recover(Vector eliminated, const Vector& kept) const {
+  const State& s = *state_;
+  eliminated.tail(kept.size()) = s.root.triangularView<Eigen::Lower>().transpose() * kept;
+  const Vector y = s.half_solve(CHOLMOD_Lt, std::move(eliminated));
+  Vector x(y.size());
   for (Index i = 0; i < y.size(); ++i) x[s.order[static_cast<std::size_t>(i)]] = y[i];
   if (!x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");
   return x;

@@ -1,7 +1,8 @@
-/// Direct solution of a system that is smooth and symmetric but for a small, abrupt, unsymmetric part.
+/// Direct solution of a system that is linear and symmetric but for what acts on a few of its rows.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "hosel/solvers/linear.hpp"
@@ -17,8 +18,9 @@ class DenseTangent final : public fem::TangentSink {
   void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
            const Eigen::Ref<const Eigen::MatrixXd>& block) override;
   std::vector<int> touched() const;  ///< rows and columns that anything was added to, ascending
-  /// The sum on the rows `kept` (ascending), which must hold all that is touched.
-  Eigen::MatrixXd on(const std::vector<int>& kept) const;
+  /// The sum on the kept rows: `places` has the place of each row among them, -1 elsewhere. What is elsewhere is left
+  /// out.
+  Eigen::MatrixXd on(const std::vector<int>& places, Index kept) const;
 
  private:
   struct Block {
@@ -29,8 +31,9 @@ class DenseTangent final : public fem::TangentSink {
   std::vector<Block> blocks_;
 };
 
-/// Factors of A + P C P^T: A sparse, symmetric and positive definite, factorised seldom by CHOLMOD with the rows
-/// `kept` last; C dense on those rows, any, renewed often: its system with the Schur complement of A is dense.
+/// Cholesky factors (CHOLMOD) of a sparse, symmetric, positive definite matrix A with some rows kept last, so that
+/// A x + P f(x_kept) = b is solved in three parts: what the others leave of it on the kept rows, a small dense problem
+/// there with A's Schur complement, and the way back.
 class CondensedFactorisation {
  public:
   CondensedFactorisation();
@@ -38,14 +41,21 @@ class CondensedFactorisation {
   CondensedFactorisation(CondensedFactorisation&&) noexcept;
   CondensedFactorisation& operator=(CondensedFactorisation&&) noexcept;
 
-  /// Takes `smooth` for symmetric. False where it is not positive definite; C is zero again.
-  bool factorise(const SparseTangent& smooth, std::vector<int> kept);
+  /// Takes `a` for symmetric; `kept` ascending. False where it is not positive definite.
+  bool factorise(const SparseTangent& a, const std::vector<int>& kept);
   bool ready() const;
-  void forget();                         ///< the factors, not the ordering
-  const std::vector<int>& kept() const;  ///< ascending
-  void renew_dense(const Eigen::MatrixXd& c);
-  /// Throws NonConvergence where the sum is singular.
-  Vector solve(const Vector& right) const;
+  void forget();  ///< the factors, not the ordering
+  /// Rows in the order of the dense problem, and the place there of each row of A (-1: not kept).
+  std::span<const int> kept() const;
+  const std::vector<int>& places() const;
+  const Eigen::MatrixXd& schur() const;  ///< complement on the kept rows
+
+  /// First half of a solution: what recover() goes on from.
+  Vector eliminate(const Vector& right) const;
+  /// The right side of the dense problem.
+  Vector condensed(const Vector& eliminated) const;
+  /// The whole solution from that of the dense problem. Throws NonConvergence where it is not finite.
+  Vector recover(Vector eliminated, const Vector& kept) const;
 
  private:
   struct State;

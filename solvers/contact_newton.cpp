@@ -1,15 +1,17 @@
 #include "hosel/solvers/contact_newton.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
 
-/// Pairs of increments and of what they changed in the residual.
+/// Pairs of moves and of what they changed in the increment that is asked next.
 class Secants {
  public:
   void clear() { moved_.clear(), changed_.clear(); }
@@ -18,17 +20,16 @@ class Secants {
     changed_.push_back(changed);
     if (moved_.size() > 10) moved_.pop_front(), changed_.pop_front();
   }
-  /// Takes from `r` what the pairs explain of it; returns the increment that takes care of that part.
-  Vector explain(Vector& r) const {
-    Vector step = Vector::Zero(r.size());
-    if (moved_.empty()) return step;
+  /// The move that would make the next increment vanish as far as the pairs can tell.
+  Vector accelerate(const Vector& increment) const {
+    if (moved_.empty()) return increment;
     const auto m = static_cast<Index>(moved_.size());
-    Eigen::MatrixXd Z(r.size(), m);
+    Eigen::MatrixXd Z(increment.size(), m);
     for (Index i = 0; i < m; ++i) Z.col(i) = changed_[static_cast<std::size_t>(i)];
-    const Vector weight = Z.colPivHouseholderQr().solve(r);
-    r -= Z * weight;
-    for (Index i = 0; i < m; ++i) step -= weight[i] * moved_[static_cast<std::size_t>(i)];
-    return step;
+    const Vector weight = Z.colPivHouseholderQr().solve(increment);
+    Vector move = increment - Z * weight;
+    for (Index i = 0; i < m; ++i) move -= weight[i] * moved_[static_cast<std::size_t>(i)];
+    return move;
   }
 
  private:
@@ -53,10 +54,55 @@ void ContactNewton::refresh(const ContactProblem& problem) {
   problem.assemble_abrupt(abrupt_);
 }
 
+bool ContactNewton::covered() const {
+  return std::ranges::all_of(abrupt_.touched(),
+                             [&](int row) { return factors_.places()[static_cast<std::size_t>(row)] >= 0; });
+}
+
+Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, double tolerance) {
+  const Vector eliminated = factors_.eliminate(-r);
+  const Vector start = factors_.condensed(eliminated);
+  const auto kept = factors_.kept();
+  const auto m = static_cast<Index>(kept.size());
+  Vector x = Vector::Zero(m), move = Vector::Zero(r.size());
+  const auto on_kept = [&](const Vector& full) {
+    Vector out(m);
+    for (Index i = 0; i < m; ++i) out[i] = full[kept[static_cast<std::size_t>(i)]];
+    return out;
+  };
+  const auto go = [&](const Vector& step) {
+    for (Index i = 0; i < m; ++i) move[kept[static_cast<std::size_t>(i)]] = step[i];
+    problem.advance(move);
+    x += step;
+  };
+  const Vector before = m > 0 ? on_kept(problem.abrupt_residual()) : Vector();
+  Vector rest = -start;  // schur x + (abrupt - before) - start
+  const double enough = std::max(0.1 * tolerance, 1e-3 * rest.norm());
+  for (int i = 0; m > 0 && i < 15 && !(rest.norm() <= enough); ++i) {
+    if (i > 0) {
+      refresh(problem);
+      if (!covered()) break;  // the next iterate keeps more rows
+    }
+    Vector step = -(factors_.schur() + abrupt_.on(factors_.places(), m)).partialPivLu().solve(rest);
+    if (!step.allFinite()) break;
+    const double size = rest.norm();
+    for (int halvings = 0;; ++halvings) {
+      go(step);
+      rest = factors_.schur() * x + on_kept(problem.abrupt_residual()) - before - start;
+      if (rest.norm() < size || halvings == 8) break;
+      go(-step);
+      step *= 0.5;
+    }
+  }
+  const Vector found = x;
+  go(-x);
+  return factors_.recover(eliminated, found);
+}
+
 NewtonReport ContactNewton::solve(const ContactProblem& problem) {
   NewtonReport report;
-  double increment = INFINITY;
-  Vector r;
+  double size = INFINITY;  // of the last move
+  Vector r, last, wanted;  // the last move, and the increment that it was made of
   Secants secants;
   std::vector<double> shrinking;  // |r| since the factor was made or the solve began
   const auto evaluate = [&] {
@@ -66,10 +112,9 @@ NewtonReport ContactNewton::solve(const ContactProblem& problem) {
   const auto tolerance = [&] {
     return options_.residual_relative * report.scale + options_.residual_absolute + round_off_;
   };
-  // Kinks of contact are not the factor's fault: it is judged over several iterations, and blamed for a step that
-  // leads away only when it has seen some.
-  constexpr std::size_t back = 4;
-  constexpr int old = 10;
+  // A factor is judged over several iterations, and blamed for a step that leads away only when it has seen some.
+  constexpr std::size_t back = 2;
+  constexpr int old = 6;
   const auto slow = [&] {
     const std::size_t n = shrinking.size();
     return n > back && shrinking[n - 1] > options_.renew_above * shrinking[n - 1 - back];
@@ -82,7 +127,7 @@ NewtonReport ContactNewton::solve(const ContactProblem& problem) {
         report.reason = "the residual is not finite";
         break;
       }
-      if (report.residual <= tolerance() && increment <= 1) {
+      if (report.residual <= tolerance() && size <= 1) {
         report.converged = true;
         return report;
       }
@@ -92,41 +137,32 @@ NewtonReport ContactNewton::solve(const ContactProblem& problem) {
       }
       refresh(problem);
       // A small residual needs no better factor: only the increment is still to be confirmed.
-      bool fresh = !factors_.ready() || !std::ranges::includes(factors_.kept(), abrupt_.touched()) ||
-                   (slow() && report.residual > tolerance());
+      bool fresh = !factors_.ready() || !covered() || (slow() && report.residual > tolerance());
       const double before = report.residual;
-      Vector last;
-      const Vector r0 = r;
       for (;;) {
         if (fresh) {
           renew(problem);
           ++report.factorisations;
           age_ = 0;
           secants.clear();
+          last.resize(0);
           shrinking = {before};
         }
-        factors_.renew_dense(abrupt_.on(factors_.kept()));
-        Vector rest = r0;
-        last = secants.explain(rest);
-        last -= factors_.solve(rest);
-        increment = increments_.measure(last);
+        const Vector asked = wanted;
+        wanted = increment(problem, r, tolerance());
+        if (last.size() > 0) secants.add(last, wanted - asked);
+        last = secants.accelerate(wanted);
+        size = increments_.measure(last);
         problem.advance(last);
+        const Vector there = r;
         evaluate();
         if (++age_ <= old || report.residual <= std::max(before, tolerance())) break;
         // An old factor that leads away is not worth following.
         problem.advance(-last);
+        r = there;
         refresh(problem);
         fresh = true;
       }
-      // Kinks of contact make a full step overshoot: halve it while that brings the residual down.
-      for (int halvings = 0; halvings < 8 && !(report.residual <= std::max(before, tolerance())); ++halvings) {
-        const double full = report.residual;
-        last *= 0.5;
-        problem.advance(-last);
-        evaluate();
-        if (std::isfinite(full) && std::isfinite(report.residual) && report.residual > 0.9 * full) break;
-      }
-      secants.add(last, r - r0);
       shrinking.push_back(report.residual);
     }
   } catch (const NonConvergence& e) { report.reason = e.what(); }

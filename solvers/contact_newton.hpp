@@ -1,7 +1,6 @@
 /// Newton's method for systems with contact: what is smooth keeps its factors, contact is always up to date.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <vector>
 
@@ -17,14 +16,16 @@ struct ContactProblem {
   /// The tangent of the smooth terms at the present iterate, its mass `inertia` times as heavy (1: as it is);
   /// returns the residual that round-off alone may leave.
   std::function<double(double inertia)> assemble_smooth;
-  std::function<void(DenseTangent&)> assemble_abrupt;  ///< the other terms' tangent, likewise
+  std::function<Vector()> abrupt_residual;             ///< the other terms' share of the residual
+  std::function<void(DenseTangent&)> assemble_abrupt;  ///< and their tangent
   std::function<void(const Vector&)> advance;          ///< moves the iterate by an increment
 };
 
-/// Solves residual = 0. The smooth terms' factors come from earlier calls and are kept while they work; contact enters
-/// them afresh at every iterate, through the few equations that it touches. Increments are accelerated by what the
-/// last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)), and shortened
-/// where kinks of contact make them overshoot. Never throws on failure to converge: the report says so.
+/// Solves residual = 0. The smooth terms' factors come from earlier calls and are kept while they work. Each increment
+/// solves contact exactly against the smooth terms so linearised: a dense problem on the few equations that it touches,
+/// by Newton's method with a line search, so that its kinks trouble nothing else. Increments are accelerated by what
+/// the last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)). Never throws
+/// on failure to converge: the report says so.
 class ContactNewton {
  public:
   ContactNewton(const fem::System& system, SparseTangent& smooth, NewtonOptions options);
@@ -34,6 +35,9 @@ class ContactNewton {
  private:
   void renew(const ContactProblem& problem);
   void refresh(const ContactProblem& problem);
+  bool covered() const;  ///< whether the kept rows hold all that is abrupt
+  /// The increment from an iterate with residual `r`; the iterate is where it was.
+  Vector increment(const ContactProblem& problem, const Vector& r, double tolerance);
 
   SparseTangent& smooth_;
   DenseTangent abrupt_;

@@ -143,7 +143,13 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
       for (const auto& term : system_.terms)
         if (term->abrupt()) term->tangent(trial_, {1, to_v, to_a}, sink);
     };
-    report = contact_newton_.solve({residual, assemble, assemble_abrupt, advance});
+    const auto abrupt_residual = [&] {
+      Vector inertia = Vector::Zero(system_.layout.size()), force = inertia;
+      for (const auto& term : system_.terms)
+        if (term->abrupt()) term->residual(trial_, inertia, force);
+      return tangent_.gather(inertia + force);
+    };
+    report = contact_newton_.solve({residual, assemble, abrupt_residual, assemble_abrupt, advance});
   } else {
     report = newton_.solve({residual, [&] { return assemble(1); }, advance});
   }

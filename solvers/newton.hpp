@@ -16,7 +16,7 @@ struct NewtonOptions {
   double increment_vector = 0;    ///< largest last increment of a plain number [m]; inf: not asked for
   double increment_rotation = 0;  ///< largest last increment of a rotation [rad]; inf: not asked for
   int max_iterations = 25;
-  /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration (with contact: in four).
+  /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration (with contact: in two).
   double renew_above = 0.2;
 
   /// Sentences naming what is missing or cannot be; empty if all is well.
