@@ -11,6 +11,12 @@ namespace {
 models::FeImpactOptions read_fe(Table root) {
   models::FeImpactOptions o;
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
+  if (root.has("accuracy")) {
+    const std::string accuracy = root.choice("accuracy", {"look", "default", "reference"});
+    o.resolve(accuracy == "look"      ? models::Accuracy::look
+              : accuracy == "default" ? models::Accuracy::standard
+                                      : models::Accuracy::reference);
+  }
   // Friction is physics: a case with a deformable ball states it.
   Table contact = root.table("contact");
   o.friction = contact.number("face_friction", {0, 5});

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "hosel/golf/units.hpp"
 #include "hosel/models/fe_impact.hpp"
-#include "hosel/solvers/linear.hpp"
+#include "hosel/solvers/condensed.hpp"
 
 namespace {
 using namespace hosel;
@@ -34,7 +36,8 @@ double seconds(int repeats, const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / repeats;
 }
 
-/// Unit costs at largest force times how often each was needed, over the time of the whole run.
+/// Unit costs at largest force times how often each was needed, over the time of the whole run; and one solution of
+/// the linear system by LU of the whole tangent, as it was once done, over one by what is kept of it.
 void Shares(benchmark::State& state) {
   for (auto _ : state) {
     const FeImpactOptions o = options(3, 3);
@@ -51,26 +54,81 @@ void Shares(benchmark::State& state) {
     });
     impact.parts.contact->start(impact.initial);
     fem::Vector inertia = fem::Vector::Zero(impact.system.layout.size()), internal = inertia;
-    solvers::SparseTangent tangent(impact.system);
-    solvers::Factorisation factors;
     const fem::Weights weights{1, 0, 1e10};
-    tangent.assemble(impact.system, peak, weights);
-    factors.factorise(tangent);
+    solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth), all(impact.system);
+    solvers::DenseTangent abrupt(smooth);
+    solvers::CondensedFactorisation factors;
+    solvers::Factorisation lu;
+    const auto touch = [&] {
+      abrupt.clear();
+      impact.parts.contact->tangent(peak, weights, abrupt);
+    };
+    touch();
+    smooth.assemble(impact.system, peak, weights);
+    all.assemble(impact.system, peak, weights);
+    if (!factors.factorise(smooth, abrupt.touched())) {
+      state.SkipWithError("the ball's tangent is not positive definite");
+      return;
+    }
+    lu.factorise(all);
     const double ball = seconds(20, [&] { impact.parts.ball->residual(peak, inertia, internal); });
     const double contact = seconds(20, [&] { impact.parts.contact->residual(peak, inertia, internal); });
-    const double assembly = seconds(5, [&] { tangent.assemble(impact.system, peak, weights); });
-    const double factorisation = seconds(5, [&] { factors.factorise(tangent); });
-    const double solve = seconds(20, [&] { benchmark::DoNotOptimize(factors.solve(tangent.gather(internal))); });
+    const double assembly = seconds(5, [&] { smooth.assemble(impact.system, peak, weights); });
+    const double factorisation = seconds(5, [&] { factors.factorise(smooth, abrupt.touched()); });
+    const double dense = seconds(20, [&] {
+      touch();
+      const auto m = static_cast<Eigen::Index>(factors.kept().size());
+      benchmark::DoNotOptimize((factors.schur() + abrupt.on(factors.places(), m)).partialPivLu().matrixLU().sum());
+    });
+    const fem::Vector right = smooth.gather(internal);
+    const double solve = seconds(20, [&] {
+      const fem::Vector half = factors.eliminate(right);
+      benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
+    });
     const auto n = double(result.counts.iterations), f = double(result.counts.factorisations);
     state.counters["share_ball_residual"] = n * ball / whole;
     state.counters["share_contact"] = n * contact / whole;
     state.counters["share_tangent_assembly"] = f * assembly / whole;
     state.counters["share_factorisation"] = f * factorisation / whole;
+    state.counters["share_contact_tangent"] = n * dense / whole;
     state.counters["share_solves"] = n * solve / whole;
+    state.counters["lu_over_kept_factorisation"] = seconds(2, [&] { lu.factorise(all); }) / factorisation;
+    state.counters["lu_over_kept_solve"] = seconds(20, [&] { benchmark::DoNotOptimize(lu.solve(right)); }) / solve;
     state.counters["seconds"] = whole;
   }
 }
 BENCHMARK(Shares)->Iterations(1)->Unit(benchmark::kSecond);
+
+/// `accuracy` of a case, 0 look, 1 default, 2 reference: what it costs, and how far it is from the last.
+void AccuracyLevels(benchmark::State& state) {
+  Blow blow;  // cases/iron7-trackman
+  blow.delivery = {.club_speed = 36.747,
+                   .attack_angle = radians(-1.9),
+                   .club_path = radians(0.4),
+                   .dynamic_loft = radians(22.06),
+                   .face_angle = radians(-1.1),
+                   .impact_toe = -0.005,
+                   .impact_high = -0.004};
+  blow.club.head.mass = 0.2643;
+  blow.club.head.cg = Vec3(-0.0011, 0, 0);
+  blow.club.head.inertia = Vec3(2.752e-4, 0.577e-4, 2.889e-4).asDiagonal();
+  for (auto _ : state) {
+    Launch launch[2];
+    double cost[2];
+    for (int i = 0; i < 2; ++i) {
+      FeImpactOptions o;
+      o.resolve(i ? Accuracy::reference : static_cast<Accuracy>(state.range(0)));
+      cost[i] = seconds(1, [&] { launch[i] = solve_free_body(blow, o).launch; });
+    }
+    const auto angle = [](const Launch& l) { return std::atan2(l.velocity.z(), l.velocity.x()); };
+    state.counters["seconds"] = cost[0];
+    state.counters["reference_over_this"] = cost[1] / cost[0];
+    state.counters["ball_speed_off_%"] = 100 * (launch[0].velocity.norm() / launch[1].velocity.norm() - 1);
+    state.counters["launch_angle_off_%"] = 100 * (angle(launch[0]) / angle(launch[1]) - 1);
+    state.counters["spin_off_%"] = 100 * (launch[0].spin.norm() / launch[1].spin.norm() - 1);
+  }
+}
+BENCHMARK(AccuracyLevels)->Arg(0)->Arg(1)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
 
 /// Exponent of the cost over the nodes, from 3 to 6 sectors (54 to 216 elements).
 void Growth(benchmark::State& state) {

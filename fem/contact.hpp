@@ -63,6 +63,7 @@ class Contact final : public Term {
   void pattern(std::vector<std::vector<Index>>& blocks) const override;
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
+  bool abrupt() const override { return true; }
   Energies energies(const State& accepted) const override;
   void accept(const State& accepted) override;
   void save(std::vector<double>& history) const override;

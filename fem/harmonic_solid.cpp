@@ -1,5 +1,9 @@
 #include "hosel/fem/harmonic_solid.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -78,14 +82,39 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
                                            family_[static_cast<std::size_t>(l)].at(theta));
   const AngularRule& angles = quadrature_.angles;
   const auto n = static_cast<Index>(angles.theta.size());
-  functions_.resize(3 * n, K);
-  derivatives_.resize(3 * n, K);
-  for (Index j = 0; j < n; ++j) {
-    const double theta = angles.theta[static_cast<std::size_t>(j)];
+  for (int c = 0; c < 3; ++c) {
+    Direction& d = directions_[static_cast<std::size_t>(c)];
     for (Index k = 0; k < K; ++k) {
-      functions_.block<3, 1>(3 * j, k) = family_[static_cast<std::size_t>(k)].at(theta);
-      derivatives_.block<3, 1>(3 * j, k) = family_[static_cast<std::size_t>(k)].derivative(theta);
+      const AngularFunction& f = family_[static_cast<std::size_t>(k)];
+      if (f.cosine[c] != 0 || f.sine[c] != 0) d.functions.push_back(k);
     }
+    const auto count = static_cast<Index>(d.functions.size());
+    d.value.resize(n, count);
+    d.derivative.resize(n, count);
+    for (Index k = 0; k < count; ++k)
+      for (Index j = 0; j < n; ++j) {
+        const AngularFunction& f = family_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
+        const double theta = angles.theta[static_cast<std::size_t>(j)];
+        d.value(j, k) = f.at(theta)[c];
+        d.derivative(j, k) = f.derivative(theta)[c];
+      }
+  }
+  for (std::size_t left = 0; left < 3; ++left)
+    for (std::size_t right = left; right < 3; ++right) {
+      Coupling& q = couplings_.emplace_back();
+      q.left = left;
+      q.right = right;
+      const Direction &a = directions_[left], &b = directions_[right];
+      for (int J = 0; J < 2; ++J)
+        for (int L = 0; L < 2; ++L) {
+          q.product[J][L].resize(a.value.cols() * b.value.cols(), n);
+          for (Index l = 0; l < b.value.cols(); ++l)
+            for (Index k = 0; k < a.value.cols(); ++k)
+              q.product[J][L].row(k + l * a.value.cols()) =
+                  (J ? a.derivative : a.value).col(k).cwiseProduct((L ? b.derivative : b.value).col(l)).transpose();
+        }
+    }
+  for (double theta : angles.theta) {
     Mat3 frame;
     frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
     frames_.push_back(frame);
@@ -126,7 +155,14 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
     element_mass_.push_back(m);
   }
   history_.assign(start, 0);
-  const std::size_t per = points_.size() / mesh_.elements.size();
+  const std::size_t per = points_per_element();
+  gradients_.resize(8, 3 * static_cast<Index>(points_.size()));
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto at = static_cast<Index>(3 * per * (i / per)), p = static_cast<Index>(i % per);
+    gradients_.col(at + 2 * p) = points_[i].ds;
+    gradients_.col(at + 2 * p + 1) = points_[i].drho;
+    gradients_.col(at + 2 * static_cast<Index>(per) + p) = points_[i].value / points_[i].rho;
+  }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[p / per])];
     const auto size = static_cast<std::size_t>(material.history_size());
@@ -149,8 +185,10 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
           Mat3 sum = Mat3::Zero();
           for (Index j = 0; j < n; ++j) {
             const Mat3& f = frames_[static_cast<std::size_t>(j)];
-            sum += functions_.block<3, 1>(3 * j, k) * (g.ds[i] * f.col(0) + g.drho[i] * f.col(1)).transpose() +
-                   derivatives_.block<3, 1>(3 * j, k) * (g.value[i] / g.rho * f.col(2)).transpose();
+            const AngularFunction& function = family_[static_cast<std::size_t>(k)];
+            const double theta = angles.theta[static_cast<std::size_t>(j)];
+            sum += function.at(theta) * (g.ds[i] * f.col(0) + g.drho[i] * f.col(1)).transpose() +
+                   function.derivative(theta) * (g.value[i] / g.rho * f.col(2)).transpose();
           }
           mean_gradient_.col(e - block_.v) += g.weight * Eigen::Map<Eigen::Matrix<double, 9, 1>>(sum.data());
         }
@@ -185,71 +223,109 @@ Mat3 HarmonicSolid::mean_rotation(const State& s) const {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-/// Calls visit(element, point, angle, F, frame) with F at every point; F in the placement's axes.
-template <class Visit>
-void HarmonicSolid::visit_points(const State& s, Visit&& visit) const {
-  const auto n = static_cast<Index>(frames_.size());
-  const std::size_t per = points_.size() / mesh_.elements.size();
-  const Mat3 R = mean_rotation(s);
-  Eigen::MatrixXd gradient(3 * n, 3);
-  Vector d(unknowns());
-  for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
-    const Eigen::MatrixXd U = element_fields(s.q, block_.q - block_.v, e);
-    for (std::size_t p = e * per; p < (e + 1) * per; ++p) {
-      const Point& g = points_[p];
-      d.noalias() = U.transpose() * g.ds;
-      gradient.col(0).noalias() = functions_ * d;
-      d.noalias() = U.transpose() * g.drho;
-      gradient.col(1).noalias() = functions_ * d;
-      d.noalias() = U.transpose() * (g.value / g.rho);
-      gradient.col(2).noalias() = derivatives_ * d;
-      for (Index j = 0; j < n; ++j) {
-        const Mat3& frame = frames_[static_cast<std::size_t>(j)];
-        const Mat3 F = gradient.block<3, 3>(3 * j, 0) + frame;
-        visit(e, p, j, F, corotated_ ? Mat3(R * frame) : frame);
-      }
+struct HarmonicSolid::Scratch {
+  explicit Scratch(const HarmonicSolid& solid)
+      : angles(static_cast<Index>(solid.frames_.size())), points(static_cast<Index>(solid.points_per_element())) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      gradient[c].resize(angles, 3 * points);
+      stress[c].resize(angles, 3 * points);
     }
   }
+  Index angles, points;
+  Eigen::MatrixXd own, spread;                      // one direction's fields; by the derivatives at the points
+  std::array<Eigen::MatrixXd, 3> gradient, stress;  // component by component, angles x as HarmonicSolid::gradients_
+  PointResponse response;
+
+  /// Column of a derivative (0 by s, 1 by rho, 2 around) at a point.
+  Index column(Index point, Index J) const { return J < 2 ? 2 * point + J : 2 * points + point; }
+};
+
+template <class Work>
+void HarmonicSolid::over_elements(const Work& work) const {
+  // Isolated: a thread that waits here takes no other blow meanwhile.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.elements.size(), 4),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        Scratch scratch(*this);
+                        for (std::size_t e = range.begin(); e < range.end(); ++e) work(e, scratch);
+                      });
+  });
+}
+
+std::span<const double> HarmonicSolid::history_at(std::size_t point, Index angle) const {
+  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[point / points_per_element()])];
+  const auto size = static_cast<std::size_t>(material.history_size());
+  return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(angle) * size, size);
+}
+
+/// Calls visit(point of the element, angle, F, frame) with F at every point; F in the placement's axes.
+template <class Visit>
+void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e, Scratch& t, Visit&& visit) const {
+  const Eigen::MatrixXd U = element_fields(s.q, block_.q - block_.v, e);
+  const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Direction& d = directions_[c];
+    t.own = U(Eigen::all, d.functions);
+    t.spread.noalias() = t.own.transpose() * B;
+    t.gradient[c].leftCols(2 * t.points).noalias() = d.value * t.spread.leftCols(2 * t.points);
+    t.gradient[c].rightCols(t.points).noalias() = d.derivative * t.spread.rightCols(t.points);
+  }
+  Mat3 F;
+  for (Index p = 0; p < t.points; ++p)
+    for (Index j = 0; j < t.angles; ++j) {
+      const Mat3& frame = frames_[static_cast<std::size_t>(j)];
+      for (int J = 0; J < 3; ++J)
+        for (int c = 0; c < 3; ++c) F(c, J) = t.gradient[static_cast<std::size_t>(c)](j, t.column(p, J)) + frame(c, J);
+      visit(p, j, F, corotated_ ? Mat3(mean * frame) : frame);
+    }
 }
 
 void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) const {
   const Index K = unknowns();
-  const auto n = static_cast<Index>(frames_.size());
-  const std::size_t per = points_.size() / mesh_.elements.size();
+  const std::size_t elements = mesh_.elements.size();
   const double dt = s.time - time_;
-  Eigen::MatrixXd stress(3 * n, 3), fe(8, K);
-  Eigen::RowVectorXd r(K);
-  PointResponse response;
-  Mat3 twist = Mat3::Zero();  // integral of P F^T in Cartesian components, for the corotated frame
-  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
-    const Point& g = points_[p];
+  const Mat3 R = mean_rotation(s);
+  std::vector<Eigen::MatrixXd> forces(elements), inertias(elements);
+  std::vector<Mat3> twists(corotated_ ? elements : 0);  // integrals of P F^T in Cartesian components
+  over_elements([&](std::size_t e, Scratch& t) {
     const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
-    const auto size = static_cast<std::size_t>(material.history_size());
-    respond(material, F, frame, dt,
-            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
-    stress.block<3, 3>(3 * j, 0) = g.weight * response.stress;
-    if (corotated_) twist += g.weight * response.stress * F.transpose();
-    if (j + 1 < n) return;
-    if (p == e * per) fe.setZero();
-    r.noalias() = stress.col(0).transpose() * functions_;
-    fe.noalias() += g.ds * r;
-    r.noalias() = stress.col(1).transpose() * functions_;
-    fe.noalias() += g.drho * r;
-    r.noalias() = stress.col(2).transpose() * derivatives_;
-    fe.noalias() += (g.value / g.rho) * r;
-    if (p + 1 < (e + 1) * per) return;
-    const Eigen::MatrixXd ie = element_mass_[e] * element_fields(s.a, 0, e) * gram_;
+    Mat3 twist = Mat3::Zero();
+    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+      const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+      respond(material, F, frame, dt, history_at(point, j), false, t.response);
+      const double weight = points_[point].weight;
+      for (int J = 0; J < 3; ++J)
+        for (int c = 0; c < 3; ++c)
+          t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)) = weight * t.response.stress(c, J);
+      if (corotated_) twist += weight * t.response.stress * F.transpose();
+    });
+    if (corotated_) twists[e] = twist;
+    const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
+    Eigen::MatrixXd& fe = forces[e];
+    fe.setZero(8, K);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Direction& d = directions_[c];
+      t.spread.resize(d.value.cols(), 3 * t.points);
+      t.spread.leftCols(2 * t.points).noalias() = d.value.transpose() * t.stress[c].leftCols(2 * t.points);
+      t.spread.rightCols(t.points).noalias() = d.derivative.transpose() * t.stress[c].rightCols(t.points);
+      t.own.noalias() = B * t.spread.transpose();
+      for (std::size_t k = 0; k < d.functions.size(); ++k) fe.col(d.functions[k]) += t.own.col(static_cast<Index>(k));
+    }
+    inertias[e] = element_mass_[e] * element_fields(s.a, 0, e) * gram_;
+  });
+  Mat3 twist = Mat3::Zero();
+  for (std::size_t e = 0; e < elements; ++e) {
     const auto& equations = element_equations_[e];
     const auto& places = element_places_[e];
     for (std::size_t i = 0; i < equations.size(); ++i) {
-      force[equations[i]] += fe(places[i] / K, places[i] % K);
-      inertia[equations[i]] += ie(places[i] / K, places[i] % K);
+      force[equations[i]] += forces[e](places[i] / K, places[i] % K);
+      inertia[equations[i]] += inertias[e](places[i] / K, places[i] % K);
     }
-  });
+    if (corotated_) twist += twists[e];
+  }
   if (!corotated_) return;
   // The mean rotation R follows the unknowns: dR = R [w], (tr U - U) w = axial(R^T dF - dF^T R) of the
   // mean gradient F = R U; the energy changes by -w . axial of the unbalanced moment.
-  const Mat3 R = mean_rotation(s);
   Eigen::Matrix<double, 9, 1> mean = mean_gradient_ * s.q.segment(block_.q, block_.size);
   const Mat3 U = R.transpose() * (Mat3::Identity() + Eigen::Map<Mat3>(mean.data()));
   const Mat3 Y = R.transpose() * twist * R;
@@ -262,62 +338,75 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
                                           Eigen::Map<const Eigen::Matrix<double, 9, 1>>(conjugate.data());
 }
 
+void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t e, Scratch& t,
+                                  Eigen::MatrixXd& ke) const {
+  const Index K = unknowns(), P = t.points;
+  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+  const double dt = s.time - time_;
+  // dP_cJ / dF_dL of two directions c, d: a column for each point and pair (J, L), grouped by what it multiplies.
+  const auto column = [P](Index p, Index J, Index L) {
+    return J < 2 ? (L < 2 ? 4 * p + 2 * J + L : 4 * P + 2 * p + J) : (L < 2 ? 6 * P + 2 * p + L : 8 * P + p);
+  };
+  std::array<Eigen::MatrixXd, 6> slopes;
+  for (auto& m : slopes) m.resize(t.angles, 9 * P);
+  visit_points(s, mean, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+    const std::size_t point = e * static_cast<std::size_t>(P) + static_cast<std::size_t>(p);
+    respond(material, F, frame, dt, history_at(point, j), true, t.response);
+    const double weight = factor * points_[point].weight;
+    for (std::size_t q = 0; q < 6; ++q)
+      for (Index J = 0; J < 3; ++J)
+        for (Index L = 0; L < 3; ++L)
+          slopes[q](j, column(p, J, L)) = weight * t.response.tangent(static_cast<Index>(couplings_[q].left) + 3 * J,
+                                                                      static_cast<Index>(couplings_[q].right) + 3 * L);
+  });
+  const auto B = gradients_.middleCols(3 * P * static_cast<Index>(e), 3 * P);
+  Eigen::MatrixXd shapes(9 * P, 64);  // of node a times node b, column a + 8 b
+  for (Index b = 0; b < 8; ++b)
+    for (Index a = 0; a < 8; ++a)
+      for (Index p = 0; p < P; ++p)
+        for (Index J = 0; J < 3; ++J)
+          for (Index L = 0; L < 3; ++L)
+            shapes(column(p, J, L), a + 8 * b) = B(a, t.column(p, J)) * B(b, t.column(p, L));
+  Eigen::MatrixXd angular, nodal;
+  for (std::size_t q = 0; q < 6; ++q) {
+    const Coupling& coupling = couplings_[q];
+    const auto &left = directions_[coupling.left].functions, &right = directions_[coupling.right].functions;
+    angular.resize(coupling.product[0][0].rows(), 9 * P);
+    angular.leftCols(4 * P).noalias() = coupling.product[0][0] * slopes[q].leftCols(4 * P);
+    angular.middleCols(4 * P, 2 * P).noalias() = coupling.product[0][1] * slopes[q].middleCols(4 * P, 2 * P);
+    angular.middleCols(6 * P, 2 * P).noalias() = coupling.product[1][0] * slopes[q].middleCols(6 * P, 2 * P);
+    angular.rightCols(P).noalias() = coupling.product[1][1] * slopes[q].rightCols(P);
+    nodal.noalias() = angular * shapes;
+    const bool same = coupling.left == coupling.right;  // then both orders are among the columns
+    for (Index b = 0; b < 8; ++b)
+      for (Index a = 0; a < 8; ++a) {
+        const double* value = nodal.col(a + 8 * b).data();
+        for (Index l : right)
+          for (Index k : left) {
+            ke(a * K + k, b * K + l) += *value;
+            if (!same) ke(b * K + l, a * K + k) += *value;
+            ++value;
+          }
+      }
+  }
+}
+
 void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
   const Index K = unknowns();
-  const auto n = static_cast<Index>(frames_.size());
-  const std::size_t per = points_.size() / mesh_.elements.size();
-  Eigen::MatrixXd ke = Eigen::MatrixXd::Zero(8 * K, 8 * K), reduced, product(K, K);
-  const auto finish = [&](std::size_t e) {
+  const std::size_t elements = mesh_.elements.size();
+  const Mat3 R = mean_rotation(s);
+  std::vector<Eigen::MatrixXd> stiffness(elements);
+  over_elements([&](std::size_t e, Scratch& t) {
+    Eigen::MatrixXd ke = Eigen::MatrixXd::Zero(8 * K, 8 * K);
+    if (weights.stiffness != 0) add_stiffness(s, weights.stiffness, R, e, t, ke);
     if (weights.mass != 0)
       for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j) ke.block(i * K, j * K, K, K) += weights.mass * element_mass_[e](i, j) * gram_;
-    const auto& equations = element_equations_[e];
     const auto& places = element_places_[e];
-    if (static_cast<Index>(equations.size()) == 8 * K) {
-      sink.add(equations, equations, ke);
-    } else {
-      reduced = ke(places, places);
-      sink.add(equations, equations, reduced);
-    }
-    ke.setZero();
-  };
-  if (weights.stiffness == 0) {
-    for (std::size_t e = 0; e < mesh_.elements.size(); ++e) finish(e);
-    return;
-  }
-  const double dt = s.time - time_;
-  PointResponse response;
-  // For each pair (J, L) of derivatives: sum over angles of f_J^T (dP_J / dF_L) f_L.
-  std::vector<Eigen::MatrixXd> right(9, Eigen::MatrixXd(3 * n, K)), pair(9, Eigen::MatrixXd(K, K));
-  std::array<Eigen::MatrixXd, 3> half;
-  half.fill(Eigen::MatrixXd(K, K));
-  const auto of = [&](int J) -> const Eigen::MatrixXd& { return J == 2 ? derivatives_ : functions_; };
-  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
-    const Point& g = points_[p];
-    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
-    const auto size = static_cast<std::size_t>(material.history_size());
-    respond(material, F, frame, dt,
-            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), true, response);
-    for (int J = 0; J < 3; ++J)
-      for (int L = 0; L < 3; ++L)
-        right[static_cast<std::size_t>(3 * J + L)].block(3 * j, 0, 3, K).noalias() =
-            (g.weight * weights.stiffness * response.tangent.block<3, 3>(3 * J, 3 * L)) * of(L).block(3 * j, 0, 3, K);
-    if (j + 1 < n) return;
-    for (int J = 0; J < 3; ++J)
-      for (int L = 0; L < 3; ++L) {
-        const auto q = static_cast<std::size_t>(3 * J + L);
-        pair[q].noalias() = of(J).transpose() * right[q];
-      }
-    const Eigen::Matrix<double, 8, 1> around = g.value / g.rho;
-    const Eigen::Matrix<double, 8, 1>* B[3] = {&g.ds, &g.drho, &around};
-    for (int b = 0; b < 8; ++b) {
-      for (std::size_t J = 0; J < 3; ++J)
-        half[J] = (*B[0])[b] * pair[3 * J] + (*B[1])[b] * pair[3 * J + 1] + (*B[2])[b] * pair[3 * J + 2];
-      for (int a = 0; a < 8; ++a)
-        ke.block(a * K, b * K, K, K) += (*B[0])[a] * half[0] + (*B[1])[a] * half[1] + (*B[2])[a] * half[2];
-    }
-    if (p + 1 == (e + 1) * per) finish(e);
+    if (static_cast<Index>(places.size()) == 8 * K) stiffness[e] = std::move(ke);
+    else stiffness[e] = ke(places, places);
   });
+  for (std::size_t e = 0; e < elements; ++e) sink.add(element_equations_[e], element_equations_[e], stiffness[e]);
 }
 
 Energies HarmonicSolid::energies(const State& s) const {
@@ -332,30 +421,37 @@ Energies HarmonicSolid::energies(const State& s) const {
 }
 
 std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
-  std::vector<double> out(materials_.size(), 0);
-  PointResponse response;
+  std::vector<double> out(materials_.size(), 0), found(mesh_.elements.size(), 0);
   const double dt = s.time - time_;
-  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
-    const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
-    const auto size = static_cast<std::size_t>(materials_[layer].history_size());
-    respond(materials_[layer], F, frame, dt,
-            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
-    out[layer] += points_[p].weight * response.energy;
+  const Mat3 R = mean_rotation(s);
+  over_elements([&](std::size_t e, Scratch& t) {
+    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+      const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+      respond(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
+              t.response);
+      found[e] += points_[point].weight * t.response.energy;
+    });
   });
+  for (std::size_t e = 0; e < found.size(); ++e) out[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
   return out;
 }
 
 void HarmonicSolid::accept(const State& s) {
   const double dt = s.time - time_;
-  if (!history_.empty())
-    visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3&) {
-      const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
-      const auto size = static_cast<std::size_t>(materials_[layer].history_size());
-      dissipated_[layer] +=
-          points_[p].weight *
-          move_history(materials_[layer], F, dt,
-                       std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size));
+  if (!history_.empty()) {
+    std::vector<double> found(mesh_.elements.size(), 0);
+    const Mat3 R = mean_rotation(s);
+    over_elements([&](std::size_t e, Scratch& t) {
+      const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+      const auto size = static_cast<std::size_t>(material.history_size());
+      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
+        const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+        const std::size_t at = history_start_[point] + static_cast<std::size_t>(j) * size;
+        found[e] += points_[point].weight * move_history(material, F, dt, std::span(history_).subspan(at, size));
+      });
     });
+    for (std::size_t e = 0; e < found.size(); ++e) dissipated_[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
+  }
   time_ = s.time;
 }
 
@@ -411,20 +507,21 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   if (quadrature_.points != 2) throw std::invalid_argument("harmonic solid: stress recovery needs the 2 x 2 rule");
   // Points of the angular rule carry the history; stresses at other angles by trigonometric interpolation.
   const auto n = static_cast<Index>(frames_.size());
-  const std::size_t per = 4;
+  const std::size_t per = points_per_element();
   std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_points(points_.size(),
                                                                   Eigen::Matrix<double, 6, Eigen::Dynamic>(6, n));
-  PointResponse response;
   const double dt = s.time - time_;
-  visit_points(s, [&](std::size_t e, std::size_t p, Index j, const Mat3& F, const Mat3& frame) {
-    const auto layer = static_cast<std::size_t>(mesh_.layer[e]);
-    const auto size = static_cast<std::size_t>(materials_[layer].history_size());
-    respond(materials_[layer], F, frame, dt,
-            std::span(history_).subspan(history_start_[p] + static_cast<std::size_t>(j) * size, size), false, response);
-    // In the cylindrical frame, so that an axisymmetric state is constant over theta.
-    const Mat3 sigma = response.stress * F.transpose() / F.determinant();
-    at_points[p].col(j) =
-        to_sym(frames_[static_cast<std::size_t>(j)].transpose() * sigma * frames_[static_cast<std::size_t>(j)]);
+  const Mat3 R = mean_rotation(s);
+  over_elements([&](std::size_t e, Scratch& t) {
+    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+      const std::size_t point = e * per + static_cast<std::size_t>(p);
+      respond(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
+              t.response);
+      // In the cylindrical frame, so that an axisymmetric state is constant over theta.
+      const Mat3& Q = frames_[static_cast<std::size_t>(j)];
+      const Mat3 sigma = t.response.stress * F.transpose() / F.determinant();
+      at_points[point].col(j) = to_sym(Q.transpose() * sigma * Q);
+    });
   });
   const std::size_t angles = theta.size(), nodes = mesh_.nodes.size();
   // Nearest angle of the rule, or its mirror image where the rule covers half the circle.
@@ -548,11 +645,13 @@ double HarmonicSolid::mass() const {
 }
 
 double HarmonicSolid::largest_strain(const State& s) const {
-  double largest = 0;
-  visit_points(s, [&](std::size_t, std::size_t, Index, const Mat3& F, const Mat3&) {
-    largest = std::max(largest, 0.5 * (F.transpose() * F - Mat3::Identity()).norm());
+  std::vector<double> found(mesh_.elements.size(), 0);
+  over_elements([&](std::size_t e, Scratch& t) {
+    visit_points(s, Mat3::Identity(), e, t, [&](Index, Index, const Mat3& F, const Mat3&) {
+      found[e] = std::max(found[e], 0.5 * (F.transpose() * F - Mat3::Identity()).norm());
+    });
   });
-  return largest;
+  return std::ranges::max(found);
 }
 
 }  // namespace hosel::fem

@@ -1,6 +1,8 @@
 /// A solid of revolution whose displacement is a sum of angular functions times meridian fields.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,8 +92,24 @@ class HarmonicSolid final : public Term {
     Eigen::Matrix<double, 8, 1> value, ds, drho;
     double rho = 0, weight = 0;  // of the meridian area times rho times the angular weight
   };
+  struct Direction {  // the functions with a component along one Cartesian axis
+    std::vector<Index> functions;
+    Eigen::MatrixXd value, derivative;  // that component at each angle: angles x functions
+  };
+  struct Coupling {  // of the functions of two directions: (k + l x count) x angles, products of value or derivative
+    std::size_t left = 0, right = 0;
+    Eigen::MatrixXd product[2][2];
+  };
+  struct Scratch;  // of an element's work
+  /// Elements may be worked on at once, each on its own: what they find is put together in their order.
+  template <class Work>
+  void over_elements(const Work& work) const;
   template <class Visit>
-  void visit_points(const State& s, Visit&& visit) const;
+  void visit_points(const State& s, const Mat3& mean, std::size_t element, Scratch& scratch, Visit&& visit) const;
+  void add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t element, Scratch& scratch,
+                     Eigen::MatrixXd& ke) const;
+  std::size_t points_per_element() const { return points_.size() / mesh_.elements.size(); }
+  std::span<const double> history_at(std::size_t point, Index angle) const;
   Eigen::MatrixXd element_fields(const Vector& numbers, Index offset, std::size_t element) const;
   Mat3 mean_rotation(const State& s) const;
 
@@ -107,9 +125,11 @@ class HarmonicSolid final : public Term {
   std::vector<std::vector<int>> element_places_;           // their place i * K + k in the element's fields
   std::vector<Point> points_;                              // element by element
   std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;  // density included, angular part not
-  Eigen::MatrixXd functions_, derivatives_;                // (3 angles) x K: f_k, f_k'
-  std::vector<Mat3> frames_;                               // columns e_s, e_rho, e_theta at each angle
-  Eigen::MatrixXd gram_;                                   // integral of f_k . f_l over theta
+  Eigen::MatrixXd gradients_;  // element by element 8 x 3 points: ds and drho point by point, then value / rho
+  std::array<Direction, 3> directions_;
+  std::vector<Coupling> couplings_;  // of each pair of directions, once
+  std::vector<Mat3> frames_;         // columns e_s, e_rho, e_theta at each angle
+  Eigen::MatrixXd gram_;             // integral of f_k . f_l over theta
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
   double volume_ = 0;

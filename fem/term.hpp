@@ -50,6 +50,9 @@ class Term {
   /// Adds to both vectors (Layout::size() entries).
   virtual void residual(const State& trial, Vector& inertia, Vector& force) const = 0;
   virtual void tangent(const State& trial, const Weights& weights, TangentSink& sink) const = 0;
+  /// Whether the tangent changes at once as points touch, stick or slide, and is unsymmetric: solvers keep
+  /// what is smooth and symmetric apart.
+  virtual bool abrupt() const { return false; }
   /// At the accepted state (cumulative figures as of the last accept()).
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.

@@ -24,6 +24,18 @@ double hertz_time(double mass, double radius, double young, double speed) {
 
 }  // namespace
 
+void FeImpactOptions::resolve(Accuracy accuracy) {
+  struct Level {
+    int sector, harmonics, steps;
+  };
+  const auto [sector, order, steps] = accuracy == Accuracy::look       ? Level{2, 2, 30}
+                                      : accuracy == Accuracy::standard ? Level{3, 4, 60}
+                                                                       : Level{4, 6, 120};
+  mesh.sector = mesh.rings = sector;
+  harmonics = antisymmetric = order;
+  steps_per_contact = steps;
+}
+
 std::vector<std::string> FeImpactOptions::faults() const {
   std::vector<std::string> out = ball.faults();
   for (const auto& fault : mesh.faults()) out.push_back(fault);
@@ -159,8 +171,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.newton.increment_vector = 1e-4 * approach_speed * step;
   options.newton.increment_rotation = 1e-4 * approach_speed * step / radius;
   options.newton.max_iterations = 60;
-  options.newton.acceleration = 10;
-  options.newton.renew_above = 0.3;
+  options.newton.renew_above = 0.07;
   options.step_max = step;
   options.step_first = step / 16;  // the first touch is the roughest part
   options.step_min = step / 1024;

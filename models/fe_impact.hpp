@@ -17,6 +17,9 @@
 
 namespace hosel::models {
 
+/// How fine space and time are resolved: within some 3 %, 0.5 %, 0.1 % of ball speed, launch angle and spin.
+enum class Accuracy { look, standard, reference };
+
 /// How the impact is solved.
 struct FeImpactOptions {
   FeBall ball = range_ball();
@@ -40,6 +43,9 @@ struct FeImpactOptions {
   int steps_per_contact = 120;    ///< of the contact time of Hertz's theory
   double newton_relative = 1e-6;  ///< residual over the size of the forces
   double after = 0.05;            ///< time computed after contact, as a fraction of the contact time
+
+  /// Sets sectors and rings of the mesh, harmonics and steps; leaves the rest.
+  void resolve(Accuracy accuracy);
 
   /// Sentences naming what cannot be; empty if all is well.
   std::vector<std::string> faults() const;

@@ -46,8 +46,10 @@ double Ledger::strain_total() const {
 GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions options, fem::State initial)
     : system_(system),
       options_(options),
-      tangent_(system),
+      contact_(std::ranges::any_of(system.terms, [](const auto& term) { return term->abrupt(); })),
+      tangent_(system, contact_ ? SparseTangent::Terms::smooth : SparseTangent::Terms::all),
       newton_(system, tangent_, options.newton),
+      contact_newton_(system, tangent_, options.newton),
       state_(std::move(initial)) {
   if (const auto faults = options.faults(); !faults.empty())
     throw std::invalid_argument("generalized-alpha: " + faults.front());
@@ -113,29 +115,44 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
 
   Vector full = Vector::Zero(system_.layout.size());
-  const NewtonProblem problem{.residual =
-                                  [&](double& scale) {
-                                    evaluate(trial_, trial_inertia_, trial_force_);
-                                    scale = trial_inertia_.norm() + trial_force_.norm();
-                                    return tangent_.gather(trial_inertia_ + trial_force_);
-                                  },
-                              .assemble =
-                                  [&] {
-                                    tangent_.assemble(system_, trial_, {1, to_v, to_a}, increment_);
-                                    tangent_step_ = h;
-                                    return tangent_.round_off(system_, trial_);
-                                  },
-                              .advance =
-                                  [&](const Vector& dx) {
-                                    tangent_.scatter(dx, full);
-                                    increment_ += full;
-                                    trial_.v += to_v * full;
-                                    trial_.a += to_a * full;
-                                    trial_.q = system_.layout.advanced(state_.q, increment_);
-                                    if (!imposed_.empty()) impose(trial_);
-                                  }};
-  if (std::abs(h - tangent_step_) > 0.1 * tangent_step_) newton_.forget();
-  NewtonReport report = newton_.solve(problem);
+  const auto residual = [&](double& scale) {
+    evaluate(trial_, trial_inertia_, trial_force_);
+    scale = trial_inertia_.norm() + trial_force_.norm();
+    return tangent_.gather(trial_inertia_ + trial_force_);
+  };
+  const auto assemble = [&](double inertia) {
+    tangent_.assemble(system_, trial_, {1, to_v, inertia * to_a}, increment_);
+    tangent_step_ = h;
+    return tangent_.round_off(system_, trial_);
+  };
+  const auto advance = [&](const Vector& dx) {
+    tangent_.scatter(dx, full);
+    increment_ += full;
+    trial_.v += to_v * full;
+    trial_.a += to_a * full;
+    trial_.q = system_.layout.advanced(state_.q, increment_);
+    if (!imposed_.empty()) impose(trial_);
+  };
+  if (std::abs(h - tangent_step_) > 0.1 * tangent_step_) {
+    newton_.forget();
+    contact_newton_.forget();
+  }
+  NewtonReport report;
+  if (contact_) {
+    const auto assemble_abrupt = [&](DenseTangent& sink) {
+      for (const auto& term : system_.terms)
+        if (term->abrupt()) term->tangent(trial_, {1, to_v, to_a}, sink);
+    };
+    const auto abrupt_residual = [&] {
+      Vector inertia = Vector::Zero(system_.layout.size()), force = inertia;
+      for (const auto& term : system_.terms)
+        if (term->abrupt()) term->residual(trial_, inertia, force);
+      return tangent_.gather(inertia + force);
+    };
+    report = contact_newton_.solve({residual, assemble, abrupt_residual, assemble_abrupt, advance});
+  } else {
+    report = newton_.solve({residual, [&] { return assemble(1); }, advance});
+  }
   counts_.iterations += report.iterations;
   counts_.factorisations += report.factorisations;
   if (!report.converged) return report;
@@ -257,6 +274,7 @@ void GeneralizedAlpha::restore(const Checkpoint& saved) {
   evaluate(state_, inertia_, trial_force_);
   residual_ = inertia_ + trial_force_;
   newton_.forget();
+  contact_newton_.forget();
 }
 
 }  // namespace hosel::solvers

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/solvers/newton.hpp"
+#include "hosel/solvers/contact_newton.hpp"
 
 namespace hosel::solvers {
 
@@ -104,8 +104,10 @@ class GeneralizedAlpha {
   fem::System& system_;
   GeneralizedAlphaOptions options_;
   double am_, af_, beta_, gamma_;
+  bool contact_;  // whether some term is abrupt
   SparseTangent tangent_;
   Newton newton_;
+  ContactNewton contact_newton_;  // instead, where some term is
   fem::State state_, trial_;
   Vector auxiliary_, trial_auxiliary_, increment_;
   Vector inertia_, trial_inertia_, trial_force_, residual_;

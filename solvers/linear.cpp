@@ -16,7 +16,7 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace hosel::solvers {
 
-SparseTangent::SparseTangent(const fem::System& system) {
+SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(terms) {
   const auto n = static_cast<std::size_t>(system.layout.size());
   reduced_.assign(n, 0);
   for (const auto& p : system.prescribed)
@@ -35,7 +35,8 @@ SparseTangent::SparseTangent(const fem::System& system) {
     }
 
   std::vector<std::vector<Index>> blocks;
-  for (const auto& term : system.terms) term->pattern(blocks);
+  for (const auto& term : system.terms)
+    if (terms_ == Terms::all || !term->abrupt()) term->pattern(blocks);
   std::vector<std::vector<int>> columns(free_.size());
   for (std::size_t i = 0; i < free_.size(); ++i) columns[i].push_back(static_cast<int>(i));
   for (const auto& block : blocks)
@@ -70,25 +71,28 @@ void SparseTangent::scatter(const Vector& reduced, Vector& full) const {
   for (Index i = 0; i < size(); ++i) full[free_[static_cast<std::size_t>(i)]] = reduced[i];
 }
 
+void SparseTangent::add_terms(const fem::System& system, const fem::State& trial, const fem::Weights& weights) {
+  turn_ = 0;
+  for (const auto& term : system.terms)
+    if (terms_ == Terms::all || !term->abrupt()) term->tangent(trial, weights, *this);
+}
+
 void SparseTangent::assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
                              const Vector& increment) {
   std::ranges::fill(values_, 0.0);
-  turn_ = 0;
   double largest = 0;
   if (increment.size() > 0)
     for (Index at : rotation_at_) largest = std::max(largest, increment.segment<3>(at).squaredNorm());
   // Below this the transform changes the stiffness by less than Newton can feel; it costs a second pass.
   constexpr double negligible = 1e-4;
   if (largest < negligible * negligible) {
-    for (const auto& term : system.terms) term->tangent(trial, weights, *this);
+    add_terms(system, trial, weights);
     return;
   }
-  if (weights.damping != 0 || weights.mass != 0)
-    for (const auto& term : system.terms) term->tangent(trial, {0, weights.damping, weights.mass}, *this);
-  turn_ = 0;
+  if (weights.damping != 0 || weights.mass != 0) add_terms(system, trial, {0, weights.damping, weights.mass});
   transform_.clear();
   for (Index at : rotation_at_) transform_.push_back(fem::rotation_tangent(increment.segment<3>(at)));
-  for (const auto& term : system.terms) term->tangent(trial, {weights.stiffness, 0, 0}, *this);
+  add_terms(system, trial, {weights.stiffness, 0, 0});
   transform_.clear();
 }
 

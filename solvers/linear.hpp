@@ -18,11 +18,14 @@ using fem::Vector;
 /// first time it is added and remembered by its turn in the assembly.
 class SparseTangent final : public fem::TangentSink {
  public:
-  explicit SparseTangent(const fem::System& system);
+  enum class Terms { all, smooth };  ///< smooth: those that are not fem::Term::abrupt
+  explicit SparseTangent(const fem::System& system, Terms terms = Terms::all);
 
   Index size() const { return static_cast<Index>(free_.size()); }
   /// Equation number of each row.
   const std::vector<Index>& free_equations() const { return free_; }
+  /// Row of an equation; -1 where it is imposed.
+  int row(Index equation) const { return reduced_[static_cast<std::size_t>(equation)]; }
   Vector gather(const Vector& full) const;                  ///< entries of the free equations
   void scatter(const Vector& reduced, Vector& full) const;  ///< writes the free equations only
 
@@ -52,8 +55,10 @@ class SparseTangent final : public fem::TangentSink {
     std::vector<int> to;                        // place in values_, -1 where imposed
     std::vector<std::array<int, 4>> rotations;  // places of a rotation's columns, and its number
   };
+  void add_terms(const fem::System& system, const fem::State& trial, const fem::Weights& weights);
   Scatter make_scatter(const std::vector<Index>& rows, const std::vector<Index>& columns) const;
 
+  Terms terms_;
   std::vector<Index> free_;
   std::vector<int> reduced_;        // equation -> free row, or -1
   std::vector<int> rotation_of_;    // equation -> rotation number, or -1

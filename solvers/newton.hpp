@@ -16,12 +16,8 @@ struct NewtonOptions {
   double increment_vector = 0;    ///< largest last increment of a plain number [m]; inf: not asked for
   double increment_rotation = 0;  ///< largest last increment of a rotation [rad]; inf: not asked for
   int max_iterations = 25;
-  /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration.
+  /// A kept factor is renewed when |r| shrinks by less than this factor in one iteration (with contact: in two).
   double renew_above = 0.2;
-  /// Where above zero: increments by a kept factor are accelerated (Anderson's mixing over so many of
-  /// the last iterates; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)), and the factor is renewed
-  /// only when three such iterations together shrink |r| by less than renew_above.
-  int acceleration = 0;
 
   /// Sentences naming what is missing or cannot be; empty if all is well.
   std::vector<std::string> faults() const;
@@ -32,6 +28,17 @@ struct NewtonReport {
   int iterations = 0, factorisations = 0;
   double residual = 0, scale = 0;  ///< at the last iterate
   std::string reason;              ///< why not, in one sentence
+};
+
+/// The largest entry of an increment against what the options allow.
+class IncrementTest {
+ public:
+  IncrementTest(const fem::System& system, const SparseTangent& tangent, const NewtonOptions& options);
+  double measure(const Vector& increment) const;  ///< 1 at the tolerance
+
+ private:
+  double vector_, rotation_;
+  std::vector<bool> is_rotation_;  // of each free equation
 };
 
 /// What Newton asks of a problem; vectors are on the free equations.
@@ -53,13 +60,11 @@ class Newton {
   Factorisation& factors() { return factors_; }
 
  private:
-  double increment_measure(const Vector& increment) const;  // 1 at the tolerance
-
   SparseTangent& tangent_;
   NewtonOptions options_;
+  IncrementTest increments_;
   Factorisation factors_;
-  double round_off_ = 0;        // as of the last assembly; no residual can be smaller
-  std::vector<bool> rotation_;  // of each free equation
+  double round_off_ = 0;  // as of the last assembly; no residual can be smaller
 };
 
 }  // namespace hosel::solvers

@@ -1,0 +1,51 @@
+/// Newton's method for systems with contact: what is smooth keeps its factors, contact is always up to date.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "hosel/solvers/condensed.hpp"
+#include "hosel/solvers/newton.hpp"
+
+namespace hosel::solvers {
+
+/// What the method asks of a problem; vectors are on the free equations.
+struct ContactProblem {
+  /// The residual at the present iterate; writes the scale that it is small against.
+  std::function<Vector(double& scale)> residual;
+  /// The tangent of the smooth terms at the present iterate, its mass `inertia` times as heavy (1: as it is);
+  /// returns the residual that round-off alone may leave.
+  std::function<double(double inertia)> assemble_smooth;
+  std::function<Vector()> abrupt_residual;             ///< the other terms' share of the residual
+  std::function<void(DenseTangent&)> assemble_abrupt;  ///< and their tangent
+  std::function<void(const Vector&)> advance;          ///< moves the iterate by an increment
+};
+
+/// Solves residual = 0. The smooth terms' factors come from earlier calls and are kept while they work. Each increment
+/// solves contact exactly against the smooth terms so linearised: a dense problem on the few equations that it touches,
+/// by Newton's method with a line search, so that its kinks trouble nothing else. Increments are accelerated by what
+/// the last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)). Never throws
+/// on failure to converge: the report says so.
+class ContactNewton {
+ public:
+  ContactNewton(const fem::System& system, SparseTangent& smooth, NewtonOptions options);
+  NewtonReport solve(const ContactProblem& problem);
+  void forget() { factors_.forget(); }  ///< the next solve assembles afresh
+
+ private:
+  void renew(const ContactProblem& problem);
+  void refresh(const ContactProblem& problem);
+  bool covered() const;  ///< whether the kept rows hold all that is abrupt
+  /// The increment from an iterate with residual `r`; the iterate is where it was.
+  Vector increment(const ContactProblem& problem, const Vector& r, double tolerance);
+
+  SparseTangent& smooth_;
+  DenseTangent abrupt_;
+  NewtonOptions options_;
+  IncrementTest increments_;
+  CondensedFactorisation factors_;
+  double round_off_ = 0;
+  int age_ = 0;  // iterations that the smooth factors have served
+};
+
+}  // namespace hosel::solvers
