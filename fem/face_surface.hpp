@@ -7,7 +7,7 @@
 namespace hosel::fem {
 
 /// The gap is the distance, to first order, to xc = -(yc^2 / (2 bulge) + zc^2 / (2 roll)).
-class FaceSurface final : public ContactSurface {
+class FaceSurface : public ContactSurface {
  public:
   explicit FaceSurface(const Face& face) : face_(face) {}
   double gap(const Vec3& place) const override;

@@ -57,6 +57,7 @@ FeOutcome solve_full_club(const Blow& blow, const FeFullClubOptions& options, co
   FeOutcome out;
   out.result = run_impact(impact.system, impact.parts, impact.initial, options.impact, impact.encounter.normal_speed,
                           observer, from);
+  if (impact.parts.face) out.result.face_energy = impact.parts.face->vibration(out.result.last, blow.club.head.mass);
   out.launch = launch_of(out.result);
   out.launch.head_velocity = impact.head->velocity(out.result.last);
   out.launch.head_spin = impact.head->angular_velocity(out.result.last);

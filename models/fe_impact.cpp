@@ -11,6 +11,7 @@
 #include "hosel/fem/face_surface.hpp"
 #include "hosel/fem/friction/coulomb.hpp"
 #include "hosel/fem/friction/regularised.hpp"
+#include "hosel/fem/yielding_face.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
@@ -39,6 +40,8 @@ void FeImpactOptions::resolve(Accuracy accuracy) {
 std::vector<std::string> FeImpactOptions::faults() const {
   std::vector<std::string> out = ball.faults();
   for (const auto& fault : mesh.faults()) out.push_back(fault);
+  if (face)
+    for (const auto& fault : face->faults()) out.push_back(fault);
   if (harmonics < 0) out.emplace_back("harmonics must be at least 0");
   if (antisymmetric < 1) out.emplace_back("antisymmetric harmonics must be at least 1: less cannot turn");
   if (angles < 0 || (angles > 0 && angles < 2 * harmonics + 1))
@@ -90,12 +93,10 @@ Encounter encounter(const Blow& blow) {
   e.planar = (wall || std::abs(arm.dot(m)) <= tolerance) && (w - w.dot(m) * m).norm() <= tolerance &&
              (wall || coupling.norm() <= 1e-6 * inertia.trace() || std::isinf(inertia.trace())) &&
              std::abs(d.velocity().dot(m)) <= tolerance * (1 + d.club_speed);
-  if (curved) {
-    // The plane must hold a principal direction of the face at its centre, and pass through that centre.
-    const Vec3 local = e.face_axes.transpose() * m;
-    const bool aligned = std::abs(local.y()) < tolerance || std::abs(local.z()) < tolerance;
-    e.planar = e.planar && aligned && std::abs((e.point - e.face_centre).dot(m)) <= tolerance;
-  }
+  const Vec3 local = e.face_axes.transpose() * m;
+  const bool aligned = std::abs(local.y()) < tolerance || std::abs(local.z()) < tolerance;
+  e.principal = aligned && std::abs((e.point - e.face_centre).dot(m)) <= tolerance;
+  e.planar = e.planar && (!curved || e.principal);
   e.axial = !sliding && central && !curved && w.norm() == 0 &&
             (wall || head.inertia.allFinite() || std::isinf(head.inertia.trace()));
   return e;
@@ -115,7 +116,18 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   const mesh::Meridian meridian = mesh::sphere_meridian(radii, o.mesh);
 
   const bool axial = o.harmonics == 0;
-  const bool planar = !axial && e.planar && !free;
+  const bool planar = !axial && e.planar && !free && (!o.face || e.principal);
+  if (o.face && !(o.face->mass < blow.club.head.mass))
+    throw std::invalid_argument("fe impact: the face's effective mass is part of the head's and must be smaller");
+  if (axial && o.face) {
+    const bool everywhere = std::isinf(o.face->half_width) && std::isinf(o.face->half_height),
+               centre = blow.delivery.impact_toe == 0 && blow.delivery.impact_high == 0;
+    if (!everywhere && !(centre && o.face->half_width == o.face->half_height))
+      throw std::invalid_argument(
+          "fe impact: harmonics = 0 is the axisymmetric ball: a yielding face must be as wide as high and struck at "
+          "its "
+          "centre");
+  }
   const fem::Family family = axial    ? fem::axisymmetric_family()
                              : planar ? fem::cartesian_family(o.harmonics)
                                       : fem::cartesian_family(o.harmonics, std::min(o.antisymmetric, o.harmonics));
@@ -144,11 +156,24 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
     else laws.friction = std::make_unique<fem::Coulomb>(o.friction, o.tangential_penalty * laws.normal_stiffness);
   }
   const fem::Symmetry symmetry = axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none;
-  auto contact = std::make_unique<fem::Contact>(*ball, std::make_unique<fem::FaceSurface>(blow.club.head.face), carrier,
-                                                std::move(laws), rule(patch), symmetry, o.edge_points);
-  BallOnFace parts{ball.get(), contact.get()};
+  BallOnFace parts{.ball = ball.get()};
+  const Face& face = blow.club.head.face;
+  std::unique_ptr<const fem::ContactSurface> surface;
+  std::unique_ptr<fem::FaceSpring> spring;
+  if (o.face) {
+    const fem::Layout::Block travel = system.layout.add_vector(1);
+    surface = std::make_unique<fem::YieldingFace>(face, *o.face, travel);
+    spring = std::make_unique<fem::FaceSpring>(*o.face, carrier, travel);
+    parts.face = spring.get();
+  } else {
+    surface = std::make_unique<fem::FaceSurface>(face);
+  }
+  auto contact = std::make_unique<fem::Contact>(*ball, std::move(surface), carrier, std::move(laws), rule(patch),
+                                                symmetry, o.edge_points);
+  parts.contact = contact.get();
   system.terms.push_back(std::move(ball));
   system.terms.push_back(std::move(contact));
+  if (spring) system.terms.push_back(std::move(spring));
   return parts;
 }
 
@@ -215,6 +240,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     at.last_gap = gap;
     out.compression = std::max(out.compression, gap0 - gap);
     out.penetration = report.penetration;
+    if (parts.face) out.face_travel = std::max(out.face_travel, parts.face->travel(solver.state()));
     out.creep = report.elastic_slip;
     out.counts = before + solver.counts();
     at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + o.after);
@@ -302,6 +328,7 @@ FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, cons
   FeOutcome out;
   out.result =
       run_impact(impact.system, impact.parts, impact.initial, options, impact.encounter.normal_speed, observer, from);
+  if (impact.parts.face) out.result.face_energy = impact.parts.face->vibration(out.result.last, blow.club.head.mass);
   out.launch = launch_of(out.result);
   if (impact.head) {
     out.launch.head_velocity = impact.head->velocity(out.result.last);

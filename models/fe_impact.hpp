@@ -8,6 +8,7 @@
 
 #include "hosel/fem/beam.hpp"
 #include "hosel/fem/contact.hpp"
+#include "hosel/fem/face_spring.hpp"
 #include "hosel/fem/rigid_body.hpp"
 #include "hosel/golf/blow.hpp"
 #include "hosel/mesh/meridian.hpp"
@@ -25,6 +26,8 @@ struct FeImpactOptions {
   FeBall ball = range_ball();
   double friction = 0.4;                   ///< Coulomb's coefficient between ball and face [-]
   std::optional<double> transition_speed;  ///< where set, friction is regularised by velocity [m/s]
+
+  std::optional<FaceCompliance> face;  ///< of the club; without it the face is rigid
 
   mesh::MeridianOptions mesh;
   int harmonics = 4;       ///< N; 0 is the axisymmetric ball
@@ -55,7 +58,8 @@ struct FeImpactOptions {
 struct BallOnFace {
   fem::HarmonicSolid* ball = nullptr;
   fem::Contact* contact = nullptr;
-  const fem::Beam* shaft = nullptr;  ///< of a full club, for observers
+  const fem::FaceSpring* face = nullptr;  ///< of a face that yields
+  const fem::Beam* shaft = nullptr;       ///< of a full club, for observers
 };
 
 /// What a blow looks like at first contact, ball centre at the global origin.
@@ -67,6 +71,7 @@ struct Encounter {
   double normal_speed = 0;  ///< approach along the normal [m/s]
   bool axial = false;       ///< nothing but a normal blow through the centres
   bool planar = false;      ///< a plane of symmetry exists
+  bool principal = false;   ///< the plane of normal and slip is one of the face's own about its centre
   Mat3 ball_axes;           ///< contact pole, direction of slip, across both
 };
 Encounter encounter(const Blow& blow);
@@ -88,6 +93,8 @@ struct FeImpactResult {
   double compression = 0;          ///< largest approach of ball centre and face along the normal [m]
   double penetration = 0;          ///< largest of the patch [m]
   double creep = 0;                ///< largest elastic slip of a sticking point [m]
+  double face_travel = 0;          ///< largest, at the face centre [m]
+  double face_energy = 0;          ///< left in a face that yields when it is over [J]
   std::vector<double> dissipated;  ///< by layer [J]
   solvers::Ledger ledger;
   solvers::GeneralizedAlpha::Counts counts;

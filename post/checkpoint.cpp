@@ -80,6 +80,7 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
                     {"compression", r.compression},
                     {"penetration", r.penetration},
                     {"creep", r.creep},
+                    {"face_travel", r.face_travel},
                     {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
                   {"touched", i.touched},
                   {"over", i.over},
@@ -120,6 +121,7 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.so_far.compression = r.at("compression");
   i.so_far.penetration = r.at("penetration");
   i.so_far.creep = r.at("creep");
+  i.so_far.face_travel = r.at("face_travel");
   const auto counts = r.at("counts").get<std::array<long, 4>>();
   i.so_far.counts = {counts[0], counts[1], counts[2], counts[3]};
   i.touched = j.at("touched");

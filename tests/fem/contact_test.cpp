@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <array>
+#include <optional>
 
 #include "hosel/fem/face_surface.hpp"
 #include "hosel/fem/friction/coulomb.hpp"
 #include "hosel/fem/friction/regularised.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
+#include "hosel/fem/yielding_face.hpp"
 #include "hosel/golf/units.hpp"
 #include "tests/support/term_checks.hpp"
 
@@ -27,7 +29,8 @@ struct Scene {
   Face face{.bulge = 0.3, .roll = 0.25};
   Vec3 centre;
 
-  Scene(bool symmetric, std::unique_ptr<const FrictionLaw> friction) {
+  Scene(bool symmetric, std::unique_ptr<const FrictionLaw> friction,
+        const std::optional<FaceCompliance>& compliance = std::nullopt) {
     const Family family = symmetric ? cartesian_family(2) : cartesian_family(2, 1);
     const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
     const Mat3 R = symmetric ? Mat3(Mat3::Identity())
@@ -44,10 +47,15 @@ struct Scene {
     x = system.layout.add_vector(3);
     r = system.layout.add_rotation();
     centre = Vec3(0.01, symmetric ? 0 : 0.004, 0.02);
-    contact = std::make_unique<Contact>(*ball, std::make_unique<FaceSurface>(face), SurfaceCarrier{x, r, centre},
-                                        ContactLaws{1e11, std::move(friction)},
-                                        symmetric ? half_circle(8) : full_circle(14),
-                                        symmetric ? Symmetry::plane : Symmetry::none, 3);
+    std::unique_ptr<const ContactSurface> surface = std::make_unique<FaceSurface>(face);
+    std::optional<Layout::Block> travel;
+    if (compliance) {
+      travel = system.layout.add_vector(1);
+      surface = std::make_unique<YieldingFace>(face, *compliance, *travel);
+    }
+    contact = std::make_unique<Contact>(
+        *ball, std::move(surface), SurfaceCarrier{x, r, centre}, ContactLaws{1e11, std::move(friction)},
+        symmetric ? half_circle(8) : full_circle(14), symmetric ? Symmetry::plane : Symmetry::none, 3);
     s = system.layout.rest();
     set_rotation(s, r, Eigen::Quaterniond(R));
     const Vec3 spot = face.point(symmetric ? 0 : 0.01, symmetric ? 0 : -0.015);
@@ -57,6 +65,7 @@ struct Scene {
     for (int i = 1; i <= 4; ++i) {
       s.q.segment<3>(x.q) += R * Vec3(2e-4, symmetric ? 0 : 3e-6, -4e-6 * i);
       s.time += 1e-5;
+      if (travel) s.q[travel->q] += 4e-5;
       if (i < 4) contact->accept(s);
     }
     s.v = test::random_vector(system.layout.size(), 8, 3);
@@ -64,20 +73,32 @@ struct Scene {
   }
 };
 
+using MakeLaw = std::unique_ptr<const FrictionLaw> (*)();
+constexpr std::array<MakeLaw, 3> kLaws = {
+    [] { return std::unique_ptr<const FrictionLaw>(); },
+    [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<Coulomb>(0.01, 5e10)); },
+    [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<RegularisedFriction>(0.3, 1)); }};
+/// Small, so that the patch lies where it bends.
+const FaceCompliance kYielding{.mass = 0.01, .stiffness = 1e7, .half_width = 0.03, .half_height = 0.025};
+
 TEST(Contact, Tangent) {
-  const std::function<std::unique_ptr<const FrictionLaw>()> frictionless = [] { return nullptr; },
-                                                            coulomb =
-                                                                [] { return std::make_unique<Coulomb>(0.01, 5e10); },
-                                                            regularised = [] {
-                                                              return std::make_unique<RegularisedFriction>(0.3, 1);
-                                                            };
-  for (const auto& law : {frictionless, coulomb, regularised}) {
-    Scene scene(false, law());
-    const ContactReport report = scene.contact->report(scene.s);
-    ASSERT_GT(report.points, 20);
-    ASSERT_GT(report.normal_force, 10);
-    // The curvature of the gap function is taken to first order: relative size gap / face radius.
-    test::check_tangent(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3, 1e-5);
+  for (const bool yields : {false, true})
+    for (const MakeLaw law : kLaws) {
+      Scene scene(false, law(), yields ? std::optional(kYielding) : std::nullopt);
+      const ContactReport report = scene.contact->report(scene.s);
+      ASSERT_GT(report.points, 20);
+      ASSERT_GT(report.normal_force, 10);
+      // The curvature of the gap function is taken to first order: relative size gap / face radius.
+      test::check_tangent(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3, 1e-5);
+    }
+}
+
+/// Pressure is the gradient of the penalty's energy, by the surface's own unknown as by all others.
+TEST(Contact, ForceIsTheGradientOfTheEnergy) {
+  for (const bool yields : {false, true}) {
+    Scene scene(false, nullptr, yields ? std::optional(kYielding) : std::nullopt);
+    ASSERT_GT(scene.contact->energies(scene.s).contact, 1e-4);
+    test::check_gradient(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3);
   }
 }
 

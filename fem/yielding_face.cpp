@@ -1,0 +1,17 @@
+#include "hosel/fem/yielding_face.hpp"
+
+namespace hosel::fem {
+
+Travel YieldingFace::travel(const Vec3& place, const SurfaceUnknowns& unknowns) const {
+  const FaceCompliance::Shape shape = compliance_.shape(place.y(), place.z());
+  Travel out;
+  out.value = unknowns[0] * shape.value;
+  out.slope.segment<2>(1) = unknowns[0] * shape.slope;
+  out.slope[3] = shape.value;
+  out.second.block<2, 2>(1, 1) = unknowns[0] * shape.second;
+  out.second.block<2, 1>(1, 3) = shape.slope;
+  out.second.block<1, 2>(3, 1) = shape.slope.transpose();
+  return out;
+}
+
+}  // namespace hosel::fem

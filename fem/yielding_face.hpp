@@ -1,0 +1,23 @@
+/// The club face that yields as a contact surface: the curved face, moved inwards by one unknown times a shape.
+#pragma once
+
+#include "hosel/fem/face_surface.hpp"
+#include "hosel/golf/face_compliance.hpp"
+
+namespace hosel::fem {
+
+/// The local normal follows the slope of what has moved. What the face weighs and what holds it: FaceSpring.
+class YieldingFace final : public FaceSurface {
+ public:
+  /// `travel`: a block of one number, the travel at the centre of the face [m].
+  YieldingFace(const Face& face, const FaceCompliance& compliance, const Layout::Block& travel)
+      : FaceSurface(face), compliance_(compliance), travel_(travel) {}
+  std::optional<Layout::Block> unknowns() const override { return travel_; }
+  Travel travel(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
+
+ private:
+  FaceCompliance compliance_;
+  Layout::Block travel_;
+};
+
+}  // namespace hosel::fem

@@ -1,0 +1,31 @@
+#include "hosel/golf/face_compliance.hpp"
+
+#include <cmath>
+
+namespace hosel {
+
+FaceCompliance::Shape FaceCompliance::shape(double yc, double zc) const {
+  const Eigen::Vector2d curvature(1 / (half_width * half_width), 1 / (half_height * half_height)), at(yc, zc);
+  const Eigen::Vector2d slope = -2 * curvature.cwiseProduct(at);
+  const double height = 1 - curvature.dot(at.cwiseAbs2());
+  if (!(height > 0)) return {};
+  Shape s;
+  s.value = height * height;
+  s.slope = 2 * height * slope;
+  s.second = 2 * slope * slope.transpose();
+  s.second.diagonal() -= 4 * height * curvature;
+  return s;
+}
+
+std::vector<std::string> FaceCompliance::faults() const {
+  std::vector<std::string> said;
+  if (!(mass > 0) || !std::isfinite(mass)) said.emplace_back("the face's effective mass must be positive and finite");
+  if (!(stiffness > 0) || !std::isfinite(stiffness))
+    said.emplace_back("the face's stiffness must be positive and finite; leave the face out for a rigid one");
+  if (!(damping >= 0) || !std::isfinite(damping))
+    said.emplace_back("the face's damping must be at least zero and finite");
+  if (!(half_width > 0) || !(half_height > 0)) said.emplace_back("the face's half width and height must be positive");
+  return said;
+}
+
+}  // namespace hosel

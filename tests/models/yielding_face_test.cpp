@@ -1,0 +1,146 @@
+// A lumped face under a linear ball against the closed solution, and under the finite-element ball.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hosel/fem/rigid_body.hpp"
+#include "hosel/fem/yielding_face.hpp"
+#include "tests/support/coarse_impact.hpp"
+#include "tests/support/two_masses.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr double kBall = 0.04593, kHead = 0.2, kSpeed = 45, kSpring = 2e6;  // [kg], [kg], [m/s], [N/m]
+
+struct Outcome : test::TwoMasses {
+  double closure = 0;
+};
+
+test::TwoMasses closed_form(const FaceCompliance& face) {
+  return test::two_masses(kBall, kSpring, kHead, face, kSpeed);
+}
+
+/// Every part of the finite-element contact: a rod, rigid to one part in 10^5, whose flat end meets a
+/// flat face: penalty times area is the linear ball.
+Outcome finite_elements(const FaceCompliance& face, int steps) {
+  const double radius = 0.01, length = 0.02, area = kPi * radius * radius;
+  mesh::Meridian rod;
+  for (const double s : {-0.5, 0.0, 0.5})
+    for (const double rho : {0.0, 0.5, 1.0}) rod.nodes.emplace_back(s * length, rho * radius);
+  rod.nodes.erase(rod.nodes.begin() + 4);  // eight-node element: nothing in the middle
+  rod.elements = {{0, 5, 7, 2, 3, 6, 4, 1}};
+  rod.layer = {0};
+  rod.surface = {{5, 7, 6}};
+  rod.radius = radius;
+  fem::System system;
+  Mat3 axes;
+  axes << -1, 0, 0, 0, 1, 0, 0, 0, -1;
+  const fem::Solid steel{.elastic = fem::LinearElastic{fem::Lame::of(1e5 * kSpring * length / area, 0)},
+                         .branches = {},
+                         .density = kBall / (area * length)};
+  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, rod, fem::axisymmetric_family(),
+                                                   fem::SolidQuadrature{fem::single_angle(), 2},
+                                                   std::vector<fem::Solid>{steel}, fem::Placement{Vec3::Zero(), axes});
+  const auto x = system.layout.add_vector(3), r = system.layout.add_rotation(), w = system.layout.add_vector(1);
+  const fem::SurfaceCarrier carrier{x, r, Vec3(0.03, 0, 0)};
+  auto head = std::make_unique<fem::RigidBody>("head", x, r,
+                                               fem::RigidBodyProperties{kHead, 3e-4 * Mat3::Identity(), Vec3::Zero()});
+  auto spring = std::make_unique<fem::FaceSpring>(face, carrier, w);
+  auto contact = std::make_unique<fem::Contact>(*ball, std::make_unique<fem::YieldingFace>(Face{}, face, w), carrier,
+                                                fem::ContactLaws{kSpring / area, nullptr}, fem::single_angle(),
+                                                fem::Symmetry::axis);
+  const fem::HarmonicSolid& b = *ball;
+  const fem::RigidBody& h = *head;
+  const fem::FaceSpring& f = *spring;
+  auto& c = *contact;
+  system.terms.push_back(std::move(ball));
+  system.terms.push_back(std::move(head));
+  system.terms.push_back(std::move(spring));
+  system.terms.push_back(std::move(contact));
+  fem::State initial = system.layout.rest();
+  initial.q.segment<3>(x.q) = Vec3(-length / 2 - carrier.centre.x(), 0, 0);
+  initial.v[x.v] = kSpeed;
+  c.start(initial);
+  const test::TwoMasses exact = closed_form(face);
+  const double step = exact.contact_time / steps;
+  solvers::GeneralizedAlphaOptions options;
+  options.newton.residual_relative = 1e-9;
+  options.newton.increment_vector = 1e-9 * length;
+  options.newton.increment_rotation = 1e-6;
+  options.rho_inf = 0.8;
+  options.step_max = step;
+  options.step_min = step / 64;
+  options.error_vector = options.error_rotation = INFINITY;
+  solvers::GeneralizedAlpha solver(system, options, initial);
+  Outcome out;
+  double force = 0;
+  while (solver.time() < 2 * exact.contact_time) {
+    solver.advance(solver.time() + step);
+    const fem::ContactReport report = c.report(solver.state());
+    force = std::max(force, report.normal_force);
+    if (report.points == 0) break;
+  }
+  EXPECT_GT(force, 8e3);
+  // The face is separate from here on: what it does against the head is its own vibration.
+  const Vec3 momentum = h.linear_momentum(solver.state());
+  const double ball_velocity = b.motion(solver.state()).velocity.x();
+  const double head_velocity = (kHead * kSpeed - kBall * ball_velocity) / kHead;
+  EXPECT_NEAR(momentum.x() - face.mass * solver.state().v[w.v], kHead * head_velocity, 1e-9 * kHead * kSpeed);
+  out.restitution = (ball_velocity - head_velocity) / kSpeed;
+  out.contact_time = solver.time();
+  out.face_energy = f.vibration(solver.state(), kHead);
+  out.closure = solver.ledger().closure / solver.ledger().initial;
+  return out;
+}
+
+TEST(YieldingFace, AgreesWithTheClosedTwoMassSolution) {
+  for (const auto& [mass, stiffness] : {std::pair{0.005, 1e7}, {0.015, 1e7}, {0.02, 7e6}}) {
+    SCOPED_TRACE(testing::Message() << mass << " kg, " << stiffness << " N/m");
+    const FaceCompliance face{.mass = mass, .stiffness = stiffness};
+    const test::TwoMasses exact = closed_form(face);
+    const Outcome found = finite_elements(face, 2000);
+    ASSERT_GT(exact.face_energy, 0.05);
+    EXPECT_NEAR(found.restitution, exact.restitution, 1e-3 * exact.restitution);
+    EXPECT_NEAR(found.contact_time, exact.contact_time, 1e-3 * exact.contact_time);
+    EXPECT_NEAR(found.face_energy, exact.face_energy, 1e-3 * exact.face_energy);
+    EXPECT_LT(std::abs(found.closure), 1e-6);
+  }
+}
+
+FeImpactOptions driver_options() {
+  FeImpactOptions o = test::coarse_impact(2);
+  o.face = FaceCompliance{.mass = 0.012, .stiffness = 1e7, .damping = 10, .half_width = 0.05, .half_height = 0.028};
+  return o;
+}
+
+/// Off centre, with friction and a curved face: the ledger closes as that of the rigid face does, and the yielding one
+/// gives the ball more speed.
+TEST(YieldingFace, LedgerClosesOffCentre) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  FeImpactOptions yielding = driver_options(), rigid = yielding;
+  rigid.face.reset();
+  const FeOutcome a = solve_free_body(blow, yielding), b = solve_free_body(blow, rigid);
+  ASSERT_GT(a.result.face_travel, 2e-4);
+  ASSERT_GT(a.result.ledger.viscous, b.result.ledger.viscous * 0.5);
+  EXPECT_LT(std::abs(a.result.ledger.closure), 2 * std::abs(b.result.ledger.closure) + 1e-4 * a.result.ledger.initial);
+  EXPECT_GT(a.launch.velocity.norm(), b.launch.velocity.norm() * 1.005);
+}
+
+/// The rigid face is the limit: travel and launch depart from it like 1 / stiffness.
+TEST(YieldingFace, RigidIsItsLimit) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  FeImpactOptions stiff = driver_options();
+  stiff.newton_relative = 1e-9;  // what Newton leaves is not what is looked for
+  FeImpactOptions rigid = stiff;
+  rigid.face.reset();
+  stiff.face->stiffness = 1e16;
+  stiff.face->damping = 0;
+  const Launch a = solve_free_body(blow, stiff).launch, b = solve_free_body(blow, rigid).launch;
+  ASSERT_GT(b.peak_force, 5e3);
+  EXPECT_LT((a.velocity - b.velocity).norm(), 1e-8 * b.velocity.norm());
+  EXPECT_LT((a.spin - b.spin).norm(), 1e-7 * b.spin.norm());
+}
+
+}  // namespace
+}  // namespace hosel::models
