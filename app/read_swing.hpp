@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "hosel/app/reader.hpp"
-#include "hosel/post/csv.hpp"
 #include "hosel/models/grip_motion.hpp"
 #include "hosel/models/swing.hpp"
+#include "hosel/post/csv.hpp"
 
 namespace hosel::app {
 

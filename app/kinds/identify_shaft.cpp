@@ -11,8 +11,8 @@
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
 #include "hosel/golf/shaft_library.hpp"
-#include "hosel/post/csv.hpp"
 #include "hosel/models/marker_swing.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 
 namespace hosel::app {

@@ -162,8 +162,7 @@ class LoopJob final : public Job {
       if (!output) continue;
       double square = 0;
       for (std::size_t i = 0; i < deliveries.size(); ++i) {
-        const double e = (get(surface->predicted()[i], *output) - get(surface->answers()[i], *output)) /
-                         c.si;
+        const double e = (get(surface->predicted()[i], *output) - get(surface->answers()[i], *output)) / c.si;
         square += e * e / double(deliveries.size());
       }
       errors += fmt::format("{}{} {:.3g}", errors.empty() ? "" : ", ", c.name, std::sqrt(square));
