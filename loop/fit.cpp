@@ -109,6 +109,7 @@ Eigen::MatrixXd whitened_jacobian(const Problem& problem, const std::vector<int>
                                   const Eigen::VectorXd& at) {
   const int m = problem.width();
   Eigen::MatrixXd J(std::ptrdiff_t(rows.size()) * m, model.size()), part(m, model.size());
+  if (model.size() == 0) return J;
   Eigen::VectorXd z(m);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     linear_row(problem, rows[i], model, at.data(), Cost::kCentral, true, z, part);
@@ -212,6 +213,7 @@ Fit fit(const Problem& problem, const std::vector<int>& rows, const Model& model
 Eigen::MatrixXd covariance(const Problem& problem, const std::vector<int>& rows, const Fit& fit, const Loss& loss,
                            bool sandwich) {
   const int n = fit.size(), m = problem.width();
+  if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::MatrixXd J = whitened_jacobian(problem, rows, fit.model, fit.p);
   const Eigen::VectorXd z = whitened(problem, rows, fit.model, fit.p);
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(n, n);

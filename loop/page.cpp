@@ -8,12 +8,15 @@
 namespace hosel::loop {
 namespace {
 
+/// Text as it may stand between tags and inside an attribute.
 std::string escape(const std::string& s) {
   std::string out;
   for (const char c : s) {
     if (c == '<') out += "&lt;";
     else if (c == '>') out += "&gt;";
     else if (c == '&') out += "&amp;";
+    else if (c == '\'') out += "&#39;";
+    else if (c == '"') out += "&quot;";
     else out += c;
   }
   return out;

@@ -198,6 +198,7 @@ class Search {
     for (std::ptrdiff_t i = 0; i < weight.size(); ++i) weight[i] = loss_.weight(z.segment(i * m, m).squaredNorm());
   }
   Eigen::MatrixXd weighted(Eigen::MatrixXd a) const {
+    if (a.cols() == 0) return a;
     const int m = problem_.width();
     for (std::ptrdiff_t i = 0; i < weight.size(); ++i) a.middleRows(i * m, m) *= std::sqrt(weight[i]);
     return a;

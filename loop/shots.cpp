@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <span>
 
 namespace hosel::loop {
 namespace {
@@ -37,6 +38,16 @@ std::optional<double> number(const std::string& cell) {
   if (end != cell.data() + cell.size() || begin == end) return {};
   if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
   return error == std::errc() ? std::optional(x) : std::nullopt;
+}
+
+/// Two names of the same length but for one letter: added, left out, replaced, or swapped with its neighbour.
+bool misspelt(std::string_view name, std::string_view meant) {
+  if (name == meant || name.size() + 1 < meant.size() || name.size() > meant.size() + 1) return false;
+  const auto [a, b] = std::ranges::mismatch(name, meant);
+  const std::string_view x(a, name.end()), y(b, meant.end());
+  if (name.size() < meant.size()) return x == y.substr(1);
+  if (name.size() > meant.size()) return x.substr(1) == y;
+  return x.substr(1) == y.substr(1) || (x.size() > 1 && x[0] == y[1] && x[1] == y[0] && x.substr(2) == y.substr(2));
 }
 
 /// Digits after the decimal point ("-1.3e2" counts as 0: the exponent moves the point).
@@ -96,6 +107,20 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
     c.role = Role::output;
     wanted = kOutputDimensions[std::size_t(*o)];
   }
+  if (!wanted && c.role == Role::other)
+    for (const auto& known :
+         {std::span<const std::string_view>(kInputStems), std::span<const std::string_view>(kOutputStems)})
+      for (const std::string_view stem : known)
+        if (misspelt(c.stem, stem))
+          throw DataError(
+              fmt::format("{}:1: column '{}' is no quantity of a shot; did you mean '{}'? (rename it where "
+                          "it is another quantity)",
+                          sheet.file, header, stem));
+  // An input that is not recognised would count as zero.
+  if (!wanted && !split.unit)
+    for (std::size_t i = 0; i < kInputStems.size(); ++i)
+      if (header == kInputStems[i] || header.starts_with(fmt::format("{}_", kInputStems[i])))
+        wanted = kInputDimensions[i];
   if (wanted && (!split.unit || split.unit->dimension != *wanted))
     throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
 
