@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 
 #include "build_info.hpp"
@@ -12,6 +13,7 @@
 #include "hosel/loop/effect.hpp"
 #include "hosel/models/flight_laws.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -46,17 +48,50 @@ fs::path find_case(const std::string& named) {
     if (fs::is_regular_file(home / named / "case.toml")) return home / named;
   std::vector<std::string> names;
   for (const auto& [name, title] : shipped()) names.push_back(name);
+  // `cases/iron7-trackman` is where a shipped case lies in a checkout; its name works everywhere.
+  if (const std::string last = fs::path(named).lexically_normal().filename().string();
+      std::ranges::find(names, last) != names.end())
+    throw InputError(fmt::format("{}: no such directory here; the shipped case is called '{}'", named, last));
   const std::string near = nearest(named, names);
   throw InputError(
       fmt::format("{}: no such case{}", named,
                   near.empty() ? "; `hosel list` shows the shipped ones" : "; did you mean '" + near + "'?"));
 }
 
+namespace {
+
+/// Every text of a case, wherever it stands.
+void texts(const toml::node& node, std::vector<std::string>& out) {
+  if (const auto* text = node.as_string()) out.push_back(text->get());
+  if (const auto* table = node.as_table())
+    for (auto&& [key, value] : *table) texts(value, out);
+  if (const auto* list = node.as_array())
+    for (const toml::node& value : *list) texts(value, out);
+}
+
+}  // namespace
+
 void copy_case(const std::string& from, const fs::path& to) {
-  const fs::path source = find_case(from);
+  const fs::path found = find_case(from), source = fs::is_directory(found) ? found : found.parent_path();
   if (fs::exists(to)) throw InputError(fmt::format("{}: is there already", to.string()));
+  std::string text = post::read_file(fs::is_directory(found) ? found / "case.toml" : found);
+  std::vector<std::string> all;
+  try {
+    texts(toml::parse(text), all);
+  } catch (const toml::parse_error&) {}  // copied as it is: whoever runs it is told
   fs::create_directories(to);
-  fs::copy(fs::is_directory(source) ? source : source.parent_path(), to, fs::copy_options::recursive);
+  fs::copy(source.empty() ? "." : source, to, fs::copy_options::recursive);
+  // What lies beside the old case is named from the new one.
+  for (const std::string& name : all) {
+    const fs::path path = name;
+    if (path.is_absolute() || name.find('/') == std::string::npos || !fs::exists(source / path)) continue;
+    if (fs::exists(to / path) && fs::equivalent(to / path, source / path)) continue;
+    if (*path.lexically_normal().begin() != "..") continue;  // copied with the case
+    const std::string moved = fs::proximate(fs::canonical(source / path), fs::canonical(to)).string();
+    for (std::size_t at = 0; (at = text.find('"' + name + '"', at)) != std::string::npos; at += moved.size())
+      text.replace(at + 1, name.size(), moved);
+  }
+  post::write_file(to / "case.toml", text);
 }
 
 std::vector<ListSection> everything() {

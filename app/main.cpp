@@ -1,15 +1,19 @@
-// The hosel command. Exit status: 0 done, 2 bad input, 3 no convergence, 1 anything else.
+// The hosel command. Exit status: 0 done, 2 bad input, 3 no convergence, 130 and 143 stopped, 1 anything else.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "hosel/app/cases.hpp"
 #include "hosel/app/import/import.hpp"
 #include "hosel/app/job.hpp"
+#include "hosel/app/stop.hpp"
 #include "hosel/app/sweep.hpp"
+#include "hosel/app/version.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace {
@@ -19,7 +23,7 @@ using namespace hosel;
 struct Arguments {
   std::string case_dir, out, from, log, shard = "1/1";
   std::vector<std::string> sets;
-  bool force = false, quiet = false;
+  bool force = false, quiet = false, strict = false;
 };
 
 void run(const Arguments& a) {
@@ -29,7 +33,8 @@ void run(const Arguments& a) {
   const std::filesystem::path out = a.out.empty() ? std::filesystem::path("out") /
                                                         std::filesystem::canonical(file.directory()).filename()
                                                   : std::filesystem::path(a.out);
-  app::Output output({.directory = out, .force = a.force, .quiet = a.quiet, .log = a.log}, file.resolved());
+  app::Output output({.directory = out, .force = a.force, .quiet = a.quiet, .log = a.log, .strict = a.strict},
+                     file.resolved());
   job->run(output);
 }
 
@@ -51,7 +56,10 @@ void list() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, said in words
   CLI::App cli{"hosel: what does the ball do after this blow, and how much of it is the shaft's doing?"};
+  cli.name("hosel");
+  cli.set_version_flag("--version", "hosel " + app::program_version());
   cli.require_subcommand(1);
   Arguments a;
   const auto add_case = [&](CLI::App* c) {
@@ -63,6 +71,7 @@ int main(int argc, char** argv) {
   run_command->add_option("--out", a.out, "output directory (default: out/<case>)");
   run_command->add_flag("--force", a.force, "overwrite a finished run");
   run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
+  run_command->add_flag("--strict", a.strict, "fail where the numbers are in doubt, instead of warning");
   run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
   run_command->callback([&] { run(a); });
   CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");
@@ -112,12 +121,31 @@ int main(int argc, char** argv) {
   add_directory(status);
   status->callback([&] { app::sweep_status(a.out); });
 
+  // `hosel help` and `hosel help COMMAND` are what people type first.
+  CLI::App* help = cli.add_subcommand("help", "this text, or that of a command");
+  help->add_option("COMMAND", a.from, "a command");
+  help->callback([&] {
+    CLI::App* of = a.from.empty() ? &cli : nullptr;
+    for (CLI::App* command : cli.get_subcommands([](CLI::App*) { return true; }))
+      if (command->get_name() == a.from) of = command;
+    if (!of) throw app::InputError(fmt::format("help: no command '{}'", a.from));
+    // Of itself: App::help() speaks of the command that was parsed, which is this one.
+    fmt::print(
+        "{}", of->get_formatter()->make_help(of, of == &cli ? "hosel" : "hosel " + a.from, CLI::AppFormatMode::Normal));
+  });
+
   try {
     cli.parse(argc, argv);
     return 0;
   } catch (const CLI::CallForHelp& e) { return cli.exit(e); } catch (const CLI::ParseError& e) {
     cli.exit(e);
     return e.get_exit_code() == 0 ? 0 : 2;
+  } catch (const app::Stopped& e) {
+    fmt::print(stderr, "hosel: {}\n", e.what());
+    return 128 + e.signal();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "hosel: out of memory: a coarser mesh, fewer harmonics or fewer rows need less\n");
+    return 1;
   } catch (const app::InputError& e) {
     fmt::print(stderr, "hosel: {}\n", e.what());
     return 2;

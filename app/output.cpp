@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/lock.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/post/file.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -81,6 +84,8 @@ void Progress::finish(std::string_view note) {
 
 struct Output::State {
   OutputOptions options;
+  std::unique_ptr<DirectoryLock> lock;
+  std::vector<std::string> doubts;
   std::string resolved;
   std::shared_ptr<spdlog::logger> logger;
 };
@@ -94,6 +99,8 @@ Output::Output(OutputOptions options, std::string_view resolved) : state_(std::m
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
+  state_->lock = std::make_unique<DirectoryLock>(out);
+  post::remove_unfinished(out);
   fs::remove(out / "summary.json", error);
   const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), true);
   std::vector<spdlog::sink_ptr> sinks{sink};
@@ -126,25 +133,45 @@ void Output::say(std::string_view line) {
   log(line);
 }
 
+void Output::warn(std::string_view doubt) {
+  if (state_->options.strict) throw solvers::NonConvergence(fmt::format("--strict: {}", doubt));
+  state_->doubts.emplace_back(doubt);
+  if (!quiet()) fmt::print(stderr, "warning: {}\n", doubt);
+  log(fmt::format("warning: {}", doubt));
+}
+
 void Output::log(std::string_view line) { state_->logger->info("{}", line); }
 
 Progress Output::progress(std::string what) const { return Progress(std::move(what), quiet()); }
 
 void Output::write(std::string_view name, std::string_view content) const {
-  const fs::path target = path(name), beside = target.string() + ".part";
-  {
-    std::ofstream file(beside, std::ios::binary);
-    file << content;
-    if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", target.string()));
-  }
-  fs::rename(beside, target);
+  post::write_file(path(name), content, state_->options.durable);
 }
 
 void Output::write_json(std::string_view name, const nlohmann::json& content) const {
   write(name, content.dump(1) + "\n");
 }
 
-void Output::write_summary(const nlohmann::json& summary) const { write_json("summary.json", summary); }
+namespace {
+
+/// Where a number is not finite: JSON would silently hold null. Empty where all are.
+std::string not_finite(const nlohmann::json& j, const std::string& name) {
+  if (j.is_number_float() && !std::isfinite(j.get<double>())) return name;
+  if (!j.is_structured()) return {};
+  for (const auto& [key, value] : j.items())
+    if (std::string found = not_finite(value, name.empty() ? key : name + "." + key); !found.empty()) return found;
+  return {};
+}
+
+}  // namespace
+
+void Output::write_summary(const nlohmann::json& summary) const {
+  if (const std::string name = not_finite(summary, ""); !name.empty())
+    throw solvers::NonConvergence(fmt::format("'{}' of the result is not finite: no summary.json is written", name));
+  nlohmann::json all = summary;
+  if (!state_->doubts.empty()) all["doubts"] = state_->doubts;
+  write_json("summary.json", all);
+}
 
 void Output::skip(const fs::path& missing) {
   say(fmt::format("SKIPPED: {} is not there; HOSEL_DATA names the folder of measured files", missing.string()));

@@ -17,6 +17,8 @@ struct OutputOptions {
   bool force = false;               ///< overwrite a finished run
   bool quiet = false;
   std::filesystem::path log = {};  ///< besides OUT/log.txt
+  bool strict = false;             ///< a doubt about the numbers is a failure
+  bool durable = true;             ///< files wait for the disk: not worth it where they are thrown away
 };
 
 /// Progress of one long piece of work: a bar with time to go on a terminal, plain lines elsewhere.
@@ -35,8 +37,8 @@ class Progress {
 
 class Output {
  public:
-  /// Creates OUT (refused with InputError where a finished run lies there, unless forced), writes
-  /// `case.resolved.toml` and opens `log.txt`.
+  /// Creates OUT (refused with InputError where a finished run lies there, unless forced, or where another process is
+  /// at work), writes `case.resolved.toml` and opens `log.txt`.
   Output(OutputOptions options, std::string_view resolved_case);
   ~Output();
   Output(const Output&) = delete;
@@ -50,13 +52,16 @@ class Output {
 
   /// A line for the person and the log.
   void say(std::string_view line);
+  /// A doubt about the numbers: for the person, the log and `summary.json`. Throws solvers::NonConvergence where the
+  /// run is strict.
+  void warn(std::string_view doubt);
   /// A line for the log alone.
   void log(std::string_view line);
   Progress progress(std::string what) const;
-  /// Written beside and renamed, so that a killed run never leaves half a file.
+  /// See post::write_file: a killed run or a full disk never leaves half a file.
   void write(std::string_view name, std::string_view content) const;
   void write_json(std::string_view name, const nlohmann::json& content) const;
-  /// `summary.json` marks the run as finished.
+  /// `summary.json` marks the run as finished. Throws solvers::NonConvergence where a number in it is not finite.
   void write_summary(const nlohmann::json& summary) const;
   /// Finishes a run whose measured data are not there.
   void skip(const std::filesystem::path& missing);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -10,56 +11,70 @@
 
 namespace hosel::app {
 namespace {
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInf = limits::inf;
 }
 
 Ball read_ball(Table table) {
   const Ball standard;
   Ball ball;
-  ball.mass = table.quantity("mass", "kg", {1e-6, 1.0}, standard.mass);
-  ball.radius = table.quantity("radius", "mm", {1e-3, 0.1}, standard.radius);
-  ball.inertia_factor = table.number("inertia_factor", {0.05, 0.6667}, standard.inertia_factor);
+  ball.mass = table.quantity("mass", "kg", limits::ball_mass, standard.mass);
+  ball.radius = table.quantity("radius", "mm", limits::ball_radius, standard.radius);
+  ball.inertia_factor = table.number(
+      "inertia_factor", Range{0.05, 0.6667}.because("0.4 is a uniform sphere, 2/3 a shell"), standard.inertia_factor);
   return ball;
 }
 
 Head read_head(Table table, bool whole) {
   Head head;
-  head.mass = table.quantity("mass", "kg", {0, kInf, true});
-  head.face.bulge = table.quantity("bulge", "mm", {0.01, kInf}, kInf);
-  head.face.roll = table.quantity("roll", "mm", {0.01, kInf}, kInf);
+  head.mass = table.quantity("mass", "kg", limits::head_mass);
+  head.face.bulge = table.quantity("bulge", "mm", limits::face_radius, kInf);
+  head.face.roll = table.quantity("roll", "mm", limits::face_radius, kInf);
   const bool needed = whole && std::isfinite(head.mass);
   const bool given = table.has_quantity("inertia") || table.has_quantity("cg");
   if (!needed && !given) {
     if (std::isfinite(head.mass)) head.inertia = kInf * Mat3::Identity();
     return head;
   }
-  head.cg = table.vector("cg", "mm");
+  head.cg = table.vector("cg", "mm", limits::head_place);
   head.inertia = table.matrix("inertia", "kg_m2");
-  if (const auto faults = head.faults(); !faults.empty()) {
-    for (const std::string& key : table.keys())
-      if (key.starts_with("inertia")) table.fail(key, faults.front());
+  auto faults = head.faults();
+  if (std::isfinite(head.mass) && faults.empty()) {
+    const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
+    for (const double moment : {principal[0], principal[2]})
+      if (const double r = std::sqrt(moment / head.mass); !limits::gyration.contains(r))
+        faults.push_back(fmt::format(
+            "a principal moment of {:g} kg m2 of a head of {:g} kg is a radius of gyration of "
+            "{:g} mm (allowed: {:g} to {:g} mm; {})",
+            moment, head.mass, 1e3 * r, 1e3 * limits::gyration.min, 1e3 * limits::gyration.max, limits::gyration.why));
+  }
+  for (const std::string& key : table.keys()) {
+    if (key.starts_with("inertia") && !faults.empty()) table.fail(key, faults.front());
+    if (key.starts_with("cg") && head.cg.x() > 0)
+      table.fail(key, fmt::format("the centre of gravity lies {:g} mm in front of the face (Xc points out of the face: "
+                                  "the first component is negative or zero)",
+                                  1e3 * head.cg.x()));
   }
   return head;
 }
 
 Delivery read_delivery(Table table) {
-  constexpr double right_angle = kPi / 2;
   Delivery d;
-  d.club_speed = table.quantity("club_speed", "mps", {0, 150, true});
-  d.attack_angle = table.quantity("attack_angle", "deg", {-right_angle, right_angle}, 0);
-  d.club_path = table.quantity("club_path", "deg", {-right_angle, right_angle}, 0);
-  d.dynamic_loft = table.quantity("dynamic_loft", "deg", {-right_angle, right_angle}, 0);
-  d.face_angle = table.quantity("face_angle", "deg", {-right_angle, right_angle}, 0);
-  d.impact_toe = table.quantity("impact_toe", "mm", {-0.1, 0.1}, 0);
-  d.impact_high = table.quantity("impact_high", "mm", {-0.1, 0.1}, 0);
-  d.head_angular_velocity = table.vector("head_angular_velocity", "rad_per_s", Vec3::Zero());
+  d.club_speed = table.quantity("club_speed", "mps", limits::club_speed);
+  d.attack_angle = table.quantity("attack_angle", "deg", limits::angle, 0);
+  d.club_path = table.quantity("club_path", "deg", limits::angle, 0);
+  d.dynamic_loft = table.quantity("dynamic_loft", "deg", limits::angle, 0);
+  d.face_angle = table.quantity("face_angle", "deg", limits::angle, 0);
+  d.impact_toe = table.quantity("impact_toe", "mm", limits::impact_place, 0);
+  d.impact_high = table.quantity("impact_high", "mm", limits::impact_place, 0);
+  d.head_angular_velocity = table.vector("head_angular_velocity", "rad_per_s", limits::spin, Vec3::Zero());
   return d;
 }
 
 ContactLaw read_contact_law(Table table) {
   const ContactLaw standard;
   ContactLaw law;
-  law.restitution = table.number("restitution", {0, 1.5}, standard.restitution);
+  law.restitution =
+      table.number("restitution", Range{0, 1}.because("above 1 the blow creates energy"), standard.restitution);
   law.restitution_slope = table.quantity("restitution_slope", "s_per_m", {-0.1, 0.1}, standard.restitution_slope);
   law.restitution_falloff = table.number("restitution_falloff_per_m2", {-1e4, 1e4}, standard.restitution_falloff);
   law.tangential_restitution = table.number("tangential_restitution", {-1, 1}, standard.tangential_restitution);

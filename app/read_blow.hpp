@@ -9,8 +9,26 @@
 
 namespace hosel::app {
 
+/// What balls and clubs can be, and why [SI].
+namespace limits {
+inline constexpr double inf = std::numeric_limits<double>::infinity();
+inline constexpr Range ball_mass = Range{1e-6, 1}.because("a golf ball weighs 0.046 kg");
+inline constexpr Range ball_radius = Range{2e-3, 0.1}.because("a golf ball's is 21.3 mm");
+inline constexpr Range head_mass =
+    Range{0.01, 5}.or_infinite().because("a clubhead weighs 0.2 to 0.3 kg, inf is a wall");
+inline constexpr Range club_speed = Range{0, 150, true}.because("the fastest swings reach 70 m/s");
+inline constexpr Range angle = Range{-kPi / 2, kPi / 2}.because("beyond a right angle the face looks back");
+inline constexpr Range impact_place = Range{-0.1, 0.1}.because("no face is wider");
+inline constexpr Range head_place = Range{-0.3, 0.3}.because("a clubhead is no larger");
+/// A head's own radius of gyration [m].
+inline constexpr Range gyration = Range{1e-3, 0.3}.because("a clubhead is no larger");
+inline constexpr Range spin = Range{-1e3, 1e3}.because("a swung head turns at 40 rad/s");
+inline constexpr Range face_radius = Range{0.01, 1e4}.or_infinite().because("inf is a flat face");
+}  // namespace limits
+
 Ball read_ball(Table table);
-/// `[head]`. `mass_kg = inf` is a rigid wall; `whole = false` reads the mass alone (rigid-planar).
+/// `[head]`. `mass_kg = inf` is a rigid wall; `whole = false` reads the mass alone (rigid-planar). The centre of
+/// gravity lies behind the face.
 Head read_head(Table table, bool whole = true);
 Delivery read_delivery(Table table);
 ContactLaw read_contact_law(Table table);

@@ -25,26 +25,24 @@ models::FeImpactOptions read_fe(Table root) {
   o.penalty = contact.number("penalty", {1, 1e6}, o.penalty);
   o.tangential_penalty = contact.number("tangential_penalty", {1e-3, 10}, o.tangential_penalty);
 
-  if (auto mesh = root.optional_table("mesh")) {
-    o.mesh.sector = int(mesh->integer("sector", 1, 64, o.mesh.sector));
-    o.mesh.rings = int(mesh->integer("rings", 1, 64, o.mesh.rings));
-    o.mesh.pole = mesh->number("pole", {0.01, 1}, o.mesh.pole);
-    if (mesh->has("far")) o.mesh.far = mesh->number("far", {1, 100});
-    o.mesh.skin = mesh->number("skin", {0.01, 1}, o.mesh.skin);
-    o.mesh.core = mesh->number("core", {0.1, 0.7}, o.mesh.core);
-    o.harmonics = int(mesh->integer("harmonics", 0, 16, o.harmonics));
-    o.antisymmetric = int(mesh->integer("antisymmetric", -1, 16, o.antisymmetric));
-    o.angles = int(mesh->integer("angles", 0, 128, o.angles));
-    o.contact_angles = int(mesh->integer("contact_angles", 0, 256, o.contact_angles));
-    o.edge_points = int(mesh->integer("edge_points", 1, 5, o.edge_points));
-    o.tilt = mesh->quantity("tilt", "rad", {-1, 1}, o.tilt);
-  }
-  if (auto time = root.optional_table("time")) {
-    o.rho_inf = time->number("rho_inf", Range::fraction(), o.rho_inf);
-    o.steps_per_contact = int(time->integer("steps_per_contact", 10, 100000, o.steps_per_contact));
-    o.newton_relative = time->number("newton_relative", {1e-14, 1e-2}, o.newton_relative);
-    o.after = time->number("after", {0, 10}, o.after);
-  }
+  Table mesh = root.default_table("mesh");
+  o.mesh.sector = int(mesh.integer("sector", 1, 64, o.mesh.sector));
+  o.mesh.rings = int(mesh.integer("rings", 1, 64, o.mesh.rings));
+  o.mesh.pole = mesh.number("pole", {0.01, 1}, o.mesh.pole);
+  if (mesh.has("far")) o.mesh.far = mesh.number("far", {1, 100});
+  o.mesh.skin = mesh.number("skin", {0.01, 1}, o.mesh.skin);
+  o.mesh.core = mesh.number("core", {0.1, 0.7}, o.mesh.core);
+  o.harmonics = int(mesh.integer("harmonics", 0, 16, o.harmonics));
+  o.antisymmetric = int(mesh.integer("antisymmetric", 1, 16, o.antisymmetric));
+  o.angles = int(mesh.integer("angles", 0, 128, o.angles));
+  o.contact_angles = int(mesh.integer("contact_angles", 0, 256, o.contact_angles));
+  o.edge_points = int(mesh.integer("edge_points", 1, 5, o.edge_points));
+  o.tilt = mesh.quantity("tilt", "rad", {-1, 1}, o.tilt);
+  Table time = root.default_table("time");
+  o.rho_inf = time.number("rho_inf", Range::fraction(), o.rho_inf);
+  o.steps_per_contact = int(time.integer("steps_per_contact", 10, 100000, o.steps_per_contact));
+  o.newton_relative = time.number("newton_relative", {1e-14, 1e-2}, o.newton_relative);
+  o.after = time.number("after", {0, 10}, o.after);
   if (const auto faults = o.faults(); !faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
   return o;
 }
@@ -66,7 +64,12 @@ void read_grip(Table& t, models::ShaftMount& mount) {
 
 models::Options read_options(Table root, const std::vector<std::string>& models) {
   models::Options options;
-  if (auto t = root.optional_table("volumetric")) {
+  const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
+  // The set that a model uses by default is echoed with the case: nobody is to guess whose ball it was.
+  const auto table = [&](std::string_view key, bool used) {
+    return used ? std::optional(root.default_table(key)) : root.optional_table(key);
+  };
+  if (auto t = table("volumetric", asked("volumetric") || asked("shaft-coupled"))) {
     const Range positive = Range::positive(), some = Range::non_negative();
     const bool iron = t->choice("published", {"driver", "iron7"}, "driver") == "iron7";
     models::VolumetricLaw& law = options.volumetric;
@@ -82,7 +85,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     law.volume_exponent = t->number("volume_exponent", {0.5, 1.5}, law.volume_exponent);
     options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }
-  if (auto t = root.optional_table("hertz_maw")) {
+  if (auto t = table("hertz_maw", asked("hertz-maw"))) {
     models::HertzMawLaw& law = options.hertz_maw;
     law.modulus = t->quantity("modulus", "MPa", Range::positive(), law.modulus);
     law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
@@ -93,14 +96,13 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     options.hertz_maw_solution.steps =
         static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
   }
-  const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
   if (asked("shaft-coupled"))
-    if (auto t = root.optional_table("shaft_coupled")) {
+    if (auto t = table("shaft_coupled", true)) {
       options.shaft_beam.feels_translation = t->flag("feels_translation", true);
       options.shaft_beam.feels_rotation = t->flag("feels_rotation", true);
     }
   if (asked("fe-full-club") || asked("shaft-coupled"))
-    if (auto t = root.optional_table("grip")) read_grip(*t, options.shaft_mount);
+    if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount);
   // A case with finite-element tables keeps them where only its other models are asked.
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
   const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/app/read_blow.hpp"
 #include "hosel/golf/shaft_library.hpp"
 
 namespace hosel::app {
@@ -110,7 +111,7 @@ Shaft read_shaft(Table table) {
 ClubGeometry read_club_geometry(Table table) {
   const ClubGeometry standard;
   ClubGeometry g;
-  g.hosel = table.vector("position", "mm", standard.hosel);
+  g.hosel = table.vector("position", "mm", limits::head_place, standard.hosel);
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
   const double lie =
       table.quantity("lie", "deg", {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));

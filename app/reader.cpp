@@ -1,6 +1,7 @@
 #include "hosel/app/reader.hpp"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <toml++/toml.h>
 #include <algorithm>
@@ -18,9 +19,12 @@ namespace fs = std::filesystem;
 namespace detail {
 struct Document {
   fs::path directory, file;
+  std::string text;  // of the file
   std::vector<std::string> overrides;
   std::vector<fs::path> named_files;
+  std::vector<Declared> declared;
   toml::table root, resolved;
+  std::map<const toml::node*, std::string> set;  // what `--set` put there: errors name it, not a line of the file
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
   std::map<const toml::table*, toml::table*> echo;                         // where each table is echoed
 };
@@ -55,17 +59,39 @@ std::string describe(const Range& r, double factor, std::string_view unit) {
   const double lowest = std::numeric_limits<double>::lowest(), highest = std::numeric_limits<double>::max();
   const bool below = r.min > lowest, above = r.max < highest;
   const std::string space = unit.empty() ? "" : " ";
+  const std::string more = fmt::format("{}{}{}", r.also_infinite ? ", or inf" : "", r.why.empty() ? "" : "; ", r.why);
   if (below && above)
-    return fmt::format("allowed: {}{:g} to {:g}{}{}", r.open_min ? "above " : "", r.min / factor, r.max / factor, space,
-                       unit);
-  if (below) return fmt::format("allowed: {} {:g}{}{}", r.open_min ? "above" : "at least", r.min / factor, space, unit);
-  if (above) return fmt::format("allowed: at most {:g}{}{}", r.max / factor, space, unit);
-  return r.max == highest ? "allowed: any finite number" : "allowed: any number but nan";
+    return fmt::format("allowed: {}{:g} to {:g}{}{}{}", r.open_min ? "above " : "", r.min / factor, r.max / factor,
+                       space, unit, more);
+  if (below)
+    return fmt::format("allowed: {} {:g}{}{}{}", r.open_min ? "above" : "at least", r.min / factor, space, unit, more);
+  if (above) return fmt::format("allowed: at most {:g}{}{}{}", r.max / factor, space, unit, more);
+  return (r.max == highest ? "allowed: any finite number" : "allowed: any number but nan") + more;
+}
+
+/// "an angle": the name of what a unit measures, with its article.
+std::string with_article(Dimension dimension) {
+  const std::string_view word = name(dimension);
+  return fmt::format("{} {}", std::string_view("aeio").find(word.front()) == std::string_view::npos ? "a" : "an", word);
+}
+
+std::string offered(std::string_view stem, Dimension dimension) {
+  std::string all;
+  for (const Unit& u : units())
+    if (u.dimension == dimension) all += fmt::format("{}{}_{}", all.empty() ? "" : ", ", stem, u.suffix);
+  return all;
 }
 
 }  // namespace
 
-bool Range::contains(double x) const { return !std::isnan(x) && (open_min ? x > min : x >= min) && x <= max; }
+bool Range::contains(double x) const {
+  if (also_infinite && x == std::numeric_limits<double>::infinity()) return true;
+  return !std::isnan(x) && (open_min ? x > min : x >= min) && x <= max;
+}
+
+std::string Range::sentence(std::optional<Unit> unit) const {
+  return fmt::format("out of range ({})", describe(*this, unit ? unit->si : 1, unit ? unit->suffix : ""));
+}
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
@@ -85,16 +111,26 @@ fs::path data_directory() {
   return fs::path("..") / "shared" / "data";
 }
 
+namespace {
+
+/// Where a key stands: "case.toml:12", or the `--set` that put it there.
+std::string place(const detail::Document& d, const toml::node& node) {
+  if (const auto it = d.set.find(&node); it != d.set.end()) return "--set " + it->second;
+  return fmt::format("{}:{}", d.file.string(), std::max<unsigned>(node.source().begin.line, 1));
+}
+
+}  // namespace
+
 Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string path)
     : document_(std::move(document)), node_(node), path_(std::move(path)) {}
 
 void Table::fail(std::string_view key, std::string_view what) const {
   const toml::table& t = as_table(node_);
   const toml::node* node = key.empty() ? nullptr : t.get(key);
-  const auto line = (node ? node->source() : t.source()).begin.line;
   std::string name = path_;
   if (!key.empty()) name += (name.empty() ? "" : ".") + std::string(key);
-  throw InputError(fmt::format("{}:{}: {}: {}", document_->file.string(), std::max<unsigned>(line, 1), name, what));
+  throw InputError(
+      fmt::format("{}: {}{}{}", place(*document_, node ? *node : t), name, name.empty() ? "" : ": ", what));
 }
 
 namespace {
@@ -122,6 +158,11 @@ double read_number(const Table& t, std::string_view key, const toml::node& node)
 
 }  // namespace
 
+void Table::declare(std::string_view key, Declared what) {
+  what.key = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  document_->declared.push_back(std::move(what));
+}
+
 bool Table::has(std::string_view key) const { return as_table(node_).contains(key); }
 
 bool Table::has_quantity(std::string_view stem) const {
@@ -139,6 +180,11 @@ struct Found {
   const Unit* unit;
   toml::node* node;  // nullptr: absent
 };
+
+std::string unknown_unit(std::string_view key, std::string_view stem, Dimension dimension) {
+  return fmt::format("no unit '{}' is known, expected {} ({})", key.substr(stem.size() + 1), with_article(dimension),
+                     offered(stem, dimension));
+}
 
 /// The one key of this stem, in whatever unit of the right dimension.
 Found find_quantity(const Table& t, Access access, std::string_view stem, std::string_view preferred, bool required) {
@@ -167,14 +213,11 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
     return found[0];
   }
   if (!wrong_key.empty()) {
-    std::string offered;
-    for (const Unit& u : units())
-      if (u.dimension == unit->dimension)
-        offered += fmt::format("{}{}_{}", offered.empty() ? "" : ", ", stem, u.suffix);
+    const std::string all = offered(stem, unit->dimension);
     if (wrong)
-      t.fail(wrong_key, fmt::format("unit '{}' is a {}, expected a {} ({})", wrong->suffix, name(wrong->dimension),
-                                    name(unit->dimension), offered));
-    t.fail(wrong_key, fmt::format("has no unit, expected a {} ({})", name(unit->dimension), offered));
+      t.fail(wrong_key, fmt::format("unit '{}' is {}, expected {} ({})", wrong->suffix, with_article(wrong->dimension),
+                                    with_article(unit->dimension), all));
+    t.fail(wrong_key, fmt::format("has no unit, expected {} ({})", with_article(unit->dimension), all));
   }
   const std::string key = fmt::format("{}_{}", stem, preferred);
   if (required) {
@@ -184,6 +227,10 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
       if (edit_distance(other.str(), key) <= std::max<std::size_t>(2, key.size() / 4))
         t.fail(other.str(), fmt::format("unknown key; did you mean '{}'?", key));
     }
+    for (auto&& [other, node] : access.table)
+      if (other.str().starts_with(fmt::format("{}_", stem)) && !split_unit(other.str()).unit &&
+          !access.document.known[&access.table].contains(other.str()))
+        t.fail(other.str(), unknown_unit(other.str(), stem, unit->dimension));
     t.fail("", fmt::format("'{}' is missing", key));
   }
   access.find(key);
@@ -195,13 +242,13 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
 double Table::quantity(std::string_view stem, std::string_view unit, Range si, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, stem, unit, !standard);
+  declare(f.key, {.range = si, .si = f.unit->si});
   if (!f.node) {
     access.echo(f.key, *standard / f.unit->si);
     return *standard;
   }
   const double x = read_number(*this, f.key, *f.node);
-  if (!si.contains(x * f.unit->si))
-    fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+  if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
   access.echo(f.key, x);
   return x * f.unit->si;
 }
@@ -212,18 +259,18 @@ std::vector<double> Table::quantities(std::string_view stem, std::string_view un
   const Found f = find_quantity(*this, access, stem, unit, !standard);
   std::vector<double> out;
   toml::array echoed;
+  const toml::array* list = f.node ? f.node->as_array() : nullptr;
+  declare(f.key, {.range = si, .si = f.unit->si, .size = size ? size : list && !list->empty() ? list->size() : 1});
   if (!f.node) {
     for (double x : *standard) echoed.push_back(x / f.unit->si);
     access.echo(f.key, std::move(echoed));
     return *standard;
   }
-  const toml::array* list = f.node->as_array();
   if (!list || (size && list->size() != size))
     fail(f.key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
   for (const toml::node& node : *list) {
     const double x = read_number(*this, f.key, node);
-    if (!si.contains(x * f.unit->si))
-      fail(f.key, fmt::format("{:g} is out of range ({})", x, describe(si, f.unit->si, f.unit->suffix)));
+    if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
     out.push_back(x * f.unit->si);
     echoed.push_back(x);
   }
@@ -232,9 +279,13 @@ std::vector<double> Table::quantities(std::string_view stem, std::string_view un
 }
 
 Vec3 Table::vector(std::string_view stem, std::string_view unit, std::optional<Vec3> standard) {
+  return vector(stem, unit, Range::finite(), standard);
+}
+
+Vec3 Table::vector(std::string_view stem, std::string_view unit, Range si, std::optional<Vec3> standard) {
   std::optional<std::vector<double>> list;
   if (standard) list = std::vector<double>(standard->data(), standard->data() + 3);
-  const auto x = quantities(stem, unit, 3, Range::finite(), list);
+  const auto x = quantities(stem, unit, 3, si, list);
   return {x[0], x[1], x[2]};
 }
 
@@ -267,9 +318,10 @@ Mat3 Table::matrix(std::string_view stem, std::string_view unit, std::optional<M
 double Table::number(std::string_view key, Range range, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key);
+  declare(key, {.range = range});
   if (!node && !standard) fail("", fmt::format("'{}' is missing ({})", key, describe(range, 1, "")));
   const double x = node ? read_number(*this, key, *node) : *standard;
-  if (node && !range.contains(x)) fail(key, fmt::format("{:g} is out of range ({})", x, describe(range, 1, "")));
+  if (node && !range.contains(x)) fail(key, fmt::format("{:g} is {}", x, range.sentence()));
   access.echo(key, x);
   return x;
 }
@@ -278,18 +330,18 @@ std::vector<double> Table::numbers(std::string_view key, std::size_t size, Range
                                    std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key);
+  const toml::array* list = node ? node->as_array() : nullptr;
+  declare(key, {.range = range, .size = size ? size : list && !list->empty() ? list->size() : 1});
   if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
   std::vector<double> out;
   if (!node) {
     out = *standard;
   } else {
-    const toml::array* list = node->as_array();
     if (!list || (size && list->size() != size))
       fail(key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
     for (const toml::node& item : *list) {
       out.push_back(read_number(*this, key, item));
-      if (!range.contains(out.back()))
-        fail(key, fmt::format("{:g} is out of range ({})", out.back(), describe(range, 1, "")));
+      if (!range.contains(out.back())) fail(key, fmt::format("{:g} is {}", out.back(), range.sentence()));
     }
   }
   toml::array echoed;
@@ -301,6 +353,7 @@ std::vector<double> Table::numbers(std::string_view key, std::size_t size, Range
 long Table::integer(std::string_view key, long min, long max, std::optional<long> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key);
+  declare(key, {.range = {double(min), double(max)}, .whole = true});
   if (!node && !standard) fail("", fmt::format("'{}' is missing (a whole number from {} to {})", key, min, max));
   long x = standard.value_or(0);
   if (node) {
@@ -393,11 +446,40 @@ fs::path Table::file(std::string_view key) {
   return path;
 }
 
-fs::path Table::data_file(std::string_view key) {
-  const std::string name = text(key);
-  const fs::path own = document_->directory / name;
-  document_->named_files.push_back(fs::is_regular_file(own) ? own : data_directory() / name);
-  return document_->named_files.back();
+fs::path Table::data_file(std::string_view key) { return data_path(key, text(key)); }
+
+fs::path Table::data_path(std::string_view key, const std::string& name) {
+  const fs::path own = document_->directory / name, home = data_directory();
+  const auto found = [&](const fs::path& file) {
+    if (fs::exists(file) && !fs::is_regular_file(file)) fail(key, fmt::format("'{}' is not a file", file.string()));
+    return fs::exists(file);
+  };
+  const auto beside = [&](const fs::path& folder, const fs::path& wanted) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) names.push_back(entry.path().filename().string());
+    const std::string near = nearest(wanted.string(), names);
+    return near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near);
+  };
+  fs::path file = own;
+  if (!found(own)) {
+    file = home / name;
+    if (!found(file)) {
+      // A name with a folder may be measured data that this machine has not got; any other is a mistake.
+      const fs::path folder = *fs::path(name).begin();
+      const bool measured = fs::path(name).is_relative() && folder != ".." && fs::path(name).has_parent_path();
+      if (!measured || fs::exists(document_->directory / folder))
+        fail(key, fmt::format("no file '{}'{}", own.string(), beside(own.parent_path(), own.filename())));
+      if (fs::is_directory(home / folder))
+        fail(key, fmt::format("no file '{}'{}", file.string(), beside(file.parent_path(), file.filename())));
+      if (fs::is_directory(home)) {
+        const std::string near = beside(home, folder);
+        if (!near.empty()) fail(key, fmt::format("no folder '{}'{}", (home / folder).string(), near));
+      }
+    }
+  }
+  document_->named_files.push_back(file);
+  return file;
 }
 
 std::vector<fs::path> Table::data_files(std::string_view key) {
@@ -407,11 +489,7 @@ std::vector<fs::path> Table::data_files(std::string_view key) {
     if (!node || !node->is_array()) return {data_file(key)};
   }
   std::vector<fs::path> out;
-  for (const std::string& name : texts(key)) {
-    const fs::path own = document_->directory / name;
-    out.push_back(fs::is_regular_file(own) ? own : data_directory() / name);
-    document_->named_files.push_back(out.back());
-  }
+  for (const std::string& name : texts(key)) out.push_back(data_path(key, name));
   if (out.empty()) fail(key, "expected at least one file");
   return out;
 }
@@ -441,6 +519,12 @@ std::optional<Table> Table::optional_table(std::string_view key) {
     document_->known[child];
   }
   return Table(document_, child, path_.empty() ? std::string(key) : path_ + "." + std::string(key));
+}
+
+Table Table::default_table(std::string_view key) {
+  toml::table& t = as_table(node_);
+  if (!t.contains(key)) t.insert(key, toml::table{});
+  return *optional_table(key);
 }
 
 std::vector<Table> Table::tables(std::string_view key) {
@@ -478,6 +562,7 @@ std::vector<std::string> Table::keys() const {
 namespace {
 
 void apply_override(detail::Document& document, const std::string& text) {
+  if (!utf8::is_valid(text.begin(), text.end())) throw InputError("--set: the text is not UTF-8");
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError(fmt::format("--set {}: expected key=value, e.g. --set delivery.club_speed_mps=45", text));
@@ -490,9 +575,25 @@ void apply_override(detail::Document& document, const std::string& text) {
   std::stringstream parts(key);
   std::vector<std::string> path;
   for (std::string part; std::getline(parts, part, '.');) path.push_back(part);
+  if (path.empty() || path.back().empty())
+    throw InputError(fmt::format("--set {}: expected key=value, e.g. --set delivery.club_speed_mps=45", text));
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (!at->contains(path[i])) at->insert(path[i], toml::table{});
-    at = at->get(path[i])->as_table();
+    // `layers[2]`: the second table of a list.
+    const auto bracket = path[i].find('[');
+    const std::string table = path[i].substr(0, bracket);
+    if (!at->contains(table)) {
+      at->insert(table, toml::table{});
+      document.set[at->get(table)] = text;
+    }
+    toml::node* node = at->get(table);
+    if (bracket != std::string::npos) {
+      const std::size_t number = std::strtoul(path[i].c_str() + bracket + 1, nullptr, 10);
+      toml::array* list = node->as_array();
+      if (!list || number < 1 || number > list->size())
+        throw InputError(fmt::format("--set {}: there is no '{}'", text, path[i]));
+      node = list->get(number - 1);
+    }
+    at = node->as_table();
     if (!at) throw InputError(fmt::format("--set {}: '{}' is not a table", text, path[i]));
   }
   // The same quantity in another unit is replaced, not doubled.
@@ -504,7 +605,9 @@ void apply_override(detail::Document& document, const std::string& text) {
         doubled = std::string(other.str());
     if (!doubled.empty()) at->erase(doubled);
   }
+  if (const toml::node* old = at->get(path.back())) document.set.erase(old);
   at->insert_or_assign(path.back(), *parsed.get("value"));
+  document.set[at->get(path.back())] = text;
 }
 
 void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table& t, const std::string& path) {
@@ -513,11 +616,15 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
     const std::string name = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
     if (!known.contains(key.str())) {
       const std::string near = nearest(key.str(), {known.begin(), known.end()});
+      for (const std::string& k :
+           near.empty() ? std::vector<std::string>{known.begin(), known.end()} : std::vector{near})
+        if (const SplitName split = split_unit(k); split.unit && key.str().starts_with(split.stem + "_"))
+          throw InputError(fmt::format("{}: {}: {}", place(*d, node), name,
+                                       unknown_unit(key.str(), split.stem, split.unit->dimension)));
       std::string all;
       for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-      throw InputError(fmt::format(
-          "{}:{}: {}: unknown {}; {}", d->file.string(), std::max<unsigned>(node.source().begin.line, 1), name,
-          node.is_table() ? "table" : "key", near.empty() ? "known here: " + all : "did you mean '" + near + "'?"));
+      throw InputError(fmt::format("{}: {}: unknown {}; {}", place(*d, node), name, node.is_table() ? "table" : "key",
+                                   near.empty() ? "known here: " + all : "did you mean '" + near + "'?"));
     }
     if (const toml::table* child = node.as_table(); child && d->known.contains(child)) find_unknown(d, *child, name);
     if (const toml::array* list = node.as_array())
@@ -540,13 +647,28 @@ CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overri
   std::ifstream in(d.file, std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();
+  d.text = text.str();
+  parse();
+}
+
+CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrides)
+    : document_(std::make_shared<detail::Document>()) {
+  document_->file = read.document_->file;
+  document_->directory = read.document_->directory;
+  document_->text = read.document_->text;
+  document_->overrides = overrides;
+  parse();
+}
+
+void CaseFile::parse() {
+  detail::Document& d = *document_;
   try {
-    d.root = toml::parse(text.str(), d.file.string());
+    d.root = toml::parse(d.text, d.file.string());
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: not valid TOML: {}", d.file.string(), error.source().begin.line,
                                  std::string(error.description())));
   }
-  for (const std::string& o : overrides) apply_override(d, o);
+  for (const std::string& o : d.overrides) apply_override(d, o);
   d.echo[&d.root] = &d.resolved;
   d.known[&d.root];
 }
@@ -555,6 +677,7 @@ Table CaseFile::root() { return Table(document_, &document_->root, ""); }
 const fs::path& CaseFile::directory() const { return document_->directory; }
 const fs::path& CaseFile::file() const { return document_->file; }
 const std::vector<std::string>& CaseFile::overrides() const { return document_->overrides; }
+const std::vector<Declared>& CaseFile::declared() const { return document_->declared; }
 const std::vector<fs::path>& CaseFile::named_files() const { return document_->named_files; }
 void CaseFile::finish() { find_unknown(document_, document_->root, ""); }
 

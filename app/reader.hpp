@@ -26,13 +26,28 @@ class InputError : public std::runtime_error {
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;  ///< min itself is not allowed
+  bool open_min = false;       ///< min itself is not allowed
+  std::string_view why = {};   ///< said to the person whose value is refused
+  bool also_infinite = false;  ///< inf is allowed besides, where it has a meaning (a wall, a flat face)
 
+  constexpr Range because(std::string_view reason) const { return {min, max, open_min, reason, also_infinite}; }
+  constexpr Range or_infinite() const { return {min, max, open_min, why, true}; }
   bool contains(double x) const;
+  /// "out of range (allowed: 0.01 to 5 kg; why)"; without a unit for a plain number.
+  std::string sentence(std::optional<Unit> unit = {}) const;
   static Range positive() { return {0, std::numeric_limits<double>::max(), true}; }
   static Range non_negative() { return {0, std::numeric_limits<double>::max()}; }
   static Range finite() { return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()}; }
   static Range fraction() { return {0, 1}; }
+};
+
+/// A number that a reader asked for: what the reference lists and the tests of the ranges try.
+struct Declared {
+  std::string key;       ///< dotted, as `--set` takes it
+  Range range;           ///< SI
+  double si = 1;         ///< one of the key's unit in SI
+  std::size_t size = 0;  ///< of a list; 0: a single number
+  bool whole = false;    ///< an integer
 };
 
 namespace detail {
@@ -56,6 +71,7 @@ class Table {
   std::vector<double> quantities(std::string_view stem, std::string_view unit, std::size_t size,
                                  Range si = Range::finite(), std::optional<std::vector<double>> default_si = {});
   Vec3 vector(std::string_view stem, std::string_view unit, std::optional<Vec3> default_si = {});
+  Vec3 vector(std::string_view stem, std::string_view unit, Range si, std::optional<Vec3> default_si = {});
   /// A 3x3 matrix as a list of rows.
   Mat3 matrix(std::string_view stem, std::string_view unit, std::optional<Mat3> default_si = {});
 
@@ -73,9 +89,10 @@ class Table {
   std::vector<std::string> scalars(std::string_view key);
   /// A file named relative to the case directory; must exist.
   std::filesystem::path file(std::string_view key);
-  /// A large measured file: in the case directory, else in the folder that HOSEL_DATA names (default
-  /// ../shared/data beside the project or the working directory). Missing files are returned as
-  /// they would be expected, for the caller to say SKIPPED.
+  /// A measured file: in the case directory, else in the folder that HOSEL_DATA names (default ../shared/data beside
+  /// the project or the working directory). Only where a name with a folder is asked for and that folder is not
+  /// there, because there are no measured data on this machine, is the missing file returned as it would be
+  /// expected, for the caller to say SKIPPED; any other missing file is an error.
   std::filesystem::path data_file(std::string_view key);
   /// One such file, or a list of them.
   std::vector<std::filesystem::path> data_files(std::string_view key);
@@ -83,6 +100,8 @@ class Table {
   /// A sub-table; required unless `optional_table` is used instead.
   Table table(std::string_view key);
   std::optional<Table> optional_table(std::string_view key);
+  /// A sub-table that is as good as empty where it is absent: its defaults are echoed all the same.
+  Table default_table(std::string_view key);
   /// A list of tables `[[key]]`; empty where absent.
   std::vector<Table> tables(std::string_view key);
   /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.
@@ -94,6 +113,8 @@ class Table {
  private:
   friend class CaseFile;
   Table(std::shared_ptr<detail::Document> document, void* node, std::string path);
+  void declare(std::string_view key, Declared what);
+  std::filesystem::path data_path(std::string_view key, const std::string& name);
   std::shared_ptr<detail::Document> document_;
   void* node_;        // toml::table*, kept out of this header for compile time
   std::string path_;  // dotted, for messages
@@ -102,8 +123,11 @@ class Table {
 /// One `case.toml`, or a case directory that contains it.
 class CaseFile {
  public:
-  /// `overrides` are `dotted.key=value` in TOML syntax (bare words are taken as strings).
+  /// `overrides` are `dotted.key=value` in TOML syntax (bare words are taken as strings); `layers[2].law=yeoh` is a
+  /// key of the second table of a list.
   explicit CaseFile(const std::filesystem::path& where, const std::vector<std::string>& overrides = {});
+  /// The case as `read` found it, whatever has become of the file since, with other overrides.
+  CaseFile(const CaseFile& read, const std::vector<std::string>& overrides);
 
   Table root();
   const std::filesystem::path& directory() const;
@@ -111,12 +135,15 @@ class CaseFile {
   const std::vector<std::string>& overrides() const;
   /// The files that the case names and that have been asked for, in the order of asking.
   const std::vector<std::filesystem::path>& named_files() const;
+  /// Every number that was read or left to its default, in the order of asking.
+  const std::vector<Declared>& declared() const;
   /// Every key that was not read is an error. Call it when reading is complete.
   void finish();
   /// The case with every default filled in, as TOML text.
   std::string resolved() const;
 
  private:
+  void parse();
   std::shared_ptr<detail::Document> document_;
 };
 

@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/stop.hpp"
 #include "hosel/app/sweep_store.hpp"
+#include "hosel/app/version.hpp"
+#include "hosel/post/file.hpp"
 #include "hosel/solvers/errors.hpp"
 
 // Present where OpenBLAS is the BLAS; its own threads would fight with one thread a point.
@@ -27,12 +29,7 @@ struct Plan {
 
 Plan plan_of(const PointJob& job, const std::string& resolved_case) {
   const std::string version = program_version();
-  return {digest(version + '\n' + resolved_case + '\n' + job.identity()), version, job.size()};
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return {post::digest(version + '\n' + resolved_case + '\n' + job.identity()), version, job.size()};
 }
 
 /// The points of this shard that no shard has finished yet, on all cores.
@@ -53,10 +50,12 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
   std::atomic<double> busy = 0;
   const auto clock = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
   const auto start = clock();
+  const StopSignals stop;
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, todo.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          stop.check();
           const auto from = clock();
           json result;
           try {
@@ -125,14 +124,23 @@ Planned open_plan(const fs::path& out) {
   if (!fs::is_regular_file(out / "plan.json"))
     throw InputError(
         fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
-  const json plan = json::parse(text_of(out / "plan.json"));
-  Planned p = read_planned(plan.at("case").get<std::string>(), plan.at("set").get<std::vector<std::string>>());
+  json plan;
+  std::string named;
+  std::vector<std::string> set;
+  try {
+    plan = json::parse(post::read_file(out / "plan.json"));
+    named = plan.at("case");
+    set = plan.at("set").get<std::vector<std::string>>();
+    plan.at("version").get<std::string>();
+  } catch (const json::exception&) {
+    throw InputError(fmt::format("{}: the plan is damaged; plan again", (out / "plan.json").string()));
+  }
+  Planned p = read_planned(named, set);
   if (plan.at("version") != p.plan.version)
     throw InputError(fmt::format("{}: planned with version {}, this program is {}; plan again", out.string(),
                                  plan.at("version").get<std::string>(), p.plan.version));
   if (plan.at("fingerprint") != p.plan.fingerprint)
-    throw InputError(fmt::format("{}: the case {} has changed since it was planned; plan again", out.string(),
-                                 plan.at("case").get<std::string>()));
+    throw InputError(fmt::format("{}: the case {} has changed since it was planned; plan again", out.string(), named));
   return p;
 }
 
@@ -140,7 +148,7 @@ Planned open_plan(const fs::path& out) {
 
 void PointJob::run(Output& out) {
   if (out.force()) fs::remove_all(out.directory() / "shards");
-  const Plan plan = plan_of(*this, text_of(out.path("case.resolved.toml")));
+  const Plan plan = plan_of(*this, post::read_file(out.path("case.resolved.toml")));
   compute_missing(*this, plan, out.directory(), {}, out);
   report_all(*this, all_points(plan, out.directory()), out);
 }

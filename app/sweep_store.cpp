@@ -6,45 +6,42 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/uuid/name_generator_sha1.hpp>
-#include <boost/uuid/string_generator.hpp>
-#include <boost/uuid/uuid_io.hpp>
-#include <fstream>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
-#include "build_info.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/app/version.hpp"
+#include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
 namespace {
 
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+/// A line of the store without its digest, and the digest beside it.
+std::string sealed(nlohmann::json entry) {
+  entry["check"] = post::digest(entry.dump());
+  return entry.dump();
+}
+
+/// The entry of a line as it was written; throws InputError where a bit of it has changed since.
+nlohmann::json unsealed(std::string_view line) {
+  nlohmann::json entry = nlohmann::json::parse(line);
+  const std::string check = entry.at("check");
+  entry.erase("check");
+  if (check != post::digest(entry.dump())) throw std::runtime_error("damaged");
+  return entry;
 }
 
 }  // namespace
 
-std::string digest(const std::string& text) {
-  return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::oid())(text));
-}
-
 std::string digest_of_files(const std::vector<fs::path>& files) {
   std::string all;
   for (const fs::path& file : files)
-    all += file.filename().string() + '\n' + (fs::is_regular_file(file) ? digest(content(file)) : "none") + '\n';
-  return digest(all);
-}
-
-std::string program_version() {
-  static const std::string version = fmt::format("{} build {}", HOSEL_VERSION, digest(content("/proc/self/exe")));
-  return version;
+    all += file.filename().string() + '\n' +
+           (fs::is_regular_file(file) ? post::digest(post::read_file(file)) : "none") + '\n';
+  return post::digest(all);
 }
 
 std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, const std::string& fingerprint) {
@@ -55,14 +52,14 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
     if (fs::is_regular_file(entry.path() / "points.jsonl")) files.push_back(entry.path() / "points.jsonl");
   std::ranges::sort(files);
   for (const fs::path& file : files) {
-    const std::string text = content(file);
+    const std::string text = post::read_file(file);
     std::size_t at = 0;
     for (int line = 1;; ++line) {
       const std::size_t end = text.find('\n', at);
       if (end == std::string::npos) break;  // cut short by a kill, or the end
       nlohmann::json entry;
       try {
-        entry = nlohmann::json::parse(text.begin() + long(at), text.begin() + long(end));
+        entry = unsealed(std::string_view(text).substr(at, end - at));
         if (line == 1) {
           if (entry.at("fingerprint") != fingerprint)
             throw InputError(
@@ -75,8 +72,11 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
           if (!fresh && it->second != entry.at("result"))
             throw InputError(fmt::format("{}:{}: point {} has two different results", file.string(), line, number));
         }
-      } catch (const nlohmann::json::exception&) {
-        throw InputError(fmt::format("{}:{}: not a finished point", file.string(), line));
+      } catch (const InputError&) { throw; } catch (const std::exception&) {
+        throw InputError(
+            fmt::format("{}:{}: not a finished point, or damaged since it was written: remove this line, "
+                        "or discard all points with --force",
+                        file.string(), line));
       }
       at = end + 1;
     }
@@ -91,12 +91,12 @@ PointStore::PointStore(const fs::path& directory, const std::string& fingerprint
   try {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
       throw InputError(fmt::format("{}: another process is computing this shard", file_));
-    const std::string text = content(file_);
+    const std::string text = post::read_file(file_);
     const std::size_t last = text.rfind('\n');
     const std::size_t whole = last == std::string::npos ? 0 : last + 1;
     if (::ftruncate(descriptor_, off_t(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
       throw std::runtime_error(fmt::format("{}: cannot be written", file_));
-    if (whole == 0) write_line(nlohmann::json{{"fingerprint", fingerprint}, {"version", program_version()}}.dump());
+    if (whole == 0) write_line(sealed({{"fingerprint", fingerprint}, {"version", program_version()}}));
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -106,7 +106,7 @@ PointStore::PointStore(const fs::path& directory, const std::string& fingerprint
 PointStore::~PointStore() { ::close(descriptor_); }
 
 void PointStore::append(std::size_t point, double seconds, const nlohmann::json& result) {
-  const std::string line = nlohmann::json{{"point", point}, {"seconds", seconds}, {"result", result}}.dump();
+  const std::string line = sealed({{"point", point}, {"seconds", seconds}, {"result", result}});
   const std::lock_guard lock(mutex_);
   write_line(line);
 }
@@ -114,9 +114,15 @@ void PointStore::append(std::size_t point, double seconds, const nlohmann::json&
 void PointStore::write_line(const std::string& line) {
   // One write a line: a kill leaves it whole or cuts the last one short, and that is seen by its end.
   const std::string text = line + "\n";
+  const off_t before = ::lseek(descriptor_, 0, SEEK_END);
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = ::write(descriptor_, text.data() + done, text.size() - done);
-    if (n < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int reason = errno;
+      if (::ftruncate(descriptor_, before) != 0) {}  // half a line would damage the one after it
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file_, std::strerror(reason)));
+    }
     done += std::size_t(n);
   }
 }

@@ -11,12 +11,8 @@
 
 namespace hosel::app {
 
-/// Name-based UUID (SHA-1) of a text.
-std::string digest(const std::string& text);
-/// Of the contents of files; a missing one counts as such.
+/// Digest of the contents of files; a missing one counts as such.
 std::string digest_of_files(const std::vector<std::filesystem::path>& files);
-/// The project's version and a digest of the running program.
-std::string program_version();
 
 /// Every point found in DIRECTORY/*/points.jsonl, by its number. A last line cut short by a kill is
 /// not a point. Throws InputError where a file belongs to another `fingerprint`, or where two files

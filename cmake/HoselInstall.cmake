@@ -20,6 +20,8 @@ install(DIRECTORY golf mesh fem solvers models post loop app
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hosel FILES_MATCHING PATTERN "*.hpp")
 install(FILES app/import/launch_monitors.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
 install(EXPORT hosel NAMESPACE hosel:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)
 configure_package_config_file(cmake/hosel-config.cmake.in ${PROJECT_BINARY_DIR}/hosel-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)

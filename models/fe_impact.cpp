@@ -217,7 +217,9 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     if (observer)
       observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
                 parts.contact->surface_pose(solver.state()), expected, parts.shaft, [&] {
+                  // This run goes on from its checkpoint too: what is resumed takes the same steps, to the last bit.
                   at.solver = solver.checkpoint();
+                  solver.restore(at.solver);
                   return at;
                 }});
   };

@@ -30,7 +30,8 @@ class Patch {
   /// Elastic normal force of both halves of cell i at this depth: 2 E* integral of (depth - x^2 / R).
   void limits(double depth, double scale) {
     const double a = std::sqrt(std::max(0.0, radius_ * depth));
-    const int whole = std::min(static_cast<int>(a / dx_), size());
+    // The patch is as wide as the energy at hand can make it; a step that overshoots fills it whole.
+    const int whole = a < dx_ * size() ? static_cast<int>(a / dx_) : size();
     for (int i = 0; i < whole; ++i) limit_[i] = scale * 2 * modulus_ * (depth * dx_ - (cubed_[i + 1] - cubed_[i]));
     if (whole < size()) {
       limit_[whole] = scale * 2 * modulus_ *

@@ -29,6 +29,7 @@ ImpulseProblem impulse_problem(const Blow& blow, const Mat6& head_mobility) {
   at_contact << Mat3::Identity(), -skew(p.geometry.head_arm);
   p.mobility = Mat3::Identity() / blow.ball.mass - skew(p.arm) * skew(p.arm) / blow.ball.inertia() +
                at_contact * head_mobility * at_contact.transpose();
+  if (!p.mobility.allFinite()) throw std::invalid_argument("the head's mass and inertia must be positive");
   return p;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/models/restitution.hpp"
+
 namespace hosel::models {
 
 ContactGeometry contact_geometry(const Blow& blow) {
@@ -40,6 +42,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   const Mat3 head_mobility = Mat3::Identity() / head.mass - skew(g.head_arm) * inverse_inertia * skew(g.head_arm);
   const Mat3 ball_mobility = Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
   const Mat3 K = ball_mobility + head_mobility;
+  if (!K.allFinite()) throw std::invalid_argument("the head's mass and inertia must be positive");
 
   // Columns of `effect`: change of the relative surface velocity at P by an impulse along n (with
   // its offset couple) and across n.
@@ -48,7 +51,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   effect += couple.cross(arm) * g.normal.transpose();
 
   const double distance = std::hypot(blow.delivery.impact_toe, blow.delivery.impact_high);
-  const double e = blow.contact.normal_restitution(approach, distance);
+  const double e = normal_restitution(blow.contact, approach, distance);
   const double et = blow.contact.tangential_restitution;
   const Vec3 wanted = (1 + e) * approach * g.normal + (1 + et) * slip;
   Vec3 J = effect.partialPivLu().solve(wanted);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/models/restitution.hpp"
+
 namespace hosel::models {
 
 Launch RigidPlanar::launch(const Blow& blow) const {
@@ -12,10 +14,11 @@ Launch RigidPlanar::launch(const Blow& blow) const {
   const double M = blow.club.head.mass, m = ball.mass, r = ball.radius, I = ball.inertia();
   const double a = d.dynamic_loft - d.attack_angle;  // spin loft
   const double approach = d.club_speed * std::cos(a);
+  if (!(M > 0)) throw std::invalid_argument("the head has no mass");
   if (!(approach > 0)) throw std::invalid_argument("the head moves away from the ball");
 
   const double distance = std::hypot(d.impact_toe, d.impact_high);
-  const double e = blow.contact.normal_restitution(approach, distance);
+  const double e = normal_restitution(blow.contact, approach, distance);
   const double vn = approach * (1 + e) / (1 + m / M);
   const double arm = blow.contact.normal_force_offset * r;
   // The offset normal impulse already spins the ball: friction need not close that part of the slip.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/models/restitution.hpp"
+
 namespace hosel::models {
 namespace {
 
@@ -44,7 +46,7 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
   // Normal approach falls by these per normal impulse, sliding and sticking.
   const double sliding = K_nn + K_tn.dot(slide), sticking = K_nn + K_tn.dot(hold);
   const double distance = std::hypot(blow.delivery.impact_toe, blow.delivery.impact_high);
-  const double e = blow.contact.normal_restitution(approach, distance);
+  const double e = normal_restitution(blow.contact, approach, distance);
 
   StickSlipPath out;
   Vec2 tangential;

@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
+
+#include "hosel/post/file.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
+
+/// Raised whenever what follows means something else.
+constexpr std::string_view kFormat = "hosel impact checkpoint 2";
 
 template <class Dense>
 json numbers(const Dense& x) {
@@ -63,46 +67,46 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
   const models::ImpactCheckpoint& i = saved.impact;
   const solvers::Checkpoint& s = i.solver;
   const models::FeImpactResult& r = i.so_far;
-  const json j = {{"run", run},
-                  {"solver",
-                   {{"state", to_json(s.state)},
-                    {"auxiliary", numbers(s.auxiliary)},
-                    {"step", s.step},
-                    {"last_step", s.last_step},
-                    {"ledger", to_json(s.ledger)},
-                    {"friction_before", s.friction_before},
-                    {"viscous_before", s.viscous_before},
-                    {"external_before", s.external_before},
-                    {"history", s.history}}},
-                  {"so_far",
-                   {{"peak_force", r.peak_force},
-                    {"peak_time", r.peak_time},
-                    {"compression", r.compression},
-                    {"penetration", r.penetration},
-                    {"creep", r.creep},
-                    {"face_travel", r.face_travel},
-                    {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
-                  {"touched", i.touched},
-                  {"over", i.over},
-                  {"last_touch", i.last_touch},
-                  {"last_gap", i.last_gap},
-                  {"face_centre", numbers(saved.face_centre)},
-                  {"face_axes", numbers(saved.face_axes)},
-                  {"steps", saved.steps}};
-  const fs::path beside = file.string() + ".part";
-  {
-    std::ofstream out(beside, std::ios::binary);
-    const std::vector<std::uint8_t> bytes = json::to_cbor(j);
-    out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-    if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-  }
-  fs::rename(beside, file);
+  json j = {{"run", run},
+            {"solver",
+             {{"state", to_json(s.state)},
+              {"auxiliary", numbers(s.auxiliary)},
+              {"step", s.step},
+              {"last_step", s.last_step},
+              {"ledger", to_json(s.ledger)},
+              {"friction_before", s.friction_before},
+              {"viscous_before", s.viscous_before},
+              {"external_before", s.external_before},
+              {"history", s.history}}},
+            {"so_far",
+             {{"peak_force", r.peak_force},
+              {"peak_time", r.peak_time},
+              {"compression", r.compression},
+              {"penetration", r.penetration},
+              {"creep", r.creep},
+              {"face_travel", r.face_travel},
+              {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
+            {"touched", i.touched},
+            {"over", i.over},
+            {"last_touch", i.last_touch},
+            {"last_gap", i.last_gap},
+            {"face_centre", numbers(saved.face_centre)},
+            {"face_axes", numbers(saved.face_axes)},
+            {"history", {saved.history.rows, saved.history.digest}}};
+  for (const auto& [body, mark] : saved.series) j["series"][body] = {mark.times, mark.digest};
+  std::string bytes;
+  json::to_cbor(j, bytes);
+  write_file(file, fmt::format("{} {}\n{}", kFormat, digest(bytes), bytes));
 }
 
 std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::string& run) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  const json j = json::from_cbor(std::vector<char>(std::istreambuf_iterator<char>(in), {}), true, false);
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  const std::string text = read_file(file);
+  const std::size_t end = text.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  const std::string_view bytes = std::string_view(text).substr(end + 1);
+  if (text.substr(0, end) != fmt::format("{} {}", kFormat, digest(bytes))) return std::nullopt;
+  const json j = json::from_cbor(bytes, true, false);
   if (!j.is_object() || j.value("run", "") != run) return std::nullopt;
   SavedImpact out;
   models::ImpactCheckpoint& i = out.impact;
@@ -130,7 +134,10 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.last_gap = j.at("last_gap");
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
-  out.steps = j.at("steps");
+  out.history = {j.at("history").at(0), j.at("history").at(1)};
+  if (j.contains("series"))
+    for (const auto& [body, mark] : j.at("series").items())
+      out.series[body] = {mark.at(0).get<std::vector<double>>(), mark.at(1)};
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "hosel/post/csv.hpp"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +11,8 @@
 
 namespace hosel::post {
 namespace {
+
+constexpr std::uintmax_t kMostBytes = 1'000'000'000;
 
 void trim(std::string& s) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -21,7 +24,11 @@ void trim(std::string& s) {
 
 Sheet read_csv(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) throw DataError(fmt::format("{}: cannot be read", path.string()));
+  // A pipe or a device may never end.
+  if (!in || !std::filesystem::is_regular_file(path))
+    throw DataError(fmt::format("{}: cannot be read{}", path.string(), in ? ": not a regular file" : ""));
+  if (std::filesystem::file_size(path) > kMostBytes)
+    throw DataError(fmt::format("{}: more than {} bytes: too large for a table", path.string(), kMostBytes));
   std::string text((std::istreambuf_iterator<char>(in)), {});
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte-order mark of spreadsheet programs
 
@@ -64,6 +71,9 @@ Sheet read_csv(const std::filesystem::path& path) {
     }
     row.clear();
   };
+  if (const auto wrong = utf8::find_invalid(text.begin(), text.end()); wrong != text.end())
+    fail(std::size_t(std::count(text.begin(), wrong, '\n')) + 1,
+         "not UTF-8 (a file of a Western Windows program? iconv -f WINDOWS-1252 -t UTF-8 makes it so)");
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '\0') fail(line, "a zero byte: this is not a text file");

@@ -22,8 +22,8 @@ struct Sheet {
 };
 
 /// Reads RFC-4180 text: quoted cells may hold commas, quotes (doubled) and line breaks; blank lines are
-/// passed over. Throws DataError on a missing file, an empty or doubled header, a row of the wrong length,
-/// an open quote.
+/// passed over. Throws DataError on a missing file or one that is none (a pipe), text that is not UTF-8, an
+/// empty or doubled header, a row of the wrong length, an open quote.
 Sheet read_csv(const std::filesystem::path& file);
 
 /// A whole cell as a number; nothing where it is text. "nan" and "inf" are numbers here.

@@ -14,11 +14,12 @@ extern char** environ;
 namespace hosel::post {
 namespace {
 
-/// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is.
+/// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is. A line break would end the
+/// string and let what follows be executed: it and its kind become blanks.
 std::string literal(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
-    out += c;
+    out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
     if (c == '\'') out += '\'';
   }
   return out + "'";
@@ -65,7 +66,7 @@ std::string map_block(const std::string& name, const Panel& p) {
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
+std::string gnuplot_script(const Figure& f, std::string_view png) {
   const int n = static_cast<int>(f.panels.size());
   const int columns = std::max(1, std::min(f.columns, n)), rows = std::max(1, (n + columns - 1) / columns);
   std::string s, plots;
@@ -140,26 +141,31 @@ std::string gnuplot_script(const Figure& f, const std::filesystem::path& png) {
   std::string head = fmt::format(
       "set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n"
       "set grid lc rgb '#dddddd'\nset tics nomirror\n",
-      columns * f.panel_width, rows * f.panel_height + (f.title.empty() ? 0 : 40), literal(png.string()));
+      columns * f.panel_width, rows * f.panel_height + (f.title.empty() ? 0 : 40), literal(png));
   head +=
       fmt::format("set multiplot layout {},{}{}\n", rows, columns, f.title.empty() ? "" : " title " + literal(f.title));
   return s + head + plots + "\nunset multiplot\nunset output\n";
 }
 
 std::string draw(const Figure& figure, const std::filesystem::path& stem) {
-  std::filesystem::path gp = stem, png = stem;
+  std::filesystem::path gp = stem;
   gp += ".gp";
-  png += ".png";
-  if (std::ofstream out(gp); !(out << gnuplot_script(figure, png)))
+  const std::string name = stem.filename().string(), place = stem.parent_path().empty() ? "." : stem.parent_path();
+  if (std::ofstream out(gp); !(out << gnuplot_script(figure, name + ".png")) || !out.flush())
     throw std::runtime_error("cannot write " + gp.string());
-  std::string program = "gnuplot", script = gp.string();
+  // gnuplot works beside the script: no path of the person's ever becomes program text.
+  std::string program = "gnuplot", script = "./" + name + ".gp";
   char* argv[] = {program.data(), script.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, place.c_str());
   pid_t child = 0;
-  if (posix_spawnp(&child, "gnuplot", nullptr, nullptr, argv, environ) != 0)
-    return "no picture: gnuplot is not installed (the script is " + script + ")";
+  const int refused = posix_spawnp(&child, "gnuplot", &actions, nullptr, argv, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (refused) return "no picture: gnuplot is not installed (the script is " + gp.string() + ")";
   int status = 0;
   if (waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return "no picture: gnuplot could not draw " + script;
+    return "no picture: gnuplot could not draw " + gp.string();
   return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hosel::post {
@@ -38,8 +39,9 @@ struct Figure {
   int panel_width = 620, panel_height = 440;  ///< [pixel]
 };
 
-/// The gnuplot script with its data, which draws `png`.
-std::string gnuplot_script(const Figure& figure, const std::filesystem::path& png);
+/// The gnuplot script with its data, which draws the file `png` where gnuplot is started. Titles, labels and names may
+/// hold anything: they are quoted. `Series::style` and `Panel::key` are gnuplot's own words and come from the code.
+std::string gnuplot_script(const Figure& figure, std::string_view png);
 
 /// Writes `stem`.gp and lets gnuplot draw `stem`.png. Returns an empty string, or a sentence why there
 /// is no picture (gnuplot absent or refusing); the script stays in both cases.

@@ -11,16 +11,27 @@ namespace hosel::post {
 
 class History {
  public:
-  /// Columns as `name_unit`. An existing file is replaced, but for its lines up to `resume_after` in the
-  /// first column where that is not negative. Throws std::runtime_error if it cannot be written.
-  History(const std::filesystem::path& file, const std::vector<std::string>& columns, double resume_after = -1);
+  /// How far a history has come, and what it holds so far: enough to go on with it or to see that it was changed.
+  struct Mark {
+    long rows = 0;
+    std::string digest = {};  ///< of header and rows
+  };
+
+  /// Columns as `name_unit`. An existing file is replaced, but for the rows of `kept`.
+  /// Throws std::runtime_error if it cannot be written, or does not hold what `kept` says.
+  History(const std::filesystem::path& file, const std::vector<std::string>& columns, const Mark* kept = nullptr);
   /// One value a column, else std::invalid_argument.
   void write(std::span<const double> values);
+  const Mark& mark() const { return mark_; }
+
+  /// Whether FILE begins with what the mark was taken of.
+  static bool holds(const std::filesystem::path& file, const Mark& mark);
 
  private:
   std::ofstream out_;
   std::string file_;
   std::size_t columns_;
+  Mark mark_;
 };
 
 }  // namespace hosel::post

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
 
 #include "hosel/post/ball_mesh.hpp"
 #include "hosel/post/bodies.hpp"
 #include "hosel/post/checkpoint.hpp"
+#include "hosel/post/file.hpp"
 #include "hosel/post/history.hpp"
 #include "hosel/post/patch_mesh.hpp"
 #include "hosel/post/vtk_series.hpp"
@@ -50,6 +52,9 @@ class NearestTraction {
   bool half_ = true;
 };
 
+/// A checkpoint costs the solver its factors, so that a run which goes on from it takes the same steps to the last bit.
+constexpr long kFramesPerCheckpoint = 8;
+
 /// The ledger has a strain column for every body; the rigid ones' and the contact's stay zero.
 bool deforms(const std::string& body) { return body != "head" && body != "contact"; }
 
@@ -62,15 +67,35 @@ struct ImpactRecorder::State {
   RecorderOptions options;
   VtkMesh face_shape, head_shape;
   std::optional<History> history;
-  std::optional<VtkSeries> ball, patch, face, head, shaft;
+  std::map<std::string, VtkSeries> series;  // by body
   std::string run;
   std::optional<SavedImpact> resumed;
   std::optional<Pose> start;
   long steps = 0;
 
-  /// Output up to here is kept; negative: none.
-  double kept() const { return resumed ? resumed->impact.solver.state.time : -1; }
   fs::path checkpoint() const { return directory / "checkpoint.cbor"; }
+  fs::path history_file() const { return directory / "history.csv"; }
+
+  static VtkSeries::Form form(const std::string& body) {
+    return body == "ball" ? VtkSeries::Form::volume : VtkSeries::Form::surface;
+  }
+
+  /// Whether all that the stopped run had written up to its checkpoint is there as it was.
+  bool whole(const SavedImpact& saved) const {
+    if (!History::holds(history_file(), saved.history)) return false;
+    for (const auto& [body, mark] : saved.series)
+      if (!VtkSeries::holds(directory / "vtk", body, form(body), mark)) return false;
+    return saved.series.empty() != options.vtk;
+  }
+
+  void write(const std::string& body, double time, const VtkMesh& mesh) {
+    auto it = series.find(body);
+    if (it == series.end()) {
+      const VtkSeries::Mark* kept = resumed ? &resumed->series.at(body) : nullptr;
+      it = series.emplace(body, VtkSeries(directory / "vtk", body, form(body), kept)).first;
+    }
+    it->second.write(time, mesh);
+  }
 };
 
 ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOptions options, std::string run)
@@ -81,16 +106,18 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   s.blow = blow;
   s.slip = models::encounter(blow).ball_axes.col(1);
   fs::create_directories(s.directory);
+  remove_unfinished(s.directory);
   s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
   s.head_shape = head_mesh(blow.club.head, options.face_width, options.face_height);
   s.run = std::move(run);
   s.resumed = load_checkpoint(s.checkpoint(), s.run);
-  if (!s.resumed) {
+  if (!s.resumed || !s.whole(*s.resumed)) {
+    s.resumed.reset();
     fs::remove(s.checkpoint());
     return;
   }
   s.start = Pose{s.resumed->face_centre, s.resumed->face_axes};
-  s.steps = s.resumed->steps;
+  s.steps = s.resumed->history.rows;
 }
 
 ImpactRecorder::~ImpactRecorder() = default;
@@ -103,20 +130,21 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   State& s = *state_;
   const solvers::Ledger& e = view.ledger;
   if (!s.history) {
-    std::vector<std::string> columns = {"time_s",          "normal_force_N",     "force_heel_N",
-                                        "force_up_N",      "tangential_force_N", "contact_pressure_Pa",
-                                        "contact_area_m2", "penetration_m",      "kinetic_J"};
+    std::vector<std::string> columns = {"time_s",        "normal_force_N",     "force_out_N",         "force_heel_N",
+                                        "force_up_N",    "tangential_force_N", "contact_pressure_Pa", "contact_area_m2",
+                                        "penetration_m", "kinetic_J"};
     for (const auto& [body, joules] : e.strain)
       if (deforms(body)) columns.push_back("strain_" + body + "_J");
     for (const char* name : {"contact_J", "friction_J", "viscous_J", "numerical_J", "external_J", "closure_J"})
       columns.emplace_back(name);
     for (std::size_t layer = 0; layer < view.ball.dissipated().size(); ++layer)
       columns.push_back(fmt::format("viscous_layer{}_J", layer));
-    s.history.emplace(s.directory / "history.csv", columns, s.kept());
+    s.history.emplace(s.history_file(), columns, s.resumed ? &s.resumed->history : nullptr);
   }
   const fem::SurfacePose face = view.face;
   const Vec3 force = face.axes.transpose() * view.report.force;
   std::vector<double> row = {view.state.time,
+                             view.report.normal_force,
                              force.x(),
                              force.y(),
                              force.z(),
@@ -133,24 +161,20 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
 
   const Pose now{face.centre, face.axes};
   if (!s.start) s.start = now;
-  if (s.steps++ % s.options.steps_per_frame != 0) return;
+  const long step = s.steps++;
+  if (step % s.options.steps_per_frame != 0) return;
   if (s.options.vtk) {
-    const fs::path vtk = s.directory / "vtk";
-    if (!s.ball) {
-      s.ball.emplace(vtk, "ball", VtkSeries::Form::volume, s.kept());
-      s.patch.emplace(vtk, "patch", VtkSeries::Form::surface, s.kept());
-      s.face.emplace(vtk, "face", VtkSeries::Form::surface, s.kept());
-      s.head.emplace(vtk, "head", VtkSeries::Form::surface, s.kept());
-      if (view.shaft) s.shaft.emplace(vtk, "shaft", VtkSeries::Form::surface, s.kept());
-    }
     const double time = view.state.time;
-    s.ball->write(time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
-    s.patch->write(time, patch_mesh(view.contact.points(view.state)));
-    s.face->write(time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
-    s.head->write(time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
-    if (view.shaft) s.shaft->write(time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+    s.write("ball", time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
+    s.write("patch", time, patch_mesh(view.contact.points(view.state)));
+    s.write("face", time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
+    s.write("head", time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
+    if (view.shaft) s.write("shaft", time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
   }
-  save_checkpoint(s.checkpoint(), s.run, {view.checkpoint(), s.start->origin, s.start->rotation, s.steps});
+  if (step / s.options.steps_per_frame % kFramesPerCheckpoint != 0) return;
+  SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.history->mark(), {}};
+  for (const auto& [body, series] : s.series) saved.series[body] = series.mark();
+  save_checkpoint(s.checkpoint(), s.run, saved);
 }
 
 std::vector<fs::path> ImpactRecorder::files() const {

@@ -20,9 +20,10 @@ struct RecorderOptions {
 
 class ImpactRecorder {
  public:
-  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,face,head,shaft}.pvd, and with every frame
-  /// DIRECTORY/checkpoint.cbor. `run` names what is computed: where a checkpoint of the same run lies
-  /// there, what it had written is kept and gone on with.
+  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,patch,face,head,shaft}.pvd, and with every eighth frame
+  /// DIRECTORY/checkpoint.cbor. `run` names what is computed and by which build: where a checkpoint of the same run
+  /// lies there, whole, and beside it all that had been written, the run goes on with it to the same bytes; where
+  /// anything is missing or changed, it begins afresh.
   ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options, std::string run);
   ~ImpactRecorder();
   void operator()(const models::ImpactView& view);

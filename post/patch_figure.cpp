@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "hosel/post/figure.hpp"
 
@@ -26,6 +27,7 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
     std::vector<double> pressure, traction, slip;  // of the points on the line, from behind to before
   };
   std::vector<Frame> all;
+  vtkIdType points = 0;
   std::vector<vtkIdType> line;  // points on it
   std::vector<double> position;
   for (const fs::path& file : frames) {
@@ -33,6 +35,12 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
     reader->SetFileName(file.c_str());
     reader->Update();
     vtkPolyData* data = reader->GetOutput();
+    vtkDataArray* stamp = data->GetFieldData()->GetArray("TimeValue");
+    bool whole = reader->GetErrorCode() == 0 && stamp && (all.empty() || data->GetNumberOfPoints() == points);
+    for (const char* name : {"contact_pressure", "contact_traction", "slip"})
+      whole = whole && data->GetPointData()->GetArray(name);
+    if (!whole) throw std::runtime_error(file.string() + ": is damaged: remove the run and start it again");
+    points = data->GetNumberOfPoints();
     if (line.empty()) {
       // The angles nearest the plane of slip: the same ones in every ring.
       std::vector<Vec3> local;
@@ -50,7 +58,7 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
       std::ranges::sort(line, {}, arc);
       for (const vtkIdType i : line) position.push_back(arc(i));
     }
-    Frame frame{data->GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), {}, {}, {}};
+    Frame frame{stamp->GetComponent(0, 0), {}, {}, {}};
     for (const vtkIdType i : line) {
       const auto value = [&](const char* name, int k) {
         return data->GetPointData()->GetArray(name)->GetComponent(i, k);

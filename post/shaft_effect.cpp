@@ -95,7 +95,7 @@ Field flight_gain(const FaceMap& club, const FaceMap& free, double models::Fligh
 
 }  // namespace
 
-ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& free) {
+std::vector<NamedFigure> shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& free) {
   const auto speed = [](const Launch& l) { return l.ball_speed(); };
   const auto launch = [](const Launch& l) { return degrees(l.launch_angle()); };
   const auto azimuth = [](const Launch& l) { return degrees(l.azimuth()); };
@@ -124,8 +124,7 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
   const double apart_free = std::hypot(fastest_free.toe - calm_free.toe, fastest_free.high - calm_free.high);
   const double d_side_toe = at(g, d_side, toe, 0), d_side_heel = at(g, d_side, -toe, 0);
 
-  ShaftEffect out;
-  out.figures = {
+  std::vector<NamedFigure> out = {
       {"ball_speed_gain_min_mps", gain_min},
       {"ball_speed_gain_mean_mps", mean(gain)},
       {"ball_speed_gain_max_mps", gain_max},
@@ -169,7 +168,7 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
               aside = flight_gain(club, free, &models::Flight::side);
   if (!carry.empty()) {
     const auto add = [&](std::string_view name, double value) {
-      out.figures.push_back({fmt::format("{}_{}", name, suffix(club.distances)), value});
+      out.push_back({fmt::format("{}_{}", name, suffix(club.distances)), value});
     };
     add("carry_gain_centre", at(g, carry, 0, 0));
     add("carry_gain_mean", mean(carry));
@@ -178,19 +177,6 @@ ShaftEffect shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& 
     add("side_difference_toe", at(g, aside, toe, 0));
     add("side_difference_heel", at(g, aside, -toe, 0));
   }
-  out.statements = {
-      {"the ball is faster with the club over the whole face", share == 1},
-      {"the gain grows towards the heel, upwards, and is larger at the high heel than at the centre",
-       gain_slope.toe < 0 && gain_slope.high > 0 && gain_corner > gain_centre},
-      {"the fastest point lies towards the toe, at most 15 mm from the centre line",
-       fastest_club.toe > 0 && fastest_club.toe <= 15},
-      {"the fastest point lies within 10 mm of the least head rotation", apart <= 10},
-      {"sidespin differs towards fade at the toe and towards draw at the heel", d_side_toe > 0 && d_side_heel < 0},
-      {"the launch angle changes less with height with the club",
-       std::abs(launch_club.high) < std::abs(launch_free.high)},
-      {"the azimuth changes less from heel to toe with the club",
-       std::abs(azimuth_club.toe) < std::abs(azimuth_free.toe)},
-  };
   return out;
 }
 

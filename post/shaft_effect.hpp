@@ -1,36 +1,18 @@
-/// What one club changes against another over the face, as figures: the statements of McNally,
-/// McPhee and Henrikson, "The Golf Shaft's Influence on Clubhead-Ball Impact Dynamics" (2018), whose
-/// contour plots carry no numbers in print.
+/// What one club changes against another over the face, as figures.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "hosel/post/claim.hpp"
 #include "hosel/post/face_map.hpp"
 
 namespace hosel::post {
 
-/// A named figure in the unit of its name.
-struct EffectFigure {
-  std::string name;
-  double value;
-};
-
-/// One statement and whether the figures bear it out.
-struct Statement {
-  std::string text;
-  bool holds;
-};
-
-struct ShaftEffect {
-  std::vector<EffectFigure> figures;
-  std::vector<Statement> statements;
-};
-
 /// `club` against `free` over the whole grid. Differences are club minus free; positions are those of
 /// a parabola through the best grid point and its neighbours; slopes are least-squares planes over the
 /// grid, per mm towards toe and up. Throws std::invalid_argument where a point has no launch.
-ShaftEffect shaft_effect(const FaceGrid& grid, const FaceMap& club, const FaceMap& free);
+std::vector<NamedFigure> shaft_effect(const FaceGrid& grid, const FaceMap& club, const FaceMap& free);
 
 /// Extra head mass [kg] that gives the free head the club's ball speed, at every point. `heavier` is
 /// the free head's map with `extra` more mass at its centre of gravity, `mass` the head's own. 1/v is

@@ -11,13 +11,12 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
-#include <vtkXMLUtilities.h>
 
-#include <fstream>
 #include <stdexcept>
+
+#include "hosel/post/file.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -71,15 +70,22 @@ void fill(vtkPointSet& data, const VtkMesh& mesh, double time) {
   data.GetFieldData()->AddArray(stamp);
 }
 
+/// The file in memory: VTK itself does not survive a disk that is full.
 template <class Writer, class Data>
-void save(Data& data, const fs::path& file) {
+std::string text_of(Data& data) {
   vtkNew<Writer> writer;
-  writer->SetFileName(file.string().c_str());
+  writer->WriteToOutputStringOn();
   writer->SetInputData(&data);
   // Inline: ParaView 5.11 cannot read appended data where libexpat puts off its parsing (2.6, and 2.5 with the fix
   // of CVE-2023-52425: "junk after document element").
   writer->SetDataModeToBinary();
-  if (!writer->Write()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  if (!writer->Write()) throw std::runtime_error("VTK cannot write this mesh");
+  return writer->GetOutputString();
+}
+
+/// Name of a file of a series below its directory.
+std::string entry(const std::string& name, VtkSeries::Form form, std::size_t number) {
+  return fmt::format("{0}/{0}_{1:04}.{2}", name, number, form == VtkSeries::Form::surface ? "vtp" : "vtu");
 }
 
 }  // namespace
@@ -91,31 +97,36 @@ VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3
   return f;
 }
 
-VtkSeries::VtkSeries(fs::path directory, std::string name, Form form, double resume_after)
+VtkSeries::VtkSeries(fs::path directory, std::string name, Form form, const Mark* kept)
     : directory_(std::move(directory)), name_(std::move(name)), form_(form) {
-  if (resume_after >= 0 && fs::exists(file())) {
-    vtkSmartPointer<vtkXMLDataElement> root =
-        vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(file().string().c_str()));
-    vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
-    for (int i = 0; collection && i < collection->GetNumberOfNestedElements(); ++i) {
-      vtkXMLDataElement* e = collection->GetNestedElement(i);
-      double time = 0;
-      if (e->GetScalarAttribute("timestep", time) && time <= resume_after)
-        entries_.push_back({time, e->GetAttribute("file")});
-    }
-  } else {
-    fs::remove_all(directory_ / name_);
-    fs::remove(file());
+  if (kept) mark_ = *kept;
+  remove_unfinished(directory_);
+  std::vector<fs::path> old;
+  if (fs::is_directory(directory_ / name_))
+    for (const auto& found : fs::directory_iterator(directory_ / name_)) old.push_back(found.path());
+  for (const fs::path& found : old) {
+    bool mine = false;
+    for (std::size_t i = 0; i < mark_.times.size(); ++i) mine = mine || found == directory_ / entry(name_, form_, i);
+    if (!mine) fs::remove_all(found);
   }
+  if (!kept) fs::remove(file());
   fs::create_directories(directory_ / name_);
+}
+
+bool VtkSeries::holds(const fs::path& directory, const std::string& name, Form form, const Mark& mark) {
+  std::string all;
+  for (std::size_t i = 0; i < mark.times.size(); ++i) {
+    const fs::path file = directory / entry(name, form, i);
+    if (!fs::is_regular_file(file)) return false;
+    all = digest(all + read_file(file));
+  }
+  return all == mark.digest;
 }
 
 fs::path VtkSeries::file() const { return directory_ / (name_ + ".pvd"); }
 
 void VtkSeries::write(double time, const VtkMesh& mesh) {
-  const std::string entry =
-      fmt::format("{0}/{0}_{1:04}.{2}", name_, entries_.size(), form_ == Form::surface ? "vtp" : "vtu");
-  const fs::path target = directory_ / entry, beside = target.string() + ".part";
+  std::string bytes;
   if (form_ == Form::volume) {
     vtkNew<vtkUnstructuredGrid> grid;
     grid->Allocate(vtkIdType(mesh.cells.size()));
@@ -125,7 +136,7 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
       std::copy(cell.points.begin(), cell.points.end(), ids.begin());
       grid->InsertNextCell(shape(cell.shape).vtk, shape(cell.shape).points, ids.data());
     }
-    save<vtkXMLUnstructuredGridWriter>(*grid, beside);
+    bytes = text_of<vtkXMLUnstructuredGridWriter>(*grid);
   } else {
     vtkNew<vtkPolyData> surface;
     fill(*surface, mesh, time);
@@ -139,24 +150,21 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
     surface->SetVerts(verts);
     surface->SetLines(lines);
     surface->SetPolys(faces);
-    save<vtkXMLPolyDataWriter>(*surface, beside);
+    bytes = text_of<vtkXMLPolyDataWriter>(*surface);
   }
-  fs::rename(beside, target);
-  entries_.push_back({time, entry});
+  // Not waited for: a frame that a loss of power takes is missed by its digest.
+  write_file(directory_ / entry(name_, form_, mark_.times.size()), bytes, false);
+  mark_.times.push_back(time);
+  mark_.digest = digest(mark_.digest + bytes);
 
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
       "<Collection>\n";
-  for (const Entry& e : entries_)
-    text += fmt::format("    <DataSet timestep=\"{:.9g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", e.time, e.file);
+  for (std::size_t i = 0; i < mark_.times.size(); ++i)
+    text += fmt::format("    <DataSet timestep=\"{:.9g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", mark_.times[i],
+                        entry(name_, form_, i));
   text += "  </Collection>\n</VTKFile>\n";
-  const fs::path pvd_beside = file().string() + ".part";
-  {
-    std::ofstream out(pvd_beside);
-    out << text;
-    if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file().string()));
-  }
-  fs::rename(pvd_beside, file());
+  write_file(file(), text, false);
 }
 
 }  // namespace hosel::post

@@ -38,23 +38,28 @@ VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3
 class VtkSeries {
  public:
   enum class Form { surface, volume };
-  /// Writes DIRECTORY/NAME.pvd and DIRECTORY/NAME/NAME_0000.vt?. With `resume`, the entries of an
-  /// existing .pvd up to that time are kept; otherwise an old series of this name is removed.
-  VtkSeries(std::filesystem::path directory, std::string name, Form form, double resume_after = -1);
+  /// How far a series has come, and what its files hold: enough to go on with it or to see that it was changed.
+  struct Mark {
+    std::vector<double> times = {};
+    std::string digest = {};  ///< of the files, in their order
+  };
+
+  /// Writes DIRECTORY/NAME.pvd and DIRECTORY/NAME/NAME_0000.vt?. The files of `kept` stay; any other of an old series
+  /// of this name is removed.
+  VtkSeries(std::filesystem::path directory, std::string name, Form form, const Mark* kept = nullptr);
   /// Adds one instant. Throws std::runtime_error where the disk refuses, std::invalid_argument where
   /// an array's length does not fit the mesh.
   void write(double time, const VtkMesh& mesh);
   std::filesystem::path file() const;  ///< the .pvd
+  const Mark& mark() const { return mark_; }
+  /// Whether the files that the mark was taken of are there, byte for byte.
+  static bool holds(const std::filesystem::path& directory, const std::string& name, Form form, const Mark& mark);
 
  private:
-  struct Entry {
-    double time;
-    std::string file;
-  };
   std::filesystem::path directory_;
   std::string name_;
   Form form_;
-  std::vector<Entry> entries_;
+  Mark mark_;
 };
 
 }  // namespace hosel::post

@@ -9,6 +9,7 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -148,7 +149,7 @@ class BallRuleJob final : public Job {
     Blow blow = blow_;
     blow.delivery.club_speed = p.club_speed;
     blow.delivery.dynamic_loft = p.dynamic_loft;
-    Launch l = model_->launch(blow);
+    Launch l = models::checked_launch(*model_, blow);
     l.velocity *= c.speed;
     return l;
   }
@@ -156,7 +157,7 @@ class BallRuleJob final : public Job {
   Launch machine(const Test& t, const Change& c) const {
     Blow blow = blow_;
     blow.delivery.club_speed = t.club_speed;
-    const double speed = c.speed * model_->launch(blow).ball_speed();
+    const double speed = c.speed * models::checked_launch(*model_, blow).ball_speed();
     Launch l;
     l.velocity = speed * Vec3(std::cos(t.launch_angle), 0, std::sin(t.launch_angle));
     l.spin = {0, -t.spin_rate, 0};

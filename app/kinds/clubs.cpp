@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/shots.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
@@ -77,10 +79,10 @@ class ClubsJob final : public Job {
     shots_file_ = data.data_file("shots");
     clubs_file_ = data.data_file("clubs");
     Table theory = root.table("theory");
-    theory_mass_ = theory.quantity("head_mass", "kg", Range::positive());
-    theory_speed_ = theory.quantity("club_speed", "mps", Range::positive());
-    other_ball_.mass = theory.quantity("other_ball_mass", "kg", Range::positive(), blow_.ball.mass);
-    other_ball_.radius = theory.quantity("other_ball_radius", "mm", Range::positive(), blow_.ball.radius);
+    theory_mass_ = theory.quantity("head_mass", "kg", limits::head_mass);
+    theory_speed_ = theory.quantity("club_speed", "mps", limits::club_speed);
+    other_ball_.mass = theory.quantity("other_ball_mass", "kg", limits::ball_mass, blow_.ball.mass);
+    other_ball_.radius = theory.quantity("other_ball_radius", "mm", limits::ball_radius, blow_.ball.radius);
   }
 
   void run(Output& out) override {
@@ -100,7 +102,7 @@ class ClubsJob final : public Job {
     for (int i = 1; i < 900; ++i) {
       const double loft = 0.1 * i;
       blow.delivery.dynamic_loft = radians(loft);
-      const Launch l = model->launch(blow);
+      const Launch l = models::checked_launch(*model, blow);
       if (degrees(l.launch_angle()) > peak) peak = degrees(l.launch_angle()), peak_at = loft;
       if (i % 10) continue;
       spin.x.push_back(loft), launch.x.push_back(loft), speed.x.push_back(loft);
@@ -113,7 +115,7 @@ class ClubsJob final : public Job {
       Blow b = blow;
       b.ball = ball;
       b.delivery.dynamic_loft = radians(30);
-      return rpm(model->launch(b).spin_rate()) / std::sin(radians(30));
+      return rpm(models::checked_launch(*model, b).spin_rate()) / std::sin(radians(30));
     };
     const double own = coefficient(blow_.ball), other = coefficient(other_ball_);
     out.say(fmt::format(
@@ -137,7 +139,7 @@ class ClubsJob final : public Job {
     std::array<post::Series, 3> measured, predicted;
     std::array<std::vector<double>, 4> means, prints, singles;
     for (ClubRow& c : clubs) {
-      const Launch l = model->launch(c.blow);
+      const Launch l = models::checked_launch(*model, c.blow);
       c.spin = rpm(l.spin_rate());
       c.launch = degrees(l.launch_angle());
       c.speed = l.ball_speed() / kMpsPerMph;
@@ -245,8 +247,9 @@ class ClubsJob final : public Job {
     Progress progress = out.progress(name);
     for (const ClubRow& c : clubs) {
       progress.update(double(recorded.size()) / double(clubs.size()), c.name);
-      recorded.push_back({c.blow, model->launch(c.blow)});
+      recorded.push_back({c.blow, models::checked_launch(*model, c.blow)});
       const auto found = models::match_launch_angle(*model, c.blow, radians(c.mean[2]), radians(0.05));
+      models::check_launch(found.blow, found.launch);
       matched.push_back({found.blow, found.launch});
     }
     progress.finish();
@@ -302,6 +305,20 @@ class ClubsJob final : public Job {
         if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", clubs_file_.string(), name));
         return sheet.columns[static_cast<std::size_t>(it - sheet.names.begin())][row];
       };
+      const auto value = [&](std::string_view name, std::size_t row, Range si) {
+        const std::string text = cell(name, row);
+        const SplitName split = split_unit(name);
+        double x = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+        const auto fail = [&](const std::string& what) {
+          throw InputError(fmt::format("{}:{}: {}: {}", clubs_file_.string(), sheet.lines[row], name, what));
+        };
+        if (text.empty()) fail("the cell is empty");
+        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x))
+          fail(fmt::format("'{}' is no number", text));
+        if (!si.contains(x * split.unit->si)) fail(fmt::format("{} is {}", text, si.sentence(*split.unit)));
+        return x * split.unit->si;
+      };
       const loop::Column* club = shots.find("club");
       if (!club || club->numeric) throw InputError(fmt::format("{}: no text column 'club'", shots_file_.string()));
       std::vector<ClubRow> rows;
@@ -309,14 +326,14 @@ class ClubsJob final : public Job {
         ClubRow c;
         c.name = cell("club", k);
         c.blow = blow_;
-        c.blow.club.head.mass = std::stod(cell("head_mass_kg", k));
-        c.blow.delivery.club_speed = std::stod(cell("club_speed_mph", k)) * kMpsPerMph;
+        c.blow.club.head.mass = value("head_mass_kg", k, limits::head_mass);
         Delivery& d = c.blow.delivery;
-        d.attack_angle = radians(std::stod(cell("attack_angle_deg", k)));
-        d.club_path = radians(std::stod(cell("club_path_deg", k)));
-        d.face_angle = radians(std::stod(cell("face_angle_deg", k)));
-        d.impact_toe = 1e-3 * std::stod(cell("impact_toe_mm", k));
-        d.impact_high = 1e-3 * std::stod(cell("impact_high_mm", k));
+        d.club_speed = value("club_speed_mph", k, limits::club_speed);
+        d.attack_angle = value("attack_angle_deg", k, limits::angle);
+        d.club_path = value("club_path_deg", k, limits::angle);
+        d.face_angle = value("face_angle_deg", k, limits::angle);
+        d.impact_toe = value("impact_toe_mm", k, limits::impact_place);
+        d.impact_high = value("impact_high_mm", k, limits::impact_place);
         std::array<double, 4> low, high;
         low.fill(INFINITY), high.fill(-INFINITY);
         for (std::size_t row = 0; row < shots.rows(); ++row) {
@@ -328,6 +345,9 @@ class ClubsJob final : public Job {
               throw InputError(
                   fmt::format("{}: no column '{}'", shots_file_.string(), kColumns[static_cast<std::size_t>(i)]));
             s[i] = column->native(row);
+            if (!std::isfinite(s[i]))
+              throw InputError(fmt::format("{}: {}: an empty or broken cell of club '{}'", shots_file_.string(),
+                                           column->name, c.name));
             low[i] = std::min(low[i], s[i]);
             high[i] = std::max(high[i], s[i]);
             c.mean[i] += s[i];
@@ -338,8 +358,12 @@ class ClubsJob final : public Job {
         for (int i = 0; i < 4; ++i) {
           c.mean[i] /= static_cast<double>(c.shots.size());
           c.half_range[i] = (high[i] - low[i]) / 2;
-          c.printed[i] = std::stod(cell(fmt::format("mean_{}", kColumns[static_cast<std::size_t>(i)]), k));
-          c.printed_bar[i] = std::stod(cell(fmt::format("half_range_{}", kColumns[static_cast<std::size_t>(i)]), k));
+          const auto native = [&](const char* what, Range range) {
+            const std::string name = fmt::format("{}_{}", what, kColumns[static_cast<std::size_t>(i)]);
+            return value(name, k, range) / split_unit(name).unit->si;
+          };
+          c.printed[i] = native("mean", Range::finite());
+          c.printed_bar[i] = native("half_range", Range::non_negative());
         }
         for (int i = 0; i < 4; ++i) {
           const double off = c.mean[i] - c.printed[i];
@@ -347,7 +371,7 @@ class ClubsJob final : public Job {
             out.say(
                 fmt::format("{}: the shots' loft column has the mean {:.3f}, no loft (club speed {:g} mph); the "
                             "table's {:g} is taken",
-                            c.name, c.mean[0], std::stod(cell("club_speed_mph", k)), c.printed[0]));
+                            c.name, c.mean[0], c.blow.delivery.club_speed / kMpsPerMph, c.printed[0]));
             c.mean[0] = c.printed[0];
             c.loft_replaced = true;
           } else if (std::abs(off) > resolution[static_cast<std::size_t>(i)]) {
@@ -358,10 +382,10 @@ class ClubsJob final : public Job {
         c.blow.delivery.dynamic_loft = radians(c.mean[0]);
         rows.push_back(c);
       }
+      if (rows.size() < 2)
+        throw InputError(fmt::format("{}: a line through the clubs needs two of them", clubs_file_.string()));
       return rows;
-    } catch (const DataError& e) { throw InputError(e.what()); } catch (const std::invalid_argument&) {
-      throw InputError(fmt::format("{}: a cell is not a number", clubs_file_.string()));
-    }
+    } catch (const DataError& e) { throw InputError(e.what()); }
   }
 
   std::vector<std::string> beside_, calibrated_on_;

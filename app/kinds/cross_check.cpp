@@ -13,6 +13,7 @@
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/post/figure.hpp"
@@ -44,7 +45,7 @@ struct Answer {
 Answer answer(const models::ImpactModel& model, const Blow& blow) {
   Answer a;
   try {
-    a.launch = model.launch(blow);
+    a.launch = models::checked_launch(model, blow);
     const Vec3 n = models::contact_geometry(blow).normal, J = blow.ball.mass * a.launch.velocity;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     a.quantity = {a.launch.contact_time.value_or(nan), a.launch.peak_force.value_or(nan), J.dot(n),

@@ -10,6 +10,7 @@
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/hertz_maw.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/models/stick_slip.hpp"
@@ -80,7 +81,7 @@ class CurvesJob final : public Job {
           x_.parameter->set(options, blow, x);
           std::vector<double> values;
           try {
-            const Launch launch = models::find(models_[m])->make(options)->launch(blow);
+            const Launch launch = models::checked_launch(*models::find(models_[m])->make(options), blow);
             for (const ShotChannel& c : channels_) values.push_back(c.value(launch) / c.si);
           } catch (const std::exception& e) {
             failed.push_back(fmt::format("{}, {} {:g}, {} {:g}: {}", models_[m], column(*family_.parameter),

@@ -10,8 +10,10 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/app/stop.hpp"
 #include "hosel/app/sweep.hpp"
 #include "hosel/app/sweep_store.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/models/hosel_load.hpp"
 #include "hosel/models/registry.hpp"
@@ -82,6 +84,7 @@ class FaceMapJob final : public PointJob {
     grid_ = s.grid;
     reference_ = s.reference;
     extra_ = s.extra_mass;
+    claims_ = s.claims;
     // The maps themselves, then the reference with a heavier head, then each again with finer numerics.
     for (const Variant& v : s.variants) add(file, v, false);
     maps_ = layers_.size();
@@ -116,9 +119,11 @@ class FaceMapJob final : public PointJob {
     blow.delivery.impact_high = grid_.high_at(place);
     const models::ImpactModel& model = *layers_[layer].model;
     const auto* fe = dynamic_cast<const models::FeModel*>(&model);
-    if (!fe) return stored(model.launch(blow));
+    if (!fe) return stored(models::checked_launch(model, blow));
     models::HoselHistory hosel;
+    const StopSignals stop;
     json out = stored(fe->solve(blow, [&](const models::ImpactView& v) {
+                          stop.check();
                           if (v.shaft) hosel.add(*v.shaft, v.state);
                         }).launch);
     if (!hosel.times.empty()) out["hosel"] = stored(hosel);
@@ -175,6 +180,7 @@ class FaceMapJob final : public PointJob {
     double extra_mass = 0;
     std::vector<std::string> refinement;
     std::optional<FlightSetup> flight;
+    std::vector<post::Claim> claims;
   };
 
   /// Every key that a face map knows.
@@ -202,6 +208,17 @@ class FaceMapJob final : public PointJob {
     }
     if (auto e = root.optional_table("equivalent_mass")) s.extra_mass = e->quantity("extra", "g", {1e-5, 0.1}, 5e-3);
     if (auto r = root.optional_table("refinement")) s.refinement = r->texts("set");
+    for (Table t : root.tables("statements")) {
+      post::Claim claim{t.text("text"), {}};
+      const std::vector<std::string> figures = figure_names(s.extra_mass > 0);
+      for (const std::string& where : t.texts("where")) {
+        try {
+          claim.where.emplace_back(where, figures);
+        } catch (const std::invalid_argument& e) { t.fail("where", e.what()); }
+      }
+      if (claim.where.empty()) t.fail("where", "name at least one comparison that bears the statement out");
+      s.claims.push_back(std::move(claim));
+    }
     std::vector<std::string> asked;
     for (const Variant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
@@ -212,10 +229,31 @@ class FaceMapJob final : public PointJob {
     return s;
   }
 
+  /// What statements may speak of.
+  static std::vector<std::string> figure_names(bool with_mass) {
+    const post::FaceMap flat{"", std::vector<std::optional<Launch>>(9, Launch{.velocity = Vec3::UnitX()})};
+    std::vector<std::string> names;
+    for (const post::NamedFigure& f : post::shaft_effect({.columns = 3, .rows = 3}, flat, flat))
+      names.push_back(f.name);
+    if (with_mass)
+      for (const post::NamedFigure& f : mass_figures({0}, 0)) names.push_back(f.name);
+    return names;
+  }
+
+  /// Of the equivalent head mass [kg] over a grid.
+  static std::vector<post::NamedFigure> mass_figures(const std::vector<double>& mass, std::size_t centre) {
+    double sum = 0;
+    for (const double x : mass) sum += x;
+    return {{"equivalent_head_mass_centre_g", 1e3 * mass[centre]},
+            {"equivalent_head_mass_mean_g", 1e3 * sum / double(mass.size())},
+            {"equivalent_head_mass_min_g", 1e3 * std::ranges::min(mass)},
+            {"equivalent_head_mass_max_g", 1e3 * std::ranges::max(mass)}};
+  }
+
   void add(const CaseFile& file, const Variant& variant, bool refined) {
     std::vector<std::string> overrides = file.overrides();
     overrides.insert(overrides.end(), variant.set.begin(), variant.set.end());
-    CaseFile again(file.file(), overrides);
+    CaseFile again(file, overrides);
     Table root = again.root();
     root.text("kind", "face-map");
     root.text("title", "");
@@ -313,13 +351,8 @@ class FaceMapJob final : public PointJob {
     const post::FaceMap &map = all[m], &reference = all[reference_];
     auto figures = post::shaft_effect(grid_, map, reference);
     std::vector<double> mass;
-    const auto with_mass = [&](post::ShaftEffect& e, const std::vector<double>& grams, std::size_t centre) {
-      double sum = 0;
-      for (const double g : grams) sum += g;
-      e.figures.push_back({"equivalent_head_mass_centre_g", 1e3 * grams[centre]});
-      e.figures.push_back({"equivalent_head_mass_mean_g", 1e3 * sum / double(grams.size())});
-      e.figures.push_back({"equivalent_head_mass_min_g", 1e3 * std::ranges::min(grams)});
-      e.figures.push_back({"equivalent_head_mass_max_g", 1e3 * std::ranges::max(grams)});
+    const auto with_mass = [&](std::vector<post::NamedFigure>& f, const std::vector<double>& kg, std::size_t centre) {
+      for (post::NamedFigure& figure : mass_figures(kg, centre)) f.push_back(std::move(figure));
     };
     const double head = layers_[reference_].blow.club.head.mass;
     if (extra_ > 0) {
@@ -338,7 +371,7 @@ class FaceMapJob final : public PointJob {
     }
     // The same figures from the nine coarse points, as computed and with finer numerics: their
     // difference is the numerical uncertainty.
-    std::optional<post::ShaftEffect> as_computed, finer;
+    std::optional<std::vector<post::NamedFigure>> as_computed, finer;
     if (layers_.size() > bases_) {
       const auto complete = [](const post::FaceMap& x) {
         return std::ranges::all_of(x.launches, [](const auto& l) { return l.has_value(); });
@@ -358,12 +391,12 @@ class FaceMapJob final : public PointJob {
     }
     json j;
     out.say(fmt::format("\n{} minus {}", map.title, reference.title));
-    for (std::size_t i = 0; i < figures.figures.size(); ++i) {
-      const auto& [name, value] = figures.figures[i];
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      const auto& [name, value] = figures[i];
       json& figure = j["figures"][name];
       figure["value"] = value;
       if (finer) {
-        const double error = std::abs(finer->figures[i].value - as_computed->figures[i].value);
+        const double error = std::abs((*finer)[i].value - (*as_computed)[i].value);
         figure["uncertainty"] = error;
         out.say(fmt::format("  {:<48} {:>12.5g} +- {:.2g}", name, value, error));
       } else {
@@ -372,9 +405,10 @@ class FaceMapJob final : public PointJob {
     }
     j["uncertainty_source"] = finer ? "finer numerics at the nine corner, edge and centre points"
                                     : "none: no [refinement] declared, or a point of it failed";
-    for (const auto& [text, holds] : figures.statements) {
-      j["statements"].push_back({{"text", text}, {"holds", holds}});
-      out.say(fmt::format("  {}  {}", holds ? "yes" : "NO ", text));
+    for (const post::Claim& claim : claims_) {
+      const bool holds = claim.holds(figures);
+      j["statements"].push_back({{"text", claim.text}, {"holds", holds}});
+      out.say(fmt::format("  {}  {}", holds ? "yes" : "NO ", claim.text));
     }
     return j;
   }
@@ -385,6 +419,7 @@ class FaceMapJob final : public PointJob {
   post::FaceGrid grid_;
   std::size_t reference_ = 0, maps_ = 0, bases_ = 0;  // layers: maps, heavier head, refined
   double extra_ = 0;
+  std::vector<post::Claim> claims_;
   std::vector<Layer> layers_;
   std::vector<Work> work_;
   std::string identity_;

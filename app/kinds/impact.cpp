@@ -10,6 +10,9 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/app/stop.hpp"
+#include "hosel/app/version.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
@@ -66,11 +69,12 @@ class ImpactJob final : public Job {
     for (const Entry& entry : models_) {
       if (const models::FeModel* fe = entry.fe()) {
         const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
+        models::check_launch(blow_, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
       } else {
-        columns.push_back({entry.name, entry.model->launch(blow_)});
+        columns.push_back({entry.name, models::checked_launch(*entry.model, blow_)});
         summary["models"][entry.name] = post::to_json(columns.back().launch);
       }
       note_oblique(blow_, columns.back(), summary["models"][entry.name]);
@@ -115,15 +119,18 @@ class ImpactJob final : public Job {
   models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const fs::path& home,
                            std::vector<fs::path>& files) const {
     if (out.force()) fs::remove(home / "checkpoint.cbor");
-    post::ImpactRecorder recorder(home, blow_, record_, name + "\n" + out.resolved_case());
+    post::ImpactRecorder recorder(home, blow_, record_,
+                                  fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
     if (const models::ImpactCheckpoint* from = recorder.resume())
       out.say(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
                           1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
+    const StopSignals stop;
     const models::FeOutcome outcome = model.solve(
         blow_,
         [&](const models::ImpactView& view) {
           recorder(view);
+          stop.check();
           progress.update(
               std::min(0.99, view.state.time / view.expected_end),
               fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
@@ -153,6 +160,19 @@ class ImpactJob final : public Job {
   /// What the solution was and how well its energy adds up: for the person and the summary.
   nlohmann::json solution(Output& out, const std::string& name, const models::FeImpactResult& r) const {
     const double closure = r.ledger.closure / r.ledger.initial;
+    // What the blow can change is the energy of the relative motion, not that of a head that flies on.
+    const models::Encounter e = models::encounter(blow_);
+    const double head = blow_.club.head.mass, ball = blow_.ball.mass;
+    const double relative = 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) * e.approach.squaredNorm();
+    const auto doubt = [&](const char* what, double value, double limit, const char* remedy) {
+      if (std::abs(value) > limit)
+        out.warn(fmt::format("{}: {} is {:.2g} (wanted: below {:g}): {}", name, what, value, limit, remedy));
+    };
+    doubt("the energy unaccounted for, of that of the relative motion,", r.ledger.closure / relative, 0.005,
+          "more steps_per_contact");
+    doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
+    doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
+          "a higher contact.tangential_penalty");
     out.say(fmt::format(
         "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
         "energy closes to {:.1e} of the initial",
@@ -161,6 +181,9 @@ class ImpactJob final : public Job {
                         {"peak_force_N", r.peak_force},
                         {"peak_time_ms", 1e3 * r.peak_time},
                         {"compression_mm", 1e3 * r.compression},
+                        {"closure_of_relative_energy", r.ledger.closure / relative},
+                        {"penetration_of_compression", r.penetration / r.compression},
+                        {"slip_error_of_compression", r.creep / r.compression},
                         {"penetration_um", 1e6 * r.penetration},
                         {"tangential_creep_um", 1e6 * r.creep},
                         {"steps", r.counts.steps},

@@ -12,6 +12,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/fe_full_club.hpp"
 #include "hosel/models/hosel_load.hpp"
 #include "hosel/models/shaft_coupled.hpp"
@@ -231,7 +232,7 @@ class LoadedClubJob final : public Job {
     fe("club from delivery and hands", &mount);
 
     const auto reduced = [&](const std::string& name, const models::ImpactModel& model) {
-      answers.push_back({.name = name, .launch = model.launch(blow)});
+      answers.push_back({.name = name, .launch = models::checked_launch(model, blow)});
     };
     reduced("volumetric", models::Volumetric(solve_.volumetric, solve_.volumetric_solution));
     models::ShaftImpedanceOptions translation = solve_.shaft_beam;

@@ -14,6 +14,7 @@
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/file.hpp"
 #include "hosel/solvers/random.hpp"
 
 namespace hosel::app {
@@ -38,10 +39,36 @@ void flatten(const json& j, const std::string& name, json& out) {
   }
 }
 
+/// More points than this are a slip of the keys: each is read before anything is computed.
+constexpr std::size_t kMostPoints = 1'000'000;
+
+/// The sweeps that are being read, outermost first: a case that sweeps itself would never end.
+class Nesting {
+ public:
+  Nesting(Table& root, const fs::path& own) : depth_(open().size()) {
+    const fs::path here = fs::weakly_canonical(own);
+    if (std::ranges::find(open(), here) != open().end())
+      root.fail("case", "this sweep names itself, directly or by way of another: it would never end");
+    open().push_back(here);
+  }
+  ~Nesting() { open().resize(depth_); }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+
+ private:
+  static std::vector<fs::path>& open() {
+    thread_local std::vector<fs::path> files;
+    return files;
+  }
+  std::size_t depth_;
+};
+
 class SweepJob final : public PointJob {
  public:
   explicit SweepJob(CaseFile& file) {
     Table root = file.root();
+    const Nesting nesting(root, file.file());
+    title_ = root.text("title", "");
     const std::string named = root.text("case");
     const fs::path beside = file.directory() / named;
     case_ = fs::exists(beside) ? beside : find_case(named);
@@ -49,42 +76,58 @@ class SweepJob final : public PointJob {
     record_ = root.texts("record", std::vector<std::string>{});
     keep_outputs_ = root.flag("keep_outputs", false);
     auto sample = root.optional_table("sample");
-    const auto points = sample ? std::size_t(sample->integer("points", 1, 10'000'000)) : 0;
+    const auto points = sample ? std::size_t(sample->integer("points", 1, long(kMostPoints))) : 0;
     std::mt19937_64 random(sample ? std::uint64_t(sample->integer("seed", 0, 1L << 62)) : 0);
     auto tables = root.tables("parameters");
     if (tables.empty()) root.fail("parameters", "name at least one [[parameters]] with its key");
     size_ = sample ? points : 1;
     for (Table t : tables) {
       Parameter p{t.text("key"), {}};
+      for (const Parameter& other : parameters_)
+        if (same_quantity(p.key, other.key)) t.fail("key", fmt::format("'{}' is swept already", other.key));
       if (sample) {
         const auto range = t.numbers("range", 2);
         for (const double x : solvers::latin_column(range[0], range[1], points, random))
           p.values.push_back(fmt::format("{}", x));
       } else {
         p.values = t.scalars("values");
+        if (size_ > kMostPoints / p.values.size())
+          t.fail("values", fmt::format("with these values the grid has more than {} points", kMostPoints));
         size_ *= p.values.size();
       }
       parameters_.push_back(std::move(p));
     }
     sampled_ = sample.has_value();
     // Every point is read now: a value that the case refuses is an error before anything is computed.
+    swept_ = std::make_unique<CaseFile>(case_);
     for (std::size_t point = 0; point < size_; ++point) {
-      CaseFile one(case_, overrides(point));
+      CaseFile one(*swept_, overrides(point));
       read_job(one);
-      identity_ += digest(one.resolved()) + digest_of_files(one.named_files());
+      identities_.push_back(identity_of(one));
     }
   }
 
   std::size_t size() const override { return size_; }
-  std::string identity() const override { return identity_; }
+  std::string identity() const override {
+    std::string all;
+    for (const std::string& one : identities_) all += one;
+    return all;
+  }
 
   json compute(std::size_t point, const fs::path& scratch) const override {
     // A summary is the last thing a run writes: one that lies here was finished by a killed process.
     if (!fs::exists(scratch / "summary.json")) {
-      CaseFile file(case_, overrides(point));
+      CaseFile file(*swept_, overrides(point));
       const auto job = read_job(file);
-      Output out({.directory = scratch, .quiet = true}, file.resolved());
+      Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file.resolved());
       job->run(out);
+      if (identity_of(file) != identities_[point]) {
+        fs::remove(scratch / "summary.json");
+        throw InputError(
+            fmt::format("{}: a file that this case names has changed since the sweep began: its points "
+                        "would not belong together; run the sweep again",
+                        file.file().string()));
+      }
     }
     std::ifstream in(scratch / "summary.json");
     json result = json::object();
@@ -135,6 +178,17 @@ class SweepJob final : public PointJob {
   }
 
  private:
+  /// What one point is computed from besides the program.
+  static std::string identity_of(const CaseFile& one) {
+    return post::digest(one.resolved()) + digest_of_files(one.named_files());
+  }
+
+  /// The same key, or the same quantity in another unit.
+  static bool same_quantity(const std::string& a, const std::string& b) {
+    const SplitName x = split_unit(a), y = split_unit(b);
+    return a == b || (x.unit && y.unit && x.stem == y.stem);
+  }
+
   /// The first parameter changes slowest.
   const std::string& value(std::size_t parameter, std::size_t point) const {
     const auto& values = parameters_[parameter].values;
@@ -173,7 +227,7 @@ class SweepJob final : public PointJob {
     while (across < parameters_.size() && numbers(across).empty()) ++across;
     if (across == parameters_.size()) return;
     const std::vector<double> x = numbers(across);
-    post::Figure figure{.title = case_.filename().string(), .columns = 2};
+    post::Figure figure{.title = title_, .columns = 2};
     for (const std::string& c : record_) {
       post::Series series{.style = sampled_ || parameters_.size() > 1 ? "points" : "linespoints"};
       for (std::size_t i = 0; i < points.size(); ++i)
@@ -188,12 +242,14 @@ class SweepJob final : public PointJob {
     if (const std::string why = post::draw(figure, out.path("figures/sweep")); !why.empty()) out.say(why);
   }
 
+  std::string title_;
   fs::path case_;
+  std::unique_ptr<CaseFile> swept_;  ///< as it was when the sweep was read
   std::vector<std::string> set_, record_;
   bool keep_outputs_ = false, sampled_ = false;
   std::vector<Parameter> parameters_;
   std::size_t size_ = 0;
-  std::string identity_;
+  std::vector<std::string> identities_;  ///< of the points
 };
 
 }  // namespace

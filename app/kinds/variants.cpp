@@ -10,6 +10,7 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/models/ball_calibration.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
@@ -49,7 +50,7 @@ class VariantsJob final : public Job {
     for (std::size_t i = 0; i < first.size(); ++i) {
       std::vector<std::string> overrides = first[i].set;  // the command line has the last word
       overrides.insert(overrides.end(), file.overrides().begin(), file.overrides().end());
-      CaseFile own(file.file(), overrides);
+      CaseFile own(file, overrides);
       variants_.push_back(read(own.root()).at(i));
       own.root().text("kind");
       own.root().text("title", "");
@@ -117,7 +118,7 @@ class VariantsJob final : public Job {
         blow = std::move(found.blow);
         a.launch = found.launch;
       } else {
-        a.launch = model->launch(blow);
+        a.launch = models::checked_launch(*model, blow);
       }
       a.loft = blow.delivery.dynamic_loft;
       a.e_t = models::tangential_restitution(blow, a.launch).value_or(NAN);

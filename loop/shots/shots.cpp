@@ -14,6 +14,16 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 5> kBookkeeping = {"shot", "club", "ball", "player", "session"};
 
+/// Two names of the same length but for one letter: added, left out, replaced, or swapped with its neighbour.
+bool misspelt(std::string_view name, std::string_view meant) {
+  if (name == meant || name.size() + 1 < meant.size() || name.size() > meant.size() + 1) return false;
+  const auto [a, b] = std::ranges::mismatch(name, meant);
+  const std::string_view x(a, name.end()), y(b, meant.end());
+  if (name.size() < meant.size()) return x == y.substr(1);
+  if (name.size() > meant.size()) return x.substr(1) == y;
+  return x.substr(1) == y.substr(1) || (x.size() > 1 && x[0] == y[1] && x[1] == y[0] && x.substr(2) == y.substr(2));
+}
+
 /// The step of the recording: 10^-d for the most digits that at least 2 % of the cells carry; a coarser
 /// step that all values share (100 rpm recorded without decimals) is found from the values.
 double resolution(const std::vector<std::string>& cells, const std::vector<double>& native) {
@@ -61,6 +71,22 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
     c.role = Role::output;
     wanted = quantity(*o).dimension;
   }
+  if (!wanted && c.role == Role::other) {
+    const auto spelling = [&](std::string_view stem) {
+      if (misspelt(c.stem, stem))
+        throw DataError(
+            fmt::format("{}:1: column '{}' is no quantity of a shot; did you mean '{}'? (rename it where it is another "
+                        "quantity)",
+                        sheet.file, header, stem));
+    };
+    for (int k = 0; k < kInputs; ++k) spelling(stem(Input(k)));
+    for (int k = 0; k < kOutputs; ++k) spelling(stem(Output(k)));
+  }
+  // An input that is not recognised would count as zero.
+  if (!wanted && !split.unit)
+    for (int k = 0; k < kInputs; ++k)
+      if (header == stem(Input(k)) || header.starts_with(fmt::format("{}_", stem(Input(k)))))
+        wanted = quantity(Input(k)).dimension;
   if (wanted && (!split.unit || split.unit->dimension != *wanted))
     throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
 

@@ -291,8 +291,8 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
     }
     const Eigen::MatrixXf A = S * U, B = P * V;
     for (int b = 0; b < batch && done + b < flips; ++b)
-      largest.push_back(
-          double(std::max(A.row(b).cwiseAbs().maxCoeff(), V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
+      largest.push_back(double(std::max(U.cols() ? A.row(b).cwiseAbs().maxCoeff() : 0.0F,
+                                        V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
   }
   std::ranges::sort(largest);
   double top = 0;

@@ -160,45 +160,105 @@ TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
   EXPECT_GT(bounds[1] - bounds[0], 2e-3);
 }
 
-TEST(ImpactCase, KilledRunLeavesSeriesThatOpenAndGoesOn) {
-  const fs::path out = fresh_directory("killed") / "out";
+/// Every file below a finished run but its log, by name.
+std::map<std::string, std::string> files(const fs::path& out) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(out)) {
+    const std::string name = fs::relative(entry.path(), out);
+    if (entry.is_regular_file() && name != "log.txt" && name != ".lock") all[name] = content(entry.path());
+  }
+  return all;
+}
+
+void expect_same_files(const fs::path& out, const std::map<std::string, std::string>& whole) {
+  const auto mine = files(out);
+  for (const auto& [name, bytes] : whole) {
+    ASSERT_TRUE(mine.contains(name)) << name;
+    EXPECT_TRUE(mine.at(name) == bytes) << name << " differs";
+  }
+  EXPECT_EQ(mine.size(), whole.size());
+}
+
+/// Starts the coarse full club and ends it by `number` once a frame is there.
+int ended_at_frame(const fs::path& out, int frame, int number) {
   const pid_t child = fork();
   if (child == 0) {
     const std::string line = "exec " HOSEL_COMMAND " " + coarse_full_club() + out.string() + " >/dev/null 2>&1";
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
     _exit(127);
   }
-  const auto written = [&] { return fs::exists(out / "vtk" / "ball" / "ball_0006.vtu"); };
+  char name[32];
+  std::snprintf(name, sizeof name, "ball_%04d.vtu", frame);
+  const auto written = [&] { return fs::exists(out / "vtk" / "ball" / name); };
   int status = 0;
-  while (!written() && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ASSERT_TRUE(written());
-  ASSERT_EQ(kill(child, SIGKILL), 0);
+  while (!written() && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_TRUE(written());
+  EXPECT_EQ(kill(child, number), 0);
   waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "the run had ended before it was killed";
+  return status;
+}
+
+TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
+  const fs::path whole = fresh_directory("whole") / "out";
+  ASSERT_EQ(command(coarse_full_club() + whole.string()).status, 0);
+  const auto expected = files(whole);
+  ASSERT_GT(expected.size(), 60u);
+
+  // Killed outright, then asked to stop, then finished.
+  const fs::path out = fresh_directory("stopped") / "out";
+  const int killed = ended_at_frame(out, 10, SIGKILL);
+  ASSERT_TRUE(WIFSIGNALED(killed)) << "the run had ended before it was killed";
   EXPECT_FALSE(fs::exists(out / "summary.json"));
   for (const char* body : {"ball", "face", "head", "shaft"}) {
     const std::vector<Frame> series = frames(out / "vtk" / (std::string(body) + ".pvd"));
-    ASSERT_GE(series.size(), 5u) << body;
+    ASSERT_GE(series.size(), 8u) << body;
     for (const Frame& frame : series) EXPECT_GT(read(frame.file)->GetNumberOfPoints(), 0) << frame.file;
   }
-  EXPECT_GT(columns(out / "history.csv").at("time_s").size(), 5u);
-
-  // The same command again goes on from there and ends where an uninterrupted run ends.
-  const fs::path whole = fresh_directory("whole") / "out";
-  ASSERT_EQ(command(coarse_full_club() + whole.string()).status, 0);
-  const Outcome again = command(coarse_full_club() + out.string());
-  ASSERT_EQ(again.status, 0) << again.text;
+  const int asked = ended_at_frame(out, 17, SIGTERM);
+  ASSERT_TRUE(WIFEXITED(asked));
+  EXPECT_EQ(WEXITSTATUS(asked), 143);
   EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
-  const auto speed = [](const fs::path& run) {
-    return nlohmann::json::parse(content(run / "summary.json"))["models"]["fe-full-club"]["ball_speed_mps"]
-        .get<double>();
-  };
-  EXPECT_NEAR(speed(out), speed(whole), 1e-4);  // Newton's tolerance: factors are not kept
-  const auto times = columns(out / "history.csv").at("time_s"), expected = columns(whole / "history.csv").at("time_s");
-  ASSERT_EQ(times.size(), expected.size());
-  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-12);
-  EXPECT_EQ(frames(out / "vtk" / "ball.pvd").size(), frames(whole / "vtk" / "ball.pvd").size());
-  EXPECT_FALSE(fs::exists(out / "checkpoint.cbor"));
+  const fs::path without = fresh_directory("no_history") / "out";
+  fs::copy(out, without, fs::copy_options::recursive);
+  ASSERT_EQ(command(coarse_full_club() + out.string()).status, 0);
+  EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
+  expect_same_files(out, expected);
+
+  // A history that is gone, a frame that is cut: nothing to go on from, the run begins afresh.
+  fs::remove(without / "history.csv");
+  fs::resize_file(without / "vtk/patch/patch_0003.vtp", 200);
+  ASSERT_EQ(command(coarse_full_club() + without.string()).status, 0);
+  EXPECT_EQ(content(without / "log.txt").find("goes on from t = "), std::string::npos);
+  expect_same_files(without, expected);
+}
+
+TEST(ImpactCase, TwoRunsInOneDirectoryAreOneTooMany) {
+  const fs::path out = fresh_directory("locked") / "out";
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string line = "exec " HOSEL_COMMAND " " + coarse_full_club() + out.string() + " >/dev/null 2>&1";
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  while (!fs::exists(out / "history.csv")) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const Outcome second = command(coarse_full_club() + out.string());
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.text.find("process " + std::to_string(child) + " on "), std::string::npos) << second.text;
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+TEST(ImpactCase, ADiskThatIsFullIsSaidInWords) {
+  const fs::path out = fresh_directory("full") / "out";
+  FILE* pipe = popen(("ulimit -f 40; " HOSEL_COMMAND " " + coarse_full_club() + out.string() + " 2>&1").c_str(), "r");
+  std::string text;
+  for (char buffer[512]; fgets(buffer, sizeof buffer, pipe);) text += buffer;
+  EXPECT_EQ(WEXITSTATUS(pclose(pipe)), 1) << text;
+  EXPECT_NE(text.find("cannot be written: File too large"), std::string::npos) << text;
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1) << text;
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{"out_of_range", "club_speed_mps = 45.0", "club_speed_mps = 450.0", 4, "club_speed_mps",
                               "0 to 150 mps"},
                     Malformed{"not_a_number", "mass_kg = 0.2", "mass_kg = nan", 7, "mass_kg", "nan"},
-                    Malformed{"negative_mass", "mass_kg = 0.2", "mass_kg = -0.2", 7, "mass_kg", "above 0 kg"},
+                    Malformed{"negative_mass", "mass_kg = 0.2", "mass_kg = -0.2", 7, "mass_kg", "0.01 to 5 kg"},
                     Malformed{"impossible_inertia", "4.8e-4", "9.8e-4", 9, "inertia_kg_m2", "exceeds the sum"},
                     Malformed{"text_for_number", "club_speed_mps = 45.0", "club_speed_mps = \"fast\"", 4,
                               "club_speed_mps", "expected a number"},

@@ -15,6 +15,7 @@
 
 #include "build_info.hpp"
 #include "command.hpp"
+#include "hosel/post/file.hpp"
 
 extern char** environ;
 
@@ -22,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace hosel::test;
+namespace post = hosel::post;
 
 const std::string kSample = R"(kind = "sweep"
 case = "../blow"
@@ -148,10 +150,12 @@ TEST(Sweep, MixedCasesAndVersionsAreRefused) {
 
   const fs::path points = dir / "out" / "shards" / "1-of-1" / "points.jsonl";
   const std::string good = content(points);
-  std::string other = good;  // as written by another build
-  const std::size_t at = other.find("fingerprint\":\"") + 14;
-  other[at] = other[at] == '0' ? '1' : '0';
-  write(points, other);
+  // As written by another build.
+  nlohmann::json header = nlohmann::json::parse(good.substr(0, good.find('\n')));
+  header["fingerprint"] = "another";
+  header.erase("check");
+  header["check"] = post::digest(header.dump());
+  write(points, header.dump() + good.substr(good.find('\n')));
   Outcome o = command("sweep merge " + out);
   EXPECT_EQ(o.status, 2);
   EXPECT_NE(o.text.find("another version"), std::string::npos) << o.text;
@@ -273,6 +277,94 @@ TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
   ASSERT_EQ(command("sweep plan " + (dir / "sweep").string() + " --out " + (dir / "out").string()).status, 0);
   for (const char* shard : {"0/2", "3/2", "1", "a/b", "1/2x"})
     EXPECT_EQ(command("sweep run " + (dir / "out").string() + " --shard " + shard).status, 2) << shard;
+}
+
+TEST(Sweep, AChangedBitOfAStoreIsNotTakenForAResult) {
+  const fs::path dir = sweep_case("sweep_bits", kSample);
+  const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
+  ASSERT_EQ(command("sweep plan " + sweep + " --set sample.points=12 --out " + out).status, 0);
+  ASSERT_EQ(command("sweep run " + out + " --quiet").status, 0);
+  ASSERT_EQ(command("sweep merge " + out + " --quiet").status, 0);
+  const std::string table = content(dir / "out/sweep.csv");
+  const fs::path points = dir / "out/shards/1-of-1/points.jsonl";
+  const std::string good = content(points);
+  std::mt19937 random(9);
+  int refused = 0;
+  for (int k = 0; k < 24; ++k) {
+    std::string bad = good;
+    bad[random() % bad.size()] ^= char(1 << random() % 8);
+    write(points, bad);
+    const Outcome o = command("sweep merge " + out + " --quiet --force");
+    ASSERT_TRUE(o.status == 2 || content(dir / "out/sweep.csv") == table) << "flip " << k;
+    refused += o.status == 2;
+  }
+  EXPECT_GT(refused, 20);
+  write(points, good);
+  write(dir / "out/plan.json", content(dir / "out/plan.json").substr(0, 60));
+  const Outcome o = command("sweep merge " + out + " --force");
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("the plan is damaged"), std::string::npos) << o.text;
+}
+
+TEST(Sweep, ASweepThatNamesItselfIsRefused) {
+  const fs::path dir = sweep_case("sweep_self", kSample);
+  std::string self = kSample;
+  self.replace(self.find("../blow"), 7, "../sweep");
+  write(dir / "sweep/case.toml", self);
+  Outcome o = command("check " + (dir / "sweep").string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("names itself"), std::string::npos) << o.text;
+  // By way of another.
+  self.replace(self.find("../sweep"), 8, "../other");
+  write(dir / "sweep/case.toml", self);
+  self.replace(self.find("../other"), 8, "../sweep");
+  write(dir / "other/case.toml", self);
+  o = command("check " + (dir / "sweep").string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("names itself"), std::string::npos) << o.text;
+}
+
+TEST(Sweep, AGridTooLargeToCountIsRefused) {
+  std::string text = "kind = \"sweep\"\ncase = \"../blow\"\n";
+  const char* keys[] = {"club_speed_mps", "attack_angle_deg", "club_path_deg", "dynamic_loft_deg",
+                        "face_angle_deg", "impact_toe_mm",    "impact_high_mm"};
+  for (const char* key : keys) {
+    text += std::string("[[parameters]]\nkey = \"delivery.") + key + "\"\nvalues = [1.0";
+    for (int i = 1; i < 1024; ++i) text += ",1.0";  // 1024^7 is 2^70, zero in 64 bits
+    text += "]\n";
+  }
+  const fs::path dir = sweep_case("sweep_large", text);
+  const Outcome o = command("check " + (dir / "sweep").string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("more than 1000000 points"), std::string::npos) << o.text;
+}
+
+TEST(Sweep, AKeySweptTwiceIsRefused) {
+  for (const char* again : {"club_speed_mps", "club_speed_mph"}) {
+    const fs::path dir =
+        sweep_case("sweep_twice", kSample + "[[parameters]]\nkey = \"delivery." + again + "\"\nrange = [40.0, 45.0]\n");
+    const Outcome o = command("check " + (dir / "sweep").string());
+    EXPECT_EQ(o.status, 2);
+    EXPECT_NE(o.text.find("'delivery.club_speed_mps' is swept already"), std::string::npos) << o.text;
+  }
+}
+
+TEST(Sweep, AnEditHalfWayMixesNothing) {
+  const fs::path dir = sweep_case("sweep_edit", kSample);
+  const std::string sweep = (dir / "sweep").string();
+  ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "whole").string()).status, 0);
+  Outcome o;
+  std::thread run([&] { o = command("run " + sweep + " --quiet --out " + (dir / "out").string()); });
+  const fs::path points = dir / "out/shards/1-of-1/points.jsonl";
+  while (!fs::exists(points) || lines(points) < 20) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  std::string blow = kEccentricBlow;
+  blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
+  write(dir / "blow/case.toml", blow);
+  const bool in_time = !fs::exists(dir / "out/sweep.csv");
+  run.join();
+  ASSERT_TRUE(in_time) << "the sweep had ended before the edit";
+  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_EQ(content(dir / "out/sweep.csv"), content(dir / "whole/sweep.csv"));
 }
 
 }  // namespace

@@ -93,6 +93,36 @@ INSTANTIATE_TEST_SUITE_P(
                              for (int k = 0; k < 40; ++k) o << 40 + k % 7 << ",0,12,,,\n";
                            },
                            "insufficient", "\"read\":40"},
+                    Broken{"repeated_shot",
+                           [](std::ostream& o) {
+                             o << kHeader;
+                             for (int k = 0; k < 40; ++k) o << row(3, false);
+                           },
+                           "unexplained", "\"read\":40"},
+                    Broken{"three_shots_repeated",
+                           [](std::ostream& o) {
+                             o << kHeader;
+                             for (int k = 0; k < 60; ++k) o << row(k % 3, false);
+                           },
+                           nullptr, ""},
+                    Broken{"latin_1",
+                           [](std::ostream& o) {
+                             o << "player," << kHeader;
+                             for (int k = 0; k < 40; ++k) o << "Bj\xF6rn," << row(k, false);
+                           },
+                           nullptr, "shots.csv:2: not UTF-8"},
+                    Broken{"misspelt_input",
+                           [](std::ostream& o) {
+                             o << "impact_tow_mm," << kHeader;
+                             for (int k = 0; k < 40; ++k) o << k % 9 << "," << row(k, false);
+                           },
+                           nullptr, "did you mean 'impact_toe'"},
+                    Broken{"input_without_unit",
+                           [](std::ostream& o) {
+                             o << "impact_toe_mn," << kHeader;
+                             for (int k = 0; k < 40; ++k) o << k % 9 << "," << row(k, false);
+                           },
+                           nullptr, "needs a unit of length"},
                     Broken{"million_rows", [](std::ostream& o) { rows(o, 1'000'000); }, nullptr, "1000000 rows"}),
     [](const auto& info) { return std::string(info.param.name); });
 

@@ -1,0 +1,46 @@
+#include "hosel/app/stop.hpp"
+
+#include <csignal>
+#include <mutex>
+#include <string>
+
+namespace hosel::app {
+namespace {
+
+volatile std::sig_atomic_t asked = 0;  // the signal that has come
+std::mutex guard;
+int watching = 0;  // StopSignals alive: points of a sweep may have one each
+struct sigaction before_int, before_term;
+
+extern "C" void note(int number) { asked = number; }
+
+}  // namespace
+
+Stopped::Stopped(int number)
+    : std::runtime_error(std::string("stopped by ") + (number == SIGINT ? "SIGINT" : "SIGTERM") +
+                         "; the same command goes on from where it was"),
+      signal_(number) {}
+
+StopSignals::StopSignals() {
+  const std::lock_guard lock(guard);
+  if (watching++) return;
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &before_int);
+  sigaction(SIGTERM, &action, &before_term);
+}
+
+StopSignals::~StopSignals() {
+  const std::lock_guard lock(guard);
+  if (--watching) return;
+  sigaction(SIGINT, &before_int, nullptr);
+  sigaction(SIGTERM, &before_term, nullptr);
+}
+
+void StopSignals::check() const {
+  if (asked) throw Stopped(asked);
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,30 @@
+/// A run that is asked to stop (SIGINT, SIGTERM) ends between two steps, with its checkpoint on disk.
+#pragma once
+
+#include <stdexcept>
+
+namespace hosel::app {
+
+/// Thrown where a run stops because it was asked to; the program ends with 128 + signal.
+class Stopped : public std::runtime_error {
+ public:
+  explicit Stopped(int number);
+  int signal() const { return signal_; }
+
+ private:
+  int signal_;
+};
+
+/// While one of these lives, the signals are noted and not obeyed at once; a second one ends the program on the spot.
+/// Work that leaves nothing to go on from needs none: it is ended by the signal itself.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+  /// Throws Stopped where a signal has come. From any thread.
+  void check() const;
+};
+
+}  // namespace hosel::app

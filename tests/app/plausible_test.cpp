@@ -1,0 +1,142 @@
+// No nonsense with status 0: what no club, ball or blow can be is refused where it stands, with the reason.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "command.hpp"
+#include "hosel/models/checked_launch.hpp"
+#include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/models/rigid_planar.hpp"
+#include "hosel/solvers/errors.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel::test;
+using namespace hosel;
+
+struct Nonsense {
+  const char* name;
+  const char* set;   ///< overrides, each in quotes
+  const char* says;  ///< part of the one line of the error
+  int status = 2;
+};
+
+class Implausible : public testing::TestWithParam<Nonsense> {};
+
+TEST_P(Implausible, IsRefusedInOneLine) {
+  const Nonsense& n = GetParam();
+  const fs::path dir = fresh_directory(std::string("implausible_") + n.name);
+  write(dir / "case.toml", kEccentricBlow);
+  const Outcome o = command("run " + dir.string() + " " + n.set + " --quiet --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, n.status) << o.text;
+  EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
+  EXPECT_NE(o.text.find(n.says), std::string::npos) << o.text;
+  EXPECT_FALSE(fs::exists(dir / "out" / "summary.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Blow, Implausible,
+    testing::Values(
+        Nonsense{"heavy_head", "--set head.mass_kg=200", "a clubhead weighs"},
+        Nonsense{"cg_before_face", "--set 'head.cg_mm=[35,0,0]'", "35 mm in front of the face"},
+        Nonsense{"cg_far_off", "--set 'head.cg_mm=[-3500,0,0]'", "a clubhead is no larger"},
+        Nonsense{"huge_inertia", "--set 'head.inertia_kg_m2=[[2,0,0],[0,2,0],[0,0,2]]'", "radius of gyration"},
+        Nonsense{"no_inertia", "--set 'head.inertia_kg_m2=[[1e-9,0,0],[0,1e-9,0],[0,0,1e-9]]'", "radius of gyration"},
+        Nonsense{"restitution_creates", "--set contact.restitution=1.2", "creates energy"},
+        Nonsense{"restitution_negative",
+                 "--set contact.restitution_slope_s_per_m=-0.1 --set delivery.club_speed_mps=50",
+                 "coefficient of restitution comes to -"},
+        Nonsense{"restitution_above_one", "--set contact.restitution_slope_s_per_m=0.05",
+                 "coefficient of restitution comes to"},
+        Nonsense{"set_is_named", "--set delivery.club_speed_mps=450", "--set delivery.club_speed_mps=450: "},
+        Nonsense{"unknown_unit", "--set delivery.impact_toe_furlongs=1",
+                 "no unit 'furlongs' is known, expected a length (impact_toe_m, "},
+        Nonsense{"article", "--set delivery.dynamic_loft_mps=1", "is a speed, expected an angle"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Plausible, MissingTableIsNamedWithoutColons) {
+  const fs::path dir = fresh_directory("grammar");
+  write(dir / "case.toml", "kind = \"impact\"\nmodels = [\"rigid-planar\"]\n");
+  const Outcome o = command("check " + dir.string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("case.toml:1: table '[head]' is missing"), std::string::npos) << o.text;
+}
+
+TEST(Plausible, CheckShowsTheSetThatAModelUsesByDefault) {
+  const fs::path dir = fresh_directory("default_table");
+  write(dir / "case.toml", kEccentricBlow);
+  const Outcome o = command("check " + dir.string() + " --set 'models=[\"volumetric\"]'");
+  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("published = \"driver\""), std::string::npos) << o.text;
+}
+
+TEST(Plausible, ABlowWithoutAClubHasNoLaunch) {
+  Blow blow;
+  blow.delivery.club_speed = 45;
+  EXPECT_THROW(models::RigidEccentric().launch(blow), std::invalid_argument);
+  EXPECT_THROW(models::RigidPlanar().launch(blow), std::invalid_argument);
+  EXPECT_THROW(models::HertzMaw({}, {}).launch(blow), std::invalid_argument);
+  EXPECT_THROW(models::RigidEccentric().launch(Blow{}), std::invalid_argument);
+}
+
+TEST(Plausible, TheGateKeepsOutWhatCreatesEnergy) {
+  Blow blow;
+  blow.delivery = {.club_speed = 45, .dynamic_loft = 0.2};
+  blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal()};
+  Launch launch = models::checked_launch(models::RigidEccentric(), blow);
+  ASSERT_GT(launch.ball_speed(), 50);
+  Launch faster = launch;
+  faster.velocity *= 1.5;  // 2.25 times the ball's energy: more than the blow lost
+  EXPECT_THROW(models::check_launch(blow, faster), solvers::NonConvergence);
+  Launch broken = launch;
+  broken.spin.x() = NAN;
+  EXPECT_THROW(models::check_launch(blow, broken), solvers::NonConvergence);
+  broken = launch;
+  broken.peak_force = INFINITY;
+  EXPECT_THROW(models::check_launch(blow, broken), solvers::NonConvergence);
+  // A wall: the ball leaves it no faster than it came.
+  blow.club.head.mass = INFINITY;
+  launch = models::checked_launch(models::RigidEccentric(), blow);
+  launch.velocity *= 1.3;
+  EXPECT_THROW(models::check_launch(blow, launch), solvers::NonConvergence);
+}
+
+TEST(Plausible, ExtremeLawsEndInALaunchOrASentence) {
+  const fs::path dir = fresh_directory("extreme");
+  write(dir / "case.toml", kEccentricBlow);
+  int refused = 0;
+  for (const char* set : {"modulus_MPa=1e-300", "modulus_MPa=1e300", "damping_s_per_m=1e300", "friction=1e300",
+                          "friction=1e-300", "poisson=0.5"}) {
+    const Outcome o = command("run " + dir.string() +
+                              " --set 'models=[\"hertz-maw\"]' --set hertz_maw.springs=64 --set " + "hertz_maw." + set +
+                              " --quiet --force --out " + (dir / "out").string());
+    EXPECT_TRUE(o.status == 0 || o.status == 2 || o.status == 3) << set << ": " << o.status << ' ' << o.text;
+    EXPECT_LE(std::ranges::count(o.text, '\n'), 1) << o.text;
+    refused += o.status != 0;
+  }
+  EXPECT_GE(refused, 1);
+}
+
+/// The clubs table of the irons with one cell replaced.
+class ClubsTable : public testing::TestWithParam<const char*> {};
+
+TEST_P(ClubsTable, TakesNoCellThatIsNoNumber) {
+  const fs::path source = fs::path(HOSEL_SOURCE_DIR) / "cases/rolling-irons";
+  const fs::path dir = fresh_directory("clubs_cell");
+  fs::copy(source, dir / "case");
+  std::string table = content(dir / "case/club_means.csv");
+  const auto from = table.find(',', table.find('\n')) + 1;  // the first club's mass
+  table.replace(from, table.find(',', from) - from, GetParam());
+  write(dir / "case/club_means.csv", table);
+  const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find("club_means.csv:2: head_mass_kg: "), std::string::npos) << o.text;
+  EXPECT_FALSE(fs::exists(dir / "out/summary.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cell, ClubsTable, testing::Values("", "nan", "inf", "-0.25", "0x1p-2", "0.25kg", "25"));
+
+}  // namespace

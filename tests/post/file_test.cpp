@@ -1,0 +1,134 @@
+// Files are whole or not there; histories and checkpoints are what they were, or are not gone on from.
+#include "hosel/post/file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "hosel/post/checkpoint.hpp"
+
+namespace hosel::post {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path fresh(const char* name) {
+  const fs::path dir = fs::path(testing::TempDir()) / (std::string(name) + std::to_string(getpid()));
+  fs::remove_all(dir);
+  fs::create_directories(dir);
+  return dir;
+}
+
+std::size_t entries(const fs::path& dir) {
+  return std::size_t(std::distance(fs::directory_iterator(dir), fs::directory_iterator{}));
+}
+
+TEST(File, WritersSideBySideLeaveOneOfTheirFiles) {
+  const fs::path dir = fresh("hosel_file_race");
+  const std::string a(300'000, 'a'), b(200'000, 'b');
+  std::jthread one([&] {
+    for (int i = 0; i < 30; ++i) write_file(dir / "x", a, false);
+  });
+  for (int i = 0; i < 30; ++i) write_file(dir / "x", b, false);
+  one.join();
+  const std::string left = read_file(dir / "x");
+  EXPECT_TRUE(left == a || left == b);
+  EXPECT_EQ(entries(dir), 1u);
+}
+
+TEST(File, ARefusedWriteLeavesTheOldFileAndSaysWhy) {
+  const fs::path dir = fresh("hosel_file_limit");
+  write_file(dir / "x", "old");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = 1000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string said;
+  try {
+    write_file(dir / "x", std::string(5000, 'n'));
+  } catch (const std::runtime_error& e) { said = e.what(); }
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(said.find("File too large"), std::string::npos) << said;
+  EXPECT_EQ(read_file(dir / "x"), "old");
+  EXPECT_EQ(entries(dir), 1u);
+}
+
+TEST(History, GoesOnOnlyWithWhatItWrote) {
+  const fs::path file = fresh("hosel_history") / "history.csv";
+  const auto write = [](History& h, int from, int to) {
+    for (int i = from; i < to; ++i) h.write(std::vector{0.1 * i, double(i)});
+  };
+  History::Mark mark;
+  std::string whole;
+  {
+    History h(file, {"time_s", "x_m"});
+    write(h, 0, 5);
+    mark = h.mark();
+    write(h, 5, 9);
+    whole = read_file(file);
+  }
+  {
+    History h(file, {"time_s", "x_m"}, &mark);
+    write(h, 5, 9);
+  }
+  EXPECT_EQ(read_file(file), whole);
+  ASSERT_TRUE(History::holds(file, mark));
+  std::string changed = whole;
+  changed[20] ^= 1;
+  write_file(file, changed);
+  EXPECT_FALSE(History::holds(file, mark));
+  write_file(file, whole.substr(0, 30));
+  EXPECT_FALSE(History::holds(file, mark));
+  fs::remove(file);
+  EXPECT_FALSE(History::holds(file, mark));
+  EXPECT_THROW(History(file, {"time_s", "x_m"}, &mark), std::runtime_error);
+}
+
+SavedImpact some_impact() {
+  SavedImpact s;
+  s.impact.solver.state.time = 1e-4;
+  s.impact.solver.state.q = Eigen::VectorXd::Random(40);
+  s.impact.solver.state.v = s.impact.solver.state.a = s.impact.solver.auxiliary = Eigen::VectorXd::Random(40);
+  s.impact.solver.ledger.strain = {{"ball", 1.5}};
+  s.impact.solver.history = {1, 2, 3};
+  s.history = {12, "history"};
+  s.series["ball"] = {{0, 1e-5}, "ball"};
+  return s;
+}
+
+TEST(Checkpoint, ReadsBackToTheLastBit) {
+  const fs::path file = fresh("hosel_checkpoint") / "checkpoint.cbor";
+  const SavedImpact saved = some_impact();
+  save_checkpoint(file, "run", saved);
+  const auto back = load_checkpoint(file, "run");
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->impact.solver.state.q, saved.impact.solver.state.q);
+  EXPECT_EQ(back->history.rows, 12);
+  EXPECT_EQ(back->series.at("ball").times, saved.series.at("ball").times);
+  EXPECT_FALSE(load_checkpoint(file, "another case")) << "of another case or another build";
+}
+
+TEST(Checkpoint, FiveHundredDamagedOnesAreNotGoneOnFrom) {
+  const fs::path file = fresh("hosel_checkpoint_bits") / "checkpoint.cbor";
+  save_checkpoint(file, "run", some_impact());
+  const std::string good = read_file(file);
+  std::mt19937 random(7);
+  for (int k = 0; k < 500; ++k) {
+    std::string bad = good;
+    if (k % 5 == 4) bad.resize(random() % bad.size());
+    else bad[random() % bad.size()] ^= char(1 << random() % 8);
+    write_file(file, bad, false);
+    ASSERT_FALSE(load_checkpoint(file, "run")) << "damage " << k;
+  }
+  write_file(file, good);
+  EXPECT_TRUE(load_checkpoint(file, "run"));
+}
+
+}  // namespace
+}  // namespace hosel::post
