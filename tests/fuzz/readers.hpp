@@ -15,9 +15,9 @@
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_series.hpp"
 #include "hosel/app/sweep_store.hpp"
-#include "hosel/loop/csv.hpp"
-#include "hosel/loop/shots.hpp"
+#include "hosel/loop/shots/shots.hpp"
 #include "hosel/post/checkpoint.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/file.hpp"
 
 namespace hosel::fuzz {
@@ -42,8 +42,8 @@ inline void read_case(std::string_view bytes) {
 
 inline void read_table(std::string_view bytes) {
   try {
-    loop::read_shots(loop::read_csv(file_of(bytes, "table.csv")));
-  } catch (const loop::DataError&) {}
+    loop::read_shots(post::read_csv(file_of(bytes, "table.csv")));
+  } catch (const DataError&) {}
 }
 
 inline void read_series(std::string_view bytes) {
