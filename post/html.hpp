@@ -5,7 +5,7 @@
 
 namespace hosel::post {
 
-/// `<`, `>` and `&` as a page writes them.
+/// Text as it may stand between tags and inside an attribute.
 std::string escape_html(const std::string& text);
 
 /// The whole document around a body. Classes: `verdict` with `good`, `open` or `bad`; `figures`, `scroll`, `key`; `l`
