@@ -10,7 +10,6 @@
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/loop/effect.hpp"
-#include "hosel/loop/history/rig.hpp"
 #include "hosel/models/flight_laws.hpp"
 #include "hosel/models/registry.hpp"
 
@@ -66,14 +65,19 @@ std::vector<ListSection> everything() {
     for (const auto& n : named) out.emplace_back(n.name, n.what);
     return out;
   };
+  const auto acting = [](auto on) {
+    std::vector<loop::EffectEntry> out;
+    std::ranges::copy_if(loop::effects(), std::back_inserter(out), [&](const auto& e) { return e.*on != nullptr; });
+    return out;
+  };
   return {{"kinds", entries(kinds())},
           {"models", entries(models::registry())},
           {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
           {"balls (ball.model)", entries(models::ball_library())},
           {"flight laws (flight.law)", entries(models::flight_laws())},
           {"shafts (shaft.name)", entries(shaft_library())},
-          {"effects on shots", entries(loop::effects())},
-          {"effects on histories", entries(loop::history_effects())},
+          {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
+          {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},
           {"cases", shipped()}};
 }
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/golf/units.hpp"
-#include "hosel/loop/csv.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -18,7 +18,7 @@ models::TableLaw read_coefficients(Table& table) {
   const std::filesystem::path file = table.file("coefficients");
   models::TableLaw law;
   try {
-    const loop::Sheet sheet = loop::read_csv(file);
+    const post::Sheet sheet = post::read_csv(file);
     const auto column = [&](std::string_view name) -> const std::vector<std::string>& {
       const auto it = std::ranges::find(sheet.names, name);
       if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", file.string(), name));
@@ -33,7 +33,7 @@ models::TableLaw read_coefficients(Table& table) {
       law.rows.back().drag.push_back(std::stod(drag[i]));
       law.rows.back().lift.push_back(std::stod(lift[i]));
     }
-  } catch (const loop::DataError& e) { throw InputError(e.what()); } catch (const std::logic_error&) {
+  } catch (const DataError& e) { throw InputError(e.what()); } catch (const std::logic_error&) {
     throw InputError(fmt::format("{}: a cell is not a number", file.string()));
   }
   if (const auto faults = law.faults(); !faults.empty()) table.fail("coefficients", faults.front());

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers of a column; NaN where empty, and where the cell is not a finite number.
-std::vector<double> values(const loop::Sheet& sheet, std::size_t c, bool gaps) {
+std::vector<double> values(const post::Sheet& sheet, std::size_t c, bool gaps) {
   std::vector<double> out;
   for (std::size_t r = 0; r < sheet.rows(); ++r) {
     const std::string& cell = sheet.columns[c][r];
@@ -81,7 +81,7 @@ std::optional<Meaning> meaning(const std::string& name) {
 
 Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most,
                    std::vector<std::string>& notes) {
-  const loop::Sheet sheet = read_sheet(file);
+  const post::Sheet sheet = read_sheet(file);
   Series out;
   out.record.name = file.filename().string();
   std::vector<double> times;
@@ -115,7 +115,7 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
           fmt::format("{}: column '{}' is no channel that the model knows, and is not used", out.record.name, name));
       continue;
     }
-    loop::HistoryChannel channel{.name = name, .reading = m->reading, .order = m->order, .si = m->si};
+    loop::HistoryChannel channel{{.name = name, .si = m->si}, m->reading, m->order};
     const bool strain = m->reading == loop::Reading::strain_lead || m->reading == loop::Reading::strain_droop;
     channel.arc_length = strain ? clamp : tip;
     if (sensors && sensors->has(name)) {

@@ -13,7 +13,7 @@ namespace hosel::app {
 /// axes; missing axes are zero).
 struct Series {
   loop::HistoryRecord record;
-  loop::BenchRecord drive;
+  models::BenchRecord drive;
   std::vector<loop::HistoryChannel> channels;
 };
 

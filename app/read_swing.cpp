@@ -7,13 +7,13 @@
 #include <charconv>
 #include <cmath>
 
-#include "hosel/loop/csv.hpp"
+#include "hosel/post/csv.hpp"
 
 namespace hosel::app {
 namespace {
 
 /// A numeric column by its stem, with any unit of its name, in SI.
-std::vector<double> column(const loop::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
+std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     SplitName split = split_unit(sheet.names[c]);
     if (!unit_needed && sheet.names[c] == stem) split = {std::string(stem), {}};
@@ -35,17 +35,17 @@ std::vector<double> column(const loop::Sheet& sheet, std::string_view stem, Dime
   throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
 }
 
-bool has(const loop::Sheet& sheet, std::string_view stem) {
+bool has(const post::Sheet& sheet, std::string_view stem) {
   return std::ranges::any_of(sheet.names,
                              [&](const std::string& n) { return n == stem || split_unit(n).stem == stem; });
 }
 
 }  // namespace
 
-loop::Sheet read_sheet(const std::filesystem::path& file) {
+post::Sheet read_sheet(const std::filesystem::path& file) {
   try {
-    return loop::read_csv(file);
-  } catch (const loop::DataError& e) { throw InputError(e.what()); }
+    return post::read_csv(file);
+  } catch (const DataError& e) { throw InputError(e.what()); }
 }
 
 MotionInput read_motion(Table table) {
@@ -64,7 +64,7 @@ MotionInput read_motion(Table table) {
   }
   if (!in.present) return in;
 
-  const loop::Sheet sheet = read_sheet(in.file);
+  const post::Sheet sheet = read_sheet(in.file);
   models::GripTrack& track = in.track;
   track.times = column(sheet, "time", Dimension::time, true);
   const auto x = column(sheet, "grip_x", Dimension::length, true), y = column(sheet, "grip_y", Dimension::length, true),
@@ -138,7 +138,7 @@ GripInput read_grip_drive(Table root) {
 models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem::Motion motion) {
   models::GripDrive drive{.kind = grip.kind, .motion = std::move(motion), .wrench = {}, .hands = grip.hands};
   if (grip.kind != models::GripDrive::Kind::forced) return drive;
-  const loop::Sheet sheet = read_sheet(grip.wrench);
+  const post::Sheet sheet = read_sheet(grip.wrench);
   const std::vector<double> times = column(sheet, "time", Dimension::time, true);
   std::array<std::vector<double>, 6> parts;
   for (std::size_t c = 0; c < 3; ++c) {

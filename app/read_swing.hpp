@@ -4,14 +4,14 @@
 #include <filesystem>
 
 #include "hosel/app/reader.hpp"
-#include "hosel/loop/csv.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/models/grip_motion.hpp"
 #include "hosel/models/swing.hpp"
 
 namespace hosel::app {
 
 /// A CSV whose faults are faults of the input.
-loop::Sheet read_sheet(const std::filesystem::path& file);
+post::Sheet read_sheet(const std::filesystem::path& file);
 
 /// `[motion]`: `file`, smoothing, span. `present` is false where the (large, measured) file is not there.
 struct MotionInput {

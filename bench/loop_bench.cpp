@@ -5,14 +5,14 @@
 
 #include <random>
 
-#include "hosel/loop/run.hpp"
+#include "hosel/loop/shots/run.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 
 namespace {
 using namespace hosel;
 
-loop::Sheet shots(int rows) {
-  loop::Sheet sheet{.file = "bench",
+post::Sheet shots(int rows) {
+  post::Sheet sheet{.file = "bench",
                     .names = {"club_speed_mps", "attack_angle_deg", "club_path_deg", "face_angle_deg",
                               "dynamic_loft_deg", "impact_toe_mm", "impact_high_mm", "ball_speed_mps",
                               "launch_angle_deg", "azimuth_deg", "backspin_rpm", "sidespin_rpm"}};
@@ -56,7 +56,7 @@ loop::Sheet shots(int rows) {
 
 void Loop(benchmark::State& state) {
   const models::RigidEccentric model;
-  loop::LoopCase c;
+  loop::ShotCase c;
   c.base = "rigid-eccentric";
   c.model = &model;
   c.head_mass_declared = c.inertia_declared = true;

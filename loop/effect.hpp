@@ -1,5 +1,6 @@
-/// Candidate effects: named, parameterised changes of what a model declares. Zero parameters give the base
-/// model back bit for bit. A new effect is one file in loop/effects and one line in loop/effects.cpp.
+/// Candidate effects: named, parameterised changes of what a model declares. Zero parameters give the base model back
+/// bit for bit. A new effect is one file in loop/effects, its declaration there in all.hpp and one line in
+/// loop/effects.cpp.
 #pragma once
 
 #include <functional>
@@ -8,11 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/blow.hpp"
-#include "hosel/golf/launch.hpp"
-#include "hosel/loop/shots.hpp"
+#include "hosel/golf/quantities.hpp"
 
 namespace hosel::loop {
+
+struct Rig;  // a club test: history/rig.hpp
+struct HistorySetting;
 
 /// One shot as an effect sees it.
 struct Trial {
@@ -28,24 +30,28 @@ struct Parameter {
   double scale;      ///< a size that matters [SI]: step of finite differences, unit of the optimiser
 };
 
-/// One functional form of an effect. The three hooks are applied in this order; all may be empty.
+/// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.
 struct Form {
   std::string effect;  ///< name of the contract
   std::string what;    ///< what this form varies, in words
   std::vector<Parameter> parameters;
   /// How much better than the effect's usual forms an unusual one must fit [units of deviance].
   double rarity = 0;
-  /// Further starting points [SI]; needed where the gradient at zero vanishes (thresholds).
+  /// Further starting points [SI].
   std::vector<std::vector<double>> starts;
-  /// Changes the blow before the model answers.
+  /// Nothing happens below some size: the gradient at zero vanishes, and the starts are probes that stand for it.
+  bool threshold = false;
+  /// Shot: changes the blow before the model answers.
   std::function<void(std::span<const double>, Trial&)> before;
-  /// Changes the model's answer (the blow as the other hooks left it).
+  /// Shot: changes the model's answer (the blow as the other hooks left it).
   std::function<void(std::span<const double>, const Trial&, Launch&)> after;
-  /// Changes what the instrument shows of one output [SI].
+  /// Shot: changes what the instrument shows of one output [SI].
   std::function<double(std::span<const double>, const Trial&, Output, double)> reading;
+  /// Club test: changes club, clamp or sensors.
+  std::function<void(std::span<const double>, Rig&)> setup;
 };
 
-/// What the forms of an effect depend on.
+/// What the forms of an effect on shots depend on.
 struct Setting {
   bool head_turns = false;        ///< the base model lets the head rotate
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
@@ -54,12 +60,14 @@ struct Setting {
 
 struct EffectEntry {
   std::string_view name;
-  std::string_view what;                       ///< what a model without it lacks
-  std::string_view sensor;                     ///< the quantity whose direct measurement would settle it
-  std::vector<Form> (*forms)(const Setting&);  ///< empty where the effect cannot act on this base
+  std::string_view what;    ///< what a model without it lacks
+  std::string_view sensor;  ///< the quantity whose direct measurement would settle it
+  /// Its forms on shots and on records of a club test; they return none where it cannot act on this base.
+  std::vector<Form> (*on_shots)(const Setting&) = nullptr;
+  std::vector<Form> (*on_tests)(const HistorySetting&) = nullptr;
 };
 
-/// Every effect on shots, in the order of the contract.
+/// Every effect, in the order in which reports name them.
 std::span<const EffectEntry> effects();
 /// nullptr where no effect has this name.
 const EffectEntry* find_effect(std::string_view name);

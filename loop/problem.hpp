@@ -1,103 +1,135 @@
-/// The data as a fit sees them: trials, measured channels, the covariance of every shot, and the base model
-/// with effects on top.
+/// Measured data beside a base model, as a fit, a search and a verdict see them. Two implementations: shots
+/// (shots/problem) and time histories (history/problem); what differs truly stands behind this interface, everything
+/// else is done once, for both.
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
+#include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "hosel/loop/effect.hpp"
-#include "hosel/models/impact_model.hpp"
+#include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::loop {
 
+struct Rules;
+struct Fit;
+struct Selection;
+struct StructureMap;
+struct Location;
+struct Flag;
+struct LoopResult;
+struct NextExperiment;
+
 struct Channel {
-  std::string name;  ///< the header
-  Output output;
-  double si = 1;     ///< one of the header's unit in SI
-  double noise = 0;  ///< standard deviation of the instrument, header's unit
-  bool declared = false;
-  double resolution = 0;  ///< header's unit
+  std::string name;                ///< the header
+  double si = 1;                   ///< one of the header's unit in SI
+  double noise = 0;                ///< standard deviation of one reading, header's unit
+  std::optional<double> declared;  ///< what the case says of it
+  double resolution = 0;           ///< recording step, header's unit
+  bool refuted = false;            ///< the data's own scatter contradicts what is declared
+
+  bool trusted() const { return declared && !refuted; }
 };
 
-/// An input column with noise, or with missing cells that were filled.
-struct NoisyInput {
-  Input input;
-  double noise = 0;  ///< [SI]; 0 exact
-};
-
-/// Effects on top of the base model, in the order in which their hooks are applied.
+/// Effects on top of the base model, in the order in which they are applied.
 struct Model {
   std::vector<const Form*> forms;
 
   int size() const;  ///< number of parameters
   std::vector<const Parameter*> parameters() const;
+  Model with(const Form* more) const;
+};
+
+/// Which of the data: those that effects are selected on (not more than needed), all that train, those held out.
+enum class Part { select, train, holdout };
+
+/// What a fit looks at in turn: an early stage sees far and is rough, the last one counts.
+struct Stage {
+  static constexpr double kWhole = std::numeric_limits<double>::infinity();
+  double window = kWhole;  ///< how much of every record from its start [s]
+  solvers::Loss loss;
+  int iterations = 40;
+};
+
+/// How much a search may ask of the model.
+struct Effort {
+  std::size_t starts = 2;  ///< followed per form, the best ones
+  std::size_t pairs = 36;  ///< refitted of those that linear algebra about the base promises; 0: too far from linear
+  std::size_t singles_grown = 0;  ///< best single forms that pairs are grown from,
+  std::size_t pairs_grown = 4;    ///< best pairs that triples are,
+  std::size_t grown = 6;          ///< with so many forms each, the most promising beside them
+  std::size_t reported = 25;      ///< candidates that are scored on the holdout
+};
+
+/// Scatter of a channel's residuals.
+struct Scatter {
+  double ratio = 1;  ///< over the noise
+  double error = 1;  ///< of log ratio
 };
 
 class Problem {
  public:
-  /// `base` must outlive the problem. `direct`: the base answers in microseconds and honours the blow's contact
-  /// law; otherwise its answers on the trials are computed once and the effects act through the difference that
-  /// they make in the closed-form eccentric impact.
-  Problem(const models::ImpactModel& base, bool direct, std::vector<Trial> trials, std::vector<Channel> channels,
-          Eigen::MatrixXd measured);
+  virtual ~Problem() = default;
 
-  int shots() const { return int(trials_.size()); }
-  int width() const { return int(channels_.size()); }
-  const std::vector<Channel>& channels() const { return channels_; }
-  const Trial& trial(int shot) const { return trials_[std::size_t(shot)]; }
-  /// Measured values, header's units, NaN where missing: shots x channels.
-  const Eigen::MatrixXd& measured() const { return measured_; }
-  bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
+  // --- the data
+  virtual int width() const = 0;  ///< number of channels
+  virtual const Channel& channel(int c) const = 0;
+  virtual void refute(int channel) = 0;
+  struct Row {
+    int index;       ///< row of measured() and residuals()
+    int row;         ///< of the file (of all records, one after the other)
+    std::string id;  ///< what the file calls it
+    bool holdout;
+  };
+  virtual std::vector<Row> rows() const = 0;               ///< that are used
+  virtual const Eigen::MatrixXd& measured() const = 0;     ///< rows x channels, header's units, NaN where missing
+  virtual std::vector<Flag> flags() const = 0;             ///< rows that are not used since nothing explains them
+  virtual std::vector<std::string> notes() const = 0;      ///< sentences for people about the data and their noise
+  virtual std::optional<std::string> too_few() const = 0;  ///< a sentence where nothing can be tested
 
-  /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
-  /// happen.
-  bool predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const;
-  bool predict(int shot, const Model& model, const double* parameters, double* out) const {
-    return predict(trial(shot), shot, model, parameters, out);
-  }
-  /// The same with the derivatives by the parameters, per Parameter::scale, by differences over `step` scales
-  /// (one-sided, or central); what a parameter does not touch is not computed again. `derivative` is width x
-  /// size, column-major. Also false where a neighbour cannot happen.
-  bool linearise(int shot, const Model& model, const double* parameters, double step, bool central, double* out,
-                 double* derivative) const;
-  /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
-  /// base's own answer).
-  bool launch(Trial trial, const Model& model, const double* parameters, Launch& out) const;
+  // --- residuals, model minus measured
+  /// Whitened, zero where nothing is measured, up to `window` after a record's start. False where the model has no
+  /// answer.
+  virtual bool whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                        double window = Stage::kWhole) const = 0;
+  /// The same with the derivatives per Parameter::scale, to the accuracy that a search needs.
+  virtual bool linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                         Eigen::MatrixXd& jacobian, double window) const = 0;
+  /// Those derivatives as accurately as differences allow.
+  virtual Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const = 0;
+  /// Raw, header's units: all rows x channels, NaN where missing.
+  virtual Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const = 0;
+  /// Number of values of a part, and the sum of the logarithms of their whitening factors.
+  struct Density {
+    double values = 0, log_whitening = 0;
+  };
+  virtual Density density(Part part) const = 0;
+  virtual std::vector<Stage> stages() const = 0;  ///< of a fit; the loss of the last is the one that counts
+  virtual Effort effort() const { return {}; }
 
-  void set_noise(int channel, double noise) { channels_[std::size_t(channel)].noise = noise; }
-  /// Covariance of the inputs about the trial's values, per shot (8 x 8, SI); sets up the whitening
-  /// Sigma_y + J_x Sigma_x J_x^T about the given model.
-  void set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model, const double* parameters);
-  /// Lower-triangular W with W Sigma W^T = 1 over the observed channels, zero elsewhere.
-  Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> whitening(int shot) const {
-    return {whiten_.data() + std::ptrdiff_t(shot) * width() * width(), width(), width()};
-  }
-  /// Marginal standard deviation of a channel of a shot (instrument and inputs), header's unit.
-  double sigma(int shot, int channel) const { return sigma_(shot, channel); }
-  /// Sensitivity of the channels to the inputs about a model: width x 8, header's units per SI.
-  Eigen::MatrixXd input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const;
+  // --- rows and noise, measured about a fit
+  /// Leaves out what neither this selection nor any other model of the family can explain. False where so many rows
+  /// changed that effects must be selected anew.
+  virtual bool screen(const Selection& selection) = 0;
+  virtual Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const = 0;
+  /// Measures noise that is not known, about the selected model or the one that fits best whatever it takes. Returns
+  /// the largest relative change.
+  virtual double update_noise(const Fit& selected, const Fit& richest) = 0;
 
-  /// Raw residuals model - measured, shots x channels, NaN where missing.
-  Eigen::MatrixXd residuals(const Model& model, const double* parameters) const;
-
- private:
-  Launch answer(const Trial& trial, int shot) const;
-  /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
-  static void change(const Model& model, const double* parameters, Trial& trial);
-  static void change(const Model& model, const double* parameters, const Trial& trial, Launch& launch);
-  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
-            double* out) const;
-
-  const models::ImpactModel& base_;
-  bool direct_;
-  std::vector<Trial> trials_;
-  std::vector<Channel> channels_;
-  Eigen::MatrixXd measured_;
-  std::vector<double> whiten_;
-  Eigen::MatrixXd sigma_;
-  struct Companion;
-  std::vector<Launch> offset_;  ///< base minus companion at the trials, for bases that are not direct
+  // --- what is left
+  /// Is there structure in the residual of a fit? `near` is the model whose residual is nearest to noise; `directions`
+  /// are whitened columns, each a test of its own.
+  virtual StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
+                                 const Rules& rules) const = 0;
+  /// Where it sits, the plainest first.
+  virtual std::vector<Location> places(const Selection& selection) const = 0;
+  /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.
+  virtual std::vector<Location> shapes(const Selection& selection) const = 0;
+  /// What to measure to break a tie, or to find the effect without a name.
+  virtual NextExperiment next_experiment(const LoopResult& so_far) const = 0;
 };
 
 }  // namespace hosel::loop

@@ -37,10 +37,10 @@ json to_json(const LoopResult& r) {
   out["seed"] = r.seed;
   out["flagged_rows"] = json::array();
   for (const auto& f : r.flagged) {
-    json id = f.shot;
+    json id = f.id;
     // A shot number is a number, whatever the file calls a shot else is text.
-    if (!f.shot.empty() && f.shot.size() < 10 && f.shot.find_first_not_of("0123456789") == std::string::npos)
-      id = std::stoi(f.shot);
+    if (!f.id.empty() && f.id.size() < 10 && f.id.find_first_not_of("0123456789") == std::string::npos)
+      id = std::stoi(f.id);
     out["flagged_rows"].push_back({{"shot", id}, {"column", f.column}, {"reason", f.reason}, {"finding", f.finding}});
   }
   out["derived_columns"] = json::array();
@@ -67,15 +67,10 @@ json to_json(const LoopResult& r) {
     if (f.p_adjusted > 0.05 && std::abs(f.signal) < 4.5) continue;
     json e;
     e["channel"] = r.channel_names[std::size_t(f.channel)];
-    if (f.regressor >= 0) {
-      const Regressor& g = s.regressors[std::size_t(f.regressor)];
-      e["regressor"] = g.column;
-      e["statistic"] =
-          fmt::format("{}{}{}: {:+.2f} noise units", g.kind, g.detail.empty() ? "" : " ", g.detail, f.signal);
-    } else {
-      e["regressor"] = "shot";
-      e["statistic"] = fmt::format("neighbours alike: {:+.2f}", f.statistic);
-    }
+    e["regressor"] = f.regressor;
+    // Neighbours are products: no noise units.
+    e["statistic"] = f.kind == "neighbours" ? fmt::format("{}: {:+.2f}", f.what(), f.statistic)
+                                            : fmt::format("{}: {:+.2f} noise units", f.what(), f.signal);
     e["p_adjusted"] = value(f.p_adjusted);
     out["structure"].push_back(e);
     ++shown;
@@ -153,13 +148,17 @@ json to_json(const LoopResult& r) {
   return out;
 }
 
-std::string residuals_csv(const LoopResult& r) {
-  std::string out = "shot,set";
+std::string residuals_csv(const LoopResult& r, const Shots& table) {
+  const Column *time = table.find("time_s"), *record = table.find("record");
+  const bool records = time && record;
+  std::string out = records ? "record,time_s,set" : "shot,set";
   for (const ChannelResult& c : r.channels) out += fmt::format(",{0}__measured,{0}__before,{0}__after", c.name);
   out += '\n';
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
-  for (const UsedShot& u : r.shots) {
-    out += post::csv_cell(u.id) + (u.holdout ? ",holdout" : ",train");
+  for (const UsedRow& u : r.rows) {
+    const auto row = std::size_t(u.row);
+    out += records ? post::csv_cell(record->text[row]) + cell(time->value[row]) : post::csv_cell(u.id);
+    out += u.holdout ? ",holdout" : ",train";
     for (std::size_t c = 0; c < r.channels.size(); ++c)
       out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
     out += '\n';
@@ -187,8 +186,8 @@ std::string sentence(const LoopResult& r) {
       return "Too little to name anything: minimum_detectable says what these shots could have shown.";
     case Verdict::noise_contradicted: {
       std::string which;
-      for (const std::string& n : r.notes)
-        if (n.find("declared noise") != std::string::npos) which += (which.empty() ? "" : "; ") + n;
+      for (const ChannelResult& c : r.channels)
+        if (c.refuted) which += (which.empty() ? "" : "; ") + c.refutation();
       return "The declared noise is contradicted by the data's own scatter: " + which + ".";
     }
   }

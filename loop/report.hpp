@@ -4,16 +4,17 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "hosel/loop/run.hpp"
+#include "hosel/loop/result.hpp"
 
 namespace hosel::loop {
 
 nlohmann::json to_json(const LoopResult& result);
-/// One row per used shot: for every channel the measured value and what the model said before and after.
-std::string residuals_csv(const LoopResult& result);
+/// One row per used row of the table (shots, or samples of records): for every channel the measured value and what the
+/// model said before and after.
+std::string residuals_csv(const LoopResult& result, const Shots& table);
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);
 /// A self-contained page with the figures inline.
-std::string page(const LoopResult& result, const Shots& shots);
+std::string page(const LoopResult& result, const Shots& table);
 
 }  // namespace hosel::loop

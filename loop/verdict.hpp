@@ -1,11 +1,15 @@
-/// From a selection to what is said of it: verdict, places, errors on both sets, what to measure next.
+/// What is said of a selection: verdict, places, the holdout read once, errors on both sets, what to measure next.
 #pragma once
 
+#include "hosel/loop/result.hpp"
 #include "hosel/loop/study.hpp"
 
 namespace hosel::loop {
 
-/// Completes `study.result`. The holdout is read here, once.
-void conclude(Study& study);
+/// Completes `result` (whose forms the study used).
+void conclude(const Study& study, LoopResult& result);
+
+/// Of a channel's residuals on the two sets of rows.
+Errors errors(const std::vector<Problem::Row>& rows, const Eigen::MatrixXd& residuals, int channel);
 
 }  // namespace hosel::loop

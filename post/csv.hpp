@@ -1,16 +1,37 @@
+/// Comma-separated files: a strict reader (a header, then rows of as many cells), and cells as they are written.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "hosel/golf/data_error.hpp"
 
 namespace hosel::post {
 
+/// Cells as text, quotes removed. Row numbers count data rows from 0; `lines` gives their place in the file.
+struct Sheet {
+  std::string file;
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> columns;  ///< columns[c][row]
+  std::vector<std::size_t> lines;
+
+  std::size_t rows() const { return lines.size(); }
+};
+
+/// Reads RFC-4180 text: quoted cells may hold commas, quotes (doubled) and line breaks; blank lines are
+/// passed over. Throws DataError on a missing file, an empty or doubled header, a row of the wrong length,
+/// an open quote.
+Sheet read_csv(const std::filesystem::path& file);
+
+/// A whole cell as a number; nothing where it is text. "nan" and "inf" are numbers here.
+std::optional<double> number(const std::string& cell);
+/// Digits after the decimal point ("-1.3e2" counts as -1: the exponent moves the point).
+int decimals(const std::string& cell);
+
 /// A text as a cell of RFC 4180: in quotes where it holds a comma, a quote or a line break.
-inline std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
-  return out + '"';
-}
+std::string csv_cell(std::string_view text);
 
 }  // namespace hosel::post

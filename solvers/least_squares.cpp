@@ -5,10 +5,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/random.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -130,13 +130,12 @@ LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen
   LeastSquares problem{.residuals = count, .bounds = bounds, .value = residuals, .step = options.step};
   if (options.huber > 0) problem.loss.knee = options.huber * options.huber;
   std::mt19937_64 random(options.seed);
-  const auto uniform = [&] { return (random() >> 11) * 0x1.0p-53; };
   std::vector<Minimum> found;
   for (int k = 0; k < options.starts; ++k) {
     Eigen::VectorXd p = start;
     for (Eigen::Index i = 0; k > 0 && i < p.size(); ++i) {
       const Bounds& b = bounds[std::size_t(i)];
-      p[i] = b.low + (0.05 + 0.9 * uniform()) * (b.high - b.low);
+      p[i] = b.low + (0.05 + 0.9 * uniform(random)) * (b.high - b.low);
     }
     if (auto minimum = minimise(problem, p, {.iterations = options.iterations})) found.push_back(*std::move(minimum));
   }

@@ -13,7 +13,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/golf/units.hpp"
-#include "hosel/loop/shots.hpp"
+#include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
@@ -295,8 +295,8 @@ class ClubsJob final : public Job {
 
   std::vector<ClubRow> read_rows(Output& out) const {
     try {
-      const loop::Shots shots = loop::read_shots(loop::read_csv(shots_file_));
-      const loop::Sheet sheet = loop::read_csv(clubs_file_);
+      const loop::Shots shots = loop::read_shots(post::read_csv(shots_file_));
+      const post::Sheet sheet = post::read_csv(clubs_file_);
       const auto cell = [&](std::string_view name, std::size_t row) {
         const auto it = std::ranges::find(sheet.names, name);
         if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", clubs_file_.string(), name));
@@ -359,7 +359,7 @@ class ClubsJob final : public Job {
         rows.push_back(c);
       }
       return rows;
-    } catch (const loop::DataError& e) { throw InputError(e.what()); } catch (const std::invalid_argument&) {
+    } catch (const DataError& e) { throw InputError(e.what()); } catch (const std::invalid_argument&) {
       throw InputError(fmt::format("{}: a cell is not a number", clubs_file_.string()));
     }
   }

@@ -11,14 +11,14 @@
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
 #include "hosel/golf/shaft_library.hpp"
-#include "hosel/loop/csv.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/models/marker_swing.hpp"
 #include "hosel/post/figure.hpp"
 
 namespace hosel::app {
 namespace {
 
-std::vector<double> numbers(const loop::Sheet& sheet, const std::string& name) {
+std::vector<double> numbers(const post::Sheet& sheet, const std::string& name) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (sheet.names[c] != name) continue;
     std::vector<double> out;
@@ -37,7 +37,7 @@ std::vector<double> numbers(const loop::Sheet& sheet, const std::string& name) {
   throw InputError(fmt::format("{}: no column '{}'", sheet.file, name));
 }
 
-std::vector<Vec3> points(const loop::Sheet& sheet, const std::string& stem) {
+std::vector<Vec3> points(const post::Sheet& sheet, const std::string& stem) {
   const auto x = numbers(sheet, stem + "_x_m"), y = numbers(sheet, stem + "_y_m"), z = numbers(sheet, stem + "_z_m");
   std::vector<Vec3> out;
   for (std::size_t i = 0; i < x.size(); ++i) out.emplace_back(x[i], y[i], z[i]);
@@ -116,7 +116,7 @@ class IdentifyJob final : public Job {
     for (const Recorded& r : swings_) {
       if (!r.motion.present) return out.skip(r.motion.file);
       if (!std::filesystem::exists(r.deflection)) return out.skip(r.deflection);
-      const loop::Sheet sheet = read_sheet(r.deflection);
+      const post::Sheet sheet = read_sheet(r.deflection);
       motions.emplace_back(r.motion.track, r.motion.smoothing);
       models::MeasuredSwing m{.motion = [g = &motions.back()](double t) { return g->at(t); },
                               .begin = r.motion.begin,
@@ -148,7 +148,7 @@ class IdentifyJob final : public Job {
 
   void markers(Output& out) {
     if (!std::filesystem::exists(file_)) return out.skip(file_);
-    const loop::Sheet sheet = read_sheet(file_);
+    const post::Sheet sheet = read_sheet(file_);
     models::MarkerTrack track;
     track.times = numbers(sheet, "time_s");
     std::array<std::vector<Vec3>, 3> shaft, head;

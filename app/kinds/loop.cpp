@@ -8,14 +8,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
-#include "hosel/app/kinds/loop_report.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
-#include "hosel/loop/report.hpp"
-#include "hosel/loop/run.hpp"
-#include "hosel/loop/spread.hpp"
+#include "hosel/loop/shots/run.hpp"
+#include "hosel/loop/shots/spread.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/models/response_surface.hpp"
 
@@ -44,11 +43,11 @@ class LoopJob final : public Job {
  public:
   explicit LoopJob(CaseFile& file) {
     Table root = file.root();
+    read_loop_case(root, case_, [](const loop::EffectEntry& e) { return e.on_shots != nullptr; });
     Table model = root.table("model");
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
-    case_.title = root.text("title", "");
-    case_.base = model.choice("base", names);
+    model.choice("base", names);
     model_ = models::find(case_.base)->make(read_options(root, {case_.base}));
     case_.model = model_.get();
     case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
@@ -58,15 +57,6 @@ class LoopJob final : public Job {
       surface_seed_ = static_cast<unsigned long>(surface->integer("seed", 0, 1L << 53, 1));
     }
     case_.head_turns = case_.base != "rigid-planar";
-    case_.effects = model.texts("effects", std::vector<std::string>{});
-    std::vector<std::string> known;
-    for (const auto& e : loop::effects()) known.emplace_back(e.name);
-    for (const std::string& e : case_.effects)
-      if (!loop::find_effect(e)) {
-        const std::string near = nearest(e, known);
-        model.fail("effects",
-                   fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-      }
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
@@ -88,13 +78,13 @@ class LoopJob final : public Job {
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
-        case_.shots = loop::read_shots(loop::read_csv(path));
+        case_.shots = loop::read_shots(post::read_csv(path));
         if (auto joined = data.optional_table("join")) {
           const auto other = joined->data_file("file");
           const std::string by = joined->text("by");
-          loop::join(case_.shots, loop::read_csv(other), by);
+          loop::join(case_.shots, post::read_csv(other), by);
         }
-      } catch (const loop::DataError& e) { throw InputError(e.what()); }
+      } catch (const DataError& e) { throw InputError(e.what()); }
       if (auto noise = data.optional_table("noise"))
         case_.noise = read_noise(*noise, case_.shots, loop::Role::output, "output");
       if (auto noise = data.optional_table("input_noise"))
@@ -110,8 +100,6 @@ class LoopJob final : public Job {
     }
 
     if (auto split = root.optional_table("split")) {
-      case_.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
-      case_.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
       case_.split.by = split->text("by", "");
       case_.split.leave_one_out = split->choice("mode", {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
       if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
@@ -126,10 +114,8 @@ class LoopJob final : public Job {
     try {
       if (points_ > 0) build_surrogate(out);
       result = loop::run(case_);
-    } catch (const loop::DataError& e) { throw InputError(e.what()); }
-    out.write("residuals.csv", loop::residuals_csv(result));
-    out.write("report.html", loop::page(result, case_.shots));
-    report_loop(out, result, "rows");
+    } catch (const DataError& e) { throw InputError(e.what()); }
+    report_loop(out, result, case_.shots, "rows");
   }
 
  private:
@@ -172,11 +158,11 @@ class LoopJob final : public Job {
     std::string errors;
     for (const loop::Column& c : case_.shots.columns) {
       if (c.role != loop::Role::output) continue;
-      const std::optional<loop::Output> output = loop::output_of(c.stem);
+      const std::optional<hosel::Output> output = output_of(c.stem);
       if (!output) continue;
       double square = 0;
       for (std::size_t i = 0; i < deliveries.size(); ++i) {
-        const double e = (loop::get(surface->predicted()[i], *output) - loop::get(surface->answers()[i], *output)) /
+        const double e = (get(surface->predicted()[i], *output) - get(surface->answers()[i], *output)) /
                          c.si;
         square += e * e / double(deliveries.size());
       }
@@ -192,7 +178,7 @@ class LoopJob final : public Job {
     case_.direct = true;
   }
 
-  loop::LoopCase case_;
+  loop::ShotCase case_;
   std::unique_ptr<models::ImpactModel> model_;
   std::filesystem::path skipped_;
   int points_ = 0;  ///< of the surrogate; 0: none

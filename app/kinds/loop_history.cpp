@@ -5,13 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/kinds/loop_report.hpp"
+#include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_series.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
 #include "hosel/loop/history/swing_history.hpp"
-#include "hosel/loop/report.hpp"
 
 namespace hosel::app {
 namespace {
@@ -22,18 +21,7 @@ class HistoryJob final : public Job {
  public:
   explicit HistoryJob(CaseFile& file) {
     Table root = file.root();
-    case_.title = root.text("title", "");
-    Table model = root.table("model");
-    case_.base = model.text("base");
-    case_.effects = model.texts("effects", std::vector<std::string>{});
-    std::vector<std::string> known;
-    for (const auto& e : loop::history_effects()) known.emplace_back(e.name);
-    for (const std::string& e : case_.effects)
-      if (!loop::find_history_effect(e)) {
-        const std::string near = nearest(e, known);
-        model.fail("effects",
-                   fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-      }
+    read_loop_case(root, case_, [](const loop::EffectEntry& e) { return e.on_tests != nullptr; });
     club_.shaft = read_shaft(root.table("shaft"));
     loop::HistorySetting& setting = case_.setting;
     if (auto head = root.optional_table("head")) {
@@ -46,10 +34,6 @@ class HistoryJob final : public Job {
     if (auto grip = root.optional_table("grip"); grip && grip->choice("hold", {"clamped", "free"}, "clamped") == "free")
       grip->fail("hold", "the records of a free shaft are not modelled: clamp the butt");
     setting.swing ? read_swing_test(root) : read_bench_test(root);
-    if (auto split = root.optional_table("split")) {
-      case_.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
-      case_.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
-    }
   }
 
   void run(Output& out) override {
@@ -57,19 +41,17 @@ class HistoryJob final : public Job {
     loop::LoopResult result;
     try {
       result = loop::run(case_);
-    } catch (const loop::DataError& e) { throw InputError(e.what()); }
-    out.write("residuals.csv", loop::history_residuals_csv(case_, result));
-    out.write("report.html", loop::page(result, loop::as_shots(case_)));
-    report_loop(out, result, "readings");
+    } catch (const DataError& e) { throw InputError(e.what()); }
+    report_loop(out, result, loop::as_shots(case_), "readings");
   }
 
  private:
   /// `[data]`: the records, the same channels in each; noise by header.
-  std::vector<loop::BenchRecord> read_records(Table root, double clamp, std::size_t most) {
+  std::vector<models::BenchRecord> read_records(Table root, double clamp, std::size_t most) {
     Table data = root.table("data");
     const std::vector<std::filesystem::path> files = data.data_files("series");
     std::optional<Table> sensors = root.optional_table("sensors");
-    std::vector<loop::BenchRecord> drives;
+    std::vector<models::BenchRecord> drives;
     std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
     for (const auto& f : files) {
       if (!std::filesystem::exists(f)) {
@@ -100,8 +82,7 @@ class HistoryJob final : public Job {
         const double sigma = noise->number(key, Range::positive());
         const auto it = std::ranges::find(channels, key, &loop::HistoryChannel::name);
         if (it != channels.end()) {
-          it->noise = sigma;
-          it->declared = true;
+          it->declared = sigma;
         } else if (skipped_.empty()) {
           noise->fail(key, "no measured channel of this name");
         }
@@ -111,7 +92,7 @@ class HistoryJob final : public Job {
 
   void read_bench_test(Table root) {
     models::BenchOptions options;
-    loop::BenchStart start;
+    models::BenchStart start;
     std::vector<double> rates{0};
     if (auto t = root.optional_table("bench")) {
       options.clamped_length = t->quantity("clamped_length", "mm", Range::non_negative(), 0);
@@ -122,7 +103,7 @@ class HistoryJob final : public Job {
       const std::string hang = t->choice("shaft", {"horizontal", "hanging", "standing"}, "horizontal");
       if (hang != "horizontal") options.gravity = Vec3(0, 0, hang == "hanging" ? -kGravity : kGravity);
       const std::string kind = t->choice("start", {"unknown", "release", "impulse", "rest"}, "unknown");
-      using loop::Start;
+      using models::Start;
       start.kind = kind == "release"   ? Start::release
                    : kind == "impulse" ? Start::impulse
                    : kind == "rest"    ? Start::rest
@@ -144,7 +125,7 @@ class HistoryJob final : public Job {
         options.rotation_axis = t->choice("rotation_axis", {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
       options.hub = t->quantity("hub", "mm", Range::non_negative(), 0);
     }
-    std::vector<loop::BenchRecord> records = read_records(root, options.clamped_length, kMostSamples);
+    std::vector<models::BenchRecord> records = read_records(root, options.clamped_length, kMostSamples);
     if (!skipped_.empty()) return;
     if (rates.size() != 1 && rates.size() != records.size())
       root.table("bench").fail("rotation_rate", "one rate for all records, or one for each");
@@ -159,8 +140,7 @@ class HistoryJob final : public Job {
       std::tie(setting.frequency, setting.ratio) = bench->first_mode();
       model_ = std::move(bench);
     } catch (const std::invalid_argument& e) { root.fail("", e.what()); }
-    setting.driven = start.kind != loop::Start::unknown;
-    case_.start_unknown = !setting.driven;
+    setting.driven = start.kind != models::Start::unknown;
     const double free = club_.shaft->length() - options.clamped_length;
     setting.compliance = free / club_.shaft->at(options.clamped_length + 0.5 * free).bending_stiffness_y;
     case_.model = model_.get();
@@ -170,7 +150,7 @@ class HistoryJob final : public Job {
     Table table = root.table("motion");
     const MotionInput motion = read_motion(table);
     const models::SwingOptions options = read_swing_options(root);
-    std::vector<loop::BenchRecord> records = read_records(root, 0, kMostSamples);
+    std::vector<models::BenchRecord> records = read_records(root, 0, kMostSamples);
     if (!motion.present) skipped_ = motion.file;
     if (!skipped_.empty()) return;
     for (const loop::HistoryChannel& c : case_.setting.channels)

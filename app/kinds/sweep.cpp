@@ -14,6 +14,7 @@
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/solvers/random.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -25,20 +26,6 @@ struct Parameter {
   std::string key;                  ///< dotted, of the other case
   std::vector<std::string> values;  ///< TOML text, one a level (grid) or one a point (sample)
 };
-
-/// One value in each of n equal strata of [low, high], in random order. The generator's own bits are
-/// used, since the standard distributions differ between libraries. McKay, Beckman and Conover (1979).
-std::vector<double> latin_column(double low, double high, std::size_t n, std::mt19937_64& random) {
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), 0u);
-  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
-  std::vector<double> out;
-  for (const std::size_t stratum : order) {
-    const double within = double(random() >> 11) * 0x1.0p-53;
-    out.push_back(low + (high - low) * (double(stratum) + within) / double(n));
-  }
-  return out;
-}
 
 /// Every number of a summary by its dotted name.
 void flatten(const json& j, const std::string& name, json& out) {
@@ -71,7 +58,7 @@ class SweepJob final : public PointJob {
       Parameter p{t.text("key"), {}};
       if (sample) {
         const auto range = t.numbers("range", 2);
-        for (const double x : latin_column(range[0], range[1], points, random))
+        for (const double x : solvers::latin_column(range[0], range[1], points, random))
           p.values.push_back(fmt::format("{}", x));
       } else {
         p.values = t.scalars("values");

@@ -7,17 +7,16 @@
 #include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <random>
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
-#include "hosel/loop/shots.hpp"
+#include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/launch_table.hpp"
 #include "hosel/solvers/least_squares.hpp"
+#include "hosel/solvers/random.hpp"
 
 namespace hosel::app {
 namespace {
@@ -145,14 +144,14 @@ class TuneJob final : public Job {
   void read_data(Output& out) {
     loop::Shots shots;
     try {
-      shots = loop::read_shots(loop::read_csv(shots_file_));
-      if (!join_by_.empty()) loop::join(shots, loop::read_csv(join_file_), join_by_);
-    } catch (const loop::DataError& e) { throw InputError(e.what()); }
-    std::vector<std::pair<loop::Input, const loop::Column*>> inputs;
-    for (int i = 0; i < loop::kInputs; ++i) {
-      const auto input = static_cast<loop::Input>(i);
-      if (const loop::Column* c = shots.find_stem(loop::stem(input)))
-        if (input != loop::Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
+      shots = loop::read_shots(post::read_csv(shots_file_));
+      if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
+    } catch (const DataError& e) { throw InputError(e.what()); }
+    std::vector<std::pair<Input, const loop::Column*>> inputs;
+    for (int i = 0; i < kInputs; ++i) {
+      const auto input = static_cast<Input>(i);
+      if (const loop::Column* c = shots.find_stem(stem(input)))
+        if (input != Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
     }
     const auto measured = [&](const TuneChannel& c, std::size_t row) {
       if (const loop::Column* column = shots.find_stem(c.channel->name)) return column->value[row];
@@ -173,7 +172,7 @@ class TuneJob final : public Job {
       Blow blow = blow_;
       for (const auto& [input, c] : inputs) {
         if (why.empty() && !std::isfinite(c->value[row])) why = fmt::format("no {}", c->name);
-        loop::set(blow, input, c->value[row]);
+        set(blow, input, c->value[row]);
       }
       std::vector<double> values;
       for (const TuneChannel& c : channels_) {
@@ -188,10 +187,8 @@ class TuneJob final : public Job {
       measured_.push_back(values);
       id_.push_back(shots.id[row]);
     }
-    std::vector<std::size_t> order(blows_.size());
-    std::iota(order.begin(), order.end(), 0);
     std::mt19937_64 random(seed_);
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+    std::vector<std::size_t> order = solvers::shuffled(blows_.size(), random);
     if (rows_ > 0 && static_cast<std::size_t>(rows_) < order.size()) {
       left_out["beyond the number of rows asked for"] = static_cast<int>(order.size()) - static_cast<int>(rows_);
       order.resize(static_cast<std::size_t>(rows_));

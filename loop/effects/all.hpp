@@ -21,4 +21,16 @@ std::vector<Form> loft_bias(const Setting&);
 std::vector<Form> monitor_misalignment(const Setting&);
 std::vector<Form> session_drift(const Setting&);
 
+std::vector<Form> shaft_stiffness(const HistorySetting&);
+std::vector<Form> shaft_damping(const HistorySetting&);
+std::vector<Form> clamp_compliance(const HistorySetting&);
+std::vector<Form> hosel_compliance(const HistorySetting&);
+std::vector<Form> tip_mass(const HistorySetting&);
+std::vector<Form> head_inertia(const HistorySetting&);
+std::vector<Form> cg_shift(const HistorySetting&);
+std::vector<Form> rotational_stiffening(const HistorySetting&);
+std::vector<Form> sensor_delay(const HistorySetting&);
+std::vector<Form> sensor_gain(const HistorySetting&);
+std::vector<Form> sensor_offset(const HistorySetting&);
+
 }  // namespace hosel::loop::forms

@@ -1,5 +1,6 @@
 // The centre of gravity is not where it is declared.
 #include "hosel/loop/effects/all.hpp"
+#include "hosel/loop/history/rig.hpp"
 
 namespace hosel::loop::forms {
 
@@ -20,6 +21,21 @@ std::vector<Form> cg_shift(const Setting& setting) {
   Form all = along({0, 1, 2}, "in three directions");
   all.rarity = 6;
   return {along({1}, "towards the heel"), along({2}, "up"), depth, along({1, 2}, "in the face plane"), all};
+}
+
+std::vector<Form> cg_shift(const HistorySetting& setting) {
+  if (!setting.head) return {};
+  const auto along = [](std::vector<int> axes, const char* what, double rarity) {
+    static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
+    Form f{.effect = "cg-shift", .what = what, .rarity = rarity};
+    for (const int a : axes) f.parameters.push_back({names[a], "mm", 1e-3, -0.03, 0.03, 1e-3});
+    f.setup = [axes](std::span<const double> p, Rig& r) {
+      for (std::size_t k = 0; k < axes.size(); ++k) r.club.cg[axes[k]] += p[k];
+    };
+    return f;
+  };
+  return {along({1}, "towards the heel", 0), along({2}, "up", 0), along({0}, "out of the face", 0),
+          along({1, 2}, "in the face plane", 2)};
 }
 
 }  // namespace hosel::loop::forms

@@ -15,7 +15,8 @@ std::vector<Form> friction_limit(const Setting&) {
   Form coulomb{.effect = "friction-limit",
                .what = "Coulomb limit of the impulse",
                .parameters = {slipperiness},
-               .starts = starts};
+               .starts = starts,
+               .threshold = true};
   coulomb.before = [](std::span<const double> p, Trial& t) {
     if (p[0] > 0) t.blow.contact.friction = std::min(t.blow.contact.friction, 1 / p[0]);
   };

@@ -1,8 +1,6 @@
 // The head has an angular velocity at impact: the contact point moves differently from the centre of gravity.
-#include <cmath>
-
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/loop/effects/eccentric_difference.hpp"
 
 namespace hosel::loop::forms {
 namespace {
@@ -10,14 +8,11 @@ namespace {
 /// For a base without rotation of the head: the difference that the angular velocity makes on a head of
 /// endless inertia, which is the extra velocity of the contact point.
 void add_moving_point(const Vec3& spin, const Trial& t, Launch& launch) {
-  static const models::RigidEccentric model;
   Blow still = t.blow;
   still.club.head.inertia = 1e3 * Mat3::Identity();
   Blow turning = still;
   turning.delivery.head_angular_velocity += spin;
-  const Launch with = model.launch(turning), without = model.launch(still);
-  launch.velocity += with.velocity - without.velocity;
-  launch.spin += with.spin - without.spin;
+  add_difference(turning, still, 1, launch);
 }
 
 }  // namespace

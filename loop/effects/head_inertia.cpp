@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hosel/loop/effects/all.hpp"
+#include "hosel/loop/history/rig.hpp"
 
 namespace hosel::loop::forms {
 
@@ -34,6 +35,23 @@ std::vector<Form> head_inertia(const Setting& setting) {
   };
   return {all, along(2, "log_factor_vertical", "about the vertical axis of the face"),
           along(1, "log_factor_horizontal", "about the horizontal axis of the face"), two};
+}
+
+std::vector<Form> head_inertia(const HistorySetting& setting) {
+  if (!setting.head) return {};
+  const auto about = [](const char* what, const char* name, double rarity, Vec3 axes) {
+    Form f{.effect = "head-inertia",
+           .what = what,
+           .parameters = {{name, "1", 1, -0.8, 1.2, 0.02}},
+           .rarity = rarity,
+           .starts = {{-0.3}, {0.3}}};
+    f.setup = [axes](std::span<const double> p, Rig& r) { r.club.inertia += p[0] * axes; };
+    return f;
+  };
+  return {about("one factor on the tensor", "log_factor", 0, Vec3::Ones()),
+          about("about the face normal", "log_factor_normal", 2, Vec3::UnitX()),
+          about("about the horizontal", "log_factor_horizontal", 2, Vec3::UnitY()),
+          about("about the vertical", "log_factor_vertical", 2, Vec3::UnitZ())};
 }
 
 }  // namespace hosel::loop::forms

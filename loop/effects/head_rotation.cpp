@@ -1,24 +1,9 @@
 // A free head turns under an off-centre blow (gear effect). For bases whose head does not turn: the
 // difference that the declared inertia makes in the eccentric rigid impact is added to the launch.
-#include <cmath>
-
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/loop/effects/eccentric_difference.hpp"
 
 namespace hosel::loop::forms {
-namespace {
-
-/// Adds what `turned` launches more than `fixed`.
-void add_difference(const Blow& turned, const Blow& fixed, double amount, Launch& launch) {
-  static const models::RigidEccentric model;
-  const Launch with = model.launch(turned), without = model.launch(fixed);
-  launch.velocity += amount * (with.velocity - without.velocity);
-  launch.spin += amount * (with.spin - without.spin);
-  launch.head_velocity += amount * (with.head_velocity - without.head_velocity);
-  launch.head_spin += amount * (with.head_spin - without.head_spin);
-}
-
-}  // namespace
 
 std::vector<Form> head_rotation(const Setting& setting) {
   if (setting.head_turns || !setting.inertia_declared) return {};

@@ -2,18 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "hosel/loop/history/verdict.hpp"
-#include "hosel/post/csv.hpp"
+#include "hosel/loop/verdict.hpp"
 
 namespace hosel::loop {
 
 LoopResult run(const HistoryCase& c) {
   if (c.records.empty()) throw DataError("no record to look at");
-  HistoryStudy study(c);
-  conclude(study);
-  return std::move(study.result);
+  HistoryProblem problem(*c.model, c.setting, c.records, c.split, c.notes);
+  LoopResult result;
+  result.title = c.title;
+  result.base = c.base;
+  result.seed = c.split.seed;
+  result.read = int(problem.measured().rows());
+  result.forms = problem.forms();
+  const Study study(problem, result.forms, c.effects, c.rules);
+  conclude(study, result);
+  return result;
 }
 
 Shots as_shots(const HistoryCase& c) {
@@ -36,23 +40,6 @@ Shots as_shots(const HistoryCase& c) {
   s.columns.push_back(std::move(record));
   for (Column& ch : channels) s.columns.push_back(std::move(ch));
   return s;
-}
-
-std::string history_residuals_csv(const HistoryCase& c, const LoopResult& r) {
-  std::string out = "record,time_s,set";
-  for (const ChannelResult& ch : r.channels) out += fmt::format(",{0}__measured,{0}__before,{0}__after", ch.name);
-  out += '\n';
-  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
-  std::size_t row = 0;
-  for (const HistoryRecord& record : c.records)
-    for (std::size_t i = 0; i < record.times.size() && row < r.shots.size(); ++i, ++row) {
-      const UsedShot& u = r.shots[row];
-      out += fmt::format("{},{:.9g},{}", post::csv_cell(record.name), record.times[i], u.holdout ? "holdout" : "train");
-      for (std::size_t k = 0; k < u.measured.size(); ++k)
-        out += cell(u.measured[k]) + cell(u.measured[k] + u.before[k]) + cell(u.measured[k] + u.after[k]);
-      out += '\n';
-    }
-  return out;
 }
 
 }  // namespace hosel::loop

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <complex>
@@ -15,8 +16,7 @@ namespace {
 
 /// |sum x exp(-i w t)|^2 / n at the frequencies 1 ... of the padded length.
 std::vector<double> periodogram(std::vector<double> x, double n) {
-  std::size_t size = 1;
-  while (size < x.size()) size *= 2;
+  const std::size_t size = std::bit_ceil(x.size());
   x.resize(size, 0.0);
   Eigen::FFT<double> fft;
   std::vector<std::complex<double>> spectrum;
@@ -58,12 +58,12 @@ double level(const HistoryProblem& problem, const Eigen::VectorXd& z, int channe
 
 }  // namespace
 
-Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>& residuals, int channel, bool white) {
+Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, int channel, bool white) {
   // Stretches of training readings without a gap, each its own periodogram.
   std::vector<double> power, angle;
   double square = 0, count = 0;
-  for (std::size_t r = 0; r < residuals.size(); ++r) {
-    const HistoryRecord& record = problem.records()[r];
+  Eigen::Index first = 0;
+  for (const HistoryRecord& record : problem.records()) {
     std::vector<double> run;
     const auto close = [&] {
       const double n = double(run.size());
@@ -78,8 +78,7 @@ Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
           run[i] *= w;
           weight += w * w;
         }
-        std::size_t size = 1;
-        while (size < run.size()) size *= 2;
+        const std::size_t size = std::bit_ceil(run.size());
         const std::vector<double> I = periodogram(run, weight);
         for (std::size_t k = 0; k < I.size(); ++k) {
           power.push_back(std::max(I[k], 1e-300));
@@ -88,8 +87,8 @@ Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
       }
       run.clear();
     };
-    for (std::ptrdiff_t i = 0; i < residuals[r].rows(); ++i) {
-      const double x = residuals[r](i, channel);
+    for (std::ptrdiff_t i = 0; i < record.measured.rows(); ++i) {
+      const double x = residuals(first + i, channel);
       if (record.train[std::size_t(i)] && std::isfinite(x)) {
         run.push_back(x);
         square += x * x;
@@ -99,6 +98,7 @@ Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
       }
     }
     close();
+    first += record.measured.rows();
   }
   if (power.size() < 16) return {std::sqrt(square / std::max(1.0, count)), 0};
   Colour best;
@@ -120,11 +120,18 @@ Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>&
   return best;
 }
 
-std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, const Eigen::VectorXd& z) {
-  std::vector<HistoryFinding> found;
+StructureMap history_structure(const HistoryProblem& problem, const Eigen::VectorXd& z,
+                               const Eigen::MatrixXd& directions) {
+  StructureMap map;
   double tests = 0;
   const auto add = [&](int channel, const char* kind, std::string detail, double signal, double p, double equivalents) {
-    found.push_back({channel, kind, std::move(detail), signal, p, 1});
+    map.findings.push_back({.channel = channel,
+                            .regressor = "time_s",
+                            .kind = kind,
+                            .detail = std::move(detail),
+                            .statistic = signal,
+                            .signal = signal,
+                            .p_adjusted = p});
     tests += equivalents;
   };
   for (int c = 0; c < problem.width(); ++c) {
@@ -165,8 +172,7 @@ std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, con
       }
       n += here;
       const double span = record.times.back() - record.times.front(), step = span / double(rows - 1);
-      std::size_t size = 1;
-      while (size < x.size()) size *= 2;
+      const std::size_t size = std::bit_ceil(x.size());
       const std::vector<double> I = periodogram(x, here);
       ordinates += 0.5 * here;
       for (std::size_t k = 0; k < I.size(); ++k) {
@@ -196,9 +202,21 @@ std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, con
     add(c, "oscillation", fmt::format("at {:.3g} Hz", peak.frequency), std::sqrt(2 * peak.power), std::exp(-peak.power),
         std::max(1.0, 1.5 * ordinates));
   }
-  for (HistoryFinding& f : found) f.p_adjusted = std::min(1.0, f.p * tests);
-  std::ranges::stable_sort(found, {}, &HistoryFinding::p);
-  return found;
+  // Directions are tests of their own, fewer and sharper: each by the size of its part of the residual.
+  for (Finding& f : map.findings) f.p_adjusted *= tests;
+  for (Eigen::Index k = 0; k < directions.cols(); ++k)
+    if (const double norm = directions.col(k).norm(); norm > 0) {
+      const double part = directions.col(k).dot(z) / norm;
+      map.findings.push_back({.channel = -1,
+                              .kind = "effect",
+                              .statistic = part,
+                              .signal = part,
+                              .p_adjusted = tail(part * part, 1) * double(directions.cols())});
+    }
+  std::ranges::stable_sort(map.findings, {}, &Finding::p_adjusted);
+  for (Finding& f : map.findings) f.p_adjusted = std::min(1.0, f.p_adjusted);
+  if (!map.findings.empty()) map.p = map.findings.front().p_adjusted;
+  return map;
 }
 
 }  // namespace hosel::loop

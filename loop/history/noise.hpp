@@ -2,11 +2,8 @@
 /// by frequency.
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
-#include <vector>
-
 #include "hosel/loop/history/problem.hpp"
+#include "hosel/loop/structure.hpp"
 
 namespace hosel::loop {
 
@@ -15,21 +12,14 @@ struct Colour {
   double rho = 0;    ///< correlation of neighbours, 0 to 0.98
 };
 
-/// From the training stretches of a channel's residuals, by the medians of their periodograms' logarithms: an
-/// oscillation that a model lacks stands in a few frequencies and moves a median little. `white`: rho held at 0.
-Colour colour(const HistoryProblem& problem, const std::vector<Eigen::MatrixXd>& residuals, int channel, bool white);
+/// From the training stretches of a channel's residuals (rows of the problem x channels), by the medians of their
+/// periodograms' logarithms: an oscillation that a model lacks stands in a few frequencies and moves a median little.
+/// `white`: rho held at 0.
+Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, int channel, bool white);
 
-/// One statistic on the whitened residual of one channel, with its probability under white noise.
-struct HistoryFinding {
-  int channel = 0;
-  std::string kind;    ///< constant, trend, oscillation, band, neighbours
-  std::string detail;  ///< "at 4.1 Hz"
-  double signal = 0;   ///< amplitude in units of its standard deviation
-  double p = 1;        ///< of one test, before correction
-  double p_adjusted = 1;
-};
-
-/// All tests on `z` (as HistoryProblem::whitened gives it), by rising p; adjusted for their number.
-std::vector<HistoryFinding> history_structure(const HistoryProblem& problem, const Eigen::VectorXd& z);
+/// Tests on `z` (whitened training residuals of the problem) for a constant, trend, oscillation, bands and neighbours
+/// alike, adjusted for their number; and for each of the directions, adjusted for theirs. By rising p.
+StructureMap history_structure(const HistoryProblem& problem, const Eigen::VectorXd& z,
+                               const Eigen::MatrixXd& directions);
 
 }  // namespace hosel::loop

@@ -1,115 +1,154 @@
 #include "hosel/loop/history/problem.hpp"
 
-#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "hosel/loop/history/noise.hpp"
+#include "hosel/loop/median.hpp"
+#include "hosel/solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {
 
-class Cost final : public ceres::CostFunction {
- public:
-  Cost(const HistoryProblem& problem, const Model& model, double window)
-      : problem_(problem), model_(model), window_(window) {
-    set_num_residuals(problem.readings());
-    mutable_parameter_block_sizes()->push_back(model.size());
-  }
-  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    const auto parameters = model_.parameters();
-    const auto n = std::ptrdiff_t(parameters.size());
-    Eigen::VectorXd p(n), z, moved;
-    for (std::ptrdiff_t k = 0; k < n; ++k) p[k] = x[0][k] * parameters[std::size_t(k)]->scale;
-    if (!problem_.whitened(model_, p.data(), window_, z)) return false;
-    Eigen::Map<Eigen::VectorXd>(residuals, z.size()) = z;
-    if (!jacobians || !jacobians[0]) return true;
-    Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> J(jacobians[0], z.size(), n);
-    for (std::ptrdiff_t k = 0; k < n; ++k) {
-      const Parameter& q = *parameters[std::size_t(k)];
-      // Inside the plausible range, where the model has an answer.
-      const double h = p[k] + kStep * q.scale > q.max ? -kStep * q.scale : kStep * q.scale, at = p[k];
-      p[k] = at + h;
-      if (!problem_.whitened(model_, p.data(), window_, moved)) return false;
-      p[k] = at;
-      J.col(k) = (moved - z) * (q.scale / h);
-    }
-    return true;
-  }
-  static constexpr double kStep = 1e-3;  // of a parameter's scale
+constexpr double kStep = 1e-3;  // of a parameter's scale
+constexpr int kFewest = 24;     // training readings that can test anything
 
- private:
-  const HistoryProblem& problem_;
-  const Model& model_;
-  double window_;
-};
+/// Scatter of a channel by third differences, which a smooth motion leaves small: a first idea of the noise.
+double rough_noise(const std::vector<HistoryRecord>& records, int channel) {
+  std::vector<double> size;
+  for (const HistoryRecord& r : records)
+    for (std::ptrdiff_t i = 3; i < r.measured.rows(); ++i) {
+      const auto y = [&](std::ptrdiff_t k) { return r.measured(i - k, channel); };
+      const double d = y(0) - 3 * y(1) + 3 * y(2) - y(3);
+      if (std::isfinite(d)) size.push_back(std::abs(d));
+    }
+  return 1.4826 * median(size) / std::sqrt(20.0);
+}
+
+double noise_floor(const Channel& c) { return std::max(c.resolution / std::sqrt(12.0), 1e-9); }
 
 }  // namespace
 
-HistoryProblem::HistoryProblem(const HistoryModel& model, std::vector<HistoryRecord> records,
-                               std::vector<HistoryChannel> channels,
-                               const std::map<const Form*, const HistoryForm*>& forms)
-    : model_(model), records_(std::move(records)), channels_(std::move(channels)), forms_(forms) {
-  for (const HistoryRecord& r : records_) readings_ += int(r.measured.size());
-}
-
-void HistoryProblem::set_noise(int channel, double sigma, double colour) {
-  channels_[std::size_t(channel)].noise = sigma;
-  channels_[std::size_t(channel)].colour = colour;
-}
-
-void HistoryProblem::drop(int record, int sample, int channel) {
-  records_[std::size_t(record)].measured(sample, channel) = std::numeric_limits<double>::quiet_NaN();
-}
-
-int HistoryProblem::training() const {
-  int n = 0;
-  for (const HistoryRecord& r : records_)
-    for (std::ptrdiff_t i = 0; i < r.measured.rows(); ++i)
-      if (r.train[std::size_t(i)])
-        for (std::ptrdiff_t c = 0; c < r.measured.cols(); ++c) n += std::isfinite(r.measured(i, c));
-  return n;
-}
-
-Rig HistoryProblem::rig(const Model& model, const double* p) const {
-  Rig rig(channels_.size());
-  for (const Form* f : model.forms) {
-    forms_.at(f)->apply({p, f->parameters.size()}, rig);
-    p += f->parameters.size();
+HistoryProblem::HistoryProblem(const HistoryModel& model, const HistorySetting& setting,
+                               std::vector<HistoryRecord> records, const Split& how, std::vector<std::string> notes)
+    : model_(model), setting_(setting), records_(std::move(records)), notes_(std::move(notes)) {
+  Eigen::Index samples = 0;
+  for (const HistoryRecord& r : records_) samples += r.measured.rows();
+  measured_.resize(samples, width());
+  samples = 0;
+  for (const HistoryRecord& r : records_) {
+    measured_.middleRows(samples, r.measured.rows()) = r.measured;
+    samples += r.measured.rows();
   }
-  return rig;
+  for (int c = 0; c < width(); ++c) {
+    HistoryChannel& ch = setting_.channels[std::size_t(c)];
+    ch.noise = ch.declared ? *ch.declared : std::max(rough_noise(records_, c), noise_floor(ch));
+  }
+  split(how);
 }
 
-void HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window,
-                            double* out) const {
+void HistoryProblem::split(const Split& how) {
+  std::mt19937_64 random(how.seed);
+  const double fraction = how.holdout_fraction;
+  for (HistoryRecord& r : records_) r.train.assign(r.times.size(), 1);
+  if (!(fraction > 0)) return;
+  if (setting_.driven && records_.size() >= 3) {
+    const std::vector<std::size_t> order = solvers::shuffled(records_.size(), random);
+    const std::size_t held =
+        std::clamp<std::size_t>(std::size_t(std::lround(fraction * double(order.size()))), 1, order.size() - 1);
+    for (std::size_t k = 0; k < held; ++k) records_[order[k]].train.assign(records_[order[k]].times.size(), 0);
+    return;
+  }
+  // Stretches of time, the first never.
+  const auto group = std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction)));
+  for (HistoryRecord& r : records_) {
+    const std::size_t n = r.times.size(), blocks = std::min<std::size_t>(3 * group, n / 8);
+    for (std::size_t first = 0; first + 1 < blocks; first += group) {
+      const std::size_t size = std::min(group, blocks - first);
+      std::size_t block = first + random() % size;
+      if (block == 0) block = 1;
+      for (std::size_t i = n * block / blocks; i < n * (block + 1) / blocks; ++i) r.train[i] = 0;
+    }
+  }
+}
+
+std::vector<Form> HistoryProblem::forms() const {
+  std::vector<Form> all;
+  for (const EffectEntry& e : effects())
+    if (e.on_tests)
+      for (Form& f : e.on_tests(setting_)) all.push_back(std::move(f));
+  return all;
+}
+
+std::vector<Problem::Row> HistoryProblem::rows() const {
+  std::vector<Row> all;
+  for (const HistoryRecord& r : records_)
+    for (const char train : r.train) {
+      const int k = int(all.size());
+      all.push_back({k, k, fmt::format("{}", k + 1), !train});
+    }
+  return all;
+}
+
+std::vector<std::string> HistoryProblem::notes() const {
+  std::vector<std::string> all = notes_;
+  for (const HistoryChannel& c : setting_.channels)
+    if (c.colour > 0)
+      all.push_back(fmt::format("{}: neighbouring readings are correlated by {:.2f}; every test counts with that",
+                                c.name, c.colour));
+  return all;
+}
+
+std::optional<std::string> HistoryProblem::too_few() const {
+  if (density(Part::train).values < kFewest)
+    return fmt::format("fewer than {} readings to learn from: too few to test anything", kFewest);
+  return {};
+}
+
+double HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window,
+                              double* out) const {
   const auto n = record.measured.rows();
   const double last = record.times.empty() ? 0 : record.times.front() + window;
+  double logarithms = 0;
   for (std::ptrdiff_t c = 0; c < record.measured.cols(); ++c) {
-    const HistoryChannel& channel = channels_[std::size_t(c)];
-    const double one = 1 / channel.noise, rho = channel.colour, next = one / std::sqrt(1 - rho * rho);
+    const HistoryChannel& ch = channel(int(c));
+    const double one = 1 / ch.noise, rho = ch.colour, next = one / std::sqrt(1 - rho * rho);
     bool before = false;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const bool here = std::isfinite(record.measured(i, c)) && (record.train[std::size_t(i)] != 0) == train &&
                         record.times[std::size_t(i)] <= last;
       out[c * n + i] = !here ? 0 : before ? next * (column(i, c) - rho * column(i - 1, c)) : one * column(i, c);
+      if (here) logarithms += std::log(before ? next : one);
       before = here;
     }
   }
+  return logarithms;
 }
 
-bool HistoryProblem::solve(const Model& model, const double* p, double window, std::vector<Answer>& answers,
-                           std::vector<Eigen::VectorXd>& unknowns, Eigen::VectorXd* z) const {
-  const Rig setup = rig(model, p);
-  if (!model_.answer(setup, answers)) return false;
-  if (z) z->resize(readings_);
-  unknowns.assign(records_.size(), {});
-  std::ptrdiff_t at = 0;
+bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double window, Solution& out,
+                           Eigen::VectorXd* z) const {
+  Rig rig(setting_.channels.size());
+  const double* at = p.data();
+  for (const Form* f : model.forms) {
+    f->setup({at, f->parameters.size()}, rig);
+    at += f->parameters.size();
+  }
+  if (!model_.answer(rig, out.answers)) return false;
+  if (z) z->resize(measured_.size());
+  out.unknowns.assign(records_.size(), {});
+  std::ptrdiff_t place = 0;
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const HistoryRecord& record = records_[r];
-    Answer& a = answers[r];
+    Answer& a = out.answers[r];
     const auto size = record.measured.size();
     for (std::ptrdiff_t c = 0; c < record.measured.cols(); ++c) {
-      const double gain = 1 + setup.gain[std::size_t(c)], si = channels_[std::size_t(c)].si;
-      a.value.col(c) = (gain * a.value.col(c).array() + setup.offset[std::size_t(c)]) / si;
+      const double gain = 1 + rig.gain[std::size_t(c)], si = channel(int(c)).si;
+      a.value.col(c) = (gain * a.value.col(c).array() + rig.offset[std::size_t(c)]) / si;
       for (Eigen::MatrixXd& u : a.unknown) u.col(c) *= gain / si;
     }
     if (!a.unknown.empty())  // where the start is unknown, so is every zero
@@ -117,9 +156,8 @@ bool HistoryProblem::solve(const Model& model, const double* p, double window, s
         a.unknown.emplace_back(Eigen::MatrixXd::Zero(record.measured.rows(), record.measured.cols()));
         a.unknown.back().col(c).setOnes();
       }
-    const Eigen::MatrixXd e = a.value - record.measured;
     Eigen::VectorXd w(size);
-    whiten(record, e, true, window, w.data());
+    whiten(record, a.value - record.measured, true, window, w.data());
     if (!a.unknown.empty()) {
       Eigen::MatrixXd U(size, std::ptrdiff_t(a.unknown.size()));
       for (std::size_t k = 0; k < a.unknown.size(); ++k)
@@ -131,139 +169,234 @@ bool HistoryProblem::solve(const Model& model, const double* p, double window, s
         if (norm[k] > faint) U.col(k) /= norm[k];
         else U.col(k).setZero(), norm[k] = 1;
       }
-      // A whiff of a ridge: modes in two planes with one frequency look alike in one channel.
+      // A Tikhonov term: modes in two planes with one frequency look alike in one channel.
       Eigen::MatrixXd G = U.transpose() * U;
       G.diagonal().array() += 1e-8;
       const Eigen::VectorXd u = G.ldlt().solve(Eigen::VectorXd(-(U.transpose() * w)));
       w += U * u;
-      unknowns[r] = u.cwiseQuotient(norm);
+      out.unknowns[r] = u.cwiseQuotient(norm);
     }
     if (!w.allFinite()) return false;
-    if (z) z->segment(at, size) = w;
-    at += size;
+    if (z) z->segment(place, size) = w;
+    place += size;
   }
   return true;
 }
 
-bool HistoryProblem::whitened(const Model& model, const double* p, double window, Eigen::VectorXd& z) const {
-  std::vector<Answer> answers;
-  std::vector<Eigen::VectorXd> unknowns;
-  return solve(model, p, window, answers, unknowns, &z);
-}
-
-int HistoryProblem::unknowns(const Model& model, const double* p) const {
-  std::vector<Answer> answers;
-  std::vector<Eigen::VectorXd> u;
-  if (!solve(model, p, kWhole, answers, u, nullptr)) return 0;
-  int n = 0;
-  for (const auto& x : u) n += int(x.size());
-  return n;
-}
-
-bool HistoryProblem::residuals(const Model& model, const double* p, std::vector<Eigen::MatrixXd>& out) const {
-  std::vector<Answer> answers;
-  std::vector<Eigen::VectorXd> unknowns;
-  if (!solve(model, p, kWhole, answers, unknowns, nullptr)) return false;
-  out.clear();
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    Eigen::MatrixXd e = answers[r].value - records_[r].measured;
-    for (std::size_t k = 0; k < answers[r].unknown.size(); ++k)
-      e += unknowns[r][std::ptrdiff_t(k)] * answers[r].unknown[k];
-    out.push_back(std::move(e));
+bool HistoryProblem::whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                              double window) const {
+  Solution s;
+  if (part != Part::holdout) return solve(model, p, window, s, &z);
+  const Eigen::MatrixXd e = residuals(model, p);
+  if (!e.size()) return false;
+  z.resize(e.size());
+  Eigen::Index row = 0;
+  for (const HistoryRecord& r : records_) {
+    whiten(r, e.middleRows(row, r.measured.rows()), false, window, z.data() + row * width());
+    row += r.measured.rows();
   }
   return true;
 }
 
-std::pair<double, int> HistoryProblem::holdout_score(const Model& model, const double* p) const {
-  std::vector<Eigen::MatrixXd> e;
-  if (!residuals(model, p, e)) return {-std::numeric_limits<double>::infinity(), 0};
-  double sum = 0;
-  int count = 0;
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    Eigen::VectorXd z(records_[r].measured.size());
-    whiten(records_[r], e[r], false, kWhole, z.data());
-    for (std::ptrdiff_t c = 0; c < width(); ++c) {
-      const HistoryChannel& ch = channels_[std::size_t(c)];
-      for (std::ptrdiff_t i = 0; i < e[r].rows(); ++i)
-        if (!records_[r].train[std::size_t(i)] && std::isfinite(e[r](i, c))) {
-          const double w = z[c * e[r].rows() + i];
-          sum -= 0.5 * w * w + std::log(ch.noise * std::sqrt(1 - ch.colour * ch.colour) * std::sqrt(2 * kPi));
-          ++count;
-        }
-    }
+/// One-sided, inside the plausible range, where the model has an answer.
+bool HistoryProblem::linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                               Eigen::MatrixXd& J, double window) const {
+  if (!whitened(part, model, p, z, window)) return false;
+  J.resize(z.size(), p.size());
+  Eigen::VectorXd x = p, moved;
+  Eigen::Index k = 0;
+  for (const Parameter* q : model.parameters()) {
+    const double step = p[k] + kStep * q->scale > q->max ? -kStep : kStep;
+    x[k] = p[k] + step * q->scale;
+    if (!whitened(part, model, x, moved, window)) return false;
+    x[k] = p[k];
+    J.col(k++) = (moved - z) / step;
   }
-  return {sum, count};
+  return true;
 }
 
-Eigen::MatrixXd HistoryProblem::jacobian(const Model& model, const Eigen::VectorXd& at) const {
-  const auto parameters = model.parameters();
-  Eigen::VectorXd p = at, one, two, z;
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(readings_, model.size());
-  for (std::ptrdiff_t k = 0; k < J.cols(); ++k) {
-    const Parameter& q = *parameters[std::size_t(k)];
-    const double step = Cost::kStep * q.scale;
+/// Central, of second order one-sided at the edges of the plausible range; zero where the model has no answer.
+Eigen::MatrixXd HistoryProblem::jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const {
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(measured_.size(), p.size());
+  Eigen::VectorXd x = p, one, two, z;
+  Eigen::Index k = 0;
+  for (const Parameter* q : model.parameters()) {
+    const double step = kStep * q->scale;
     const auto look = [&](double steps, Eigen::VectorXd& out) {
-      p[k] = at[k] + steps * step;
-      const bool good = whitened(model, p.data(), kWhole, out);
-      p[k] = at[k];
+      x[k] = p[k] + steps * step;
+      const bool good = whitened(part, model, x, out, Stage::kWhole);
+      x[k] = p[k];
       return good;
     };
-    // Of second order: central inside the plausible range, one-sided at its edge, where the model has no answer beyond.
-    const bool low = at[k] - step<q.min, high = at[k] + step> q.max;
-    const double side = high ? -1 : 1;
-    if (low || high) {
-      if (look(0, z) && look(side, one) && look(2 * side, two))
-        J.col(k) = side * (4 * one - 3 * z - two) / (2 * Cost::kStep);
+    if (p[k] + step > q->max || p[k] - step < q->min) {
+      const double side = p[k] + step > q->max ? -1 : 1;
+      if (look(0, z) && look(side, one) && look(2 * side, two)) J.col(k) = side * (4 * one - 3 * z - two) / (2 * kStep);
     } else if (look(1, one) && look(-1, two)) {
-      J.col(k) = (one - two) / (2 * Cost::kStep);
+      J.col(k) = (one - two) / (2 * kStep);
     }
+    ++k;
   }
   return J;
 }
 
-Fit HistoryProblem::fit(const Model& model, const Eigen::VectorXd& start, double window, int iterations) const {
-  Fit out;
-  out.model = model;
-  out.p = start;
-  out.deviance = std::numeric_limits<double>::infinity();
-  const auto parameters = model.parameters();
-  Eigen::VectorXd x(model.size());
-  for (std::ptrdiff_t k = 0; k < x.size(); ++k) {
-    const Parameter& q = *parameters[std::size_t(k)];
-    x[k] = std::clamp(start[k], q.min, q.max) / q.scale;
+/// Held-out readings too, the unknowns of the start from training. Empty where the model has no answer.
+Eigen::MatrixXd HistoryProblem::residuals(const Model& model, const Eigen::VectorXd& p) const {
+  Solution s;
+  if (!solve(model, p, Stage::kWhole, s, nullptr)) return {};
+  Eigen::MatrixXd e = -measured_;
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    auto here = e.middleRows(row, records_[r].measured.rows());
+    here += s.answers[r].value;
+    for (std::size_t k = 0; k < s.answers[r].unknown.size(); ++k)
+      here += s.unknowns[r][std::ptrdiff_t(k)] * s.answers[r].unknown[k];
+    row += here.rows();
   }
-  if (x.size() > 0) {
-    ceres::Problem lsq;
-    lsq.AddResidualBlock(new Cost(*this, model, window), nullptr, x.data());
-    for (std::ptrdiff_t k = 0; k < x.size(); ++k) {
-      const Parameter& q = *parameters[std::size_t(k)];
-      lsq.SetParameterLowerBound(x.data(), int(k), q.min / q.scale);
-      lsq.SetParameterUpperBound(x.data(), int(k), q.max / q.scale);
+  return e;
+}
+
+Problem::Density HistoryProblem::density(Part part) const {
+  Density d;
+  const bool train = part != Part::holdout;
+  for (const HistoryRecord& r : records_) {
+    Eigen::VectorXd whitened(r.measured.size());
+    const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(r.measured.rows(), r.measured.cols());
+    d.log_whitening += whiten(r, ones, train, Stage::kWhole, whitened.data());
+    d.values += double((whitened.array() != 0).count());
+  }
+  return d;
+}
+
+/// An oscillation is fitted over a few periods first, then over ever more, since over many a frequency that is off by
+/// one cycle is a minimum of its own.
+std::vector<Stage> HistoryProblem::stages() const {
+  if (model_.slow()) return {{.loss = {}, .iterations = 5}};
+  std::vector<Stage> all;
+  double span = 0;
+  for (const HistoryRecord& r : records_)
+    if (!r.times.empty()) span = std::max(span, r.times.back() - r.times.front());
+  if (setting_.frequency > 0)
+    for (double w = 4 * 2 * kPi / setting_.frequency; w < 0.7 * span; w *= 3)
+      all.push_back({.window = w, .loss = {}, .iterations = 8});
+  all.push_back({.loss = {}, .iterations = 20});
+  return all;
+}
+
+Effort HistoryProblem::effort() const {
+  if (model_.slow()) return {.starts = 1, .pairs = 0, .singles_grown = 1, .pairs_grown = 1, .grown = 4, .reported = 12};
+  return {.starts = 8, .pairs = 0, .singles_grown = 5, .pairs_grown = 2, .grown = 4};
+}
+
+/// Readings that stand alone far from the best fit and from their neighbours.
+bool HistoryProblem::screen(const Selection& selection) {
+  const Eigen::MatrixXd e = residuals(selection.richest.model, selection.richest.p);
+  const std::size_t known = flags_.size();
+  Eigen::Index first = 0;
+  for (HistoryRecord& record : records_) {
+    const Eigen::Index rows = e.size() ? record.measured.rows() : 0;
+    for (int c = 0; c < width(); ++c) {
+      const auto here = [&](Eigen::Index i) { return e(first + i, c); };
+      std::vector<double> size;
+      for (Eigen::Index i = 0; i < rows; ++i)
+        if (std::isfinite(here(i))) size.push_back(std::abs(here(i)));
+      const double scale = std::max(1.4826 * median(size), channel(c).noise);
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        if (!(std::abs(here(i)) > 7 * scale)) continue;
+        const auto beside = [&](Eigen::Index k) {
+          return k < 0 || k >= rows || !std::isfinite(here(k)) ? 0.0 : here(k);
+        };
+        // A motion moves its neighbours too; two readings in a row may fail together.
+        if (std::abs(here(i) - 0.5 * (beside(i - 2) + beside(i + 2))) < 6 * scale) continue;
+        flags_.push_back({int(first + i), fmt::format("{}", first + i + 1), channel(c).name,
+                          fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -here(i),
+                                      record.times[std::size_t(i)], record.name),
+                          int(flags_.size()) + 1});
+        record.measured(i, c) = measured_(first + i, c) = std::numeric_limits<double>::quiet_NaN();
+      }
     }
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = iterations;
-    options.function_tolerance = 1e-7;
-    options.parameter_tolerance = 1e-7;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &lsq, &summary);
-    if (!summary.IsSolutionUsable()) return out;
-    out.converged = summary.termination_type == ceres::CONVERGENCE;
-    for (std::ptrdiff_t k = 0; k < x.size(); ++k) {
-      const Parameter& q = *parameters[std::size_t(k)];
-      out.p[k] = x[k] * q.scale;
-      const double margin = 1e-3 * (q.max - q.min);
-      out.at_bound = out.at_bound || (q.max - out.p[k] < margin && q.max > 0) ||
-                     (out.p[k] - q.min < margin && q.min < 0);
-    }
+    first += record.measured.rows();
+  }
+  return flags_.size() == known;
+}
+
+Scatter HistoryProblem::scatter(int c, const Eigen::MatrixXd& residuals, int) const {
+  const Colour noise = colour(*this, residuals, c, channel(c).colour == 0);
+  return {noise.sigma / channel(c).noise, 2 / std::sqrt(double(measured_.rows()))};
+}
+
+/// The richest model sees the least of an effect in the noise.
+double HistoryProblem::update_noise(const Fit&, const Fit& richest) {
+  const Eigen::MatrixXd e = residuals(richest.model, richest.p);
+  double change = 0;
+  for (int c = 0; c < width() && e.size(); ++c) {
+    HistoryChannel& ch = setting_.channels[std::size_t(c)];
+    Colour noise = colour(*this, e, c, false);
+    if (noise.rho < 0.06) noise = colour(*this, e, c, true);
+    const double sigma = std::max(ch.trusted() ? *ch.declared : noise.sigma, noise_floor(ch));
+    change = std::max({change, std::abs(std::log(sigma / ch.noise)), std::abs(noise.rho - ch.colour)});
+    ch.noise = sigma;
+    ch.colour = noise.rho;
+  }
+  return change;
+}
+
+StructureMap HistoryProblem::structure(const Fit& fit, const Fit&, const Eigen::MatrixXd& directions,
+                                       const Rules&) const {
+  const Eigen::VectorXd z = loop::whitened(*this, Part::select, fit.model, fit.p);
+  return z.size() ? history_structure(*this, z, directions) : StructureMap{};
+}
+
+/// A fit may move what it cannot explain into a channel that the base leaves clean: the place is where something
+/// remains both before and after it, else where it was before.
+std::vector<Location> HistoryProblem::places(const Selection& s) const {
+  const auto shows = [](const Finding& f) { return f.channel >= 0 && f.p_adjusted <= Rules::of_histories().remaining; };
+  std::set<int> dirty_before, both;
+  for (const Finding& f : s.before.findings)
+    if (shows(f)) dirty_before.insert(f.channel);
+  for (const Finding& f : s.after.findings)
+    if (shows(f) && dirty_before.contains(f.channel)) both.insert(f.channel);
+  const bool moved = both.empty() && !dirty_before.empty();
+  std::vector<Finding> told;
+  for (const Finding& f : (moved ? s.before : s.after).findings)
+    if (shows(f) && (moved || both.empty() || both.contains(f.channel))) told.push_back(f);
+  // An oscillation says more than the band it lies in.
+  std::ranges::stable_partition(told, [](const Finding& f) { return f.kind == "oscillation"; });
+  std::vector<Location> all;
+  for (const Finding& f : told)
+    if (std::ranges::find(all, channel(f.channel).name, &Location::channel) == all.end())
+      all.push_back({channel(f.channel).name, f.regressor, f.what()});
+  return all;
+}
+
+NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
+  NextExperiment next;
+  if (too_few()) {
+    next.text = "a longer record";
+  } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
+    next.text = fmt::format(
+        "repeat the record with one thing changed at a time (free length, tip mass, amplitude): {} holds {} that no "
+        "candidate explains",
+        so_far.unexplained.front().channel, so_far.unexplained.front().detail);
+  } else if (so_far.verdict == Verdict::ambiguous) {
+    std::vector<std::string> names, sensors;
+    for (const auto& tie : so_far.ties)
+      for (const std::string& e : tie) {
+        names.push_back(e);
+        sensors.emplace_back(find_effect(e)->sensor);
+      }
+    next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
+    next.text = fmt::format(
+        "this record cannot separate {}: measure {}; or record the same club with a known mass at the tip and with a "
+        "shorter free length",
+        fmt::join(names, ", "), *next.sensor);
+  } else if (so_far.verdict == Verdict::insufficient) {
+    next.text = "a longer or stronger record: minimum_detectable says how large an effect this one could have shown";
+  } else if (so_far.verdict == Verdict::noise_contradicted) {
+    next.text = "a record at rest, to find the instrument's own scatter";
   } else {
-    out.converged = true;
+    next.text = "nothing is tied; a longer record would narrow the parameters most";
   }
-  Eigen::VectorXd z;
-  if (whitened(model, out.p.data(), window, z)) out.deviance = z.squaredNorm();
-  return out;
+  return next;
 }
 
 }  // namespace hosel::loop

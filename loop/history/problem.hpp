@@ -1,13 +1,10 @@
-/// Records as a fit sees them: what is measured, which readings train, the colour of the noise; and least squares of
-/// effects' parameters on whitened residuals, unknowns of the start eliminated.
+/// Records of a club test as the engine sees them: readings whitened by noise with its colour, unknown states at the
+/// start eliminated, stretches of time held out, fits that look at a few periods first.
 #pragma once
 
-#include <map>
-#include <memory>
-#include <vector>
-
-#include "hosel/loop/fit.hpp"
+#include "hosel/loop/case.hpp"
 #include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/result.hpp"
 
 namespace hosel::loop {
 
@@ -15,52 +12,67 @@ struct HistoryRecord {
   std::string name;           ///< of the file
   std::vector<double> times;  ///< [s]
   Eigen::MatrixXd measured;   ///< samples x channels, header's unit; NaN where missing
-  std::vector<char> train;    ///< per sample
+  std::vector<char> train;    ///< per sample; filled by the split
 };
 
-class HistoryProblem {
+class HistoryProblem final : public Problem {
  public:
-  /// `forms` in the order of Form's address in `at`: what each Form of a Model does to the rig.
-  HistoryProblem(const HistoryModel& model, std::vector<HistoryRecord> records, std::vector<HistoryChannel> channels,
-                 const std::map<const Form*, const HistoryForm*>& forms);
+  /// `model` must outlive the problem. Whole records are held out where there are enough and none needs a start of its
+  /// own, else stretches of time. `notes` about the case.
+  HistoryProblem(const HistoryModel& model, const HistorySetting& setting, std::vector<HistoryRecord> records,
+                 const Split& split, std::vector<std::string> notes = {});
 
+  /// Every form that can act on this test.
+  std::vector<Form> forms() const;
   const std::vector<HistoryRecord>& records() const { return records_; }
-  const std::vector<HistoryChannel>& channels() const { return channels_; }
-  int width() const { return int(channels_.size()); }
-  bool slow() const { return model_.slow(); }
-  void set_noise(int channel, double sigma, double colour);
-  void drop(int record, int sample, int channel);  ///< a reading that is none
 
-  /// Whitened residuals (model minus measured) of the training readings up to `window` after each record's start [s],
-  /// unknowns of the start at their best; zero where there is no reading. Always readings() long. False where the
-  /// model has no answer.
-  bool whitened(const Model& model, const double* p, double window, Eigen::VectorXd& z) const;
-  int readings() const { return readings_; }  ///< records x samples x channels
-  int training() const;                       ///< readings that train
-  /// Number of unknowns that every fit contains.
-  int unknowns(const Model& model, const double* p) const;
-  /// Raw residuals, header's units, samples x channels per record (held-out readings too, unknowns from training).
-  bool residuals(const Model& model, const double* p, std::vector<Eigen::MatrixXd>& out) const;
-  /// Log predictive density of the held-out readings, and their number.
-  std::pair<double, int> holdout_score(const Model& model, const double* p) const;
+  int width() const override { return int(setting_.channels.size()); }
+  const HistoryChannel& channel(int c) const override { return setting_.channels[std::size_t(c)]; }
+  void refute(int c) override { setting_.channels[std::size_t(c)].refuted = true; }
+  std::vector<Row> rows() const override;
+  const Eigen::MatrixXd& measured() const override { return measured_; }
+  std::vector<Flag> flags() const override { return flags_; }
+  std::vector<std::string> notes() const override;
+  std::optional<std::string> too_few() const override;
 
-  Eigen::MatrixXd jacobian(const Model& model, const Eigen::VectorXd& p) const;  ///< whitened, per Parameter::scale
-  Fit fit(const Model& model, const Eigen::VectorXd& start, double window, int iterations) const;
+  bool whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                double window = Stage::kWhole) const override;
+  bool linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, Eigen::MatrixXd& jacobian,
+                 double window) const override;
+  Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override;
+  Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override;
+  Density density(Part part) const override;
+  std::vector<Stage> stages() const override;
+  Effort effort() const override;
+
+  bool screen(const Selection& selection) override;
+  Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
+  double update_noise(const Fit& selected, const Fit& richest) override;
+
+  StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
+                         const Rules& rules) const override;
+  std::vector<Location> places(const Selection& selection) const override;
+  std::vector<Location> shapes(const Selection&) const override { return {}; }
+  NextExperiment next_experiment(const LoopResult& so_far) const override;
 
  private:
-  Rig rig(const Model& model, const double* p) const;
-  /// Whitened entries of one column of one record, those outside `window` or of the other set zero.
-  void whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window, double* out) const;
-  bool solve(const Model& model, const double* p, double window, std::vector<Answer>& answers,
-             std::vector<Eigen::VectorXd>& unknowns, Eigen::VectorXd* z) const;
+  struct Solution {
+    std::vector<Answer> answers;            ///< per record, header's units
+    std::vector<Eigen::VectorXd> unknowns;  ///< of the start, at their best on the training readings
+  };
+  void split(const Split& how);
+  /// Whitened entries of one column of one record, those outside `window` or of the other set zero. Returns the sum of
+  /// the logarithms of their factors.
+  double whiten(const HistoryRecord& record, const Eigen::MatrixXd& column, bool train, double window,
+                double* out) const;
+  bool solve(const Model& model, const Eigen::VectorXd& p, double window, Solution& out, Eigen::VectorXd* z) const;
 
   const HistoryModel& model_;
+  HistorySetting setting_;  ///< its channels with their noise as known by now
   std::vector<HistoryRecord> records_;
-  std::vector<HistoryChannel> channels_;
-  const std::map<const Form*, const HistoryForm*>& forms_;
-  int readings_ = 0;
+  Eigen::MatrixXd measured_;  ///< of all records, one below the other
+  std::vector<Flag> flags_;
+  std::vector<std::string> notes_;
 };
-
-constexpr double kWhole = std::numeric_limits<double>::infinity();
 
 }  // namespace hosel::loop

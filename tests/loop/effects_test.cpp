@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hosel/loop/fit.hpp"
+#include "hosel/loop/shots/model.hpp"
 #include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
@@ -32,30 +32,28 @@ class OnModel : public testing::TestWithParam<const char*> {
     setting = {
         turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
     for (const EffectEntry& e : effects())
-      for (Form& f : e.forms(setting)) forms.push_back(f);
-    std::vector<Channel> channels;
+      if (e.on_shots)
+        for (Form& f : e.on_shots(setting)) forms.push_back(f);
+    std::vector<ShotChannel> channels;
     const double noise[] = {0.25, 0.2, 0.25, 60, 60},
                  si[] = {1, kRadPerDeg, kRadPerDeg, kRadPerSecPerRpm, kRadPerSecPerRpm};
     for (std::size_t k = 0; k < setting.outputs.size(); ++k)
-      channels.push_back({.name = std::string(stem(setting.outputs[k])),
-                          .output = setting.outputs[k],
-                          .si = si[k],
-                          .noise = noise[k],
-                          .declared = true});
+      channels.push_back(
+          {{.name = std::string(stem(setting.outputs[k])), .si = si[k], .noise = noise[k]}, setting.outputs[k]});
     std::vector<Trial> trials;
     for (int k = 0; k < 8; ++k) {
       trials.push_back(blow_of(k));
       rows.push_back(k);
     }
-    problem = std::make_unique<Problem>(*model, true, trials, channels, Eigen::MatrixXd::Zero(8, 5));
-    problem->set_covariance({}, Model{}, nullptr);
+    shots = std::make_unique<ShotModel>(*model, true, trials, channels, Eigen::MatrixXd::Zero(8, 5));
+    shots->set_covariance({}, Model{}, nullptr);
   }
   std::unique_ptr<models::ImpactModel> model;
   bool turns;
   Setting setting;
   std::vector<Form> forms;
   std::vector<int> rows;
-  std::unique_ptr<Problem> problem;
+  std::unique_ptr<ShotModel> shots;
 };
 
 TEST_P(OnModel, ZeroParametersAreTheBaseBitForBit) {
@@ -65,8 +63,8 @@ TEST_P(OnModel, ZeroParametersAreTheBaseBitForBit) {
     const std::vector<double> zero(f.parameters.size(), 0.0);
     for (const int i : rows) {
       double base[5], with[5];
-      ASSERT_TRUE(problem->predict(i, Model{}, nullptr, base));
-      ASSERT_TRUE(problem->predict(i, m, zero.data(), with));
+      ASSERT_TRUE(shots->predict(i, Model{}, nullptr, base));
+      ASSERT_TRUE(shots->predict(i, m, zero.data(), with));
       for (int c = 0; c < 5; ++c)
         EXPECT_EQ(base[c], with[c]) << f.effect << ", " << f.what << ", shot " << i << ", channel " << c;
     }
@@ -79,14 +77,14 @@ TEST_P(OnModel, DerivativesAgreeWithFinerDifferences) {
     Eigen::VectorXd p(m.size());
     for (int k = 0; k < p.size(); ++k) p[k] = 0.3 * f.parameters[std::size_t(k)].scale;
     if (f.effect == "friction-limit") p[0] = 8;  // where most of these blows slide
-    const Eigen::MatrixXd J = whitened_jacobian(*problem, rows, m, p);
+    const Eigen::MatrixXd J = shots->jacobian(rows, m, p);
     for (int k = 0; k < p.size(); ++k) {
       // Fourth-order differences with another step: both errors are far below 1e-4 of the column.
       const double h = 4e-3 * f.parameters[std::size_t(k)].scale;
       const auto at = [&](double s) {
         Eigen::VectorXd q = p;
         q[k] += s * h;
-        return whitened(*problem, rows, m, q);
+        return shots->whitened(rows, m, q);
       };
       const Eigen::VectorXd reference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * 4e-3);
       EXPECT_LT((J.col(k) - reference).norm(), 1e-4 * (reference.norm() + 1e-3))
@@ -104,8 +102,8 @@ TEST_P(OnModel, EveryEffectChangesSomethingWhereItCanAct) {
     double largest = 0;
     for (const int i : rows) {
       double base[5], with[5];
-      ASSERT_TRUE(problem->predict(i, Model{}, nullptr, base));
-      if (!problem->predict(i, m, p.data(), with)) continue;
+      ASSERT_TRUE(shots->predict(i, Model{}, nullptr, base));
+      if (!shots->predict(i, m, p.data(), with)) continue;
       for (int c = 0; c < 5; ++c) largest = std::max(largest, std::abs(with[c] - base[c]));
     }
     if (largest > 1e-6) ++acting;

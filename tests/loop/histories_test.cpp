@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <random>
 #include <set>
 
@@ -14,6 +13,8 @@
 
 namespace hosel::loop {
 namespace {
+
+using models::BenchRecord, models::BenchStart, models::Start;
 
 constexpr double kLength = 1, kStiffness = 40, kDensity = 0.06, kDamping = 1e-4, kLoad = 3, kNoise = 0.2;
 
@@ -98,13 +99,10 @@ Bench bench(const Truth& w, bool declared = true, Start start = Start::release) 
       composite_shaft({{0, kStiffness, kStiffness, kDensity, 1e-3}, {kLength, kStiffness, kStiffness, kDensity, 1e-3}});
   club.shaft->damping_time = kDamping;
   HistorySetting& s = b.c.setting;
-  s.channels = {{.name = "lead_mm", .arc_length = kLength, .si = 1e-3},
-                {.name = "lead_mid_mm", .arc_length = 0.5 * kLength, .si = 1e-3}};
-  for (HistoryChannel& ch : s.channels)
-    if (declared) {
-      ch.noise = kNoise;
-      ch.declared = true;
-    }
+  s.channels = {{{.name = "lead_mm", .si = 1e-3}, Reading::lead, 0, kLength},
+                {{.name = "lead_mid_mm", .si = 1e-3}, Reading::lead, 0, 0.5 * kLength}};
+  if (declared)
+    for (HistoryChannel& ch : s.channels) ch.declared = kNoise;
   b.c.records = {record(w)};
   BenchRecord drive{.times = b.c.records.front().times};
   b.model = std::make_unique<BenchHistory>(club, false, models::BenchOptions{.shear = false},
@@ -112,7 +110,6 @@ Bench bench(const Truth& w, bool declared = true, Start start = Start::release) 
                                            s.channels);
   std::tie(s.frequency, s.ratio) = b.model->first_mode();
   s.driven = start != Start::unknown;
-  b.c.start_unknown = !s.driven;
   s.compliance = kLength / kStiffness;
   b.c.model = b.model.get();
   return b;
@@ -218,7 +215,7 @@ TEST(Histories, AToneThatNoEffectHasIsUnexplainedInItsChannel) {
 
 TEST(Histories, NoiseThatIsNotTheDeclaredIsSaid) {
   Bench b = bench({});
-  for (HistoryChannel& c : b.c.setting.channels) c.noise = kNoise / 2;
+  for (HistoryChannel& c : b.c.setting.channels) c.declared = kNoise / 2;
   const LoopResult r = run(b.c);
   EXPECT_EQ(r.verdict, Verdict::noise_contradicted);
 }
@@ -227,21 +224,21 @@ TEST(Histories, ZeroParametersAreTheBaseBitForBit) {
   const Bench b = bench({});
   std::vector<Answer> base, zero;
   ASSERT_TRUE(b.model->answer(Rig(2), base));
-  for (const HistoryEffect& e : history_effects())
-    for (const HistoryForm& f : e.forms(b.c.setting)) {
-      Rig rig(2);
-      const std::vector<double> none(f.form.parameters.size(), 0.0);
-      f.apply(none, rig);
-      ASSERT_TRUE(b.model->answer(rig, zero));
-      EXPECT_EQ((zero[0].value - base[0].value).cwiseAbs().maxCoeff(), 0.0) << e.name;
-      EXPECT_EQ(rig.gain[0] + rig.gain[1] + rig.offset[0] + rig.offset[1], 0.0);
-    }
+  const HistoryProblem problem(*b.model, b.c.setting, b.c.records, {});
+  ASSERT_GT(problem.forms().size(), 8U);
+  for (const Form& f : problem.forms()) {
+    Rig rig(2);
+    const std::vector<double> none(f.parameters.size(), 0.0);
+    f.setup(none, rig);
+    ASSERT_TRUE(b.model->answer(rig, zero));
+    EXPECT_EQ((zero[0].value - base[0].value).cwiseAbs().maxCoeff(), 0.0) << f.effect;
+    EXPECT_EQ(rig.gain[0] + rig.gain[1] + rig.offset[0] + rig.offset[1], 0.0);
+  }
 }
 
 /// A club with its head on a bench that turns, released by a load in both planes and a twist: every effect acts.
 struct Turning {
-  std::vector<HistoryForm> forms;
-  std::map<const Form*, const HistoryForm*> known;
+  std::vector<Form> forms;
   std::unique_ptr<BenchHistory> model;
   std::unique_ptr<HistoryProblem> problem;
 
@@ -255,14 +252,12 @@ struct Turning {
                  .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
                  .face = {0.3, 0.3}};
     HistorySetting setting;
-    setting.channels = {
-        {.name = "lead_mm", .arc_length = kLength, .si = 1e-3, .noise = 0.2},
-        {.name = "droop_mm", .reading = Reading::droop, .arc_length = kLength, .si = 1e-3, .noise = 0.2},
-        {.name = "twist_deg", .reading = Reading::twist, .arc_length = kLength, .si = kRadPerDeg, .noise = 0.05}};
+    setting.channels = {{{.name = "lead_mm", .si = 1e-3, .declared = 0.2}, Reading::lead, 0, kLength},
+                        {{.name = "droop_mm", .si = 1e-3, .declared = 0.2}, Reading::droop, 0, kLength},
+                        {{.name = "twist_deg", .si = kRadPerDeg, .declared = 0.05}, Reading::twist, 0, kLength}};
     HistoryRecord record{.name = "tip.csv"};
     for (int i = 0; i < 300; ++i) record.times.push_back(0.004 * i);
     record.measured = Eigen::MatrixXd::Zero(300, 3);
-    record.train.assign(300, 1);
     // What is left of it by a start that is fitted: the declared club's own record, shifted a little in time.
     BenchRecord drive{.times = record.times, .rotation_rate = 6};
     const models::BenchOptions options{.hub = 0.2};
@@ -280,10 +275,8 @@ struct Turning {
     setting.driven = start != Start::unknown;
     setting.head = setting.turning = true;
     setting.compliance = kLength / kStiffness;
-    for (const HistoryEffect& e : history_effects())
-      for (HistoryForm& f : e.forms(setting)) forms.push_back(std::move(f));
-    for (const HistoryForm& f : forms) known[&f.form] = &f;
-    problem = std::make_unique<HistoryProblem>(*model, std::vector{record}, setting.channels, known);
+    problem = std::make_unique<HistoryProblem>(*model, setting, std::vector{record}, Split{.holdout_fraction = 0});
+    forms = problem->forms();
   }
 };
 
@@ -294,11 +287,11 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
     const Turning t(start);
     ASSERT_GT(t.forms.size(), 20U);
     std::set<std::string> acting, every;
-    for (const HistoryForm& f : t.forms) {
-      every.insert(f.form.effect);
-      const Model m{{&f.form}};
+    for (const Form& f : t.forms) {
+      every.insert(f.effect);
+      const Model m{{&f}};
       for (int k = 0; k < m.size(); ++k) {
-        const Parameter& q = f.form.parameters[std::size_t(k)];
+        const Parameter& q = f.parameters[std::size_t(k)];
         // Inside the plausible range, and at its edge, where the base is.
         for (const double place : {0.3, 0.0}) {
           Eigen::VectorXd p = Eigen::VectorXd::Constant(m.size(), 0);
@@ -306,7 +299,7 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
           const auto at = [&](double steps) {
             Eigen::VectorXd x = p, z;
             x[k] += steps * kFine * q.scale;
-            EXPECT_TRUE(t.problem->whitened(m, x.data(), kWhole, z));
+            EXPECT_TRUE(t.problem->whitened(Part::train, m, x, z));
             return z;
           };
           // Of fourth order; one-sided where zero is the least value.
@@ -314,11 +307,11 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
           const Eigen::VectorXd reference =
               edge ? Eigen::VectorXd((-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * kFine))
                    : Eigen::VectorXd((8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * kFine));
-          const Eigen::VectorXd column = t.problem->jacobian(m, p).col(k);
-          if (reference.norm() > 1e-3) acting.insert(f.form.effect);
+          const Eigen::VectorXd column = t.problem->jacobian(Part::train, m, p).col(k);
+          if (reference.norm() > 1e-3) acting.insert(f.effect);
           EXPECT_LT((column - reference).norm(), 1e-4 * (reference.norm() + 1e-3))
-              << f.form.effect << ", " << f.form.what << ", parameter " << k << " at " << place << " scales, start "
-              << int(start) << ", norm " << reference.norm();
+              << f.effect << ", " << f.what << ", parameter " << k << " at " << place << " scales, start " << int(start)
+              << ", norm " << reference.norm();
         }
       }
     }
@@ -329,22 +322,15 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
 TEST(Histories, AModeThatNoChannelShowsIsNoUnknown) {
   // The droop plane moves alone when only its clamp yields: nothing that a lead channel reads may follow.
   const Bench b = bench({.stiffness = 1.02}, true, Start::unknown);
-  std::map<const Form*, const HistoryForm*> known;
-  const HistoryForm droop = [&] {
-    for (const HistoryEffect& e : history_effects())
-      for (const HistoryForm& f : e.forms(b.c.setting))
-        if (f.form.what == "in the droop plane") return f;
-    return HistoryForm{};
-  }();
-  ASSERT_EQ(droop.form.effect, "clamp-compliance");
-  known[&droop.form] = &droop;
-  std::vector<HistoryRecord> records = b.c.records;
-  for (HistoryRecord& r : records) r.train.assign(r.times.size(), 1);
-  const HistoryProblem problem(*b.model, records, b.c.setting.channels, known);
+  const HistoryProblem problem(*b.model, b.c.setting, b.c.records, Split{.holdout_fraction = 0});
+  const std::vector<Form> forms = problem.forms();
+  const auto droop = std::ranges::find(forms, "in the droop plane", &Form::what);
+  ASSERT_NE(droop, forms.end());
+  ASSERT_EQ(droop->effect, "clamp-compliance");
   Eigen::VectorXd rigid, yields;
-  const double p = droop.form.parameters[0].scale;
-  ASSERT_TRUE(problem.whitened(Model{}, nullptr, kWhole, rigid));
-  ASSERT_TRUE(problem.whitened(Model{{&droop.form}}, &p, kWhole, yields));
+  ASSERT_TRUE(problem.whitened(Part::train, Model{}, {}, rigid));
+  ASSERT_TRUE(problem.whitened(Part::train, Model{{&*droop}}, Eigen::VectorXd::Constant(1, droop->parameters[0].scale),
+                               yields));
   EXPECT_GT(rigid.norm(), 10);  // there is a residual to be taken up
   EXPECT_LT((yields - rigid).norm(), 1e-4 * rigid.norm());
 }

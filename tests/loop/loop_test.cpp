@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "hosel/loop/report.hpp"
+#include "hosel/loop/shots/run.hpp"
 #include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
@@ -77,12 +78,12 @@ class Loop : public testing::Test {
     // Tests run side by side, each in a process of its own.
     const fs::path file = fs::path(testing::TempDir()) / ("hosel_loop_test_" + std::to_string(getpid()) + ".csv");
     std::ofstream(file, std::ios::binary) << text;
-    Shots out = read_shots(read_csv(file));
+    Shots out = read_shots(post::read_csv(file));
     fs::remove(file);
     return out;
   }
-  LoopCase case_of(const std::string& text) {
-    LoopCase c;
+  ShotCase case_of(const std::string& text) {
+    ShotCase c;
     c.base = "rigid-eccentric";
     c.model = model.get();
     c.head_mass_declared = c.inertia_declared = true;
@@ -133,7 +134,7 @@ TEST_F(Loop, AnUnknownColumnIsUnexplainedAndLocated) {
 TEST_F(Loop, AUnitSlipIsFlaggedWithItsReason) {
   const LoopResult r = run(case_of(csv({.swapped = 40})));
   ASSERT_EQ(r.flagged.size(), 1U);
-  EXPECT_EQ(r.flagged[0].shot, "41");
+  EXPECT_EQ(r.flagged[0].id, "41");
   EXPECT_EQ(r.flagged[0].column, "ball_speed_mps");
   EXPECT_NE(r.flagged[0].reason.find("mph"), std::string::npos) << r.flagged[0].reason;
   EXPECT_TRUE(r.adopted.empty());
@@ -198,31 +199,31 @@ TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
     text += line;
   }
   for (unsigned long seed = 1; seed <= 6; ++seed) {
-    LoopCase c = case_of(text);
+    ShotCase c = case_of(text);
     c.split = {.seed = seed, .by = "club"};
     const LoopResult r = run(c);
     EXPECT_GT(r.holdout, 0);
     EXPECT_EQ(r.adopted, std::vector<std::string>{"friction-limit"}) << "seed " << seed;
-    for (const UsedShot& u : r.shots) EXPECT_FALSE(u.row >= 48 && u.holdout) << "seed " << seed << ", row " << u.row;
+    for (const UsedRow& u : r.rows) EXPECT_FALSE(u.row >= 48 && u.holdout) << "seed " << seed << ", row " << u.row;
   }
 }
 
 TEST_F(Loop, TheSameReportTwice) {
-  const LoopCase c = case_of(csv({.tangential = 0.25}));
+  const ShotCase c = case_of(csv({.tangential = 0.25}));
   const LoopResult a = run(c), b = run(c);
   EXPECT_EQ(to_json(a).dump(), to_json(b).dump());
-  EXPECT_EQ(residuals_csv(a), residuals_csv(b));
+  EXPECT_EQ(residuals_csv(a, c.shots), residuals_csv(b, c.shots));
 }
 
 TEST_F(Loop, TheSameReportOnOneThreadAndOnTwo) {
-  const LoopCase c = case_of(csv({.shots = 60, .tangential = 0.25, .humidity = 0.02}));
+  const ShotCase c = case_of(csv({.shots = 60, .tangential = 0.25, .humidity = 0.02}));
   std::vector<std::string> reports;
   for (const std::size_t threads : {1U, 2U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     ASSERT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), threads);
     const LoopResult r = run(c);
     ASSERT_TRUE(r.selection.structured);
-    reports.push_back(to_json(r).dump() + residuals_csv(r));
+    reports.push_back(to_json(r).dump() + residuals_csv(r, c.shots));
   }
   EXPECT_EQ(reports[0], reports[1]);
 }
@@ -253,10 +254,10 @@ TEST_F(Loop, AWholeClubInAnotherUnitIsOneFinding) {
 }
 
 TEST_F(Loop, TooManyRowsAreOneLine) {
-  Sheet sheet{.file = "long.csv", .names = {"club_speed_mps"}};
+  post::Sheet sheet{.file = "long.csv", .names = {"club_speed_mps"}};
   sheet.columns.assign(1, std::vector<std::string>(kMostShots + 1, "45"));
   for (std::size_t i = 0; i <= kMostShots; ++i) sheet.lines.push_back(i + 2);
-  LoopCase c = case_of(csv({.shots = 3}));
+  ShotCase c = case_of(csv({.shots = 3}));
   c.shots = read_shots(sheet);
   try {
     run(c);
@@ -273,7 +274,7 @@ TEST_F(Loop, BrokenInputEndsInAReportOrOneLine) {
   EXPECT_THROW(shots("ball_speed_deg\n1\n"), DataError);
   const std::string header = "club_speed_mps,dynamic_loft_deg,ball_speed_mps,backspin_rpm\n";
   const auto with_noise = [&](const std::string& text) {
-    LoopCase c = case_of(text);
+    ShotCase c = case_of(text);
     c.noise = {{"ball_speed_mps", 0.25}};
     return c;
   };

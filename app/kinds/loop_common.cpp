@@ -1,0 +1,45 @@
+#include "hosel/app/kinds/loop_common.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace hosel::app {
+
+void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&)) {
+  into.title = root.text("title", "");
+  Table model = root.table("model");
+  into.base = model.text("base");
+  into.effects = model.texts("effects", std::vector<std::string>{});
+  std::vector<std::string> known;
+  for (const auto& e : loop::effects())
+    if (acts(e)) known.emplace_back(e.name);
+  for (const std::string& e : into.effects)
+    if (!std::ranges::count(known, e)) {
+      const std::string near = nearest(e, known);
+      model.fail("effects",
+                 fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    }
+  if (auto split = root.optional_table("split")) {
+    into.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
+    into.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
+  }
+}
+
+void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows) {
+  out.write("residuals.csv", loop::residuals_csv(result, table));
+  out.write("report.html", loop::page(result, table));
+  out.write_json("report.json", loop::to_json(result));
+  out.say(loop::sentence(result));
+  for (const auto& c : result.channels)
+    out.say(
+        fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})",
+                    c.name, c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias,
+                    c.noise, c.noise_source));
+  if (!result.flagged.empty()) out.say(fmt::format("  {} {} flagged", result.flagged.size(), rows));
+  out.write_summary(
+      {{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,20 @@
+/// What every loop reads and leaves behind, whatever its data are.
+#pragma once
+
+#include <string_view>
+
+#include "hosel/app/output.hpp"
+#include "hosel/app/reader.hpp"
+#include "hosel/loop/case.hpp"
+#include "hosel/loop/report.hpp"
+
+namespace hosel::app {
+
+/// `title`, `[model] base` and `effects` (those that `acts` is true of), `[split]` but for its clusters.
+void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&));
+
+/// Writes report.json, report.html, residuals.csv and the summary, and tells the person what came out. `table`: what
+/// the result's rows count; `rows`: what a flagged one is called.
+void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows);
+
+}  // namespace hosel::app

@@ -1,0 +1,27 @@
+/// What every loop is told, whatever its data are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hosel/loop/rules.hpp"
+
+namespace hosel::loop {
+
+struct Split {
+  double holdout_fraction = 1.0 / 3.0;
+  unsigned long seed = 1;
+  std::string by;              ///< column whose clusters are held out whole; empty: rows
+  bool leave_one_out = false;  ///< every cluster is the holdout once
+};
+
+struct Case {
+  std::string title;
+  std::string base;                  ///< name of the model
+  std::vector<std::string> effects;  ///< declared part of the base; their parameters are fitted
+  Split split;
+  Rules rules;
+  std::vector<std::string> notes;  ///< about the case itself
+};
+
+}  // namespace hosel::loop

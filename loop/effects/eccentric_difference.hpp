@@ -1,0 +1,17 @@
+#pragma once
+
+#include "hosel/models/rigid_eccentric.hpp"
+
+namespace hosel::loop::forms {
+
+/// For bases that do not know the difference between two blows: what the closed-form eccentric impact makes of it.
+inline void add_difference(const Blow& with, const Blow& without, double amount, Launch& launch) {
+  static const models::RigidEccentric model;
+  const Launch a = model.launch(with), b = model.launch(without);
+  launch.velocity += amount * (a.velocity - b.velocity);
+  launch.spin += amount * (a.spin - b.spin);
+  launch.head_velocity += amount * (a.head_velocity - b.head_velocity);
+  launch.head_spin += amount * (a.head_spin - b.head_spin);
+}
+
+}  // namespace hosel::loop::forms

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include "hosel/loop/history/rig.hpp"
+
+namespace hosel::loop::forms {
+
+/// What a sensor does to its channel: one form per channel, and one of all alike. Where the start is unknown, it takes
+/// up what all channels do, and what the only one does.
+inline std::vector<Form> per_channel(const HistorySetting& setting, const Form& one,
+                                     std::vector<double> Rig::*changed) {
+  std::vector<Form> forms;
+  const auto add = [&](const std::string& what, std::size_t first, std::size_t last) {
+    Form f = one;
+    f.what = what;
+    f.setup = [=](std::span<const double> p, Rig& r) {
+      for (std::size_t c = first; c < last; ++c) (r.*changed)[c] += p[0];
+    };
+    forms.push_back(std::move(f));
+  };
+  const std::size_t n = setting.channels.size();
+  if (setting.driven && n > 1) add("of all channels alike", 0, n);
+  for (std::size_t c = 0; c < n && (setting.driven || n > 1); ++c)
+    add(fmt::format("of {}", setting.channels[c].name), c, c + 1);
+  return forms;
+}
+
+}  // namespace hosel::loop::forms

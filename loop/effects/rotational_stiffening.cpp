@@ -1,0 +1,18 @@
+// A shaft that is swung round is stiffened by its own pull. The bench's base is linear and has none; the swing is
+// geometrically exact and has all of it, so that nothing is left to add there.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/loop/history/rig.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Form> rotational_stiffening(const HistorySetting& setting) {
+  if (!setting.turning) return {};
+  Form f{.effect = "rotational-stiffening",
+         .what = "share of the centrifugal stiffness",
+         .parameters = {{"share", "1", 1, 0, 2, 0.02}},
+         .starts = {{0.5}, {1}}};
+  f.setup = [](std::span<const double> p, Rig& r) { r.club.stiffening += p[0]; };
+  return {f};
+}
+
+}  // namespace hosel::loop::forms

@@ -1,0 +1,14 @@
+// A channel shows what was a moment ago.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/loop/effects/per_channel.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Form> sensor_delay(const HistorySetting& setting) {
+  const Form one{.effect = "sensor-delay",
+                 .parameters = {{"delay", "ms", 1e-3, -0.05, 0.05, 2e-4}},
+                 .starts = {{-0.005}, {0.005}}};
+  return per_channel(setting, one, &Rig::delay);
+}
+
+}  // namespace hosel::loop::forms

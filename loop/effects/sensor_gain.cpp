@@ -1,0 +1,12 @@
+// A channel shows a multiple of what is.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/loop/effects/per_channel.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Form> sensor_gain(const HistorySetting& setting) {
+  const Form one{.effect = "sensor-gain", .parameters = {{"gain_error", "1", 1, -0.6, 1.5, 0.01}}};
+  return per_channel(setting, one, &Rig::gain);
+}
+
+}  // namespace hosel::loop::forms

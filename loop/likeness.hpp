@@ -1,0 +1,40 @@
+/// How the effects look alike to the data: what is absorbed by what was fitted, and which sums of effects nothing
+/// shows.
+#pragma once
+
+#include "hosel/loop/fit.hpp"
+
+namespace hosel::loop {
+
+struct Absorption {
+  std::string effect, parameter;
+  double absorbed = 0;  ///< share of the squared signal that the fitted parameters take up
+  double signal = 0;    ///< what is left of one scale of the parameter, in noise units
+  std::string nearest;  ///< the effect that what is left resembles most
+  double likeness = 0;  ///< their correlation
+};
+
+/// A direction in the effects' parameters, each in units of its own signal, that the data hardly show.
+struct NullVector {
+  double singular =
+      0;  ///< of the whitened Jacobian with columns of unit length: 0 is invisible, 1 alone in its direction
+  std::vector<std::pair<std::string, double>> weights;  ///< effect, share
+};
+
+struct Likeness {
+  std::vector<Absorption> absorption;
+  std::vector<NullVector> null_vectors;  ///< singular values below 0.1
+};
+
+struct EffectColumn {
+  std::string effect, parameter;
+  Eigen::VectorXd whitened;  ///< per scale of the parameter
+};
+
+/// `fitted`: whitened Jacobian of what the model already fits (no columns: nothing).
+Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixXd& fitted);
+/// Of the effects beside a fit, one column each: their first form with one parameter, a finite probe where it is a
+/// threshold.
+Likeness likeness(const Problem& problem, const Fit& at, const std::vector<const Form*>& forms);
+
+}  // namespace hosel::loop

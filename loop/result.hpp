@@ -1,0 +1,106 @@
+/// What the loop found, as its reports tell it.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hosel/loop/likeness.hpp"
+#include "hosel/loop/select.hpp"
+#include "hosel/loop/shots/audit.hpp"
+#include "hosel/loop/shots/balances.hpp"
+
+namespace hosel::loop {
+
+enum class Verdict { no_residual, explained, ambiguous, unexplained, insufficient, noise_contradicted };
+std::string_view name(Verdict verdict);
+
+struct Errors {
+  double train_rmse = 0, holdout_rmse = 0, holdout_bias = 0;
+  int train = 0, holdout = 0;
+};
+
+struct ChannelResult {
+  std::string name;
+  double noise = 0;
+  std::string noise_source;       ///< declared, estimated
+  std::optional<double> refuted;  ///< what was declared, where the data's own scatter contradicts it
+  double scatter = 0;             ///< what the residual of the final model shows, over `noise`
+  Errors before, after;
+
+  std::string refutation() const;  ///< in a sentence
+};
+
+/// A row that is not used, since nothing explains it.
+struct Flag {
+  int row;         ///< of the file
+  std::string id;  ///< what the file calls it
+  std::string column, reason;
+  int finding;  ///< rows of one cause share it
+};
+
+struct Detectable {
+  std::string effect, parameter, unit;
+  double value = 0;  ///< printed unit; NaN: beyond the plausible range
+};
+
+struct Location {
+  std::string channel, regressor, detail;
+};
+
+struct DesignedShot {
+  std::vector<std::pair<std::string, double>> inputs;  ///< header, header's unit
+};
+
+struct NextExperiment {
+  std::string text;
+  std::vector<DesignedShot> shots;
+  std::optional<std::string> sensor;
+};
+
+struct ScoredCandidate {
+  Candidate candidate;
+  std::vector<double> sd;  ///< per parameter [SI]; infinite where the data do not show it
+  double holdout_score = 0;
+};
+
+struct UsedRow {
+  int row;  ///< of the file
+  std::string id;
+  bool holdout;
+  std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
+};
+
+struct LoopResult {
+  LoopResult() = default;
+  LoopResult(LoopResult&&) = default;  // the models below point into `forms`: moved, never copied
+  LoopResult& operator=(LoopResult&&) = default;
+
+  std::vector<Form> forms;  ///< every form that was tried
+  std::string title, base;
+  int read = 0, used = 0, train = 0, holdout = 0;
+  unsigned long seed = 1;
+  std::vector<Flag> flagged;
+  std::map<std::string, int> unused;  ///< reason, rows that could not be used
+  std::vector<DerivedColumn> derived;
+  std::vector<ChannelResult> channels;
+  Selection selection;
+  std::vector<std::string> channel_names;  ///< of the fit: the findings' numbering
+  std::vector<ScoredCandidate> candidates;
+  double base_score = 0;
+  std::vector<std::string> adopted;
+  std::vector<std::vector<std::string>> ties;
+  Verdict verdict = Verdict::no_residual;
+  std::vector<Detectable> minimum_detectable;
+  std::vector<Location> unexplained;
+  NextExperiment next;
+  std::vector<UsedRow> rows;
+  std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
+  Likeness likeness;               ///< of the effects to each other and to what is fitted
+  std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories
+  std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
+};
+
+}  // namespace hosel::loop

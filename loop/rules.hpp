@@ -1,0 +1,34 @@
+/// The rules of the loop and their figures; the README of this folder says why.
+#pragma once
+
+#include <limits>
+
+namespace hosel::loop {
+
+struct Rules {
+  double gate = 0.01;             ///< level of the test for structure at all
+  double remaining = 0.005;       ///< level of the test for what is left
+  double remaining_signal = 4.9;  ///< or a signal of that size, where the noise is declared
+  double gain = 22;               ///< least fall of the deviance for a first effect
+  double threshold_gain = 32;     ///< least fall by a threshold effect that opens the gate on its own
+  double further_gain = 16;       ///< least fall of the criterion for one more effect
+  double further_share = 0.7;     ///< of it is enough where structure is left without it
+  double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + rarity of the forms
+  double tie = 7;                 ///< candidates within this of the best criterion tie with it
+  double holdout_loss = 4;        ///< the held-out deviance must not rise by more
+  double noise_change = 0.03;     ///< relative; more, and effects are selected anew
+  double scatter_error = 4.2;     ///< declared noise is refuted beyond so many standard errors of its logarithm
+  double scatter_ratio = 1.25;    ///< and beyond this factor either way
+  int flips = 999;                ///< of signs in the tests that are calibrated so
+  unsigned long seed = 1;
+
+  /// Time histories: the tests for structure have closed-form levels, adjusted for their number.
+  static Rules of_histories() {
+    Rules r;
+    r.gate = r.remaining = 1e-4;
+    r.remaining_signal = std::numeric_limits<double>::infinity();
+    return r;
+  }
+};
+
+}  // namespace hosel::loop

@@ -1,0 +1,78 @@
+/// Sets of effects, each at its own optimum: single effects, all pairs (screened by linear algebra, refitted; far from
+/// linear, those that begin with a good single effect), triples that begin with a good pair.
+#pragma once
+
+#include "hosel/loop/fit.hpp"
+#include "hosel/loop/rules.hpp"
+
+namespace hosel::loop {
+
+struct Candidate {
+  std::vector<std::string> effects;  ///< in the order of the registry
+  Fit fit;                           ///< effects of the base first
+  double criterion = 0;              ///< deviance + cost of the parameters + rarity of the forms
+};
+
+/// Place of an effect in the registry: the order in which sets of effects are told.
+std::size_t order_of(const std::string& effect);
+
+class Search {
+ public:
+  /// Fits the base and every single form. `forms`: what may be added to the forms of the base.
+  Search(const Problem& problem, const std::vector<const Form*>& base, const std::vector<const Form*>& forms,
+         const Rules& rules);
+  void fit_pairs();
+  void fit_triples();
+
+  Fit base;
+  std::vector<Candidate> singles, pairs, triples;  ///< by rising criterion, one per set of effects
+  std::vector<std::string> silent;                 ///< effects without influence on these channels at these inputs
+
+  /// Fall of the deviance by the best threshold effect. It acts on few shots, which a test's weights take for bad ones;
+  /// that a plausible threshold explains them is seen here only.
+  double threshold_gain() const;
+  /// What each form changes at its optimum, whitened.
+  Eigen::MatrixXd directions() const;
+  /// The fit of least deviance, whatever it takes.
+  const Fit& richest() const;
+
+ private:
+  /// A form made linear about a point: whitened columns per unit of scale.
+  struct Linear {
+    const Form* form;
+    Eigen::Index first, count;
+  };
+
+  /// A pair, what linear algebra promises of it, and where to begin.
+  struct Guess {
+    double criterion;
+    const Form *a, *b;
+    Eigen::VectorXd p;
+  };
+
+  void weigh(const Fit& fit);
+  Eigen::MatrixXd weighted(Eigen::MatrixXd a) const;
+  bool acts(const Form* form) const;
+  bool nothing_to_find(const std::vector<Eigen::MatrixXd>& columns) const;
+  Eigen::MatrixXd about_zero(const Form& form) const;
+  void linearise(std::vector<Eigen::MatrixXd> about_zero);
+  double promise(const std::vector<std::size_t>& which, Eigen::VectorXd& p) const;
+  std::vector<Guess> guesses() const;
+  std::vector<Candidate> grown(const std::vector<Candidate>& sets, std::size_t few) const;
+  Candidate candidate(Fit fit) const;
+  std::vector<Candidate> refined(std::vector<Candidate> all) const;
+  Eigen::VectorXd optimum(const Form* form) const;
+
+  const Problem& problem_;
+  const std::size_t base_forms_;
+  const Rules& rules_;
+  const Effort effort_;
+  const solvers::Loss loss_;
+  std::vector<Candidate> of_form_;  ///< every form that acts, at its optimum
+  Eigen::VectorXd z0_, weight_;
+  std::vector<Linear> linear_;
+  Eigen::MatrixXd columns_, gram_;
+  Eigen::VectorXd target_;
+};
+
+}  // namespace hosel::loop

@@ -1,0 +1,483 @@
+#include "hosel/loop/shots/audit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "hosel/loop/median.hpp"
+
+namespace hosel::loop {
+namespace {
+
+/// One source term of a formula: a column, or a ratio or product of two.
+struct Feature {
+  int a = 0, b = -1;
+  char how = ' ';  ///< ' ', '/', '*'
+};
+
+struct Source {
+  const Column* column;
+  Eigen::VectorXd x;  ///< header's unit; NaN where missing
+  double resolution;
+  double spread;
+  bool fine;  ///< enough different values to show a formula with free numbers
+};
+
+double evaluate(const Feature& f, const std::vector<Source>& s, Eigen::Index i) {
+  const double x = s[std::size_t(f.a)].x[i];
+  if (f.how == '/') return x / s[std::size_t(f.b)].x[i];
+  if (f.how == '*') return x * s[std::size_t(f.b)].x[i];
+  return x;
+}
+
+std::string name(const Feature& f, const std::vector<Source>& s) {
+  const std::string& a = s[std::size_t(f.a)].column->name;
+  if (f.how == ' ') return a;
+  return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
+}
+
+struct Formula {
+  std::string text;
+  std::set<int> from;    ///< sources
+  double residual = 0;   ///< root mean square on rows that were not fitted, without the worst tenth
+  double tolerance = 0;  ///< what rounding of all columns allows
+  int rows = 0;
+  double cost = 0;  ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
+};
+
+/// What monitors and players compute from two columns, SI.
+struct Identity {
+  std::string_view of;  ///< name of the result; empty: any column that no model knows
+  std::string_view a, b;
+  const char* text;
+  double (*value)(double, double);
+};
+constexpr auto kLength = [](double a, double b) { return std::hypot(a, b); };
+constexpr auto kDifference = [](double a, double b) { return a - b; };
+constexpr Identity kIdentities[] = {
+    {"spin_rate", "backspin", "sidespin", "hypot(backspin, sidespin)", kLength},
+    {"spin_axis", "sidespin", "backspin", "atan2(sidespin, backspin)",
+     [](double a, double b) { return std::atan2(a, b); }},
+    {"backspin", "spin_rate", "spin_axis", "spin_rate cos(spin_axis)",
+     [](double a, double b) { return a * std::cos(b); }},
+    {"sidespin", "spin_rate", "spin_axis", "spin_rate sin(spin_axis)",
+     [](double a, double b) { return a * std::sin(b); }},
+    {"", "impact_toe", "impact_high", "hypot(impact_toe, impact_high)", kLength},
+    {"", "ball_speed", "club_speed", "ball_speed / club_speed: the smash factor",
+     [](double a, double b) { return a / b; }},
+    {"", "dynamic_loft", "attack_angle", "dynamic_loft - attack_angle: the spin loft", kDifference},
+    {"", "face_angle", "club_path", "face_angle - club_path: the face to the path", kDifference},
+};
+
+/// Root mean square of all but the worst tenth: a few bad rows must not hide an identity.
+double trimmed_rms(std::vector<double> r) {
+  if (r.empty()) return std::numeric_limits<double>::infinity();
+  for (double& x : r) x *= x;
+  std::ranges::sort(r);
+  const std::size_t keep = std::max<std::size_t>(1, r.size() - r.size() / 10);
+  return std::sqrt(std::accumulate(r.begin(), r.begin() + std::ptrdiff_t(keep), 0.0) / double(keep));
+}
+
+class Audit {
+ public:
+  Audit(const Shots& shots, const Ball& ball) : ball_(ball) {
+    // Long sets: an evenly spread sample is enough to find a formula.
+    const std::size_t step = std::max<std::size_t>(1, shots.rows() / 1500);
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < shots.rows(); i += step) rows.push_back(i);
+    for (const Column& c : shots.columns) {
+      if (!c.numeric || c.role == Role::bookkeeping) continue;
+      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution / c.si, 0, false};
+      std::vector<double> seen;
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        s.x[std::ptrdiff_t(k)] = c.value[rows[k]] / c.si;
+        if (std::isfinite(c.value[rows[k]])) seen.push_back(s.x[std::ptrdiff_t(k)]);
+      }
+      if (seen.size() < 12) continue;
+      std::ranges::sort(seen);
+      const std::set<double> different(seen.begin(), seen.end());
+      if (different.size() < 4) continue;
+      s.spread = seen[std::size_t(0.9 * double(seen.size() - 1))] - seen[std::size_t(0.1 * double(seen.size() - 1))];
+      if (!(s.spread > 0)) continue;
+      s.fine = different.size() >= 8;
+      sources_.push_back(std::move(s));
+    }
+  }
+
+  std::vector<DerivedColumn> run() {
+    std::vector<DerivedColumn> found;
+    std::set<int> gone;
+    const auto accept = [&](int target, const Formula& f) {
+      const Source& y = sources_[std::size_t(target)];
+      DerivedColumn d;
+      d.column = y.column->name;
+      for (const int k : f.from) d.from.push_back(sources_[std::size_t(k)].column->name);
+      d.formula = f.text;
+      d.residual_sd = f.residual;
+      d.recording_resolution = y.resolution;
+      d.rows = f.rows;
+      d.input = y.column->role == Role::input;
+      found.push_back(d);
+      gone.insert(target);
+    };
+    // Formulas of the field first, magnitudes before components.
+    for (const bool component : {false, true})
+      for (int target = 0; target < int(sources_.size()); ++target) {
+        const Source& y = sources_[std::size_t(target)];
+        const bool part = y.column->stem == "backspin" || y.column->stem == "sidespin";
+        if (part != component || y.spread < 3 * y.resolution) continue;
+        Formula f;
+        if (identity(target, sources_for(target, gone, false), f)) accept(target, f);
+      }
+    // Then the likeliest unknown formula over all columns, again and again: a relation can be solved for any column in
+    // it.
+    std::map<int, Formula> best;
+    std::set<int> stale;
+    for (int k = 0; k < int(sources_.size()); ++k) stale.insert(k);
+    for (;;) {
+      for (const int target : stale) {
+        const Source& y = sources_[std::size_t(target)];
+        best.erase(target);
+        // Coarse columns cannot show a formula with free numbers.
+        if (gone.contains(target) || !y.fine || y.spread < 12 * y.resolution) continue;
+        if (Formula f; search(target, sources_for(target, gone, true), f)) best[target] = f;
+      }
+      if (best.empty()) return found;
+      const auto [target, formula] =
+          *std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
+      accept(target, formula);
+      stale = {target};
+      for (const auto& [other, f] : best)
+        if (f.from.contains(target)) stale.insert(other);
+    }
+  }
+
+ private:
+  const Ball ball_;
+  std::vector<Source> sources_;
+
+  std::vector<int> sources_for(int target, const std::set<int>& gone, bool fine) const {
+    std::vector<int> use;
+    for (int k = 0; k < int(sources_.size()); ++k)
+      if (k != target && !gone.contains(k) && (!fine || sources_[std::size_t(k)].fine)) use.push_back(k);
+    return use;
+  }
+
+  /// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
+  int rank(int k) const {
+    const Column& c = *sources_[std::size_t(k)].column;
+    if (c.role == Role::other) return 0;
+    if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
+    return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
+  }
+
+  /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
+  bool divides(int k) const {
+    std::vector<double> v;
+    for (const double x : sources_[std::size_t(k)].x)
+      if (std::isfinite(x)) v.push_back(x);
+    std::ranges::sort(v);
+    const double low = v[v.size() / 20], high = v[v.size() - 1 - v.size() / 20];
+    return low * high > 0 && std::max(std::abs(low), std::abs(high)) < 8 * std::min(std::abs(low), std::abs(high));
+  }
+
+  int of(std::string_view stem, const std::vector<int>& use) const {
+    for (const int k : use)
+      if (sources_[std::size_t(k)].column->stem == stem) return k;
+    return -1;
+  }
+
+  /// Judges y = f(sources): rounding of every column passed through f by differences.
+  template <class F>
+  bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f,
+             Formula& out) const {
+    const Source& y = sources_[std::size_t(target)];
+    if (rows.empty()) return false;
+    std::vector<double> residual;
+    std::vector<double> wobbles;
+    std::vector<double> x(sources_.size());
+    for (const Eigen::Index i : rows) {
+      for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
+      residual.push_back(y.x[i] - f(x));
+    }
+    out.residual = trimmed_rms(std::move(residual));
+    // More than the largest tolerance below allows: most formulas end here.
+    const double finer = parameters ? 12 : 6;
+    if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
+    for (const Eigen::Index i : rows) {
+      for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
+      double wobble = y.resolution * y.resolution / 12;
+      for (const int k : from) {
+        const double h = 0.5 * sources_[std::size_t(k)].resolution, at = x[std::size_t(k)];
+        x[std::size_t(k)] = at + h;
+        const double up = f(x);
+        x[std::size_t(k)] = at - h;
+        wobble += (up - f(x)) * (up - f(x)) / 12;
+        x[std::size_t(k)] = at;
+      }
+      wobbles.push_back(wobble);
+    }
+    // The typical row: a few rows next to a singularity of f must not excuse the others.
+    out.tolerance = std::sqrt(median(std::move(wobbles)));
+    out.from = from;
+    // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
+    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * finer < y.spread;
+  }
+
+  std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = 0; i < sources_[0].x.size(); ++i) {
+      bool good = std::isfinite(sources_[std::size_t(target)].x[i]);
+      for (const int k : from) good = good && std::isfinite(sources_[std::size_t(k)].x[i]);
+      if (good) rows.push_back(i);
+    }
+    return rows;
+  }
+
+  /// Formulas of the field without free numbers.
+  bool identity(int target, const std::vector<int>& use, Formula& best) const {
+    const Column& y = *sources_[std::size_t(target)].column;
+    const auto si = [&](int k, const std::vector<double>& x) {
+      return x[std::size_t(k)] * sources_[std::size_t(k)].column->si;
+    };
+    const auto attempt = [&](std::set<int> from, std::string text, auto f) {
+      const auto rows = complete(target, from);
+      if (rows.size() < 12) return false;
+      Formula out;
+      if (!judge(
+              target, from, 0, rows, [&](const std::vector<double>& x) { return f(x) / y.si; }, out))
+        return false;
+      out.text = text;
+      out.rows = int(rows.size());
+      best = out;
+      return true;
+    };
+    using V = const std::vector<double>&;
+    for (const Identity& i : kIdentities) {
+      const int a = of(i.a, use), b = of(i.b, use);
+      if ((i.of.empty() ? y.role == Role::other : y.stem == i.of) && a >= 0 && b >= 0 &&
+          attempt({a, b}, i.text, [&](V x) { return i.value(si(a, x), si(b, x)); }))
+        return true;
+    }
+    const int back = of("backspin", use), rate = of("spin_rate", use), launch = of("launch_angle", use),
+              speed = of("ball_speed", use);
+    const int spin = back >= 0 ? back : rate;
+    if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
+      const double arm = ball_.inertia_factor * ball_.radius;
+      if (attempt(
+              {launch, speed, spin},
+              fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
+              [&](V x) { return si(launch, x) + std::asin(std::clamp(arm * si(spin, x) / si(speed, x), -1.0, 1.0)); }))
+        return true;
+    }
+    return false;
+  }
+
+  /// Fits y to one, two or three features on every second row and judges it on the others.
+  bool search(int target, const std::vector<int>& use, Formula& best) const {
+    const Source& y = sources_[std::size_t(target)];
+    bool found = false;
+    const auto consider = [&](const std::vector<Feature>& features, bool logarithmic) {
+      std::set<int> from;
+      for (const Feature& f : features) {
+        from.insert(f.a);
+        if (f.b >= 0) from.insert(f.b);
+      }
+      auto rows = complete(target, from);
+      const auto p = std::ptrdiff_t(features.size()) + 1;
+      if (std::ptrdiff_t(rows.size()) < 10 + 5 * p) return false;
+      // Rows that repeat (one value per cluster) count once.
+      std::set<std::vector<double>> distinct;
+      for (const Eigen::Index i : rows) {
+        if (std::ptrdiff_t(distinct.size()) == 8 + 4 * p) break;
+        std::vector<double> key;
+        for (const int k : from) key.push_back(sources_[std::size_t(k)].x[i]);
+        distinct.insert(std::move(key));
+      }
+      if (std::ptrdiff_t(distinct.size()) < 8 + 4 * p) return false;
+      const auto transform = [&](double x) { return logarithmic ? std::log(std::abs(x)) : x; };
+      std::vector<Eigen::Index> fitted, judged;
+      for (std::size_t k = 0; k < rows.size(); ++k) (k % 2 ? judged : fitted).push_back(rows[k]);
+      Eigen::VectorXd c = Eigen::VectorXd::Zero(p), weight = Eigen::VectorXd::Ones(std::ptrdiff_t(fitted.size()));
+      const auto n = std::ptrdiff_t(fitted.size());
+      Eigen::MatrixXd A(n, p);
+      Eigen::VectorXd b(n);
+      for (std::ptrdiff_t i = 0; i < n; ++i) {
+        A(i, 0) = 1;
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          A(i, j) = transform(evaluate(features[std::size_t(j - 1)], sources_, fitted[std::size_t(i)]));
+        b[i] = transform(y.x[fitted[std::size_t(i)]]);
+      }
+      if (!A.allFinite() || !b.allFinite()) return false;
+      Eigen::VectorXd unit = A.colwise().norm().transpose();
+      for (std::ptrdiff_t j = 0; j < p; ++j)
+        if (!(unit[j] > 0)) return false;
+      A = A * unit.cwiseInverse().asDiagonal();
+      for (int pass = 0; pass < 6; ++pass) {
+        const Eigen::MatrixXd G = A.transpose() * weight.asDiagonal() * A;
+        c = (G + 1e-13 * Eigen::MatrixXd::Identity(p, p)).ldlt().solve(A.transpose() * weight.asDiagonal() * b);
+        // Redescending: a tenth of the rows may be bad.
+        const Eigen::VectorXd r = (b - A * c).cwiseAbs();
+        const double fence = 4 * std::max(median(std::vector<double>(r.data(), r.data() + n)), 1e-14);
+        bool settled = true;
+        for (std::ptrdiff_t i = 0; i < n; ++i) {
+          const double w = r[i] < fence ? 1 : 0;
+          settled = settled && w == weight[i];
+          weight[i] = w;
+        }
+        if (weight.sum() < double(2 * p)) return false;
+        if (settled) break;
+      }
+      c = c.cwiseQuotient(unit);
+      Formula out;
+      const auto f = [&](const std::vector<double>& x) {
+        double sum = c[0];
+        for (std::ptrdiff_t j = 1; j < p; ++j) {
+          const Feature& g = features[std::size_t(j - 1)];
+          double v = x[std::size_t(g.a)];
+          if (g.how == '/') v /= x[std::size_t(g.b)];
+          if (g.how == '*') v *= x[std::size_t(g.b)];
+          sum += c[j] * transform(v);
+        }
+        return logarithmic ? std::exp(sum) : sum;
+      };
+      // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
+      if (Formula again; !judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again))
+        return false;
+      // Every term must matter: a source that could be left out is no source.
+      for (std::ptrdiff_t j = 1; j < p; ++j) {
+        double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+        for (const Eigen::Index i : judged) {
+          const double v = c[j] * transform(evaluate(features[std::size_t(j - 1)], sources_, i));
+          lo = std::min(lo, v);
+          hi = std::max(hi, v);
+        }
+        const double scale = logarithmic ? y.x.cwiseAbs().maxCoeff() : 1;
+        if ((hi - lo) * scale < 4 * out.tolerance) return false;
+      }
+      out.rows = int(rows.size());
+      if (logarithmic) {
+        out.text = fmt::format("{:.5g}", std::exp(c[0]));
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          out.text += fmt::format(" * ({})^{:.4g}", loop::name(features[std::size_t(j - 1)], sources_), c[j]);
+      } else {
+        out.text = fmt::format("{:.5g}", c[0]);
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          out.text += fmt::format(" {:+.5g} * {}", c[j], loop::name(features[std::size_t(j - 1)], sources_));
+      }
+      // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
+      // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
+      // sees. Each counts as e^3 times as likely. A relation solved for another column of it than the computed one
+      // misses that column by more than its own last digit: the last term.
+      const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) {
+                          return sources_[std::size_t(k)].column->role == Role::output;
+                        });
+      const auto composite = std::ranges::count_if(features, [](const Feature& g) { return g.b >= 0; });
+      const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
+      out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 +
+                                          2 * std::log(std::max(1.0, out.residual / own))) +
+                 6 * double(p + composite - seen);
+      if (!found || out.cost < best.cost) best = out;
+      found = true;
+      return true;
+    };
+
+    std::vector<Feature> raw, all;
+    for (const int k : use) raw.push_back({k, -1, ' '});
+    all = raw;
+    for (std::size_t i = 0; i < use.size(); ++i)
+      for (std::size_t j = 0; j < use.size(); ++j) {
+        if (i == j) continue;
+        if (divides(use[j])) all.push_back({use[i], use[j], '/'});
+        if (i < j) all.push_back({use[i], use[j], '*'});
+      }
+    // Fewest terms first: a formula found is not improved by more columns.
+    for (const Feature& f : all) consider({f}, false);
+    std::vector<Feature> logs;  // columns that have a logarithm
+    for (const Feature& f : raw)
+      if (divides(f.a)) logs.push_back(f);
+    if (!divides(target)) logs.clear();
+    for (const Feature& f : logs) consider({f}, true);
+    if (found) return true;
+    for (const auto& [f, g] : promising(target, all)) consider({f, g}, false);
+    for (std::size_t i = 0; i < raw.size(); ++i)
+      for (std::size_t j = i + 1; j < raw.size(); ++j) consider({raw[i], raw[j]}, false);
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      for (std::size_t j = i + 1; j < logs.size(); ++j) consider({logs[i], logs[j]}, true);
+    if (found) return true;
+    for (std::size_t i = 0; i < raw.size(); ++i)
+      for (std::size_t j = i + 1; j < raw.size(); ++j)
+        for (std::size_t k = j + 1; k < raw.size(); ++k) consider({raw[i], raw[j], raw[k]}, false);
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      for (std::size_t j = i + 1; j < logs.size(); ++j)
+        for (std::size_t k = j + 1; k < logs.size(); ++k) consider({logs[i], logs[j], logs[k]}, true);
+    return found;
+  }
+
+  /// Pairs of features whose joint correlation with y is near one on the complete rows.
+  std::vector<std::pair<Feature, Feature>> promising(int target, const std::vector<Feature>& all) const {
+    std::vector<Eigen::VectorXd> columns;
+    std::vector<const Feature*> kept;
+    std::set<int> everything;
+    for (const Feature& f : all) everything.insert(f.a);
+    std::vector<Eigen::Index> rows = complete(target, everything);
+    if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
+    if (rows.size() > 400) rows.resize(400);
+    const auto n = std::ptrdiff_t(rows.size());
+    const auto ranks = [&](auto&& value) {
+      Eigen::VectorXd v(n);
+      for (std::ptrdiff_t i = 0; i < n; ++i) v[i] = value(rows[std::size_t(i)]);
+      std::vector<double> s(v.data(), v.data() + n);
+      std::ranges::sort(s);
+      const double lo = s[std::size_t(n / 20)], hi = s[std::size_t(n - 1 - n / 20)];
+      v = v.cwiseMax(lo).cwiseMin(hi);  // bad rows drawn in
+      v.array() -= v.mean();
+      return Eigen::VectorXd(v / std::max(v.norm(), 1e-300));
+    };
+    for (const Feature& f : all) {
+      const Eigen::VectorXd v = ranks([&](Eigen::Index i) { return evaluate(f, sources_, i); });
+      if (!v.allFinite()) continue;
+      columns.push_back(v);
+      kept.push_back(&f);
+    }
+    const Eigen::VectorXd y = ranks([&](Eigen::Index i) { return sources_[std::size_t(target)].x[i]; });
+    Eigen::MatrixXd X(n, std::ptrdiff_t(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) X.col(std::ptrdiff_t(k)) = columns[k];
+    const Eigen::MatrixXd G = X.transpose() * X;
+    const Eigen::VectorXd b = X.transpose() * y;
+    struct Pair {
+      double r2;
+      std::size_t i, j;
+    };
+    std::vector<Pair> good;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (std::size_t j = i + 1; j < columns.size(); ++j) {
+        const double g = G(std::ptrdiff_t(i), std::ptrdiff_t(j)), det = 1 - g * g;
+        if (det < 1e-6) continue;
+        const double bi = b[std::ptrdiff_t(i)], bj = b[std::ptrdiff_t(j)];
+        const double r2 = (bi * bi + bj * bj - 2 * g * bi * bj) / det;
+        if (r2 > 0.9) good.push_back({r2, i, j});
+      }
+    std::ranges::stable_sort(good, std::ranges::greater{}, &Pair::r2);
+    if (good.size() > 60) good.resize(60);
+    std::vector<std::pair<Feature, Feature>> out;
+    for (const Pair& p : good) out.emplace_back(*kept[p.i], *kept[p.j]);
+    return out;
+  }
+};
+
+}  // namespace
+
+std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball) {
+  Audit a(shots, ball);
+  return a.run();
+}
+
+}  // namespace hosel::loop

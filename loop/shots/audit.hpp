@@ -1,0 +1,23 @@
+/// Is it a measurement at all? Columns that are, to within their recording, functions of other columns.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hosel/loop/shots/shots.hpp"
+
+namespace hosel::loop {
+
+struct DerivedColumn {
+  std::string column;
+  std::vector<std::string> from;
+  std::string formula;
+  double residual_sd = 0;           ///< column's unit
+  double recording_resolution = 0;  ///< column's unit
+  int rows = 0;
+  bool input = false;  ///< the column is an input of the models
+};
+
+std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball);
+
+}  // namespace hosel::loop

@@ -1,0 +1,309 @@
+#include "hosel/loop/shots/experiment.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "hosel/solvers/random.hpp"
+
+namespace hosel::loop {
+namespace {
+
+const Candidate* find(const Selection& s, std::vector<std::string> effects) {
+  std::ranges::sort(effects);
+  for (const Candidate& c : s.candidates) {
+    auto names = c.effects;
+    std::ranges::sort(names);
+    if (names == effects) return &c;
+  }
+  return nullptr;
+}
+
+/// Two sets of effects that differ in one name of a tie.
+struct Rivals {
+  const Candidate *a = nullptr, *b = nullptr;
+  std::string one, two;  ///< the names in which they differ
+};
+
+std::vector<Rivals> rivals(const Selection& s) {
+  std::vector<Rivals> all;
+  for (std::size_t t = 0; t < s.ties.size(); ++t) {
+    const auto with = [&](const std::string& name) {
+      std::vector<std::string> names = s.adopted;
+      for (std::size_t k = 0; k < s.ties.size(); ++k) names.push_back(k == t ? name : s.ties[k].front());
+      return find(s, names);
+    };
+    for (std::size_t i = 0; i < s.ties[t].size(); ++i)
+      for (std::size_t j = i + 1; j < s.ties[t].size(); ++j) {
+        const Rivals r{with(s.ties[t][i]), with(s.ties[t][j]), s.ties[t][i], s.ties[t][j]};
+        if (r.a && r.b) all.push_back(r);
+      }
+  }
+  return all;
+}
+
+/// What a club can do: what was recorded, a quarter wider on each side.
+struct Box {
+  std::vector<int> input;
+  std::vector<double> low, high;
+  std::vector<const Column*> column;
+
+  Box(const Shots& shots, const ShotModel& model, const std::vector<int>& rows) {
+    for (int k = 0; k < kInputs; ++k) {
+      const Column* col = shots.find_stem(stem(Input(k)));
+      if (!col || k == int(Input::head_mass)) continue;
+      double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+      for (const int i : rows) {
+        const double x = get(model.trial(i).blow, Input(k));
+        lo = std::min(lo, x);
+        hi = std::max(hi, x);
+      }
+      double wide = 0.25 * (hi - lo);
+      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) wide = std::max(wide, 0.008);
+      if (k == int(Input::club_speed)) wide = std::max(wide, 0.15 * hi);
+      lo -= wide;
+      hi += wide;
+      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) {
+        lo = std::max(lo, -0.03);
+        hi = std::min(hi, 0.03);
+      }
+      if (k == int(Input::dynamic_loft))
+        lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
+      if (k == int(Input::club_speed)) lo = std::max(lo, 10.0);
+      input.push_back(k);
+      low.push_back(lo);
+      high.push_back(hi);
+      column.push_back(col);
+    }
+  }
+
+  /// Corners, edges and a random inside, always the same.
+  std::vector<Trial> sites(Trial t) const {
+    std::mt19937_64 random(20240607);
+    std::vector<Trial> all;
+    t.order = 0.5;
+    for (int s = 0; s < 384; ++s) {
+      for (std::size_t k = 0; k < input.size(); ++k) {
+        double u = solvers::uniform(random);
+        if (s % 2 == 0) u = u < 0.4 ? 0 : u > 0.6 ? 1 : 0.5;
+        set(t.blow, Input(input[k]), low[k] + u * (high[k] - low[k]));
+      }
+      all.push_back(t);
+    }
+    return all;
+  }
+};
+
+/// A set of effects as fitted, and with the widest of the usual forms of one of its names: that name is out only where
+/// none of them fits.
+std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std::string& name,
+                        const std::vector<Form>& forms) {
+  std::vector<Fit> all = {as_fitted};
+  double usual = std::numeric_limits<double>::infinity();
+  std::size_t widest = 0;
+  for (const Form& f : forms)
+    if (f.effect == name) usual = std::min(usual, f.rarity);
+  for (const Form& f : forms)
+    if (f.effect == name && f.rarity <= usual) widest = std::max(widest, f.parameters.size());
+  for (const Form& f : forms) {
+    if (f.effect != name || f.rarity > usual || f.parameters.size() < widest ||
+        std::ranges::count(as_fitted.model.forms, &f))
+      continue;
+    Model m;
+    std::vector<double> start;
+    std::ptrdiff_t at = 0;
+    for (const Form* old : as_fitted.model.forms) {
+      const auto n = std::ptrdiff_t(old->parameters.size());
+      m.forms.push_back(old->effect == name ? &f : old);
+      if (old->effect == name) start.resize(start.size() + f.parameters.size());
+      else start.insert(start.end(), as_fitted.p.data() + at, as_fitted.p.data() + at + n);
+      at += n;
+    }
+    all.push_back(fit(problem, Part::select, m,
+                      {Eigen::Map<const Eigen::VectorXd>(start.data(), std::ptrdiff_t(start.size()))}, 1));
+  }
+  return all;
+}
+
+/// How far one set of effects is from another over some shots, in noise units, the second free to follow the first.
+class Separation {
+ public:
+  Separation(const ShotModel& model, const Fit& truth, const Fit& rival, const Eigen::VectorXd& noise)
+      : model_(model),
+        truth_(truth),
+        rival_(rival),
+        noise_(noise),
+        G_(1e-6 * Eigen::MatrixXd::Identity(rival.size(), rival.size())),
+        g_(Eigen::VectorXd::Zero(rival.size())) {}
+
+  struct Site {
+    Eigen::VectorXd d;  ///< difference of the rivals
+    Eigen::MatrixXd J;  ///< of the second by its parameters
+  };
+  /// False where the blow cannot happen.
+  bool look(const Trial& t, int shot, Site& out) const {
+    const int m = model_.width();
+    Eigen::VectorXd one(m), two(m);
+    out.J.resize(m, rival_.size());
+    if (!model_.predict(t, shot, truth_.model, truth_.p.data(), one.data()) ||
+        !model_.differences(t, shot, rival_.model, rival_.p.data(), 1e-3, true, two.data(), out.J.data()))
+      return false;
+    out.d = (one - two).cwiseQuotient(noise_);
+    out.J = noise_.cwiseInverse().asDiagonal() * out.J;
+    return true;
+  }
+  void add(const Site& s) {
+    G_ += s.J.transpose() * s.J;
+    g_ += s.J.transpose() * s.d;
+    dd_ += s.d.squaredNorm();
+  }
+  double squared() const { return squared(G_, g_, dd_); }
+  double squared_with(const Site& s) const {
+    return squared(G_ + s.J.transpose() * s.J, g_ + s.J.transpose() * s.d, dd_ + s.d.squaredNorm());
+  }
+
+ private:
+  const ShotModel& model_;
+  const Fit &truth_, &rival_;
+  const Eigen::VectorXd& noise_;
+  Eigen::MatrixXd G_;
+  Eigen::VectorXd g_;
+  double dd_ = 0;
+
+  static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) {
+    return std::max(0.0, dd - g.dot(G.ldlt().solve(g)));
+  }
+};
+
+/// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
+class Contest {
+ public:
+  Contest(const ShotModel& model, const std::vector<Fit>& one, const std::vector<Fit>& two,
+          const Eigen::VectorXd& noise) {
+    for (const Fit& f : two) each_.emplace_back(model, one.front(), f, noise);
+    for (const Fit& f : one) each_.emplace_back(model, two.front(), f, noise);
+  }
+  using Site = std::vector<Separation::Site>;
+  bool look(const Trial& t, int shot, Site& out) const {
+    out.resize(each_.size());
+    for (std::size_t k = 0; k < each_.size(); ++k)
+      if (!each_[k].look(t, shot, out[k])) return false;
+    return true;
+  }
+  void add(const Site& s) {
+    for (std::size_t k = 0; k < each_.size(); ++k) each_[k].add(s[k]);
+  }
+  double squared() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Separation& e : each_) least = std::min(least, e.squared());
+    return least;
+  }
+  double squared_with(const Site& s) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < each_.size(); ++k) least = std::min(least, each_[k].squared_with(s[k]));
+    return least;
+  }
+
+ private:
+  std::vector<Separation> each_;
+};
+
+}  // namespace
+
+NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
+                      const LoopResult& so_far) {
+  const Selection& selection = so_far.selection;
+  NextExperiment next;
+  switch (so_far.verdict) {
+    case Verdict::unexplained:
+      if (so_far.unexplained.empty()) break;
+      next.text = fmt::format(
+          "vary {} on purpose with everything else held, and repeat each setting: {} follows it in a way that no "
+          "candidate explains",
+          so_far.unexplained.front().regressor, so_far.unexplained.front().channel);
+      return next;
+    case Verdict::insufficient:
+      next.text = "more shots of the same kind: minimum_detectable says how large an effect these could have shown";
+      return next;
+    case Verdict::noise_contradicted:
+      next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
+      return next;
+    case Verdict::explained:
+    case Verdict::no_residual:
+      next.text = "nothing is tied; shots at the edges of the recorded range would narrow the parameters most";
+      return next;
+    case Verdict::ambiguous: break;
+  }
+
+  const Box box(c.shots, model, rows);
+  const std::vector<Trial> sites = box.sites(model.trial(rows[rows.size() / 2]));
+  Eigen::VectorXd noise(model.width());
+  for (int ch = 0; ch < noise.size(); ++ch) {
+    double sum = 0;
+    for (const int i : rows) sum += model.sigma(i, ch);
+    noise[ch] = sum / double(rows.size());
+  }
+  // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
+  constexpr double wanted = 5.5 * 5.5;
+  const std::size_t most = std::max<std::size_t>(12, rows.size() * 3 / 2);  // the session once more
+  std::vector<std::size_t> chosen;                                          // for all pairs together
+  std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
+  std::vector<std::string> sentences, sensors;
+  for (const Rivals& r : rivals(selection)) {
+    const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
+                           two = family(problem, r.b->fit, r.two, so_far.forms);
+    Contest apart(model, one, two, noise);
+    Contest::Site site;
+    for (const int i : rows)
+      if (apart.look(model.trial(i), i, site)) apart.add(site);
+    const double before = std::sqrt(apart.squared());
+    std::vector<std::pair<std::size_t, Contest::Site>> possible;
+    for (std::size_t k = 0; k < sites.size(); ++k)
+      if (apart.look(sites[k], -1, site)) {
+        for (const std::size_t known : chosen)
+          if (known == k) apart.add(site);
+        possible.emplace_back(k, site);
+      }
+    std::vector<std::size_t> more;
+    while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
+      const auto& best =
+          *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
+      apart.add(best.second);
+      more.push_back(best.first);
+    }
+    const double after = std::sqrt(apart.squared());
+    if (apart.squared() < 0.8 * wanted) {
+      std::string sensor;
+      for (const std::string& name : {r.one, r.two})
+        if (const EffectEntry* e = find_effect(name)) {
+          const std::string s(e->sensor);
+          if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
+          if (!std::ranges::count(sensors, s)) sensors.push_back(s);
+        }
+      if (after > before + 1 && partial.empty()) partial = more;
+      sentences.push_back(
+          fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units now, {:.1f} after {} designed "
+                      "shots, 4.8 are needed): measure {}",
+                      r.one, r.two, before, after, more.size(), sensor));
+    } else {
+      chosen.insert(chosen.end(), more.begin(), more.end());
+      sentences.push_back(fmt::format(
+          "{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)",
+          chosen.size(), r.one, r.two, before, after));
+    }
+  }
+  if (chosen.empty()) chosen = partial;
+  for (const std::size_t k : chosen) {
+    DesignedShot shot;
+    for (std::size_t j = 0; j < box.input.size(); ++j)
+      shot.inputs.emplace_back(box.column[j]->name, get(sites[k].blow, Input(box.input[j])) / box.column[j]->si);
+    next.shots.push_back(shot);
+  }
+  if (!sensors.empty()) next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
+  next.text = sentences.empty() ? "no design found" : fmt::format("{}", fmt::join(sentences, ". "));
+  return next;
+}
+
+}  // namespace hosel::loop

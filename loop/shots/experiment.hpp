@@ -1,0 +1,17 @@
+/// What to measure next: inputs at which rival explanations differ most, in units of noise.
+#pragma once
+
+#include "hosel/loop/result.hpp"
+#include "hosel/loop/shots/case.hpp"
+#include "hosel/loop/shots/model.hpp"
+
+namespace hosel::loop {
+
+/// Greedy design over the feasible box (the recorded range, widened by a quarter) that separates every two rivals of a
+/// tie to 4.8 noise units with as few shots as possible, whichever is the truth and whatever usual form the other
+/// takes; where as many shots as the session had do not separate two, the quantity to measure. `rows`: those that
+/// effects were selected on, as in `problem`.
+NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
+                      const LoopResult& so_far);
+
+}  // namespace hosel::loop

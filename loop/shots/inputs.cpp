@@ -1,0 +1,183 @@
+#include "hosel/loop/shots/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "hosel/loop/median.hpp"
+
+namespace hosel::loop {
+
+Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
+                   const std::map<std::string, double>& noise) {
+  Inputs in;
+  std::array<const Column*, kInputs> column{};
+  for (int k = 0; k < kInputs; ++k) column[std::size_t(k)] = shots.find_stem(stem(Input(k)));
+  for (const Input needed : {Input::club_speed, Input::dynamic_loft})
+    if (!column[std::size_t(needed)]) throw DataError(fmt::format("{}:1: no column {}_*", shots.file, stem(needed)));
+  const Column* mass = column[std::size_t(Input::head_mass)];
+  if (!mass && !head_mass_declared)
+    throw DataError(fmt::format("{}:1: no head mass: neither [head] mass_kg nor a column head_mass_*", shots.file));
+
+  for (int k = 0; k < kInputs; ++k)
+    if (!column[std::size_t(k)] && k != int(Input::head_mass))
+      in.notes.push_back(fmt::format("no column {}: taken as zero", stem(Input(k))));
+
+  std::array<int, kInputs> filled{};
+  for (std::size_t i = 0; i < shots.rows(); ++i) {
+    bool complete = true;
+    for (const Input needed : {Input::club_speed, Input::dynamic_loft})
+      if (complete && std::isnan(column[std::size_t(needed)]->value[i])) {
+        ++in.unused[fmt::format("no {}", column[std::size_t(needed)]->name)];
+        complete = false;
+      }
+    if (complete && mass && std::isnan(mass->value[i]) && !head_mass_declared) {
+      ++in.unused["no " + mass->name];
+      complete = false;
+    }
+    bool output = false;
+    for (const Column& c : shots.columns)
+      output = output || (c.role == Role::output && c.numeric && std::isfinite(c.value[i]));
+    if (complete && !output) {
+      ++in.unused["no launch recorded"];
+      complete = false;
+    }
+    if (!complete) continue;
+    const Column* wrong = nullptr;
+    for (int k = 0; k < kInputs && !wrong; ++k)
+      if (const Column* c = column[std::size_t(k)])
+        if (const double x = c->value[i]; x < quantity(Input(k)).low || x > quantity(Input(k)).high) wrong = c;
+    if (wrong) {
+      in.impossible.push_back(
+          {int(i), wrong->name, fmt::format("{:g} is no value that a blow can have", wrong->native(i))});
+      continue;
+    }
+    Trial t;
+    t.blow = blow;
+    for (int k = 0; k < kInputs; ++k)
+      if (const Column* c = column[std::size_t(k)]; c && std::isfinite(c->value[i])) set(t.blow, Input(k), c->value[i]);
+    in.trials.push_back(t);
+    in.row_of.push_back(int(i));
+  }
+  const std::size_t n = in.trials.size();
+  if (!n) return in;
+
+  // Session order: by the shot number where it is one, else by the row.
+  const Column* shot = shots.find("shot");
+  std::vector<double> place(n);
+  bool numbered = shot && shot->numeric;
+  for (std::size_t i = 0; i < n && numbered; ++i) numbered = std::isfinite(shot->value[std::size_t(in.row_of[i])]);
+  for (std::size_t i = 0; i < n; ++i)
+    place[i] = numbered ? shot->value[std::size_t(in.row_of[i])] : double(in.row_of[i]);
+  const auto [first, last] = std::ranges::minmax(place);
+  for (std::size_t i = 0; i < n; ++i) in.trials[i].order = last > first ? (place[i] - first) / (last - first) : 0.0;
+
+  // Robust centre and spread of every input.
+  std::array<double, kInputs> centre{}, spread{}, sigma{};
+  bool any = false;
+  for (int k = 0; k < kInputs; ++k) {
+    const Column* c = column[std::size_t(k)];
+    if (!c) continue;
+    std::vector<double> x;
+    for (const int row : in.row_of)
+      if (std::isfinite(c->value[std::size_t(row)])) x.push_back(c->value[std::size_t(row)]);
+    if (x.empty()) continue;
+    const double mid = median(x);
+    std::vector<double> off;
+    for (const double v : x) off.push_back(std::abs(v - mid));
+    const double mad = 1.4826 * median(off);
+    const double fence = mad > 0 ? 4 * mad : std::numeric_limits<double>::infinity();
+    double sum = 0, square = 0, count = 0;
+    for (const double v : x)
+      if (std::abs(v - mid) <= fence) {
+        sum += v;
+        ++count;
+      }
+    centre[std::size_t(k)] = sum / count;
+    for (const double v : x)
+      if (std::abs(v - mid) <= fence) square += (v - sum / count) * (v - sum / count);
+    spread[std::size_t(k)] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
+    if (const auto it = noise.find(c->name); it != noise.end()) sigma[std::size_t(k)] = it->second;
+    for (std::size_t i = 0; i < n; ++i)
+      if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) {
+        set(in.trials[i].blow, Input(k), centre[std::size_t(k)]);
+        ++filled[std::size_t(k)];
+      }
+    any = any || sigma[std::size_t(k)] > 0 || filled[std::size_t(k)] > 0;
+  }
+  for (int k = 0; k < kInputs; ++k)
+    if (filled[std::size_t(k)])
+      in.notes.push_back(
+          fmt::format("{}: {} missing values filled with the mean of the recorded ones, at their variance",
+                      column[std::size_t(k)]->name, filled[std::size_t(k)]));
+  if (!any) return in;
+
+  // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(kInputs, kInputs);
+  double count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(kInputs);
+    bool inside = true;
+    for (int k = 0; k < kInputs && inside; ++k) {
+      const Column* c = column[std::size_t(k)];
+      if (!c || !(spread[std::size_t(k)] > 0)) continue;
+      const double x = c->value[std::size_t(in.row_of[i])];
+      inside = std::isfinite(x) && std::abs(x - centre[std::size_t(k)]) <= 5 * spread[std::size_t(k)];
+      if (inside) d[k] = x - centre[std::size_t(k)];
+    }
+    if (!inside) continue;
+    total += d * d.transpose();
+    ++count;
+  }
+  if (count > 3 * kInputs) total /= count - 1;
+  else {
+    total.setZero();
+    for (int k = 0; k < kInputs; ++k) total(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)];
+  }
+  // Only inputs with noise are drawn towards their expectation; the others are known and inform it.
+  const Eigen::MatrixXd noise_cov = Eigen::Map<const Eigen::VectorXd>(sigma.data(), kInputs).cwiseAbs2().asDiagonal();
+  Eigen::VectorXd unit(kInputs);
+  for (int k = 0; k < kInputs; ++k) unit[k] = spread[std::size_t(k)] > 0 ? spread[std::size_t(k)] : 1;
+  const Eigen::MatrixXd scaled_total = unit.cwiseInverse().asDiagonal() * total * unit.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
+  // True spread = total - noise, kept positive: where the noise is all there is, the record says nothing.
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled_total - scaled_noise);
+  const Eigen::MatrixXd truth = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() *
+                                eigen.eigenvectors().transpose();
+  const Eigen::MatrixXd gain = truth *
+                               (truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs)).inverse();
+  const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * truth) * unit.asDiagonal();
+
+  in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
+  for (std::size_t i = 0; i < n; ++i) {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(kInputs);
+    bool complete = true;
+    for (int k = 0; k < kInputs; ++k)
+      if (const Column* c = column[std::size_t(k)]; c && spread[std::size_t(k)] > 0) {
+        const double x = c->value[std::size_t(in.row_of[i])];
+        if (std::isfinite(x)) d[k] = (x - centre[std::size_t(k)]) / unit[k];
+        else complete = false;
+      }
+    const Eigen::VectorXd best = gain * d;
+    Eigen::MatrixXd& cov = in.covariance[i];
+    for (int k = 0; k < kInputs; ++k) {
+      const Column* c = column[std::size_t(k)];
+      if (!c) continue;
+      const bool known = std::isfinite(c->value[std::size_t(in.row_of[i])]);
+      if (known && sigma[std::size_t(k)] > 0 && complete)
+        set(in.trials[i].blow, Input(k), centre[std::size_t(k)] + unit[k] * best[k]);
+      if (!known && k != int(Input::head_mass))
+        cov(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)] + noise_cov(k, k);
+      if (known && sigma[std::size_t(k)] > 0 && !complete) cov(k, k) = noise_cov(k, k);
+    }
+    for (int a = 0; complete && a < kInputs; ++a)
+      for (int b = 0; b < kInputs; ++b)
+        if (sigma[std::size_t(a)] > 0 && sigma[std::size_t(b)] > 0) cov(a, b) = left(a, b);
+  }
+  return in;
+}
+
+}  // namespace hosel::loop

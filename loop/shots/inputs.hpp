@@ -1,0 +1,33 @@
+/// What the models are told: trials from the rows, noisy inputs replaced by their expectation.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hosel/loop/effect.hpp"
+#include "hosel/loop/shots/shots.hpp"
+
+namespace hosel::loop {
+
+struct Inputs {
+  std::vector<Trial> trials;                ///< one per usable row
+  std::vector<int> row_of;                  ///< the row of each trial
+  std::vector<Eigen::MatrixXd> covariance;  ///< of the inputs given their record, 8 x 8 SI; empty: all exact
+  std::map<std::string, int> unused;        ///< reason, rows
+  struct Impossible {
+    int row;
+    std::string column, reason;
+  };
+  std::vector<Impossible> impossible;  ///< values no blow can have
+  std::vector<std::string> notes;
+};
+
+/// Rows without club speed, dynamic loft or any output are unused. Other missing inputs are filled with the mean
+/// of those recorded, at the variance of those recorded; a missing column is zero. `noise` by header [SI].
+/// Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean), with robust moments.
+Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
+                   const std::map<std::string, double>& noise);
+
+}  // namespace hosel::loop

@@ -1,0 +1,90 @@
+/// A base model with effects, asked about recorded blows: readings of the channels, their derivatives, and the
+/// whitening by the covariance of every shot.
+#pragma once
+
+#include "hosel/loop/problem.hpp"
+#include "hosel/models/impact_model.hpp"
+
+namespace hosel::loop {
+
+struct ShotChannel : Channel {
+  Output output;
+};
+
+class ShotModel {
+ public:
+  /// `base` must outlive the model. `direct`: the base answers in microseconds and honours the blow's contact
+  /// law; otherwise its answers on the trials are computed once and the effects act through the difference that
+  /// they make in the closed-form eccentric impact. `measured`: header's units, NaN where missing, shots x channels.
+  ShotModel(const models::ImpactModel& base, bool direct, std::vector<Trial> trials, std::vector<ShotChannel> channels,
+            Eigen::MatrixXd measured);
+
+  int shots() const { return int(trials_.size()); }
+  int width() const { return int(channels_.size()); }
+  const ShotChannel& channel(int c) const { return channels_[std::size_t(c)]; }
+  ShotChannel& channel(int c) { return channels_[std::size_t(c)]; }
+  const Trial& trial(int shot) const { return trials_[std::size_t(shot)]; }
+  const Eigen::MatrixXd& measured() const { return measured_; }
+  bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
+
+  /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
+  /// happen.
+  bool predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const;
+  bool predict(int shot, const Model& model, const double* parameters, double* out) const {
+    return predict(trial(shot), shot, model, parameters, out);
+  }
+  /// The same and its derivatives by the parameters, per Parameter::scale, by differences over `step` scales; what a
+  /// parameter does not touch is not computed again. `derivative` is width x size, column-major. Also false where a
+  /// neighbour cannot happen.
+  bool differences(const Trial& trial, int shot, const Model& model, const double* parameters, double step,
+                   bool central, double* out, double* derivative) const;
+  /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
+  /// base's own answer).
+  bool launch(Trial trial, const Model& model, const double* parameters, Launch& out) const;
+  /// Raw residuals model - measured, shots x channels, NaN where missing.
+  Eigen::MatrixXd residuals(const Model& model, const double* parameters) const;
+
+  /// Covariance of the inputs about the trial's values, per shot (8 x 8, SI; none: all exact); sets up the whitening
+  /// Sigma_y + J_x Sigma_x J_x^T about the given model.
+  void set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model, const double* parameters);
+  /// Lower-triangular W with W Sigma W^T = 1 over the observed channels, zero elsewhere.
+  Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> whitening(int shot) const {
+    return {whiten_.data() + std::ptrdiff_t(shot) * width() * width(), width(), width()};
+  }
+  /// Marginal standard deviation of a channel of a shot (instrument and inputs), header's unit.
+  double sigma(int shot, int channel) const { return sigma_(shot, channel); }
+
+  /// Whitened residuals of some shots, one after the other (shots * width); a blow that cannot happen counts 100
+  /// noise units in every channel.
+  Eigen::VectorXd whitened(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
+  /// The same with the derivatives per Parameter::scale, by one-sided differences; zero derivatives where the blow or
+  /// a neighbour cannot happen.
+  void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                 Eigen::MatrixXd& jacobian) const;
+  /// The derivatives by central differences.
+  Eigen::MatrixXd jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
+
+ private:
+  Launch answer(const Trial& trial, int shot) const;
+  /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
+  static void change(const Model& model, const double* parameters, Trial& trial);
+  static void change(const Model& model, const double* parameters, const Trial& trial, Launch& launch);
+  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
+            double* out) const;
+  void whiten(int shot, const Model& model, const double* p, double* scratch, double* z) const;
+  void linearise(int shot, const Model& model, const double* p, double step, bool central,
+                 Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) const;
+  /// Sensitivity of the channels to the inputs about a model: width x 8, header's units per SI.
+  Eigen::MatrixXd input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const;
+
+  const models::ImpactModel& base_;
+  bool direct_;
+  std::vector<Trial> trials_;
+  std::vector<ShotChannel> channels_;
+  Eigen::MatrixXd measured_;
+  std::vector<double> whiten_;
+  Eigen::MatrixXd sigma_;
+  std::vector<Launch> offset_;  ///< base minus companion at the trials, for bases that are not direct
+};
+
+}  // namespace hosel::loop

@@ -1,0 +1,378 @@
+#include "hosel/loop/shots/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "hosel/loop/shots/experiment.hpp"
+#include "hosel/loop/shots/scatter.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr std::size_t kFewest = 4;  // training rows that can test anything
+
+/// Kurtosis of n values in its standard deviations from that of a normal sample (Anscombe & Glynn 1983).
+double kurtosis_deviation(double kurtosis, double n) {
+  const double mean = 3 * (n - 1) / (n + 1),
+               variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
+  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) *
+                          std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
+  const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
+  const double stretch = 1 + (kurtosis - mean) / std::sqrt(variance) * std::sqrt(2 / (a - 4));
+  if (stretch <= 0) return -std::numeric_limits<double>::infinity();
+  return (1 - 2 / (9 * a) - std::cbrt((1 - 2 / a) / stretch)) / std::sqrt(2 / (9 * a));
+}
+
+}  // namespace
+
+ShotProblem::ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& derived,
+                         std::optional<std::set<int>> held_rows, std::optional<Input> doubted)
+    : case_(c), held_rows_(std::move(held_rows)) {
+  read(derived, doubted);
+  split({});
+  estimate_noise(nullptr);
+  model_->set_covariance(inputs_.covariance, Model{}, nullptr);
+  regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
+}
+
+void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<Input> doubted) {
+  const Shots& shots = case_.shots;
+  std::map<std::string, double> input_noise;
+  for (const auto& [header, value] : case_.input_noise)
+    if (const Column* c = shots.find(header)) input_noise[header] = value * c->si;
+  inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise);
+  notes_ = case_.notes;
+  notes_.insert(notes_.end(), inputs_.notes.begin(), inputs_.notes.end());
+  if (doubted) distrust(*doubted);
+
+  // Cells that are no numbers, and values no blow has: flagged before anything is fitted.
+  std::set<int> bad;
+  const auto flag = [&](int row, const std::string& column, const std::string& reason, int shot) {
+    early_.push_back({.shot = shot, .row = row, .column = column, .reason = reason, .slip = false});
+  };
+  for (const Column& c : shots.columns)
+    for (const std::size_t row : c.broken)
+      if (bad.insert(int(row)).second) flag(int(row), c.name, "not a finite number", -1);
+  for (const auto& [row, column, reason] : inputs_.impossible)
+    if (bad.insert(row).second) flag(row, column, reason, -1);
+
+  std::vector<ShotChannel> channels;
+  std::vector<const Column*> columns;
+  bool any = false;
+  for (int o = 0; o < kOutputs; ++o) {
+    const Column* c = shots.find_stem(stem(Output(o)));
+    if (!c || c->role != Role::output) continue;
+    any = true;
+    const bool computed =
+        std::ranges::any_of(derived, [&](const DerivedColumn& d) { return !d.input && d.column == c->name; });
+    if (computed || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
+    ShotChannel ch{{.name = c->name, .si = c->si, .resolution = c->resolution / c->si}, Output(o)};
+    if (const auto it = case_.noise.find(c->name); it != case_.noise.end())
+      // The record's last digit rounds: that much is added to the noise.
+      ch.declared = ch.noise = std::hypot(it->second, ch.resolution / std::sqrt(12.0));
+    channels.push_back(std::move(ch));
+    columns.push_back(c);
+  }
+  if (!any)
+    throw DataError(fmt::format("{}:1: no measured launch quantity (ball_speed_*, launch_angle_*, ...)", shots.file));
+
+  Inputs good;
+  for (std::size_t i = 0; i < inputs_.trials.size(); ++i) {
+    if (bad.contains(inputs_.row_of[i]) || channels.empty()) continue;
+    good.trials.push_back(std::move(inputs_.trials[i]));
+    good.row_of.push_back(inputs_.row_of[i]);
+    if (!inputs_.covariance.empty()) good.covariance.push_back(inputs_.covariance[i]);
+  }
+  inputs_.row_of = std::move(good.row_of);
+  inputs_.covariance = std::move(good.covariance);
+  Eigen::MatrixXd measured(std::ptrdiff_t(good.trials.size()), std::ptrdiff_t(channels.size()));
+  for (Eigen::Index i = 0; i < measured.rows(); ++i)
+    for (Eigen::Index k = 0; k < measured.cols(); ++k)
+      measured(i, k) = columns[std::size_t(k)]->native(std::size_t(inputs_.row_of[std::size_t(i)]));
+  for (int k = 0; k < kInputs; ++k)
+    if (const Column* c = shots.find_stem(stem(Input(k)))) uses_.push_back({c, k, -1});
+  for (std::size_t k = 0; k < columns.size(); ++k) uses_.push_back({columns[k], -1, int(k)});
+  model_ = std::make_unique<ShotModel>(*case_.model, case_.direct, std::move(good.trials), std::move(channels),
+                                       std::move(measured));
+  std::vector<double> out(static_cast<std::size_t>(width()));
+  for (int i = 0; i < model_->shots(); ++i) {
+    if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
+    else flag(inputs_.row_of[std::size_t(i)], "", "the base model has no answer: the head moves away from the ball", i);
+  }
+}
+
+/// Every shot's value of this input may be anything: its direction is projected out of the shot's channels.
+void ShotProblem::distrust(Input input) {
+  if (inputs_.covariance.empty())
+    inputs_.covariance.assign(inputs_.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  for (const Trial& t : inputs_.trials) {
+    lo = std::min(lo, get(t.blow, input));
+    hi = std::max(hi, get(t.blow, input));
+  }
+  for (Eigen::MatrixXd& cov : inputs_.covariance)
+    cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
+}
+
+std::vector<Form> ShotProblem::forms() const {
+  Setting setting{.head_turns = case_.head_turns, .inertia_declared = case_.inertia_declared, .outputs = {}};
+  for (int c = 0; c < width(); ++c) setting.outputs.push_back(model_->channel(c).output);
+  std::vector<Form> all;
+  for (const EffectEntry& e : effects()) {
+    if (!e.on_shots) continue;
+    for (Form& f : e.on_shots(setting)) {
+      // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
+      if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.rarity += 10;
+      all.push_back(std::move(f));
+    }
+  }
+  return all;
+}
+
+void ShotProblem::split(const std::set<int>& without) {
+  Rows all;
+  if (held_rows_) {
+    for (const int i : usable_)
+      (held_rows_->contains(inputs_.row_of[std::size_t(i)]) ? all.holdout : all.train).push_back(i);
+  } else {
+    // The split is made over all usable rows, so that screening does not reshuffle it.
+    all = split_rows(case_, *model_, inputs_.row_of, usable_);
+  }
+  const auto flagged = [&](int i) { return without.contains(i); };
+  std::erase_if(all.train, flagged);
+  std::erase_if(all.holdout, flagged);
+  rows_ = std::move(all);
+  select_ = thinned(rows_.train);
+}
+
+const std::vector<int>& ShotProblem::shots(Part part) const {
+  return part == Part::select ? select_ : part == Part::train ? rows_.train : rows_.holdout;
+}
+
+std::vector<Problem::Row> ShotProblem::rows() const {
+  std::vector<Row> all;
+  for (const bool holdout : {false, true})
+    for (const int i : holdout ? rows_.holdout : rows_.train) {
+      const int row = inputs_.row_of[std::size_t(i)];
+      all.push_back({i, row, case_.shots.id[std::size_t(row)], holdout});
+    }
+  std::ranges::sort(all, {}, &Row::index);
+  return all;
+}
+
+/// Findings numbered 1, 2, ... in order of rows.
+std::vector<Flag> ShotProblem::flags() const {
+  std::vector<Flag> told;
+  int own = 0;
+  const std::vector<RowFlag>& all = flags_.empty() ? early_ : flags_;
+  for (const RowFlag& f : all) own = std::max(own, f.finding);
+  for (const RowFlag& f : all)
+    told.push_back({f.row, case_.shots.id[std::size_t(f.row)], f.column, f.reason, f.finding ? f.finding : ++own});
+  std::ranges::stable_sort(told, {}, &Flag::row);
+  std::map<int, int> number;
+  for (Flag& f : told) f.finding = number.emplace(f.finding, int(number.size()) + 1).first->second;
+  return told;
+}
+
+std::vector<std::string> ShotProblem::notes() const {
+  std::vector<std::string> all = notes_;
+  if (select_.size() < rows_.train.size())
+    all.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", select_.size(),
+                              rows_.train.size()));
+  return all;
+}
+
+std::optional<std::string> ShotProblem::too_few() const {
+  if (width() == 0) return "no launch quantity has a value";
+  if (model_->shots() == 0) return "no row can be used";
+  if (rows_.train.size() < kFewest)
+    return fmt::format("{} training rows: too few to test anything", rows_.train.size());
+  return {};
+}
+
+bool ShotProblem::whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, double) const {
+  z = model_->whitened(shots(part), model, p);
+  return true;
+}
+
+bool ShotProblem::linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                            Eigen::MatrixXd& jacobian, double) const {
+  model_->linearise(shots(part), model, p, z, jacobian);
+  return true;
+}
+
+Eigen::MatrixXd ShotProblem::jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const {
+  return model_->jacobian(shots(part), model, p);
+}
+
+Eigen::MatrixXd ShotProblem::residuals(const Model& model, const Eigen::VectorXd& p) const {
+  return model_->residuals(model, p.data());
+}
+
+Problem::Density ShotProblem::density(Part part) const {
+  Density d;
+  for (const int i : shots(part)) {
+    const auto W = model_->whitening(i);
+    for (int c = 0; c < width(); ++c)
+      if (model_->observed(i, c) && W(c, c) > 0) {
+        d.log_whitening += std::log(W(c, c));
+        ++d.values;
+      }
+  }
+  return d;
+}
+
+/// The whole shot is judged: quadratic up to the 99.9 % quantile of its squared distance, then logarithmic, constant
+/// beyond twelve times that. The loss without its cap sees farther.
+std::vector<Stage> ShotProblem::stages() const {
+  const double knee = quantile(boost::math::chi_squared(width()), 0.999);
+  const solvers::Loss loss{solvers::Loss::Tail::logarithmic, knee, 12 * knee, width()};
+  return {{.loss = loss.uncapped()}, {.loss = loss}};
+}
+
+bool ShotProblem::screen(const Selection& selection) {
+  const auto look = [&](const Fit& at, bool clean) {
+    return loop::screen(*model_, case_.shots, inputs_.row_of, uses_, at, clean, early_);
+  };
+  Screening screening = look(selection.chosen, selection.clean);
+  // A drift can follow a club that recorded something else: what leaves structure must not hide such a club.
+  if (!selection.clean && selection.level > 0 && std::ranges::none_of(screening.flags, &RowFlag::cluster)) {
+    Screening bare = look(selection.base, false);
+    if (std::ranges::any_of(bare.flags, &RowFlag::cluster)) screening = std::move(bare);
+  }
+  flags_ = std::move(screening.flags);
+  widespread_ = std::move(screening.widespread);
+  std::set<int> now;
+  for (const RowFlag& f : flags_)
+    if (f.shot >= 0) now.insert(f.shot);
+  std::vector<int> changed;
+  std::ranges::set_symmetric_difference(now, out_, std::back_inserter(changed));
+  out_ = std::move(now);
+  split(out_);
+  return changed.size() * 500 <= std::size_t(model_->shots());
+}
+
+Scatter ShotProblem::scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const {
+  return loop::scatter(*model_, rows_.train, channel, residuals, fitted);
+}
+
+double ShotProblem::update_noise(const Fit& selected, const Fit&) {
+  std::vector<double> before;
+  for (int c = 0; c < width(); ++c) before.push_back(channel(c).noise);
+  estimate_noise(&selected);
+  double change = 0;
+  for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
+  model_->set_covariance(inputs_.covariance, selected.model, selected.p.data());
+  regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
+  // Noisy inputs weigh otherwise once they are carried through the effects.
+  const bool anew = !updated_ && !inputs_.covariance.empty() && !selected.model.forms.empty();
+  updated_ = true;
+  return anew ? std::numeric_limits<double>::infinity() : change;
+}
+
+/// Noise that is not declared (or refuted), from the residuals of a fit.
+void ShotProblem::estimate_noise(const Fit* at) {
+  const Eigen::MatrixXd r = at ? residuals(at->model, at->p) : model_->residuals(Model{}, nullptr);
+  const double rows = std::max<double>(1, double(rows_.train.size()));
+  for (int c = 0; c < width(); ++c) {
+    ShotChannel& ch = model_->channel(c);
+    if (ch.trusted()) continue;
+    const double smooth = smooth_scatter(*model_, rows_.train, c, r);
+    double sd = smooth, from_inputs = 0;
+    if (at) {
+      double variance = 0;
+      for (const int i : rows_.train) variance += model_->sigma(i, c) * model_->sigma(i, c);
+      const double whole = scatter(c, r, at->size()).ratio * std::sqrt(variance / rows);
+      sd = ch.refuted || smooth <= 0 ? whole : std::min(whole, 1.3 * smooth);
+      // What noisy inputs contribute is counted separately.
+      if (!inputs_.covariance.empty())
+        for (const int i : rows_.train)
+          from_inputs += std::max(0.0, model_->sigma(i, c) * model_->sigma(i, c) - ch.noise * ch.noise) / rows;
+    }
+    const double floor = std::max({ch.resolution / std::sqrt(12.0), 1e-3 * sd, 1e-9});
+    ch.noise = std::max(std::sqrt(std::max(sd * sd - from_inputs, 0.09 * sd * sd)), floor);
+  }
+}
+
+StructureMap ShotProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
+                                    const Rules& rules) const {
+  const solvers::Loss loss = stages().back().loss;
+  const Eigen::VectorXd z = model_->whitened(select_, fit.model, fit.p),
+                        noise = model_->whitened(select_, near.model, near.p);
+  Eigen::VectorXd weights(std::ptrdiff_t(select_.size()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
+  return loop::structure(*model_, select_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
+                         directions, rules.flips, rules.seed);
+}
+
+Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }
+
+/// What remains after the best model if a foreign column drives it, else the map of the base, before anything was
+/// fitted to it.
+std::vector<Location> ShotProblem::places(const Selection& s) const {
+  std::vector<Location> told;
+  const auto add = [&](const Finding* f) {
+    if (!f) return;
+    const Location l = place(*f);
+    const auto same = [&](const Location& k) { return k.channel == l.channel && k.regressor == l.regressor; };
+    if (std::ranges::none_of(told, same)) told.push_back(l);
+  };
+  const auto first = [](const StructureMap& map) -> const Finding* {
+    const auto it = std::ranges::find_if(map.findings, [](const Finding& f) { return f.channel >= 0; });
+    return it == map.findings.end() ? nullptr : &*it;
+  };
+  const Finding* left = first(s.after);
+  if (!left || !left->foreign) add(first(s.before));
+  add(left);
+  // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
+  for (const StructureMap* map : {&s.after, &s.before})
+    for (const Finding& f : map->findings)
+      if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
+          f.p_adjusted < 0.05)
+        add(&f);
+  return told;
+}
+
+/// Where a channel's scatter refutes its declared noise or many shots are far off: it follows a regressor at a level
+/// that would not count alone, its distribution is bimodal, or it strikes a share of the shots that is no exception.
+std::vector<Location> ShotProblem::shapes(const Selection& s) const {
+  const Eigen::MatrixXd r = residuals(s.chosen.model, s.chosen.p);
+  for (int c = 0; c < width(); ++c) {
+    const std::string& name = channel(c).name;
+    if (!channel(c).refuted && name != widespread_) continue;
+    for (const Finding& f : s.after.findings)
+      if (f.channel == c && f.p_adjusted < 0.05) return {place(f)};
+    double n = 0, mean = 0, second = 0, fourth = 0;
+    for (const int i : rows_.train)
+      if (std::isfinite(r(i, c))) mean += r(i, c), ++n;
+    mean /= std::max(1.0, n);
+    for (const int i : rows_.train)
+      if (std::isfinite(r(i, c))) {
+        const double d = r(i, c) - mean;
+        second += d * d / n;
+        fourth += d * d * d * d / n;
+      }
+    // Bimodal: kurtosis below that of a normal sample by 2.5 of its own standard deviations.
+    if (n > 12 && kurtosis_deviation(fourth / (second * second), n) < -2.5)
+      return {{name, "", "a bimodal distribution: a mixture"}};
+    if (name == widespread_) {
+      Location l{name, "", "many shots far off, the others within the noise: a mixture or a threshold"};
+      for (const StructureMap* map : {&s.after, &s.before})
+        for (const Finding& f : map->findings)
+          if (f.channel == c && l.regressor.empty()) l.regressor = f.regressor;
+      return {l};
+    }
+  }
+  return {};
+}
+
+NextExperiment ShotProblem::next_experiment(const LoopResult& so_far) const {
+  if (too_few()) return {.text = "more shots", .shots = {}, .sensor = {}};
+  return design(case_, *this, *model_, select_, so_far);
+}
+
+}  // namespace hosel::loop

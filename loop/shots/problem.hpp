@@ -1,0 +1,82 @@
+/// Measured shots as the engine sees them: rows to trials, split, noise, screening, tests for structure, design.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "hosel/loop/shots/audit.hpp"
+#include "hosel/loop/shots/case.hpp"
+#include "hosel/loop/shots/inputs.hpp"
+#include "hosel/loop/shots/screen.hpp"
+#include "hosel/loop/shots/split.hpp"
+#include "hosel/loop/shots/structure.hpp"
+
+namespace hosel::loop {
+
+class ShotProblem final : public Problem {
+ public:
+  /// `derived`: outputs among them are no channels. `held_rows`: the holdout, where it is not split here. `doubted`:
+  /// an input whose record counts for nothing. Throws DataError where the columns are of no use at all.
+  ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows,
+              std::optional<Input> doubted);
+
+  /// Every form that can act on these shots.
+  std::vector<Form> forms() const;
+  const std::map<std::string, int>& unused() const { return inputs_.unused; }  ///< reason, rows
+  const ShotModel& model() const { return *model_; }
+  const std::vector<int>& training() const { return rows_.train; }
+
+  int width() const override { return model_->width(); }
+  const Channel& channel(int c) const override { return model_->channel(c); }
+  void refute(int c) override { model_->channel(c).refuted = true; }
+  std::vector<Row> rows() const override;
+  const Eigen::MatrixXd& measured() const override { return model_->measured(); }
+  std::vector<Flag> flags() const override;
+  std::vector<std::string> notes() const override;
+  std::optional<std::string> too_few() const override;
+
+  bool whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                double window) const override;
+  bool linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, Eigen::MatrixXd& jacobian,
+                 double window) const override;
+  Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override;
+  Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override;
+  Density density(Part part) const override;
+  std::vector<Stage> stages() const override;
+
+  bool screen(const Selection& selection) override;
+  Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
+  double update_noise(const Fit& selected, const Fit& richest) override;
+
+  StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
+                         const Rules& rules) const override;
+  std::vector<Location> places(const Selection& selection) const override;
+  std::vector<Location> shapes(const Selection& selection) const override;
+  NextExperiment next_experiment(const LoopResult& so_far) const override;
+
+ private:
+  void read(const std::vector<DerivedColumn>& derived, std::optional<Input> doubted);
+  void distrust(Input input);
+  void split(const std::set<int>& without);
+  void estimate_noise(const Fit* at);
+  const std::vector<int>& shots(Part part) const;
+  Location place(const Finding& f) const;
+
+  const ShotCase& case_;
+  const std::optional<std::set<int>> held_rows_;
+  Inputs inputs_;
+  std::unique_ptr<ShotModel> model_;
+  std::vector<ColumnUse> uses_;
+  std::vector<int> usable_;  ///< shots whose base answer exists
+  Rows rows_;
+  std::vector<int> select_;             ///< of the training shots
+  std::set<int> out_;                   ///< shots that are flagged
+  std::vector<RowFlag> early_, flags_;  ///< before rows could become shots; all
+  std::string widespread_;              ///< see Screening
+  std::vector<Regressor> regressors_;
+  std::vector<std::string> notes_;
+  bool updated_ = false;
+};
+
+}  // namespace hosel::loop

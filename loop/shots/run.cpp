@@ -1,0 +1,130 @@
+#include "hosel/loop/shots/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hosel/loop/shots/problem.hpp"
+#include "hosel/loop/verdict.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+LoopResult pass(const ShotCase& c, const std::vector<DerivedColumn>& derived,
+                const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {}) {
+  ShotProblem problem(c, derived, held_rows, doubted);
+  LoopResult result;
+  result.title = c.title;
+  result.base = c.base;
+  result.seed = c.split.seed;
+  result.read = int(c.shots.rows());
+  result.derived = derived;
+  result.unused = problem.unused();
+  result.forms = problem.forms();
+  const Study study(problem, result.forms, c.effects, c.rules);
+  conclude(study, result);
+  if (!problem.too_few()) {
+    const bool shown = !result.adopted.empty() || !result.ties.empty();
+    const Fit &before = result.selection.base, &after = shown ? result.selection.chosen : before;
+    result.balance_before = balance(problem.model(), problem.training(), before.model, before.p.data());
+    result.balance_after = balance(problem.model(), problem.training(), after.model, after.p.data());
+  }
+  return result;
+}
+
+/// Rows flagged for what stands in this column: no evidence for or against a formula.
+Shots without_flagged(const Shots& shots, const LoopResult& r) {
+  Shots clean = shots;
+  for (Column& c : clean.columns)
+    for (const auto& f : r.flagged)
+      if (c.numeric && std::size_t(f.row) < c.value.size()) c.value[std::size_t(f.row)] = kNaN;
+  return clean;
+}
+
+/// Every cluster is the holdout once; errors and residuals are pooled over the clusters.
+void leave_one_out(const ShotCase& c, const std::vector<DerivedColumn>& derived, LoopResult& whole) {
+  const Groups g = groups(*c.shots.find(c.split.by));
+  std::vector<UsedRow> pooled;
+  for (std::size_t k = 0; k < g.name.size(); ++k) {
+    std::set<int> held;
+    for (std::size_t i = 0; i < g.of_row.size(); ++i)
+      if (g.of_row[i] == int(k)) held.insert(int(i));
+    const LoopResult fold = pass(c, derived, held);
+    for (const UsedRow& u : fold.rows)
+      if (u.holdout) pooled.push_back(u);
+    if (fold.holdout > 0)
+      whole.notes.push_back(
+          fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
+                      fold.adopted.empty() ? "nothing" : fmt::format("{}", fmt::join(fold.adopted, ", ")),
+                      fold.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.ties.front(), " or "))));
+  }
+  std::ranges::stable_sort(pooled, {}, &UsedRow::row);
+  std::vector<Problem::Row> rows;
+  for (const UsedRow& u : pooled) rows.push_back({int(rows.size()), u.row, u.id, true});
+  const auto pool = [&](std::vector<double> UsedRow::*of, Errors ChannelResult::*into) {
+    Eigen::MatrixXd r =
+        Eigen::MatrixXd::Constant(std::ptrdiff_t(rows.size()), std::ptrdiff_t(whole.channels.size()), kNaN);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t k = 0; k < (pooled[i].*of).size(); ++k)
+        r(std::ptrdiff_t(i), std::ptrdiff_t(k)) = (pooled[i].*of)[k];
+    for (std::size_t k = 0; k < whole.channels.size(); ++k) {
+      Errors& e = whole.channels[k].*into;
+      const Errors held = errors(rows, r, int(k));
+      e.holdout = held.holdout;
+      e.holdout_rmse = held.holdout_rmse;
+      e.holdout_bias = held.holdout_bias;
+    }
+  };
+  pool(&UsedRow::before, &ChannelResult::before);
+  pool(&UsedRow::after, &ChannelResult::after);
+  whole.holdout = int(pooled.size());
+  whole.rows = std::move(pooled);
+}
+
+}  // namespace
+
+LoopResult run(const ShotCase& c) {
+  if (c.shots.rows() > kMostShots)
+    throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
+                                kMostShots));
+  std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
+  const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
+  LoopResult result = pass(c, derived, held);
+  if (!result.flagged.empty()) {
+    // Bad rows can hide a formula: once they are known, look again.
+    const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, result), c.blow.ball);
+    const auto outputs = [](const std::vector<DerivedColumn>& d) {
+      std::set<std::string> names;
+      for (const DerivedColumn& x : d)
+        if (!x.input) names.insert(x.column);
+      return names;
+    };
+    const bool refit = outputs(again) != outputs(derived);
+    derived = again;
+    if (refit) result = pass(c, derived, held);
+    result.derived = derived;
+  }
+  if (c.split.leave_one_out && !result.channels.empty()) leave_one_out(c, derived, result);
+  for (const DerivedColumn& d : derived) {
+    if (!d.input) continue;
+    for (int k = 0; k < kInputs; ++k) {
+      const Column* column = c.shots.find_stem(stem(Input(k)));
+      if (!column || column->name != d.column) continue;
+      const LoopResult without = pass(c, derived, held, Input(k));
+      std::vector<std::string> names = without.adopted;
+      for (const auto& tie : without.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
+      result.without.emplace_back(d.column, names);
+      result.notes.push_back(
+          fmt::format("{} is computed from {} and is no independent evidence; without it the verdict is {}{}", d.column,
+                      fmt::join(d.from, ", "), name(without.verdict),
+                      names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
+    }
+  }
+  return result;
+}
+
+}  // namespace hosel::loop

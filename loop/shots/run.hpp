@@ -1,0 +1,15 @@
+/// The loop on shots: after the audit, after a second look at it, without a doubted input, each cluster left out.
+#pragma once
+
+#include "hosel/loop/result.hpp"
+#include "hosel/loop/shots/case.hpp"
+
+namespace hosel::loop {
+
+/// More rows than this are refused: everything is held in memory, and no effect needs so many.
+inline constexpr std::size_t kMostShots = 200'000;
+
+/// Throws DataError where the data cannot be used at all.
+LoopResult run(const ShotCase& c);
+
+}  // namespace hosel::loop

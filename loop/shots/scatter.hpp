@@ -1,0 +1,17 @@
+/// What a channel scatters: a first idea of its noise, and its ratio to the noise at hand.
+#pragma once
+
+#include "hosel/loop/shots/model.hpp"
+
+namespace hosel::loop {
+
+/// Scatter of a channel about a robust linear regression on the inputs (and their squares where rows allow):
+/// a first idea of undeclared noise that no effect of smooth form can inflate.
+double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int channel,
+                      const Eigen::MatrixXd& residuals);
+
+/// Scatter of a channel about a fit in units of its own sigma, without the rows beyond 5 sigma.
+Scatter scatter(const ShotModel& model, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,
+                int fitted);
+
+}  // namespace hosel::loop

@@ -1,0 +1,181 @@
+#include "hosel/loop/shots/shots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<std::string_view, 5> kBookkeeping = {"shot", "club", "ball", "player", "session"};
+
+/// The step of the recording: 10^-d for the most digits that at least 2 % of the cells carry; a coarser
+/// step that all values share (100 rpm recorded without decimals) is found from the values.
+double resolution(const std::vector<std::string>& cells, const std::vector<double>& native) {
+  std::map<int, std::size_t> count;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (std::isfinite(native[i])) {
+      ++count[post::decimals(cells[i])];
+      ++n;
+    }
+  if (!n) return 0;
+  int digits = count.begin()->first;
+  for (const auto& [d, k] : count)
+    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
+  const double step = std::pow(10.0, -digits);
+  std::set<double> different;
+  for (const double x : native)
+    if (std::isfinite(x) && different.size() < 20) different.insert(x);
+  if (different.size() < 8) return step;
+  for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
+    const auto off = [&](double x) {
+      const double q = x / (step * factor);
+      return std::isfinite(x) && std::abs(q - std::round(q)) > 1e-6;
+    };
+    if (std::ranges::none_of(native, off)) return step * factor;
+  }
+  return step;
+}
+
+Column make_column(const std::string& header, const std::vector<std::string>& cells, const post::Sheet& sheet) {
+  Column c;
+  c.name = header;
+  const SplitName split = split_unit(header);
+  c.stem = split.stem;
+  if (split.unit && split.unit->dimension != Dimension::percent) c.si = split.unit->si;
+  std::optional<Dimension> wanted;
+  if (std::ranges::count(kBookkeeping, header)) {
+    c.role = Role::bookkeeping;
+    c.stem = header;
+    c.si = 1;
+  } else if (const auto i = input_of(c.stem)) {
+    c.role = Role::input;
+    wanted = quantity(*i).dimension;
+  } else if (const auto o = output_of(c.stem)) {
+    c.role = Role::output;
+    wanted = quantity(*o).dimension;
+  }
+  if (wanted && (!split.unit || split.unit->dimension != *wanted))
+    throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
+
+  c.value.assign(cells.size(), kNaN);
+  c.numeric = true;
+  for (std::size_t i = 0; i < cells.size() && c.numeric; ++i) {
+    if (cells[i].empty()) continue;
+    if (const auto x = post::number(cells[i])) {
+      if (std::isfinite(*x)) c.value[i] = *x;
+      else c.broken.push_back(i);
+    } else if (wanted) {
+      throw DataError(
+          fmt::format("{}:{}: column '{}': '{}' is not a number", sheet.file, sheet.lines[i], header, cells[i]));
+    } else {
+      c.numeric = false;
+    }
+  }
+  // Names of clubs and sessions are labels even where they are written as numbers.
+  if (c.role == Role::bookkeeping && header != "shot") c.numeric = false;
+  if (c.numeric) {
+    c.resolution = resolution(cells, c.value) * c.si;
+    for (double& x : c.value) x *= c.si;
+  } else {
+    c.value.clear();
+    c.broken.clear();
+    c.text = cells;
+  }
+  return c;
+}
+
+}  // namespace
+
+const Column* Shots::find(std::string_view wanted) const {
+  const auto it = std::ranges::find(columns, wanted, &Column::name);
+  return it == columns.end() ? nullptr : &*it;
+}
+
+const Column* Shots::find_stem(std::string_view wanted) const {
+  const auto it = std::ranges::find(columns, wanted, &Column::stem);
+  return it == columns.end() ? nullptr : &*it;
+}
+
+Shots read_shots(const post::Sheet& sheet) {
+  Shots shots;
+  shots.file = sheet.file;
+  shots.line = sheet.lines;
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    Column column = make_column(sheet.names[c], sheet.columns[c], sheet);
+    if (column.role == Role::input || column.role == Role::output)
+      if (const Column* other = shots.find_stem(column.stem))
+        throw DataError(
+            fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
+    shots.columns.push_back(std::move(column));
+  }
+  const Column* shot = shots.find("shot");
+  shots.has_shot_column = shot != nullptr;
+  const auto shot_at = shot ? std::size_t(shot - shots.columns.data()) : 0;
+  for (std::size_t i = 0; i < sheet.rows(); ++i) {
+    const std::string& cell = shot ? sheet.columns[shot_at][i] : std::string();
+    shots.id.push_back(cell.empty() ? std::to_string(i + 1) : cell);
+  }
+  return shots;
+}
+
+void join(Shots& shots, const post::Sheet& sheet, const std::string& by) {
+  const Column* key = shots.find(by);
+  if (!key) throw DataError(fmt::format("{}:1: no column '{}' to join by", shots.file, by));
+  const auto at = std::ranges::find(sheet.names, by);
+  if (at == sheet.names.end()) throw DataError(fmt::format("{}:1: no column '{}' to join by", sheet.file, by));
+  const auto& keys = sheet.columns[std::size_t(at - sheet.names.begin())];
+  std::map<std::string, std::size_t> row_of;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (!row_of.emplace(keys[i], i).second)
+      throw DataError(fmt::format("{}:{}: '{}' stands twice", sheet.file, sheet.lines[i], keys[i]));
+  const Groups group = groups(*key);
+  for (const std::string& g : group.name)
+    if (!row_of.contains(g)) throw DataError(fmt::format("{}:1: no row for {} '{}'", sheet.file, by, g));
+
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    const std::string& header = sheet.names[c];
+    if (header == by || header.starts_with("mean_") || header.starts_with("half_range_")) continue;
+    const Column source = make_column(header, sheet.columns[c], sheet);
+    if (source.role != Role::input) continue;
+    const auto existing = std::ranges::find(shots.columns, source.stem, &Column::stem);
+    Column* target = existing == shots.columns.end() ? nullptr : &*existing;
+    if (!target) {
+      shots.columns.push_back(source);
+      target = &shots.columns.back();
+      target->value.assign(shots.rows(), kNaN);
+      target->broken.clear();
+    }
+    for (std::size_t i = 0; i < shots.rows(); ++i)
+      if (std::isnan(target->value[i]) && group.of_row[i] >= 0)
+        target->value[i] = source.value[row_of.at(group.name[std::size_t(group.of_row[i])])];
+  }
+}
+
+Groups groups(const Column& column) {
+  Groups g;
+  const std::size_t n = column.numeric ? column.value.size() : column.text.size();
+  g.of_row.assign(n, -1);
+  std::map<std::string, int> number_of;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::string label;
+    if (column.numeric) {
+      if (!std::isnan(column.value[i])) label = fmt::format("{:g}", column.native(i));
+    } else {
+      label = column.text[i];
+    }
+    if (label.empty()) continue;
+    const auto [it, fresh] = number_of.emplace(label, int(g.name.size()));
+    if (fresh) g.name.push_back(label);
+    g.of_row[i] = it->second;
+  }
+  return g;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,55 @@
+/// Measured shots: the columns of a file with their roles, in SI, missing values as NaN.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hosel/golf/quantities.hpp"
+#include "hosel/post/csv.hpp"
+
+namespace hosel::loop {
+
+enum class Role { bookkeeping, input, output, other };
+
+struct Column {
+  std::string name;  ///< the header, letter for letter
+  std::string stem;  ///< without the unit
+  double si = 1;     ///< one of the header's unit in SI
+  Role role = Role::other;
+  bool numeric = false;
+  std::vector<double> value;        ///< SI; NaN where missing or not a finite number; empty for text columns
+  std::vector<std::string> text;    ///< for text columns; "" where missing
+  double resolution = 0;            ///< recording step found from the digits, SI; 0 where unknown
+  std::vector<std::size_t> broken;  ///< rows whose cell is infinite or not a number ("nan", "inf")
+
+  double native(std::size_t row) const { return value[row] / si; }
+};
+
+struct Shots {
+  std::string file;
+  std::vector<std::string> id;    ///< the `shot` value, or the row's number
+  std::vector<std::size_t> line;  ///< in the file
+  std::vector<Column> columns;
+  bool has_shot_column = false;
+
+  std::size_t rows() const { return id.size(); }
+  const Column* find(std::string_view name) const;       ///< by header
+  const Column* find_stem(std::string_view stem) const;  ///< by name without unit
+};
+
+/// Roles, units, SI values and recording resolution of a sheet. Throws DataError: an output or input column
+/// with a wrong unit, text in it, the same quantity twice.
+Shots read_shots(const post::Sheet& sheet);
+
+/// Fills inputs that the shots lack from a file with one row per value of `by`. Summaries (`mean_`,
+/// `half_range_`) are left out. Throws DataError where a cluster is missing or stands twice.
+void join(Shots& shots, const post::Sheet& sheet, const std::string& by);
+
+/// The column's values as group numbers 0, 1, ... in order of first appearance; -1 where missing.
+struct Groups {
+  std::vector<int> of_row;
+  std::vector<std::string> name;
+};
+Groups groups(const Column& column);
+
+}  // namespace hosel::loop

@@ -1,0 +1,85 @@
+#include "hosel/loop/shots/split.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/solvers/random.hpp"
+
+namespace hosel::loop {
+
+Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
+                const std::vector<int>& usable) {
+  // Thresholds show at the most oblique shots only, so these are never held out: beyond them nothing would be learnt.
+  std::vector<double> oblique;
+  for (const int i : usable) {
+    Blow blow = model.trial(i).blow;
+    if (!c.head_turns)
+      blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
+    const models::ContactGeometry g = models::contact_geometry(blow);
+    const double approach = g.approach.dot(g.normal);
+    oblique.push_back((g.approach - approach * g.normal).norm() / approach);
+  }
+  std::mt19937_64 random(c.split.seed);
+  const double fraction = c.split.holdout_fraction;
+  std::vector<char> held(usable.size(), 0);
+  if (!c.split.by.empty()) {
+    const Column* by = c.shots.find(c.split.by);
+    if (!by) throw DataError(fmt::format("{}:1: no column '{}' to split by", c.shots.file, c.split.by));
+    const Groups g = groups(*by);
+    int count = int(g.name.size());
+    std::map<int, std::vector<std::size_t>> members;  // a shot without a name is a cluster of its own
+    for (std::size_t i = 0; i < usable.size(); ++i) {
+      const int name = g.of_row[std::size_t(row_of[std::size_t(usable[i])])];
+      members[name < 0 ? count++ : name].push_back(i);
+    }
+    const auto most = std::ranges::max_element(oblique) - oblique.begin();
+    std::erase_if(members, [&](const auto& m) { return std::ranges::count(m.second, std::size_t(most)) > 0; });
+    std::vector<const std::vector<std::size_t>*> order;
+    for (const auto& [name, list] : members) order.push_back(&list);
+    const double wanted = fraction * double(usable.size());
+    double have = 0;
+    for (const std::size_t k : solvers::shuffled(order.size(), random)) {
+      const double more = double(order[k]->size());
+      if (have + more > wanted + 0.5 * more) continue;
+      for (const std::size_t i : *order[k]) held[i] = 1;
+      have += more;
+      if (have >= wanted) break;
+    }
+  } else {
+    // Single rows: of every three (at one third) neighbours in obliquity one is held out, so that both sets reach
+    // over the whole range.
+    std::vector<std::size_t> order(usable.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return oblique[i]; });
+    const std::size_t outermost = order.size() < 60 ? 1 : 2;
+    const std::size_t block = fraction > 0 ? std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction))) : 0;
+    for (std::size_t k = 0; block && k < order.size(); k += block) {
+      const std::size_t size = std::min(block, order.size() - k);
+      if (size < block && solvers::uniform(random) > double(size) * fraction) continue;
+      // One of the block, or as many as the fraction asks for.
+      const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
+      for (std::size_t t = 0; t < take; ++t) {
+        const std::size_t which = k + (random() % size);
+        held[order[std::max<std::size_t>(which, std::min(outermost, k + size - 1))]] = 1;
+      }
+    }
+  }
+  Rows rows;
+  for (std::size_t i = 0; i < usable.size(); ++i) (held[i] ? rows.holdout : rows.train).push_back(usable[i]);
+  return rows;
+}
+
+std::vector<int> thinned(const std::vector<int>& rows) {
+  constexpr std::size_t most = 450;
+  if (rows.size() <= most) return rows;
+  std::vector<int> some;
+  for (std::size_t k = 0; k < most; ++k) some.push_back(rows[k * rows.size() / most]);
+  return some;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,316 @@
+#include "hosel/loop/shots/structure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace hosel::loop {
+namespace {
+
+/// Centred over the rows, unit mean square; false where it does not vary.
+bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
+  double sum = 0, count = 0;
+  for (const int i : rows)
+    if (std::isfinite(x[i])) {
+      sum += x[i];
+      ++count;
+    }
+  if (count < 3) return false;
+  double square = 0, largest = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::isfinite(x[i]) ? x[i] - sum / count : 0.0;
+  for (const int i : rows) {
+    square += x[i] * x[i];
+    largest = std::max(largest, std::abs(x[i]));
+  }
+  if (!(square > 0) || largest < 1e-12 * std::abs(sum / count)) return false;
+  x /= std::sqrt(square / double(rows.size()));
+  return true;
+}
+
+Eigen::VectorXd ranks_clipped(Eigen::VectorXd x) {
+  // One wild cell must not be the regressor: beyond four robust deviations values are drawn in.
+  return x.cwiseMax(-4.0).cwiseMin(4.0);
+}
+
+void describe(const Regressor& r, Finding& f) {
+  f.regressor = r.column;
+  f.kind = r.kind;
+  f.detail = r.detail;
+  f.foreign = r.foreign;
+}
+
+void remove_trend(Eigen::VectorXd& q, const Eigen::VectorXd& x, const std::vector<int>& rows) {
+  double xx = 0, xq = 0;
+  for (const int i : rows) {
+    xx += x[i] * x[i];
+    xq += x[i] * q[i];
+  }
+  if (xx > 0) q -= (xq / xx) * x;
+}
+
+/// What a regressor adds to some lines; false where that is little.
+bool beside(Eigen::VectorXd& x, const std::vector<const Eigen::VectorXd*>& lines, const std::vector<int>& rows) {
+  if (!standardise(x, rows)) return false;
+  for (const Eigen::VectorXd* line : lines) remove_trend(x, *line, rows);
+  return x.norm() >= 0.05 * std::sqrt(double(x.size())) && standardise(x, rows);
+}
+
+/// What an instrument does to a reading y: dead band about a value, saturation beyond one, the reading of the shot
+/// before mixed in. The value is the base model's, so that noise does not enter.
+void add_responses(const ShotModel& model, const std::vector<int>& rows, const Eigen::VectorXd& order,
+                   std::vector<Regressor>& all) {
+  const int n = model.shots(), m = model.width();
+  if (rows.size() < 12) return;
+  Eigen::MatrixXd y(n, m);
+  std::vector<double> out(static_cast<std::size_t>(m));
+  for (int i = 0; i < n; ++i) {
+    const bool good = model.predict(i, Model{}, nullptr, out.data());
+    for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : std::nan("");
+  }
+  std::vector<int> by_order(static_cast<std::size_t>(n));
+  std::iota(by_order.begin(), by_order.end(), 0);
+  std::ranges::stable_sort(by_order, {}, [&](int i) { return order[i]; });
+  for (int c = 0; c < m; ++c) {
+    const std::string& name = model.channel(c).name;
+    std::vector<double> sorted;
+    for (const int i : rows)
+      if (std::isfinite(y(i, c))) sorted.push_back(y(i, c));
+    if (sorted.size() < 12) continue;
+    std::ranges::sort(sorted);
+    const auto at = [&](double q) { return sorted[std::size_t(q * double(sorted.size() - 1))]; };
+    Eigen::VectorXd line = y.col(c);
+    if (!standardise(line, rows)) continue;
+    const auto add = [&](std::string detail, auto&& value) {
+      Eigen::VectorXd x(n);
+      for (int i = 0; i < n; ++i) x[i] = value(y(i, c));
+      if (beside(x, {&line}, rows)) all.push_back({name, "response", std::move(detail), false, x, c});
+    };
+    for (const double share : {0.3, 0.5, 0.7}) {
+      const double half = 0.5 * (at(0.5 + share / 2) - at(0.5 - share / 2)), centre = at(0.5);
+      add(fmt::format("dead band about {:.4g}", centre),
+          [&](double v) { return std::abs(v - centre) < half ? v - centre : 0.0; });
+    }
+    for (const double q : {0.2, 0.4, 0.6, 0.8})
+      add(fmt::format("kink at {:.4g}", at(q)),
+          [&](double v) { return q < 0.5 ? std::min(0.0, v - at(q)) : std::max(0.0, v - at(q)); });
+    Eigen::VectorXd lag = Eigen::VectorXd::Zero(n);
+    for (int k = 1; k < n; ++k)
+      lag[by_order[std::size_t(k)]] = y(by_order[std::size_t(k) - 1], c) - y(by_order[std::size_t(k)], c);
+    if (standardise(lag, rows)) all.push_back({"shot", "lag", "the reading of the shot before", true, lag, c});
+  }
+}
+
+}  // namespace
+
+std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+                                  const ShotModel& model) {
+  const int n = model.shots();
+  std::vector<Regressor> all;
+  all.push_back({"constant", "constant", "", false, Eigen::VectorXd::Ones(n)});
+
+  struct Line {
+    std::string name;
+    bool foreign;
+    Eigen::VectorXd x;
+  };
+  std::vector<Line> lines;
+  const auto add_line = [&](const std::string& name, bool foreign, Eigen::VectorXd x) {
+    if (!standardise(x, rows)) return;
+    x = ranks_clipped(x);
+    if (!standardise(x, rows)) return;
+    lines.push_back({name, foreign, x});
+  };
+  for (const Column& c : shots.columns) {
+    if (c.role == Role::output || !c.numeric || c.name == "shot") continue;
+    if (c.role == Role::bookkeeping) continue;
+    Eigen::VectorXd x(n);
+    for (int i = 0; i < n; ++i) {
+      x[i] = c.value[std::size_t(row_of[std::size_t(i)])];
+      // What the fit sees of an input (filled, shrunk towards its mean) is what the residual depends on.
+      if (c.role == Role::input)
+        for (int k = 0; k < kInputs; ++k)
+          if (stem(Input(k)) == c.stem) x[i] = get(model.trial(i).blow, Input(k));
+    }
+    add_line(c.name, c.role == Role::other, x);
+  }
+  Eigen::VectorXd order(n);
+  for (int i = 0; i < n; ++i) order[i] = model.trial(i).order;
+  add_line("shot", true, order);
+
+  for (const Line& l : lines) all.push_back({l.name, "trend", "", l.foreign, l.x});
+  for (const Line& l : lines) {
+    Eigen::VectorXd q = l.x.cwiseAbs2();
+    if (beside(q, {&l.x}, rows)) all.push_back({l.name, "curvature", "", l.foreign, q});
+  }
+  const std::size_t most_products = 40;
+  std::size_t products = 0;
+  for (std::size_t a = 0; a < lines.size(); ++a)
+    for (std::size_t b = a + 1; b < lines.size() && products < most_products; ++b) {
+      // Unknown columns act on the physics through speed, loft and offsets; two of them together do not.
+      if (lines[a].foreign && lines[b].foreign) continue;
+      Eigen::VectorXd q = lines[a].x.cwiseProduct(lines[b].x);
+      if (!beside(q, {&lines[a].x, &lines[b].x}, rows)) continue;
+      const bool second = lines[b].foreign;
+      all.push_back({lines[second ? b : a].name, "interaction", "with " + lines[second ? a : b].name,
+                     lines[a].foreign || second, q});
+      ++products;
+    }
+
+  for (const Column& c : shots.columns) {
+    if (c.numeric || c.role == Role::output) continue;
+    const Groups g = groups(c);
+    if (g.name.size() < 2 || g.name.size() > 40) continue;
+    for (std::size_t k = 0; k < g.name.size(); ++k) {
+      Eigen::VectorXd x(n);
+      for (int i = 0; i < n; ++i) x[i] = g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k);
+      double members = 0;
+      for (const int i : rows) members += x[i];
+      if (members < 2 || members > double(rows.size()) - 1) continue;
+      if (g.name.size() == 2 && k == 1) continue;  // the complement
+      if (standardise(x, rows)) all.push_back({c.name, "group", "= " + g.name[k], true, x});
+    }
+  }
+
+  add_responses(model, rows, order, all);
+
+  if (rows.size() >= 12) {
+    for (int k = 1; k < 12; ++k) {
+      Eigen::VectorXd x(n);
+      for (int i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
+      if (standardise(x, rows))
+        all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
+    }
+    const int fastest = std::clamp(int(rows.size()) / 4, 2, 16);
+    // Half periods too: the slow ones need not close over the session.
+    for (int half = 2; half <= 2 * fastest; half += half < 12 ? 1 : 2)
+      for (const bool sine : {true, false}) {
+        Eigen::VectorXd x(n);
+        for (int i = 0; i < n; ++i) {
+          const double phase = kPi * half * order[i];
+          x[i] = sine ? std::sin(phase) : std::cos(phase);
+        }
+        if (standardise(x, rows))
+          all.push_back({"shot", "oscillation", fmt::format("{:g} periods in the session", 0.5 * half), true, x});
+      }
+  }
+  return all;
+}
+
+StructureMap structure(const ShotModel& model, const std::vector<int>& rows, const Eigen::VectorXd& z,
+                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
+                       unsigned long seed) {
+  const int n = int(rows.size()), m = model.width();
+  const Eigen::MatrixXd Q = orthonormal(nuisance);
+
+  StructureMap map;
+  std::vector<Eigen::VectorXf> scores;  // normalised contributions of the shots
+  Eigen::VectorXd a(std::ptrdiff_t(n) * m);
+  const auto add = [&](int channel, const Regressor* r) {
+    const double before = a.norm();
+    if (!(before > 0)) return;
+    if (Q.cols()) a -= Q * (Q.transpose() * a);
+    const double after = a.norm();
+    if (after < 0.05 * before) return;  // what was fitted absorbs this regressor
+    Eigen::VectorXd u(n);
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+      const auto ai = a.segment(std::ptrdiff_t(i) * m, m);
+      sum += weights[i] * ai.dot(z.segment(std::ptrdiff_t(i) * m, m));
+      u[i] = weights[i] * ai.dot(noise.segment(std::ptrdiff_t(i) * m, m));
+    }
+    const double norm = u.norm();
+    if (!(norm > 0)) return;
+    map.findings.push_back({.channel = channel, .statistic = sum / norm, .signal = sum / after});
+    if (r) describe(*r, map.findings.back());
+    scores.push_back((u / norm).cast<float>());
+  };
+  for (const Regressor& r : regressors)
+    for (int c = 0; c < m; ++c) {
+      if (r.channel >= 0 && r.channel != c) continue;
+      for (int i = 0; i < n; ++i) {
+        auto part = a.segment(std::ptrdiff_t(i) * m, m);
+        if (model.observed(rows[std::size_t(i)], c))
+          part = model.whitening(rows[std::size_t(i)]).col(c) * r.value[rows[std::size_t(i)]];
+        else part.setZero();
+      }
+      add(c, &r);
+    }
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    a = directions.col(k);
+    add(-1, nullptr);
+  }
+  const std::size_t plain = scores.size();
+
+  // Neighbours alike: products of standardised residuals of successive shots, in session order.
+  std::vector<int> by_order(rows.size());
+  std::iota(by_order.begin(), by_order.end(), 0);
+  std::ranges::stable_sort(by_order, {}, [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
+  for (int c = 0; c < m && n >= 12; ++c) {
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+    double square = 0;
+    for (int k = 0; k + 1 < n; ++k) {
+      const int i = by_order[std::size_t(k)], j = by_order[std::size_t(k) + 1];
+      const double x = weights[i] * noise[std::ptrdiff_t(i) * m + c], y = weights[j] * noise[std::ptrdiff_t(j) * m + c];
+      u[k] = x * y;
+      square += x * x;
+    }
+    const double norm = u.norm();
+    if (!(norm > 0)) continue;
+    map.findings.push_back({.channel = c,
+                            .regressor = "shot",
+                            .kind = "neighbours",
+                            .detail = "alike",
+                            .foreign = true,
+                            .statistic = u.sum() / norm,
+                            .signal = u.sum() / std::sqrt(std::max(1.0, square))});
+    scores.push_back((u / norm).cast<float>());
+  }
+  if (map.findings.empty()) return map;
+
+  Eigen::MatrixXf U(n, std::ptrdiff_t(plain)), V(n, std::ptrdiff_t(scores.size() - plain));
+  for (std::size_t k = 0; k < scores.size(); ++k)
+    (k < plain ? U.col(std::ptrdiff_t(k)) : V.col(std::ptrdiff_t(k - plain))) = scores[k];
+  std::mt19937_64 random(seed);
+  std::vector<double> largest;
+  constexpr int batch = 128;
+  Eigen::MatrixXf S(batch, n), P(batch, n);
+  for (int done = 0; done < flips; done += batch) {
+    for (int b = 0; b < batch; ++b) {
+      std::uint64_t bits = 0;
+      for (int i = 0; i < n; ++i) {
+        if (i % 64 == 0) bits = random();
+        S(b, i) = (bits >> (i % 64) & 1U) ? 1.0F : -1.0F;
+      }
+      for (int k = 0; k < n; ++k)
+        P(b, k) = k + 1 < n ? S(b, by_order[std::size_t(k)]) * S(b, by_order[std::size_t(k) + 1]) : 1.0F;
+    }
+    const Eigen::MatrixXf A = S * U, B = P * V;
+    for (int b = 0; b < batch && done + b < flips; ++b)
+      largest.push_back(
+          double(std::max(A.row(b).cwiseAbs().maxCoeff(), V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
+  }
+  std::ranges::sort(largest);
+  double top = 0;
+  for (Finding& f : map.findings) {
+    const double t = std::abs(f.statistic);
+    const auto above = largest.end() - std::ranges::lower_bound(largest, t - 1e-5);
+    f.p_adjusted = (1.0 + double(above)) / (1.0 + double(largest.size()));
+    top = std::max(top, t);
+  }
+  map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
+          (1.0 + double(largest.size()));
+  std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
+  bool all = true;
+  for (int c = 0; c < m; ++c) all = all && model.channel(c).trusted();
+  const auto known = std::ranges::find_if(
+      map.findings, [&](const Finding& f) { return f.channel >= 0 ? model.channel(f.channel).trusted() : all; });
+  if (known != map.findings.end()) map.signal = std::abs(known->signal);
+  return map;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,125 @@
+#include "hosel/post/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+namespace hosel::post {
+namespace {
+
+void trim(std::string& s) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!s.empty() && blank(s.back())) s.pop_back();
+  s.erase(s.begin(), std::find_if_not(s.begin(), s.end(), blank));
+}
+
+}  // namespace
+
+Sheet read_csv(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path)) throw DataError(fmt::format("{}: cannot be read", path.string()));
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte-order mark of spreadsheet programs
+
+  Sheet sheet;
+  sheet.file = path.string();
+  const auto fail = [&](std::size_t line, std::string_view what) {
+    throw DataError(fmt::format("{}:{}: {}", sheet.file, line, what));
+  };
+
+  std::vector<std::string> row;
+  std::string cell;
+  bool quoted = false, was_quoted = false, header = true;
+  std::size_t line = 1, row_line = 1;
+  const auto end_cell = [&] {
+    if (!was_quoted) trim(cell);
+    row.push_back(std::move(cell));
+    cell.clear();
+    was_quoted = false;
+  };
+  const auto end_row = [&] {
+    end_cell();
+    if (row.size() == 1 && row[0].empty()) {
+      row.clear();
+      return;
+    }
+    if (header) {
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        if (row[c].empty()) fail(row_line, fmt::format("column {} has no name", c + 1));
+        if (std::count(row.begin(), row.end(), row[c]) > 1)
+          fail(row_line, fmt::format("column '{}' stands twice", row[c]));
+      }
+      sheet.names = row;
+      sheet.columns.resize(row.size());
+      header = false;
+    } else {
+      if (row.size() != sheet.names.size())
+        fail(row_line, fmt::format("{} cells where the header has {}", row.size(), sheet.names.size()));
+      for (std::size_t c = 0; c < row.size(); ++c) sheet.columns[c].push_back(std::move(row[c]));
+      sheet.lines.push_back(row_line);
+    }
+    row.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\0') fail(line, "a zero byte: this is not a text file");
+    if (quoted) {
+      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+        cell += '"';
+        ++i;
+      } else if (c == '"') {
+        quoted = false;
+      } else {
+        if (c == '\n') ++line;
+        cell += c;
+      }
+    } else if (c == '"' && cell.find_first_not_of(" \t") == std::string::npos && !was_quoted) {
+      cell.clear();
+      quoted = was_quoted = true;
+    } else if (c == ',') {
+      end_cell();
+    } else if (c == '\n') {
+      end_row();
+      row_line = ++line;
+    } else if (was_quoted && c != '\r' && c != ' ' && c != '\t') {
+      fail(line, "text after a closing quote");
+    } else if (!was_quoted) {
+      cell += c;
+    }
+  }
+  if (quoted) fail(row_line, "a quote is opened and never closed");
+  if (!cell.empty() || !row.empty() || was_quoted) end_row();
+  if (sheet.names.empty()) fail(1, "the file is empty");
+  return sheet;
+}
+
+std::optional<double> number(const std::string& cell) {
+  const char* begin = cell.data();
+  if (*begin == '+') ++begin;
+  double x = 0;
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
+  if (end != cell.data() + cell.size() || begin == end) return {};
+  if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+  return error == std::errc() ? std::optional(x) : std::nullopt;
+}
+
+int decimals(const std::string& cell) {
+  const auto e = cell.find_first_of("eE");
+  const int exponent = e == std::string::npos ? 0 : std::atoi(cell.c_str() + e + 1);
+  const auto point = cell.find('.');
+  const int after = point == std::string::npos ? 0 : int((e == std::string::npos ? cell.size() : e) - point - 1);
+  return after - exponent;
+}
+
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
+  return out + '"';
+}
+
+}  // namespace hosel::post

@@ -1,0 +1,101 @@
+#include "hosel/post/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hosel/post/html.hpp"
+
+namespace hosel::post {
+namespace {
+
+constexpr std::size_t kMost = 1500;  // points of a series
+constexpr double kLeft = 62, kRight = 12, kTop = 10, kBottom = 44;
+
+/// Round steps of about a quarter of the range.
+double tick(double range) {
+  const double raw = range / 4, power = std::pow(10, std::floor(std::log10(raw)));
+  for (const double f : {1.0, 2.0, 5.0, 10.0})
+    if (raw <= f * power) return f * power;
+  return 10 * power;
+}
+
+std::string opened(double width, double height, const std::string& told) {
+  return fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='{}'>", width, height, escape_html(told));
+}
+
+}  // namespace
+
+std::string svg(const SvgPlot& p) {
+  const double w = p.width - kLeft - kRight, h = p.height - kTop - kBottom;
+  const auto X = [&](double x) { return kLeft + (x - p.x0) / (p.x1 - p.x0) * w; };
+  const auto Y = [&](double y) { return kTop + (p.y1 - std::clamp(y, p.y0, p.y1)) / (p.y1 - p.y0) * h; };
+  std::string s = opened(p.width, p.height, p.told);
+  for (const SvgBand& b : p.bands)
+    s += fmt::format("<rect class='band' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>", X(b.x0), Y(b.y1),
+                     X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
+  const auto round = [](double x, double step) { return std::abs(x) < 1e-9 * step ? 0.0 : x; };
+  // Numbers beside each other need more room than above each other.
+  const double dy = tick(p.y1 - p.y0), dx = tick((p.x1 - p.x0) / std::max(1.0, p.width / 480));
+  for (double y = std::ceil(p.y0 / dy) * dy; y <= p.y1; y += dy)
+    s += fmt::format(
+        "<line class='grid' x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}'/><text x='{}' y='{:.1f}' "
+        "text-anchor='end'>{:g}</text>",
+        kLeft, kLeft + w, Y(y), Y(y), kLeft - 6, Y(y) + 4, round(y, dy));
+  for (double x = std::ceil(p.x0 / dx) * dx; x <= p.x1; x += dx)
+    s += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{:g}</text>", X(x), kTop + h + 16, round(x, dx));
+  for (const SvgSeries& one : p.series) {
+    std::string points;
+    for (std::size_t i = 0; i < one.x.size(); i += std::max<std::size_t>(1, one.x.size() / kMost)) {
+      if (!std::isfinite(one.y[i])) continue;
+      if (one.radius > 0)
+        s += fmt::format("<circle class='{}' cx='{:.1f}' cy='{:.1f}' r='{}'/>", one.style, X(one.x[i]), Y(one.y[i]),
+                         one.radius);
+      else points += fmt::format("{:.1f},{:.1f} ", X(one.x[i]), Y(one.y[i]));
+    }
+    if (!points.empty()) s += fmt::format("<polyline class='{}' points='{}'/>", one.style, points);
+  }
+  return s + fmt::format(
+                 "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text><text transform='translate(13 {:.1f}) "
+                 "rotate(-90)' text-anchor='middle'>{}</text></svg>",
+                 kLeft + w / 2, p.height - 8, escape_html(p.x_label), kTop + h / 2, escape_html(p.y_label));
+}
+
+std::string svg(const SvgBars& b) {
+  constexpr double width = 960, left = 170, right = 120, bar = 14, top = 22;
+  double most = 2, height = top + 26;
+  for (const auto& row : b.rows) {
+    height += 10 + 18 * double(row.bars.size());
+    for (const SvgBar& x : row.bars) most = std::max(most, (1 + x.half) * x.value);  // room for the whisker
+  }
+  const bool wide = most > 12;
+  const auto X = [&](double x) {
+    const double share = wide ? std::log10(std::max(x, 0.3) / 0.3) / std::log10(most / 0.3) : x / most;
+    return left + share * (width - left - right);
+  };
+  std::string s = opened(width, height, b.told);
+  s += fmt::format(
+      "<line class='one' x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2:.1f}'/><text x='{0:.1f}' y='{3}' "
+      "text-anchor='middle'>{4}</text>",
+      X(1), top - 4, height - 24, top - 8, escape_html(b.one));
+  double y = top;
+  for (const auto& row : b.rows) {
+    s += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>", left - 10, y + 24, escape_html(row.label));
+    y += 4;
+    for (const SvgBar& x : row.bars) {
+      s += fmt::format("<rect class='{}' x='{}' y='{:.1f}' width='{:.1f}' height='{}' rx='2'/>", x.style, left, y,
+                       std::max(1.0, X(x.value) - left), bar);
+      s += fmt::format("<line class='whisker' x1='{:.1f}' x2='{:.1f}' y1='{:.1f}' y2='{:.1f}'/>",
+                       X(x.value * std::max(0.0, 1 - x.half)), X(x.value * (1 + x.half)), y + 7, y + 7);
+      s += fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>", X(x.value * (1 + x.half)) + 6, y + 11.5,
+                       escape_html(x.text));
+      y += 18;
+    }
+    y += 6;
+  }
+  return s + fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}{}</text></svg>",
+                         (left + width - right) / 2, height - 6, escape_html(b.axis), wide ? " (logarithmic)" : "");
+}
+
+}  // namespace hosel::post

@@ -1,0 +1,46 @@
+/// Pictures inside a page: plain SVG whose classes html_page colours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hosel::post {
+
+struct SvgSeries {
+  std::string style;  ///< class
+  std::vector<double> x, y;
+  double radius = 0;  ///< of dots; 0: a line
+};
+
+struct SvgBand {
+  double x0, x1, y0, y1;
+};
+
+/// Values over a frame with round ticks; what lies beyond the frame is drawn at its edge. Long series are thinned.
+struct SvgPlot {
+  double width, height;  ///< of the picture
+  double x0, x1, y0, y1;
+  std::string x_label, y_label, told;  ///< told: for who cannot see it
+  std::vector<SvgBand> bands;
+  std::vector<SvgSeries> series;
+};
+std::string svg(const SvgPlot& plot);
+
+struct SvgBar {
+  std::string style;
+  double value, half;  ///< half of the whisker, share of the value
+  std::string text;
+};
+
+/// Pairs of bars from zero, a dashed line at one. Over a wide range by powers of ten.
+struct SvgBars {
+  std::string told, one, axis;  ///< one: what the dashed line is
+  struct Row {
+    std::string label;
+    std::vector<SvgBar> bars;
+  };
+  std::vector<Row> rows;
+};
+std::string svg(const SvgBars& bars);
+
+}  // namespace hosel::post
