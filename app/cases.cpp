@@ -8,6 +8,7 @@
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/loop/effect.hpp"
 #include "hosel/loop/history/rig.hpp"
@@ -69,6 +70,7 @@ std::vector<ListSection> everything() {
           {"models", entries(models::registry())},
           {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
           {"balls (ball.model)", entries(models::ball_library())},
+          {"faces that yield (face.name)", entries(face_library())},
           {"shafts (shaft.name)", entries(shaft_library())},
           {"effects on shots", entries(loop::effects())},
           {"effects on histories", entries(loop::history_effects())},
