@@ -9,6 +9,7 @@
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/loop/effect.hpp"
 #include "hosel/models/flight_laws.hpp"
@@ -110,6 +111,7 @@ std::vector<ListSection> everything() {
           {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
           {"balls (ball.model)", entries(models::ball_library())},
           {"flight laws (flight.law)", entries(models::flight_laws())},
+          {"faces that yield (face.name)", entries(face_library())},
           {"shafts (shaft.name)", entries(shaft_library())},
           {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
           {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},

@@ -5,6 +5,8 @@
 #include "hosel/app/kinds/ball_rule.hpp"
 #include "hosel/app/kinds/bounce.hpp"
 #include "hosel/app/kinds/calibrate_ball.hpp"
+#include "hosel/app/kinds/calibrate_face.hpp"
+#include "hosel/app/kinds/characteristic_time.hpp"
 #include "hosel/app/kinds/clubs.hpp"
 #include "hosel/app/kinds/cross_check.hpp"
 #include "hosel/app/kinds/curves.hpp"
@@ -16,6 +18,7 @@
 #include "hosel/app/kinds/loop.hpp"
 #include "hosel/app/kinds/material_point.hpp"
 #include "hosel/app/kinds/modes.hpp"
+#include "hosel/app/kinds/restitution_face.hpp"
 #include "hosel/app/kinds/shaft_modes.hpp"
 #include "hosel/app/kinds/sweep.hpp"
 #include "hosel/app/kinds/swing.hpp"
@@ -48,6 +51,10 @@ constexpr std::array kKinds = {
     Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},
+    Kind{"characteristic-time", "the rules' pendulum test of a face that yields: contact time against speed",
+         read_characteristic_time},
+    Kind{"restitution-face", "restitution and ball speed over a face that yields", read_restitution_face},
+    Kind{"calibrate-face", "a face that yields from characteristic times, restitution and mass", read_calibrate_face},
     Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside", read_bounce},
     Kind{"variants", "one blow in several variants of its case, at one launch angle and one bounce if asked",
          read_variants},

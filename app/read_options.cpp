@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hosel/app/read_face.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/read_swing.hpp"
 
@@ -24,6 +25,8 @@ models::FeImpactOptions read_fe(Table root) {
     o.transition_speed = contact.quantity("face_transition_speed", "mps", Range::positive());
   o.penalty = contact.number("penalty", {1, 1e6}, o.penalty);
   o.tangential_penalty = contact.number("tangential_penalty", {1e-3, 10}, o.tangential_penalty);
+
+  if (auto face = root.optional_table("face")) o.face = read_face(*face);
 
   Table mesh = root.default_table("mesh");
   o.mesh.sector = int(mesh.integer("sector", 1, 64, o.mesh.sector));

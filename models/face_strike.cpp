@@ -91,6 +91,8 @@ double mass_at(const Head& head, double yc, double zc) {
   return 1 / (1 / head.mass + turn.dot(head.inertia.inverse() * turn));
 }
 
+bool wants_yielding_face(const Head& head) { return std::isfinite(head.mass) && head.cg.x() < -0.02; }
+
 FaceStrike strike(const Striker& striker, double head_mass, const std::optional<FaceCompliance>& face, double shape,
                   double speed) {
   if (face && !(face->mass < head_mass)) throw std::invalid_argument("the face's mass is part of the head's");

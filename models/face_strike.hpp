@@ -28,6 +28,9 @@ Striker golf_ball(const Ball& ball);
 /// Mass with which a free head meets a blow along Xc at a point of the face [kg].
 double mass_at(const Head& head, double yc, double zc);
 
+/// Whether a rigid face leaves out what a driver has: a free head whose centre of gravity lies deeper than an iron's.
+bool wants_yielding_face(const Head& head);
+
 struct FaceStrike {
   double restitution = 0;   ///< relative speed of striker and head's point after over before [-]
   double contact_time = 0;  ///< [s]

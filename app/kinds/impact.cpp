@@ -12,7 +12,9 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/version.hpp"
+#include "hosel/golf/face_library.hpp"
 #include "hosel/models/checked_launch.hpp"
+#include "hosel/models/face_strike.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
@@ -33,6 +35,7 @@ class ImpactJob final : public Job {
     const std::vector<std::string> names = read_models(root);
     blow_ = read_blow(root, names);
     const models::Options options = read_options(root, names);
+    face_ = options.fe.face;
     for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
     matched_ = root.flag("matched_launch", false);
     if (auto output = root.optional_table("output")) {
@@ -63,6 +66,8 @@ class ImpactJob final : public Job {
   }
 
   void run(Output& out) override {
+    const bool fe = std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; });
+    if (fe && !face_ && models::wants_yielding_face(blow_.club.head)) out.say(rigid_face_costs());
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
@@ -104,6 +109,23 @@ class ImpactJob final : public Job {
   }
 
  private:
+  /// What a driver-like head loses by a rigid face, along the normal.
+  std::string rigid_face_costs() const {
+    const models::Striker ball = models::golf_ball(blow_.ball);
+    const double mass = models::mass_at(blow_.club.head, -blow_.delivery.impact_toe, blow_.delivery.impact_high);
+    const FaceCompliance face = find_face("modern-driver")->face;
+    const double shape = face.shape(-blow_.delivery.impact_toe, blow_.delivery.impact_high).value;
+    const double speed = models::encounter(blow_).normal_speed;
+    const double gain = (1 + models::strike(ball, mass, face, shape, speed).restitution) /
+                            (1 + models::strike(ball, mass, {}, 0, speed).restitution) -
+                        1;
+    return fmt::format(
+        "the face of this driver-like head is rigid: a modern one, [face] name = \"modern-driver\", would give the "
+        "ball "
+        "some {:.1f} % more speed here",
+        100 * gain);
+  }
+
   struct Entry {
     std::string name;
     std::unique_ptr<models::ImpactModel> model;
@@ -191,6 +213,10 @@ class ImpactJob final : public Job {
                         {"newton_iterations", r.counts.iterations},
                         {"factorisations", r.counts.factorisations},
                         {"dissipated_by_layer_J", r.dissipated}};
+    if (face_) {
+      j["face_travel_mm"] = 1e3 * r.face_travel;
+      j["face_energy_J"] = r.face_energy;
+    }
     j["energy_J"] = {
         {"initial", r.ledger.initial},     {"kinetic", r.ledger.kinetic},   {"strain", r.ledger.strain_total()},
         {"contact", r.ledger.contact},     {"friction", r.ledger.friction}, {"viscous", r.ledger.viscous},
@@ -200,6 +226,7 @@ class ImpactJob final : public Job {
 
   std::vector<Entry> models_;
   Blow blow_;
+  std::optional<FaceCompliance> face_;
   post::RecorderOptions record_;
   post::Measured measured_;
   post::MeasuredOblique ranges_;

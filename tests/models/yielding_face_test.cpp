@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "hosel/fem/materials/linear_elastic.hpp"
 #include "hosel/fem/rigid_body.hpp"
 #include "hosel/fem/yielding_face.hpp"
 #include "tests/support/coarse_impact.hpp"

@@ -1,0 +1,74 @@
+#include "hosel/app/kinds/calibrate_face.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/models/face_calibration.hpp"
+#include "hosel/solvers/errors.hpp"
+
+namespace hosel::app {
+namespace {
+
+class CalibrateFaceJob final : public Job {
+ public:
+  explicit CalibrateFaceJob(CaseFile& file) {
+    Table root = file.root();
+    ball_ = read_ball(root.table("ball"));
+    head_ = read_head(root.table("head"));
+    radius_ = root.table("sphere").quantity("radius", "mm", {1e-3, 0.1}, 0.011);
+    for (Table tap : root.tables("tap"))
+      target_.taps.push_back({.toe = tap.quantity("toe", "mm", {-0.1, 0.1}, 0.0),
+                              .high = tap.quantity("high", "mm", {-0.1, 0.1}, 0.0),
+                              .time = tap.quantity("time", "us", {1e-5, 1e-3})});
+    if (target_.taps.empty()) root.fail("tap", "at least one [[tap]] with its characteristic time");
+    Table target = root.table("target");
+    target_.tap_sigma = target.quantity("tap_sigma", "us", Range::positive(), target_.tap_sigma);
+    target_.restitution = target.number("restitution", {0.1, 1});
+    target_.restitution_sigma = target.number("restitution_sigma", {1e-5, 1}, target_.restitution_sigma);
+    target_.speed = target.quantity("speed", "mps", {1, 100}, target_.speed);
+    target_.mass = target.quantity("effective_mass", "g", {1e-3, 0.04});
+    target_.mass_sigma = target.quantity("effective_mass_sigma", "g", Range::positive());
+  }
+
+  void run(Output& out) override {
+    const models::FaceCalibration fit =
+        models::calibrate_face(head_, models::steel_sphere(radius_), models::golf_ball(ball_), target_);
+    if (!fit.converged) throw solvers::NonConvergence("calibrate-face: the least squares have not converged");
+    const FaceCompliance& f = fit.face;
+    struct Row {
+      const char* name;
+      double value, unit;
+    };
+    const std::array<Row, 5> rows = {{{"effective_mass_g", f.mass, 1e3},
+                                      {"stiffness_N_per_m", f.stiffness, 1},
+                                      {"damping_N_s_per_m", f.damping, 1},
+                                      {"half_width_mm", f.half_width, 1e3},
+                                      {"half_height_mm", f.half_height, 1e3}}};
+    nlohmann::json summary{{"cost", fit.cost}};
+    std::string toml = "[face]\n";
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto& [name, value, unit] = rows[i];
+      out.say(fmt::format("{:<20} {:12.5g} +- {:.2g}", name, unit * value, unit * fit.sd[i]));
+      toml += fmt::format("{} = {:.5g}\n", name, unit * value);
+      summary["parameters"].push_back({{"name", name}, {"value", unit * value}, {"sd", unit * fit.sd[i]}});
+    }
+    out.say(fmt::format("half the sum of squares: {:.3g} over {} data", fit.cost, target_.taps.size() + 2));
+    out.write("face.toml", toml);
+    out.write_summary(summary);
+  }
+
+ private:
+  Ball ball_;
+  Head head_;
+  double radius_ = 0;
+  models::FaceTarget target_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_calibrate_face(CaseFile& file) { return std::make_unique<CalibrateFaceJob>(file); }
+
+}  // namespace hosel::app

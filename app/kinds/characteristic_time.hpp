@@ -1,0 +1,11 @@
+/// kind = "characteristic-time": the rules' pendulum test: contact time of a steel sphere against speed, and its
+/// intercept.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_characteristic_time(CaseFile& file);
+
+}  // namespace hosel::app

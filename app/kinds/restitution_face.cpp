@@ -1,0 +1,85 @@
+#include "hosel/app/kinds/restitution_face.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_face.hpp"
+#include "hosel/models/face_strike.hpp"
+#include "hosel/post/figure.hpp"
+
+namespace hosel::app {
+namespace {
+
+class RestitutionFaceJob final : public Job {
+ public:
+  explicit RestitutionFaceJob(CaseFile& file) {
+    Table root = file.root();
+    ball_ = read_ball(root.table("ball"));
+    head_ = read_head(root.table("head"));
+    face_ = read_face(root.table("face"));
+    if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
+    Table grid = root.table("grid");
+    speed_ = grid.quantity("speed", "mps", {1, 100}, 48.77);
+    toe_ = grid.quantities("toe", "mm", 0, {-0.1, 0.1});
+    high_ = grid.quantities("high", "mm", 0, {-0.1, 0.1});
+  }
+
+  void run(Output& out) override {
+    const models::Striker ball = models::golf_ball(ball_);
+    std::string csv = "toe_mm,high_mm,mass_kg,restitution,restitution_rigid,ball_speed_ratio,ball_speed_ratio_rigid\n";
+    std::vector<double> e_map, gain_map;
+    nlohmann::json summary;
+    for (const double high : high_)
+      for (const double toe : toe_) {
+        const double mass = models::mass_at(head_, -toe, high);
+        const double e = models::strike(ball, mass, face_, face_.shape(-toe, high).value, speed_).restitution,
+                     rigid = models::strike(ball, mass, {}, 0, speed_).restitution;
+        const auto ratio = [&](double restitution) { return (1 + restitution) * mass / (mass + ball_.mass); };
+        csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", 1e3 * toe, 1e3 * high, mass, e, rigid,
+                           ratio(e), ratio(rigid));
+        e_map.push_back(e);
+        gain_map.push_back(ratio(e));
+        if (toe == 0 && high == 0) {
+          out.say(
+              fmt::format("centre: restitution {:.4f} (rigid {:.4f}), ball speed {:.4f} of the head's (rigid {:.4f})",
+                          e, rigid, ratio(e), ratio(rigid)));
+          summary = {{"restitution", e},
+                     {"restitution_rigid", rigid},
+                     {"ball_speed_ratio", ratio(e)},
+                     {"ball_speed_ratio_rigid", ratio(rigid)}};
+        }
+      }
+    out.write("map.csv", csv);
+    const auto panel = [&](std::string title, std::vector<double> values, std::string label) {
+      post::Panel p{.title = std::move(title), .x_label = "towards the toe [mm]", .y_label = "up the face [mm]"};
+      for (const double x : toe_) p.map_x.push_back(1e3 * x);
+      for (const double y : high_) p.map_y.push_back(1e3 * y);
+      p.map = std::move(values);
+      p.map_label = std::move(label);
+      p.map_equal_axes = true;
+      return p;
+    };
+    post::Figure figure{
+        .panels = {panel("restitution", e_map, "[-]"), panel("ball speed over head speed", gain_map, "[-]")},
+        .columns = 2};
+    if (const std::string why = post::draw(figure, out.path("restitution-face")); !why.empty()) out.say(why);
+    summary["largest_restitution"] = *std::ranges::max_element(e_map);
+    summary["least_restitution"] = *std::ranges::min_element(e_map);
+    out.write_summary(summary);
+  }
+
+ private:
+  Ball ball_;
+  Head head_;
+  FaceCompliance face_;
+  double speed_ = 0;
+  std::vector<double> toe_, high_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_restitution_face(CaseFile& file) { return std::make_unique<RestitutionFaceJob>(file); }
+
+}  // namespace hosel::app

@@ -1,0 +1,10 @@
+/// kind = "restitution-face": restitution and ball speed over the face, against the rigid face.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_restitution_face(CaseFile& file);
+
+}  // namespace hosel::app
