@@ -24,8 +24,8 @@ struct FaceCalibration {
   FaceCompliance face;
   std::vector<double> sd;  ///< of mass, stiffness, damping, half width, half height; infinite where the data are blind
   double cost = 0;         ///< half the sum of squares in units of the standard deviations
-  bool converged = false;
 };
+/// Throws solvers::NonConvergence.
 FaceCalibration calibrate_face(const Head& head, const Striker& sphere, const Striker& ball, const FaceTarget& target);
 
 }  // namespace hosel::models
