@@ -38,6 +38,19 @@ class Secants {
 
 }  // namespace
 
+Vector abrupt_residual(const fem::System& system, const fem::State& trial) {
+  Vector inertia = Vector::Zero(system.layout.size()), force = inertia;
+  for (const auto& term : system.terms)
+    if (term->abrupt()) term->residual(trial, inertia, force);
+  return inertia + force;
+}
+
+void abrupt_tangent(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
+                    DenseTangent& sink) {
+  for (const auto& term : system.terms)
+    if (term->abrupt()) term->tangent(trial, weights, sink);
+}
+
 ContactNewton::ContactNewton(const fem::System& system, SparseTangent& smooth, NewtonOptions options)
     : smooth_(smooth), abrupt_(smooth), options_(options), increments_(system, smooth, options) {}
 

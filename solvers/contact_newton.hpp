@@ -9,12 +9,17 @@
 
 namespace hosel::solvers {
 
+/// The share of the abrupt terms in residual and tangent.
+Vector abrupt_residual(const fem::System& system, const fem::State& trial);
+void abrupt_tangent(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
+                    DenseTangent& sink);
+
 /// What the method asks of a problem; vectors are on the free equations.
 struct ContactProblem {
   /// The residual at the present iterate; writes the scale that it is small against.
   std::function<Vector(double& scale)> residual;
-  /// The tangent of the smooth terms at the present iterate, its mass `inertia` times as heavy (1: as it is);
-  /// returns the residual that round-off alone may leave.
+  /// The tangent of the smooth terms at the present iterate, its mass (in statics: what stands for it) `inertia` times
+  /// as heavy where 1 is not positive definite; returns the residual that round-off alone may leave.
   std::function<double(double inertia)> assemble_smooth;
   std::function<Vector()> abrupt_residual;             ///< the other terms' share of the residual
   std::function<void(DenseTangent&)> assemble_abrupt;  ///< and their tangent

@@ -139,17 +139,12 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
   NewtonReport report;
   if (contact_) {
-    const auto assemble_abrupt = [&](DenseTangent& sink) {
-      for (const auto& term : system_.terms)
-        if (term->abrupt()) term->tangent(trial_, {1, to_v, to_a}, sink);
-    };
-    const auto abrupt_residual = [&] {
-      Vector inertia = Vector::Zero(system_.layout.size()), force = inertia;
-      for (const auto& term : system_.terms)
-        if (term->abrupt()) term->residual(trial_, inertia, force);
-      return tangent_.gather(inertia + force);
-    };
-    report = contact_newton_.solve({residual, assemble, abrupt_residual, assemble_abrupt, advance});
+    report =
+        contact_newton_.solve({residual, assemble, [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
+                               [&](DenseTangent& sink) {
+                                 abrupt_tangent(system_, trial_, {1, to_v, to_a}, sink);
+                               },
+                               advance});
   } else {
     report = newton_.solve({residual, [&] { return assemble(1); }, advance});
   }

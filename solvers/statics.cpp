@@ -6,8 +6,10 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <memory>
 
+#include "hosel/solvers/contact_newton.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
@@ -23,8 +25,10 @@ Vector residual_of(const fem::System& system, const fem::State& s, double* scale
 }  // namespace
 
 StaticsReport solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options) {
-  SparseTangent tangent(system);
+  const bool contact = std::ranges::any_of(system.terms, [](const auto& term) { return term->abrupt(); });
+  SparseTangent tangent(system, contact ? SparseTangent::Terms::smooth : SparseTangent::Terms::all);
   Newton newton(system, tangent, options.newton);
+  ContactNewton contact_newton(system, tangent, options.newton);
   StaticsReport out;
   out.state = start;
   for (const auto& p : system.prescribed) p->impose(out.state);
@@ -38,24 +42,36 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
     if (next > 1 - 1e-9) next = 1;
     trial = out.state;
     Vector full = Vector::Zero(system.layout.size());
-    const NewtonReport report = newton.solve({
-        .residual =
-            [&](double& scale) {
-              const Vector r = tangent.gather(residual_of(system, trial, &scale)) - (1 - next) * r0;
-              scale = std::max(scale, scale0);
-              return r;
-            },
-        .assemble =
-            [&] {
-              tangent.assemble(system, trial, {1, 0, 0});
-              return tangent.round_off(system, trial);
-            },
-        .advance =
-            [&](const Vector& dx) {
-              tangent.scatter(dx, full);
-              trial.q = system.layout.advanced(trial.q, full);
-            },
-    });
+    const auto residual = [&](double& scale) {
+      const Vector r = tangent.gather(residual_of(system, trial, &scale)) - (1 - next) * r0;
+      scale = std::max(scale, scale0);
+      return r;
+    };
+    const auto assemble = [&] {
+      tangent.assemble(system, trial, {1, 0, 0});
+      return tangent.round_off(system, trial);
+    };
+    // What contact alone holds has no stiffness of its own: a trace on the diagonal lets it be factorised.
+    const auto assemble_held = [&](double trace) {
+      const double round_off = assemble();
+      for (std::size_t c = 0; c + 1 < tangent.column_starts().size(); ++c)
+        for (int k = tangent.column_starts()[c]; k < tangent.column_starts()[c + 1]; ++k)
+          if (tangent.row_indices()[static_cast<std::size_t>(k)] == static_cast<int>(c))
+            tangent.values()[static_cast<std::size_t>(k)] *= 1 + 1e-9 * trace;
+      return round_off;
+    };
+    const auto advance = [&](const Vector& dx) {
+      tangent.scatter(dx, full);
+      trial.q = system.layout.advanced(trial.q, full);
+    };
+    const NewtonReport report =
+        contact ? contact_newton.solve({residual, assemble_held,
+                                        [&] { return tangent.gather(abrupt_residual(system, trial)); },
+                                        [&](DenseTangent& sink) {
+                                          abrupt_tangent(system, trial, {1, 0, 0}, sink);
+                                        },
+                                        advance})
+                : newton.solve({residual, assemble, advance});
     out.iterations += report.iterations;
     if (report.converged) {
       out.state = trial;

@@ -53,8 +53,7 @@ class Squeeze {
                                              {.newton = {.residual_relative = 1e-7,
                                                          .increment_vector = 1e-5 * approach,
                                                          .increment_rotation = 1,
-                                                         .max_iterations = 60,
-                                                         .acceleration = 10}});
+                                                         .max_iterations = 60}});
     solid->accept(found.state);
     q_ = found.state.q;
     history_.clear();
