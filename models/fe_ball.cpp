@@ -45,11 +45,29 @@ FeBall two_piece_ball() {
 }
 
 namespace {
+FeBall three_piece_ball() {
+  return {"three-piece",
+          {{0.89, rubber(13.1366e6, 1e9, 1150, 50.1657e6)},
+           {0.955, rubber(52.5462e6, 1.5e9, 960, 200.663e6)},
+           {1, rubber(13.1366e6, 1.5e9, 1120, 50.1657e6)}}};
+}
+
+FeBall range_skin_ball() {
+  return {"range-skin", {{0.91, rubber(13.899e6, 1e9, 1129, 53.246e6)}, {1, rubber(30.578e6, 1.3e9, 1129, 117.14e6)}}};
+}
+
 constexpr std::array kBalls = {
     NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, as cases/calibrate-range-ball finds it",
                 range_ball},
     NamedFeBall{"two-piece", "rubber core under a cover three times as stiff, as cases/calibrate-two-piece finds it",
                 two_piece_ball},
+    NamedFeBall{"three-piece",
+                "rubber core, mantle four times as stiff, soft cover, as cases/calibrate-three-piece finds it",
+                three_piece_ball},
+    NamedFeBall{
+        "range-skin",
+        "one piece with a skin 2.2 times as stiff: saw the spin of three irons as well, cases/irons-matched-launch",
+        range_skin_ball},
 };
 }  // namespace
 
