@@ -80,8 +80,8 @@ double over_hertz(Squeeze& squeeze, double a, double nu) {
 }
 
 /// The finite sphere's departure from Hertz against the exact solution of the same problem. A second, independent
-/// axisymmetric finite-element code agrees with the series to 0.05 %; here half a per cent is the mesh's: eight
-/// elements across the smallest patch.
+/// axisymmetric finite-element code agrees with the series to 0.05 %; here half a per cent is the mesh's: some ten
+/// elements along the radius of the smallest patch.
 TEST(Hertz, StaticDepartureOfAFiniteSphere) {
   struct Row {
     double nu, approach, reference;
