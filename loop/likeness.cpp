@@ -15,8 +15,7 @@ Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixX
   for (const EffectColumn& c : columns) {
     const double whole = c.whitened.norm();
     Absorption a{.effect = c.effect, .parameter = c.parameter};
-    Eigen::VectorXd left = c.whitened;
-    if (Q.cols() > 0) left -= Q * (Q.transpose() * left);
+    const Eigen::VectorXd left = c.whitened - Q * (Q.transpose() * c.whitened);
     a.signal = left.norm();
     a.absorbed = whole > 0 ? 1 - a.signal * a.signal / (whole * whole) : 0;
     if (a.signal > 1e-6 && a.signal > 1e-6 * whole) {

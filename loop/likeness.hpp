@@ -16,8 +16,7 @@ struct Absorption {
 
 /// A direction in the effects' parameters, each in units of its own signal, that the data hardly show.
 struct NullVector {
-  double singular =
-      0;  ///< of the whitened Jacobian with columns of unit length: 0 is invisible, 1 alone in its direction
+  double singular = 0;  ///< of the whitened Jacobian, columns of unit length: 0 invisible, 1 alone in its direction
   std::vector<std::pair<std::string, double>> weights;  ///< effect, share
 };
 

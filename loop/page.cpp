@@ -279,11 +279,11 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "<h2>What to measure next</h2><p>" + escape_html(r.next.text) + ".</p>";
   if (!r.next.shots.empty()) {
     s += "<div class='scroll'><table><tr>";
-    for (const auto& [header, x] : r.next.shots[0].inputs) s += "<th>" + escape_html(header);
+    for (const auto& [header, x] : r.next.shots[0]) s += "<th>" + escape_html(header);
     s += "</tr>";
     for (const DesignedShot& d : r.next.shots) {
       s += "<tr>";
-      for (const auto& [header, x] : d.inputs) s += "<td>" + number(x);
+      for (const auto& [header, x] : d) s += "<td>" + number(x);
       s += "</tr>";
     }
     s += "</table></div>";

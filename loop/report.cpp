@@ -113,7 +113,7 @@ json to_json(const LoopResult& r) {
   json shots = json::array();
   for (const DesignedShot& d : r.next.shots) {
     json e;
-    for (const auto& [header, x] : d.inputs) e[header] = value(std::stod(fmt::format("{:.4g}", x)));
+    for (const auto& [header, x] : d) e[header] = value(std::stod(fmt::format("{:.4g}", x)));
     shots.push_back(e);
   }
   out["next_experiment"] = {

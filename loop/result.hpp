@@ -50,9 +50,7 @@ struct Location {
   std::string channel, regressor, detail;
 };
 
-struct DesignedShot {
-  std::vector<std::pair<std::string, double>> inputs;  ///< header, header's unit
-};
+using DesignedShot = std::vector<std::pair<std::string, double>>;  ///< header, header's unit
 
 struct NextExperiment {
   std::string text;

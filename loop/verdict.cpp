@@ -39,21 +39,10 @@ Verdict judge(const Study& study, std::vector<Location>& unexplained) {
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
-/// Errors before and after, per channel and per row.
+/// Before and after, per row and per channel.
 void tell_errors(const Problem& problem, const Fit& base, const Fit& after, LoopResult& result) {
   const Eigen::MatrixXd rb = problem.residuals(base.model, base.p), ra = problem.residuals(after.model, after.p);
-  const std::vector<Problem::Row> rows = problem.rows();
-  for (int c = 0; c < problem.width(); ++c) {
-    const Channel& ch = problem.channel(c);
-    result.channels.push_back({.name = ch.name,
-                               .noise = ch.noise,
-                               .noise_source = ch.trusted() ? "declared" : "estimated",
-                               .refuted = ch.refuted ? ch.declared : std::nullopt,
-                               .scatter = problem.scatter(c, ra, after.size()).ratio,
-                               .before = errors(rows, rb, c),
-                               .after = errors(rows, ra, c)});
-  }
-  for (const Problem::Row& row : rows) {
+  for (const Problem::Row& row : problem.rows()) {
     UsedRow u{.row = row.row, .id = row.id, .holdout = row.holdout, .measured = {}, .before = {}, .after = {}};
     for (int c = 0; c < problem.width(); ++c) {
       u.measured.push_back(problem.measured()(row.index, c));
@@ -61,6 +50,16 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
       u.after.push_back(ra(row.index, c));
     }
     result.rows.push_back(std::move(u));
+  }
+  for (int c = 0; c < problem.width(); ++c) {
+    const Channel& ch = problem.channel(c);
+    result.channels.push_back({.name = ch.name,
+                               .noise = ch.noise,
+                               .noise_source = ch.trusted() ? "declared" : "estimated",
+                               .refuted = ch.refuted ? ch.declared : std::nullopt,
+                               .scatter = problem.scatter(c, ra, after.size()).ratio,
+                               .before = errors(result.rows, &UsedRow::before, std::size_t(c)),
+                               .after = errors(result.rows, &UsedRow::after, std::size_t(c))});
   }
 }
 
@@ -82,12 +81,12 @@ std::string ChannelResult::refutation() const {
   return fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}", name, *refuted, noise);
 }
 
-Errors errors(const std::vector<Problem::Row>& rows, const Eigen::MatrixXd& residuals, int channel) {
+Errors errors(const std::vector<UsedRow>& rows, std::vector<double> UsedRow::*of, std::size_t channel) {
   Errors e;
   double train = 0, held = 0, bias = 0;
-  for (const Problem::Row& row : rows) {
-    const double r = residuals(row.index, channel);
-    if (!std::isfinite(r)) continue;
+  for (const UsedRow& row : rows) {
+    if (channel >= (row.*of).size() || !std::isfinite((row.*of)[channel])) continue;
+    const double r = (row.*of)[channel];
     (row.holdout ? held : train) += r * r;
     ++(row.holdout ? e.holdout : e.train);
     if (row.holdout) bias += r;

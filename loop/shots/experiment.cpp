@@ -11,14 +11,10 @@
 namespace hosel::loop {
 namespace {
 
-const Candidate* find(const Selection& s, std::vector<std::string> effects) {
-  std::ranges::sort(effects);
-  for (const Candidate& c : s.candidates) {
-    auto names = c.effects;
-    std::ranges::sort(names);
-    if (names == effects) return &c;
-  }
-  return nullptr;
+const Candidate* find(const Selection& s, const std::vector<std::string>& effects) {
+  const auto same = [&](const Candidate& c) { return std::ranges::is_permutation(c.effects, effects); };
+  const auto it = std::ranges::find_if(s.candidates, same);
+  return it == s.candidates.end() ? nullptr : &*it;
 }
 
 /// Two sets of effects that differ in one name of a tie.
@@ -298,7 +294,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   for (const std::size_t k : chosen) {
     DesignedShot shot;
     for (std::size_t j = 0; j < box.input.size(); ++j)
-      shot.inputs.emplace_back(box.column[j]->name, get(sites[k].blow, Input(box.input[j])) / box.column[j]->si);
+      shot.emplace_back(box.column[j]->name, get(sites[k].blow, Input(box.input[j])) / box.column[j]->si);
     next.shots.push_back(shot);
   }
   if (!sensors.empty()) next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));

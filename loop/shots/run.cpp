@@ -63,24 +63,12 @@ void leave_one_out(const ShotCase& c, const std::vector<DerivedColumn>& derived,
                       fold.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.ties.front(), " or "))));
   }
   std::ranges::stable_sort(pooled, {}, &UsedRow::row);
-  std::vector<Problem::Row> rows;
-  for (const UsedRow& u : pooled) rows.push_back({int(rows.size()), u.row, u.id, true});
-  const auto pool = [&](std::vector<double> UsedRow::*of, Errors ChannelResult::*into) {
-    Eigen::MatrixXd r =
-        Eigen::MatrixXd::Constant(std::ptrdiff_t(rows.size()), std::ptrdiff_t(whole.channels.size()), kNaN);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (std::size_t k = 0; k < (pooled[i].*of).size(); ++k)
-        r(std::ptrdiff_t(i), std::ptrdiff_t(k)) = (pooled[i].*of)[k];
-    for (std::size_t k = 0; k < whole.channels.size(); ++k) {
-      Errors& e = whole.channels[k].*into;
-      const Errors held = errors(rows, r, int(k));
-      e.holdout = held.holdout;
-      e.holdout_rmse = held.holdout_rmse;
-      e.holdout_bias = held.holdout_bias;
+  for (std::size_t k = 0; k < whole.channels.size(); ++k)
+    for (const auto& [of, into] :
+         {std::pair{&UsedRow::before, &whole.channels[k].before}, {&UsedRow::after, &whole.channels[k].after}}) {
+      const Errors held = errors(pooled, of, k);
+      *into = {into->train_rmse, held.holdout_rmse, held.holdout_bias, into->train, held.holdout};
     }
-  };
-  pool(&UsedRow::before, &ChannelResult::before);
-  pool(&UsedRow::after, &ChannelResult::after);
   whole.holdout = int(pooled.size());
   whole.rows = std::move(pooled);
 }
