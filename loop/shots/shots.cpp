@@ -71,22 +71,20 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
     c.role = Role::output;
     wanted = quantity(*o).dimension;
   }
-  if (!wanted && c.role == Role::other) {
-    const auto spelling = [&](std::string_view stem) {
-      if (misspelt(c.stem, stem))
-        throw DataError(
-            fmt::format("{}:1: column '{}' is no quantity of a shot; did you mean '{}'? (rename it where it is another "
-                        "quantity)",
-                        sheet.file, header, stem));
-    };
-    for (int k = 0; k < kInputs; ++k) spelling(stem(Input(k)));
-    for (int k = 0; k < kOutputs; ++k) spelling(stem(Output(k)));
-  }
   // An input that is not recognised would count as zero.
-  if (!wanted && !split.unit)
-    for (int k = 0; k < kInputs; ++k)
-      if (header == stem(Input(k)) || header.starts_with(fmt::format("{}_", stem(Input(k)))))
-        wanted = quantity(Input(k)).dimension;
+  if (c.role == Role::other) {
+    std::vector<std::string_view> known;
+    for (int i = 0; i < kInputs; ++i) known.push_back(stem(Input(i)));
+    for (int o = 0; o < kOutputs; ++o) known.push_back(stem(Output(o)));
+    for (const std::string_view meant : known)
+      if (misspelt(c.stem, meant))
+        throw DataError(fmt::format(
+            "{}:1: column '{}' is no quantity of a shot; did you mean '{}'? (rename it where it is another quantity)",
+            sheet.file, header, meant));
+    for (int i = 0; i < kInputs && !split.unit; ++i)
+      if (header == stem(Input(i)) || header.starts_with(fmt::format("{}_", stem(Input(i)))))
+        wanted = quantity(Input(i)).dimension;
+  }
   if (wanted && (!split.unit || split.unit->dimension != *wanted))
     throw DataError(fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, header, name(*wanted)));
 

@@ -68,6 +68,8 @@ TEST(Ranges, EveryDeclaredOneFires) {
           EXPECT_NE(said.find("out of range"), std::string::npos) << d.key << " = " << value << ": " << said;
           EXPECT_NE(said.find("--set " + d.key), std::string::npos) << said;
           ++fired;
+        } catch (const std::exception& e) {
+          ADD_FAILURE() << where.filename() << ": " << d.key << " = " << value << ": " << e.what();
         }
       }
     }

@@ -138,7 +138,7 @@ TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
   const auto dir = fresh_directory("swing_skipped");
   for (const std::string name : {"club-6dof", "swing-markers"}) {
     const Outcome o = command("run " + std::string(HOSEL_SOURCE_DIR) + "/cases/" + name + " --set " +
-                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there.csv --out " +
+                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there/data.csv --out " +
                               (dir / name).string());
     EXPECT_EQ(o.status, 0) << o.text;
     EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;

@@ -93,18 +93,6 @@ INSTANTIATE_TEST_SUITE_P(
                              for (int k = 0; k < 40; ++k) o << 40 + k % 7 << ",0,12,,,\n";
                            },
                            "insufficient", "\"read\":40"},
-                    Broken{"repeated_shot",
-                           [](std::ostream& o) {
-                             o << kHeader;
-                             for (int k = 0; k < 40; ++k) o << row(3, false);
-                           },
-                           "unexplained", "\"read\":40"},
-                    Broken{"three_shots_repeated",
-                           [](std::ostream& o) {
-                             o << kHeader;
-                             for (int k = 0; k < 60; ++k) o << row(k % 3, false);
-                           },
-                           nullptr, ""},
                     Broken{"latin_1",
                            [](std::ostream& o) {
                              o << "player," << kHeader;
@@ -125,5 +113,19 @@ INSTANTIATE_TEST_SUITE_P(
                            nullptr, "needs a unit of length"},
                     Broken{"million_rows", [](std::ostream& o) { rows(o, 1'000'000); }, nullptr, "1000000 rows"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+/// Whatever is said of them: the residuals of one shot, many times, span nothing that could be searched.
+TEST(RepeatedShots, EndInAReport) {
+  for (const int different : {1, 3}) {
+    const fs::path dir = fresh_directory("repeated_shots");
+    write(dir / "case.toml", kCase);
+    std::string shots = kHeader;
+    for (int k = 0; k < 60; ++k) shots += row(different == 1 ? 3 : k % different, false);
+    write(dir / "shots.csv", shots);
+    const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    EXPECT_TRUE(fs::exists(dir / "out" / "report.json")) << o.text;
+  }
+}
 
 }  // namespace
