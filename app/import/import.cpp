@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +13,8 @@
 #include "hosel/app/import/cells.hpp"
 #include "hosel/app/import/sheet.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/post/csv.hpp"
+#include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace {
@@ -90,24 +91,16 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
   return out;
 }
 
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 void write_csv(const fs::path& file, const std::vector<const Understood*>& columns,
                const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + quoted(names[c]);
+  for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + post::csv_cell(names[c]);
   text += '\n';
   for (std::size_t r = 0; !columns.empty() && r < columns.front()->cells.size(); ++r) {
-    for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + quoted(columns[c]->cells[r]);
+    for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + post::csv_cell(columns[c]->cells[r]);
     text += '\n';
   }
-  std::ofstream out(file, std::ios::binary);
-  if (!(out << text) || !out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  post::write_file(file, text);
 }
 
 /// A text as a TOML basic string.
@@ -352,7 +345,7 @@ void import_shots(const ImportOptions& o) {
   if (!notes.empty())
     toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";
   if (different.size() > 2) toml += "\n[split]  # whole clubs are held out\nby = \"club\"\n";
-  std::ofstream(o.out / "case.toml") << toml;
+  post::write_file(o.out / "case.toml", toml);
   fmt::print("\nwritten: {0}/case.toml, shots.csv{1}\nnext:    hosel run {0}\n", o.out.string(),
              rest.empty() ? "" : ", kept.csv");
 }

@@ -7,7 +7,6 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/models/face_calibration.hpp"
-#include "hosel/solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {
