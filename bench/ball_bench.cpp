@@ -53,7 +53,7 @@ void Shares(benchmark::State& state) {
           });
     });
     impact.parts.contact->start(impact.initial);
-    fem::Vector inertia = fem::Vector::Zero(impact.system.layout.size()), internal = inertia;
+    fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
     const fem::Weights weights{1, 0, 1e10};
     solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth), all(impact.system);
     solvers::DenseTangent abrupt(smooth);

@@ -47,13 +47,13 @@ double worst_error(const fem::Solid& solid) {
   F << 1.1, 0.2, -0.1, 0.05, 0.9, 0.15, -0.2, 0.1, 1.05;
   const double h = 1e-6;
   fem::PointResponse at, plus, minus;
-  fem::respond(solid, F, Mat3::Identity(), 0, {}, true, at);
+  fem::evaluate(solid, F, Mat3::Identity(), 0, {}, true, at);
   double worst = 0;
   for (int k = 0; k < 9; ++k) {
     Mat3 step = Mat3::Zero();
     step(k % 3, k / 3) = h;
-    fem::respond(solid, F + step, Mat3::Identity(), 0, {}, false, plus);
-    fem::respond(solid, F - step, Mat3::Identity(), 0, {}, false, minus);
+    fem::evaluate(solid, F + step, Mat3::Identity(), 0, {}, false, plus);
+    fem::evaluate(solid, F - step, Mat3::Identity(), 0, {}, false, minus);
     const Mat3 slope = (plus.stress - minus.stress) / (2 * h);
     worst =
         std::max(worst, std::abs((plus.energy - minus.energy) / (2 * h) - at.stress(k % 3, k / 3)) / at.stress.norm());

@@ -49,7 +49,7 @@ models::FeImpactResult drop_on(std::unique_ptr<const fem::ContactSurface> surfac
   axes.col(1) = Vec3::UnitZ();
   axes.col(2) = axes.col(0).cross(axes.col(1));
   auto solid = std::make_unique<fem::HarmonicSolid>(
-      system.layout, mesh::sphere_meridian({ball.radius}, fine), fem::axisymmetric_family(),
+      system.dof_map, mesh::sphere_meridian({ball.radius}, fine), fem::axisymmetric_basis(),
       fem::SolidQuadrature{fem::single_angle(), 2}, std::vector{rubber}, fem::Placement{Vec3::Zero(), axes});
   fem::SurfaceCarrier still;
   still.position = Vec3(-ball.radius, 0, 0);
@@ -60,7 +60,7 @@ models::FeImpactResult drop_on(std::unique_ptr<const fem::ContactSurface> surfac
   const models::BallOnFace parts{solid.get(), contact.get()};
   system.terms.push_back(std::move(solid));
   system.terms.push_back(std::move(contact));
-  fem::State initial = system.layout.rest();
+  fem::State initial = system.dof_map.rest();
   parts.ball->set_velocity(initial, Vec3(-speed, 0, 0), Vec3::Zero());
   return models::run_impact(system, parts, initial, options, speed);
 }

@@ -53,7 +53,7 @@ Mat3 exp_matrix(const Vec3& w) { return rotation_exp(w).toRotationMatrix(); }
 
 }  // namespace
 
-std::vector<Index> equations(const Node& node) {
+std::vector<Index> dofs(const Node& node) {
   std::vector<Index> out;
   for (Index i = 0; i < 3; ++i) out.push_back(node.translation.v + i);
   for (Index i = 0; i < 3; ++i) out.push_back(node.rotation.v + i);
@@ -124,14 +124,14 @@ Eigen::Matrix<double, 6, 12> strain_matrix(const PointStrain& s, const Point& g)
 
 }  // namespace
 
-Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options)
+Beam::Beam(DofMap& dof_map, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options)
     : options_(std::move(options)), line_(line) {
   if (line.size() < 3 || line.size() % 2 == 0) throw std::invalid_argument("a beam needs 2 n + 1 nodes for n elements");
   if (!(options_.damping_time >= 0)) throw std::invalid_argument("the damping time of a beam is not negative");
   for (std::size_t i = 0; i < line.size(); ++i)
     if (i == 0 && options_.first) nodes_.push_back(*options_.first);
     else if (i + 1 == line.size() && options_.last) nodes_.push_back(*options_.last);
-    else nodes_.push_back({layout.add_vector(3), layout.add_rotation()});
+    else nodes_.push_back({dof_map.add_vector(3), dof_map.add_rotation()});
   rotary_.assign(line.size(), Mat3::Zero());
   moment_.assign(line.size(), Vec3::Zero());
   weight_.assign(line.size(), 0);
@@ -139,7 +139,7 @@ Beam::Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const Sectio
   for (std::size_t first = 0; first + 2 < line.size(); first += 2) {
     Element e;
     for (std::size_t i = first; i < first + 3; ++i)
-      for (Index q : equations(nodes_[i])) e.equations.push_back(q);
+      for (Index q : dofs(nodes_[i])) e.dofs.push_back(q);
     const Vec3 arc(line[first].arc_length, line[first + 1].arc_length, line[first + 2].arc_length);
     const double length = arc[2] - arc[0];
     const Eigen::Quaterniond q2(line[first + 1].frame);
@@ -197,7 +197,7 @@ void Beam::place(State& s) const {
 }
 
 void Beam::pattern(std::vector<std::vector<Index>>& blocks) const {
-  for (const Element& e : elements_) blocks.push_back(e.equations);
+  for (const Element& e : elements_) blocks.push_back(e.dofs);
 }
 
 Mat3 Beam::attitude(const State& s, std::size_t node) const {
@@ -224,9 +224,9 @@ Beam::Kinematics Beam::kinematics(const State& s, const Element& e) const {
 
 namespace {
 
-Vec18 velocities(const State& s, const std::vector<Index>& equations) {
+Vec18 velocities(const State& s, const std::vector<Index>& dofs) {
   Vec18 v;
-  for (int i = 0; i < 18; ++i) v[i] = s.v[equations[static_cast<std::size_t>(i)]];
+  for (int i = 0; i < 18; ++i) v[i] = s.v[dofs[static_cast<std::size_t>(i)]];
   return v;
 }
 
@@ -237,7 +237,7 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
   for (const Element& e : elements_) {
     const Kinematics k = kinematics(s, e);
     Vec12 rate = Vec12::Zero();
-    if (tau > 0) rate = k.jacobian() * velocities(s, e.equations);
+    if (tau > 0) rate = k.jacobian() * velocities(s, e.dofs);
     std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
@@ -259,16 +259,16 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
       const Vec3 m2 = gy[i].cross(k.y[i]) - k.relative[i] * m;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto d = static_cast<Index>(c);
-        force[e.equations[at + c]] += f[d];
-        force[e.equations[6 + c]] -= f[d];
-        force[e.equations[at + 3 + c]] += m[d];
-        force[e.equations[9 + c]] += m2[d];
+        force[e.dofs[at + c]] += f[d];
+        force[e.dofs[6 + c]] -= f[d];
+        force[e.dofs[at + 3 + c]] += m[d];
+        force[e.dofs[9 + c]] += m2[d];
       }
     }
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
-        inertia.segment<3>(e.equations[6 * i]) += e.mass(static_cast<Index>(i), static_cast<Index>(j)) *
-                                                  s.a.segment<3>(e.equations[6 * j]);
+        inertia.segment<3>(e.dofs[6 * i]) += e.mass(static_cast<Index>(i), static_cast<Index>(j)) *
+                                             s.a.segment<3>(e.dofs[6 * j]);
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Index t = nodes_[i].translation.v, r = nodes_[i].rotation.v;
@@ -292,7 +292,7 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
       const Kinematics k = kinematics(s, e);
       const Mat12x18 J = k.jacobian();
       Vec12 rate = Vec12::Zero();
-      if (tau > 0) rate = J * velocities(s, e.equations);
+      if (tau > 0) rate = J * velocities(s, e.dofs);
       Mat12 H = Mat12::Zero();
       std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
       for (const Point& g : e.points) {
@@ -364,7 +364,7 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
       K.block<3, 3>(at, at - 3) += weights.mass * skew(S) * R.transpose();
       K.block<3, 3>(at, at) += weights.stiffness * skew(S) * skew(lift);
     }
-    sink.add(e.equations, e.equations, K);
+    sink.add(e.dofs, e.dofs, K);
   }
 }
 
@@ -379,7 +379,7 @@ Energies Beam::energies(const State& s) const {
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         out.kinetic += 0.5 * e.mass(static_cast<Index>(i), static_cast<Index>(j)) *
-                       s.v.segment<3>(e.equations[6 * i]).dot(s.v.segment<3>(e.equations[6 * j]));
+                       s.v.segment<3>(e.dofs[6 * i]).dot(s.v.segment<3>(e.dofs[6 * j]));
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Vec3 w = s.v.segment<3>(nodes_[i].rotation.v);
@@ -391,14 +391,14 @@ Energies Beam::energies(const State& s) const {
   return out;
 }
 
-void Beam::accept(const State& s) {
+void Beam::commit(const State& s) {
   double height = 0, power = 0;
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     height += options_.gravity.dot(weight_[i] * s.q.segment<3>(nodes_[i].translation.q) + attitude(s, i) * moment_[i]);
   if (options_.damping_time > 0)
     for (const Element& e : elements_) {
       const Kinematics k = kinematics(s, e);
-      const Vec12 rate = k.jacobian() * velocities(s, e.equations);
+      const Vec12 rate = k.jacobian() * velocities(s, e.dofs);
       for (const Point& g : e.points) {
         const Vec6 r = strain_matrix(point_strain(k, g), g) * rate;
         power += options_.damping_time * g.weight * r.dot(g.stiffness * r);

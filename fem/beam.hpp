@@ -25,10 +25,10 @@ namespace hosel::fem {
 
 /// A point with a triad: global position and rotation from the reference placement.
 struct Node {
-  Layout::Block translation, rotation;
+  DofMap::Block translation, rotation;
 };
 /// The six equations of a node: forces (global), then moments (body frame).
-std::vector<Index> equations(const Node& node);
+std::vector<Index> dofs(const Node& node);
 
 struct BeamOptions {
   std::string body = "shaft";
@@ -44,7 +44,7 @@ class Beam final : public Term {
  public:
   /// Adds nodes along the line to the layout. Sections are functions of the line's arc length. Throws
   /// std::invalid_argument where a stiffness or mass is not positive.
-  Beam(Layout& layout, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options);
+  Beam(DofMap& dof_map, const std::vector<mesh::LineNode>& line, const SectionLaw& sections, BeamOptions options);
 
   /// Writes the reference placement (positions, no rotation) into a state.
   void place(State& s) const;
@@ -56,7 +56,7 @@ class Beam final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
@@ -77,7 +77,7 @@ class Beam final : public Term {
     Mat3 frame;
   };
   struct Element {
-    std::vector<Index> equations;  // 18
+    std::vector<Index> dofs;  // 18
     std::array<Point, 2> points;
     Mat3 mass;  // consistent, per direction
   };

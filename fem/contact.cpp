@@ -57,7 +57,7 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
   for (double theta : angles_) {
     Directions f(3, K);
     for (Index k = 0; k < K; ++k)
-      f.col(k) = solid.placement().axes * solid.family()[static_cast<std::size_t>(k)].at(theta);
+      f.col(k) = solid.placement().axes * solid.basis()[static_cast<std::size_t>(k)].at(theta);
     functions_.push_back(f);
   }
   const auto rule = gauss(edge_points);
@@ -65,11 +65,11 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
     Edge edge{nodes, {}, {}};
     for (int i = 0; i < 3; ++i)
       for (Index k = 0; k < K; ++k)
-        if (const Index e = solid.equation(nodes[static_cast<std::size_t>(i)], k); e >= 0) {
-          edge.equations.push_back(e);
+        if (const Index e = solid.dof(nodes[static_cast<std::size_t>(i)], k); e >= 0) {
+          edge.dofs.push_back(e);
           edge.places.push_back(static_cast<int>(i * K + k));
         }
-    edge.equations.insert(edge.equations.end(), carried.begin(), carried.end());
+    edge.dofs.insert(edge.dofs.end(), carried.begin(), carried.end());
     edges_.push_back(std::move(edge));
     for (const auto& [x, w] : rule) {
       const Vec3 N(0.5 * x * (x - 1), 0.5 * x * (x + 1), 1 - x * x), dN(x - 0.5, x + 0.5, -2 * x);
@@ -135,7 +135,7 @@ void Contact::visit(const State& s, Visit&& visit) const {
       for (std::size_t i = 0; i < edge->places.size(); ++i) {
         const int node = edge->places[i] / static_cast<int>(K), unknown = edge->places[i] % static_cast<int>(K);
         U(node, unknown) = s.q[solid_.offset(edge->nodes[static_cast<std::size_t>(node)], unknown)];
-        V(node, unknown) = s.v[edge->equations[i]];
+        V(node, unknown) = s.v[edge->dofs[i]];
       }
     }
     u.noalias() = U.transpose() * station.shape;
@@ -158,7 +158,7 @@ void Contact::visit(const State& s, Visit&& visit) const {
   }
 }
 
-Contact::Local Contact::respond(const Kinematics& k, bool derivatives) const {
+Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   Local out;
   const SurfacePoint at = surface_->at(k.place);
   const Past& past = past_[k.number];
@@ -198,7 +198,7 @@ void Contact::start(const State& s) {
 }
 
 void Contact::pattern(std::vector<std::vector<Index>>& blocks) const {
-  for (const Edge& e : edges_) blocks.push_back(e.equations);
+  for (const Edge& e : edges_) blocks.push_back(e.dofs);
 }
 
 void Contact::residual(const State& s, Vector&, Vector& force) const {
@@ -212,11 +212,11 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
     R = m.R;
     if (k.gap >= 0) return;
     const Station& station = *k.station;
-    const Vec3 local = station.area * respond(k, false).force, f = in_body(k, local);
+    const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
     r.noalias() = functions_[k.angle].transpose() * (m.R * f);
     const Edge& edge = edges_[station.edge];
     for (std::size_t i = 0; i < edge.places.size(); ++i)
-      force[edge.equations[i]] -= station.shape[edge.places[i] / K] * r[edge.places[i] % K];
+      force[edge.dofs[i]] -= station.shape[edge.places[i] / K] * r[edge.places[i] % K];
     total += f;
     moment += k.arm.cross(f);
     own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
@@ -231,7 +231,7 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
 void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const {
   const Index K = solid_.unknowns(), size = K + carried_;
   const bool moving = carrier_.translation.has_value();
-  const Local local = respond(k, true);
+  const Local local = evaluate(k, true);
   const double area = k.station->area;
   const Mat3 turn = free_rotation(m.R);
   const Vec3 force = in_body(k, local.force);
@@ -285,7 +285,7 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
   const Edge* edge = nullptr;
   bool touched = false;
   const auto finish_edge = [&] {
-    if (edge && block.size() > 0) sink.add(edge->equations, edge->equations, block);
+    if (edge && block.size() > 0) sink.add(edge->dofs, edge->dofs, block);
     block.resize(0, 0);
   };
   visit(s, [&](const Moved& m, const Kinematics& k) {
@@ -321,13 +321,14 @@ Energies Contact::energies(const State& s) const {
   Energies out;
   visit(s, [&](const Moved&, const Kinematics& k) {
     if (k.gap >= 0) return;
-    out.contact += k.station->area * (0.5 * laws_.normal_stiffness * k.gap * k.gap + respond(k, false).friction.stored);
+    out.contact += k.station->area *
+                   (0.5 * laws_.normal_stiffness * k.gap * k.gap + evaluate(k, false).friction.stored);
   });
   out.friction = friction_work_;
   return out;
 }
 
-void Contact::accept(const State& s) {
+void Contact::commit(const State& s) {
   visit(s, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     const double area = k.station->area;
@@ -337,7 +338,7 @@ void Contact::accept(const State& s) {
       past = {.place = k.place, .anchor = k.place, .gap = k.gap, .slip = past.slip};
       return;
     }
-    const Friction friction = respond(k, false).friction;
+    const Friction friction = evaluate(k, false).friction;
     const double traction = friction.traction.norm();
     friction_work_ += area * 0.5 * (past.traction + traction) * friction.slip;
     if (!friction.sliding) elastic_slip_ = std::max(elastic_slip_, friction.elastic.norm());
@@ -391,7 +392,7 @@ ContactReport Contact::report(const State& s) const {
   Vec3 centre = Vec3::Zero();
   visit(s, [&](const Moved& m, const Kinematics& k) {
     if (k.gap >= 0) return;
-    const Local local = respond(k, false);
+    const Local local = evaluate(k, false);
     const double area = k.station->area;
     out.force += area * (m.R * in_body(k, local.force));
     out.normal_force += area * local.pressure;
@@ -413,7 +414,7 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
   const Placement& placement = solid_.placement();
   visit(s, [&](const Moved& m, const Kinematics& k) {
-    const Local local = k.gap < 0 ? respond(k, false) : Local{};
+    const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     out.push_back({placement.origin + placement.axes * reference(*k.station, k.angle), m.node + m.R * k.arm,
                    m.R * in_body(k, local.force), local.pressure, k.gap, past.slip, k.station->area, past.sliding});

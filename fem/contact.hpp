@@ -65,7 +65,7 @@ class Contact final : public Term {
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   bool abrupt() const override { return true; }
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
@@ -79,8 +79,8 @@ class Contact final : public Term {
   using Directions = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   struct Edge {
     std::array<int, 3> nodes;
-    std::vector<Index> equations;  // free ones of the three nodes, then the carrier's six, then the surface's own
-    std::vector<int> places;       // i * K + k of the solid's part
+    std::vector<Index> dofs;  // free ones of the three nodes, then the carrier's six, then the surface's own
+    std::vector<int> places;  // i * K + k of the solid's part
   };
   struct Station {  // a Gauss point of an edge; `angles` points follow each other
     std::size_t edge = 0;
@@ -126,7 +126,7 @@ class Contact final : public Term {
   Mat3 free_translation() const;
   Mat3 free_rotation(const Mat3& R) const;
   Vec3 reference(const Station& station, std::size_t angle) const;
-  Local respond(const Kinematics& k, bool derivatives) const;
+  Local evaluate(const Kinematics& k, bool derivatives) const;
   /// Derivatives of -force by the solid's functions at a station, carrier and own unknowns, added up in `sum`.
   void add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const;
   template <class Visit>
@@ -137,7 +137,7 @@ class Contact final : public Term {
   SurfaceCarrier carrier_;
   ContactLaws laws_;
   Symmetry symmetry_;
-  std::optional<Layout::Block> own_;
+  std::optional<DofMap::Block> own_;
   Index carried_ = 0;  // equations of carrier and surface
   std::vector<Edge> edges_;
   std::vector<Station> stations_;

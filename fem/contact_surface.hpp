@@ -38,7 +38,7 @@ class ContactSurface {
 
   /// A block of at most kSurfaceUnknowns plain numbers in the system's layout. What they weigh and what holds
   /// them is a term of its own.
-  virtual std::optional<Layout::Block> unknowns() const { return std::nullopt; }
+  virtual std::optional<DofMap::Block> unknowns() const { return std::nullopt; }
   /// Where there are unknowns: how far they move the surface at a place.
   virtual Travel travel(const Vec3& place, const SurfaceUnknowns& unknowns) const;
 };
@@ -46,7 +46,7 @@ class ContactSurface {
 /// What carries the surface. Its axes are parallel to the body frame of the blocks' node; `centre` lies in it.
 /// Without blocks the surface stands still at `position`, `attitude`.
 struct SurfaceCarrier {
-  std::optional<Layout::Block> translation, rotation;
+  std::optional<DofMap::Block> translation, rotation;
   Vec3 centre = Vec3::Zero();        ///< of the surface's axes, from the node, body frame [m]
   Vec3 position = Vec3::Zero();      ///< of a fixed surface's node, global [m]
   Mat3 attitude = Mat3::Identity();  ///< of a fixed surface, body to global

@@ -27,13 +27,13 @@ struct FaceSpring::Carried {
   }
 };
 
-FaceSpring::FaceSpring(const FaceCompliance& face, const SurfaceCarrier& carrier, const Layout::Block& travel)
+FaceSpring::FaceSpring(const FaceCompliance& face, const SurfaceCarrier& carrier, const DofMap::Block& travel)
     : face_(face), carrier_(carrier), travel_(travel) {
   if (const auto faults = face.faults(); !faults.empty()) throw std::invalid_argument(faults.front());
   if (carrier_.translation)
     for (const auto* block : {&*carrier_.translation, &*carrier_.rotation})
-      for (Index i = 0; i < 3; ++i) equations_.push_back(block->v + i);
-  equations_.push_back(travel_.v);
+      for (Index i = 0; i < 3; ++i) dofs_.push_back(block->v + i);
+  dofs_.push_back(travel_.v);
 }
 
 FaceSpring::Carried FaceSpring::carried(const State& s) const {
@@ -47,7 +47,7 @@ FaceSpring::Carried FaceSpring::carried(const State& s) const {
   return c;
 }
 
-void FaceSpring::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(equations_); }
+void FaceSpring::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(dofs_); }
 
 void FaceSpring::residual(const State& s, Vector& inertia, Vector& force) const {
   const Carried c = carried(s);
@@ -71,7 +71,7 @@ void FaceSpring::tangent(const State& s, const Weights& weights, TangentSink& si
   k(last, last) = weights.stiffness * face_.stiffness + weights.damping * face_.damping;
   if (!moving) {
     k(0, 0) += weights.mass * m;
-    sink.add(equations_, equations_, k);
+    sink.add(dofs_, dofs_, k);
     return;
   }
   const Mat3 Rt = c.R.transpose(), spin = skew(c.spin);
@@ -94,7 +94,7 @@ void FaceSpring::tangent(const State& s, const Weights& weights, TangentSink& si
   };
   add(1, {carrier_.centre - w * kOut, -w_rate * kOut, -w_second * kOut}, true);
   add(-1, {carrier_.centre, Vec3::Zero(), Vec3::Zero()}, false);
-  sink.add(equations_, equations_, k);
+  sink.add(dofs_, dofs_, k);
 }
 
 Energies FaceSpring::energies(const State& s) const {
@@ -109,7 +109,7 @@ Energies FaceSpring::energies(const State& s) const {
   return e;
 }
 
-void FaceSpring::accept(const State& s) {
+void FaceSpring::commit(const State& s) {
   const double rate = s.v[travel_.v], power = face_.damping * rate * rate;
   if (started_) viscous_ += 0.5 * (power_ + power) * (s.time - time_);
   power_ = power;

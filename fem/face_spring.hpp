@@ -16,14 +16,14 @@ namespace hosel::fem {
 class FaceSpring final : public Term {
  public:
   /// `travel`: a block of one number. Throws std::invalid_argument on a face that cannot be.
-  FaceSpring(const FaceCompliance& face, const SurfaceCarrier& carrier, const Layout::Block& travel);
+  FaceSpring(const FaceCompliance& face, const SurfaceCarrier& carrier, const DofMap::Block& travel);
 
   std::string body() const override { return "face"; }
   void pattern(std::vector<std::vector<Index>>& blocks) const override;
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
@@ -37,8 +37,8 @@ class FaceSpring final : public Term {
 
   FaceCompliance face_;
   SurfaceCarrier carrier_;
-  Layout::Block travel_;
-  std::vector<Index> equations_;
+  DofMap::Block travel_;
+  std::vector<Index> dofs_;
   double viscous_ = 0, power_ = 0, time_ = 0;
   bool started_ = false;
 };

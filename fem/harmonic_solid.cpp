@@ -26,19 +26,19 @@ std::vector<std::pair<double, double>> gauss(int n) {
   }
 }
 
-int largest_order(const Family& family) {
+int largest_order(const FourierBasis& basis) {
   int order = 0;
-  for (const auto& f : family) order = std::max(order, f.order);
+  for (const auto& f : basis) order = std::max(order, f.order);
   return order;
 }
 
 }  // namespace
 
-HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family, SolidQuadrature quadrature,
+HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis basis, SolidQuadrature quadrature,
                              std::vector<Solid> materials, Placement placement, std::string body)
     : body_(std::move(body)),
       mesh_(std::move(mesh)),
-      family_(std::move(family)),
+      basis_(std::move(basis)),
       quadrature_(std::move(quadrature)),
       materials_(std::move(materials)),
       placement_(std::move(placement)) {
@@ -55,37 +55,37 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
   Index count = 0;
   for (std::size_t n = 0; n < mesh_.nodes.size(); ++n)
     for (Index k = 0; k < K; ++k) {
-      const bool free = !mesh_.on_axis(static_cast<int>(n)) || family_[static_cast<std::size_t>(k)].order == 0;
-      equation_.push_back(free ? count++ : -1);
+      const bool free = !mesh_.on_axis(static_cast<int>(n)) || basis_[static_cast<std::size_t>(k)].order == 0;
+      dof_.push_back(free ? count++ : -1);
     }
-  block_ = layout.add_vector(count);
-  for (Index& e : equation_)
+  block_ = dof_map.add_vector(count);
+  for (Index& e : dof_)
     if (e >= 0) e += block_.v;
 
   for (const auto& element : mesh_.elements) {
     element_equations_.emplace_back();
-    element_places_.emplace_back();
+    element_dofs_.emplace_back();
     for (int i = 0; i < 8; ++i)
       for (Index k = 0; k < K; ++k)
-        if (const Index e = equation(element[static_cast<std::size_t>(i)], k); e >= 0) {
+        if (const Index e = dof(element[static_cast<std::size_t>(i)], k); e >= 0) {
           element_equations_.back().push_back(e);
-          element_places_.back().push_back(static_cast<int>(i * K + k));
+          element_dofs_.back().push_back(static_cast<int>(i * K + k));
         }
   }
 
-  const AngularRule circle = full_circle(2 * largest_order(family_) + 3);
+  const AngularRule circle = full_circle(2 * largest_order(basis_) + 3);
   gram_ = Eigen::MatrixXd::Zero(K, K);
   for (double theta : circle.theta)
     for (Index k = 0; k < K; ++k)
       for (Index l = 0; l < K; ++l)
-        gram_(k, l) += circle.weight * family_[static_cast<std::size_t>(k)].at(theta).dot(
-                                           family_[static_cast<std::size_t>(l)].at(theta));
+        gram_(k, l) += circle.weight *
+                       basis_[static_cast<std::size_t>(k)].at(theta).dot(basis_[static_cast<std::size_t>(l)].at(theta));
   const AngularRule& angles = quadrature_.angles;
   const auto n = static_cast<Index>(angles.theta.size());
   for (int c = 0; c < 3; ++c) {
     Direction& d = directions_[static_cast<std::size_t>(c)];
     for (Index k = 0; k < K; ++k) {
-      const AngularFunction& f = family_[static_cast<std::size_t>(k)];
+      const AngularFunction& f = basis_[static_cast<std::size_t>(k)];
       if (f.cosine[c] != 0 || f.sine[c] != 0) d.functions.push_back(k);
     }
     const auto count = static_cast<Index>(d.functions.size());
@@ -93,7 +93,7 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
     d.derivative.resize(n, count);
     for (Index k = 0; k < count; ++k)
       for (Index j = 0; j < n; ++j) {
-        const AngularFunction& f = family_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
+        const AngularFunction& f = basis_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
         const double theta = angles.theta[static_cast<std::size_t>(j)];
         d.value(j, k) = f.at(theta)[c];
         d.derivative(j, k) = f.derivative(theta)[c];
@@ -180,12 +180,12 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
       total += g.weight * static_cast<double>(n);
       for (int i = 0; i < 8; ++i)
         for (Index k = 0; k < K; ++k) {
-          const Index e = equation(element[static_cast<std::size_t>(i)], k);
+          const Index e = dof(element[static_cast<std::size_t>(i)], k);
           if (e < 0) continue;
           Mat3 sum = Mat3::Zero();
           for (Index j = 0; j < n; ++j) {
             const Mat3& f = frames_[static_cast<std::size_t>(j)];
-            const AngularFunction& function = family_[static_cast<std::size_t>(k)];
+            const AngularFunction& function = basis_[static_cast<std::size_t>(k)];
             const double theta = angles.theta[static_cast<std::size_t>(j)];
             sum += function.at(theta) * (g.ds[i] * f.col(0) + g.drho[i] * f.col(1)).transpose() +
                    function.derivative(theta) * (g.value[i] / g.rho * f.col(2)).transpose();
@@ -198,7 +198,7 @@ HarmonicSolid::HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family,
 }
 
 Index HarmonicSolid::offset(int node, Index k) const {
-  const Index e = equation(node, k);
+  const Index e = dof(node, k);
   return e < 0 ? -1 : e - block_.v + block_.q;
 }
 
@@ -209,9 +209,9 @@ void HarmonicSolid::pattern(std::vector<std::vector<Index>>& blocks) const {
 Eigen::MatrixXd HarmonicSolid::element_fields(const Vector& numbers, Index shift, std::size_t e) const {
   const Index K = unknowns();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(8, K);
-  const auto& equations = element_equations_[e];
-  const auto& places = element_places_[e];
-  for (std::size_t i = 0; i < equations.size(); ++i) out(places[i] / K, places[i] % K) = numbers[equations[i] + shift];
+  const auto& dofs = element_equations_[e];
+  const auto& places = element_dofs_[e];
+  for (std::size_t i = 0; i < dofs.size(); ++i) out(places[i] / K, places[i] % K) = numbers[dofs[i] + shift];
   return out;
 }
 
@@ -292,7 +292,7 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
     Mat3 twist = Mat3::Zero();
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      respond(material, F, frame, dt, history_at(point, j), false, t.response);
+      evaluate(material, F, frame, dt, history_at(point, j), false, t.response);
       const double weight = points_[point].weight;
       for (int J = 0; J < 3; ++J)
         for (int c = 0; c < 3; ++c)
@@ -315,11 +315,11 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
   });
   Mat3 twist = Mat3::Zero();
   for (std::size_t e = 0; e < elements; ++e) {
-    const auto& equations = element_equations_[e];
-    const auto& places = element_places_[e];
-    for (std::size_t i = 0; i < equations.size(); ++i) {
-      force[equations[i]] += forces[e](places[i] / K, places[i] % K);
-      inertia[equations[i]] += inertias[e](places[i] / K, places[i] % K);
+    const auto& dofs = element_equations_[e];
+    const auto& places = element_dofs_[e];
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      force[dofs[i]] += forces[e](places[i] / K, places[i] % K);
+      inertia[dofs[i]] += inertias[e](places[i] / K, places[i] % K);
     }
     if (corotated_) twist += twists[e];
   }
@@ -351,7 +351,7 @@ void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mea
   for (auto& m : slopes) m.resize(t.angles, 9 * P);
   visit_points(s, mean, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
     const std::size_t point = e * static_cast<std::size_t>(P) + static_cast<std::size_t>(p);
-    respond(material, F, frame, dt, history_at(point, j), true, t.response);
+    evaluate(material, F, frame, dt, history_at(point, j), true, t.response);
     const double weight = factor * points_[point].weight;
     for (std::size_t q = 0; q < 6; ++q)
       for (Index J = 0; J < 3; ++J)
@@ -402,7 +402,7 @@ void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink&
     if (weights.mass != 0)
       for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j) ke.block(i * K, j * K, K, K) += weights.mass * element_mass_[e](i, j) * gram_;
-    const auto& places = element_places_[e];
+    const auto& places = element_dofs_[e];
     if (static_cast<Index>(places.size()) == 8 * K) stiffness[e] = std::move(ke);
     else stiffness[e] = ke(places, places);
   });
@@ -427,8 +427,8 @@ std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
   over_elements([&](std::size_t e, Scratch& t) {
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      respond(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-              t.response);
+      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
+               t.response);
       found[e] += points_[point].weight * t.response.energy;
     });
   });
@@ -436,7 +436,7 @@ std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
   return out;
 }
 
-void HarmonicSolid::accept(const State& s) {
+void HarmonicSolid::commit(const State& s) {
   const double dt = s.time - time_;
   if (!history_.empty()) {
     std::vector<double> found(mesh_.elements.size(), 0);
@@ -447,7 +447,8 @@ void HarmonicSolid::accept(const State& s) {
       visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
         const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
         const std::size_t at = history_start_[point] + static_cast<std::size_t>(j) * size;
-        found[e] += points_[point].weight * move_history(material, F, dt, std::span(history_).subspan(at, size));
+        found[e] += points_[point].weight *
+                    update_internal_variables(material, F, dt, std::span(history_).subspan(at, size));
       });
     });
     for (std::size_t e = 0; e < found.size(); ++e) dissipated_[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
@@ -488,7 +489,7 @@ Eigen::MatrixXd HarmonicSolid::velocity_fields(const State& s) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(nodes, K);
   for (Index i = 0; i < nodes; ++i)
     for (Index k = 0; k < K; ++k)
-      if (const Index e = equation(static_cast<int>(i), k); e >= 0) out(i, k) = s.v[e];
+      if (const Index e = dof(static_cast<int>(i), k); e >= 0) out(i, k) = s.v[e];
   return out;
 }
 
@@ -499,7 +500,7 @@ Vec3 HarmonicSolid::reference(int node, double theta) const {
 
 Vec3 HarmonicSolid::vector_at(const Eigen::MatrixXd& fields, int node, double theta) const {
   Vec3 v = Vec3::Zero();
-  for (Index k = 0; k < unknowns(); ++k) v += fields(node, k) * family_[static_cast<std::size_t>(k)].at(theta);
+  for (Index k = 0; k < unknowns(); ++k) v += fields(node, k) * basis_[static_cast<std::size_t>(k)].at(theta);
   return placement_.axes * v;
 }
 
@@ -515,8 +516,8 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   over_elements([&](std::size_t e, Scratch& t) {
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * per + static_cast<std::size_t>(p);
-      respond(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-              t.response);
+      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
+               t.response);
       // In the cylindrical frame, so that an axisymmetric state is constant over theta.
       const Mat3& Q = frames_[static_cast<std::size_t>(j)];
       const Mat3 sigma = t.response.stress * F.transpose() / F.determinant();
@@ -567,14 +568,14 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
 
 void HarmonicSolid::set_velocity(State& s, const Vec3& linear, const Vec3& angular) const {
   const Vec3 v = placement_.axes.transpose() * linear, w = placement_.axes.transpose() * angular;
-  const AngularRule circle = full_circle(2 * largest_order(family_) + 5);
+  const AngularRule circle = full_circle(2 * largest_order(basis_) + 5);
   // Projections of the parts of v + w x (s e1 + rho e_rho): constant, times s, times rho.
   const Index K = unknowns();
   Eigen::Matrix<double, 3, Eigen::Dynamic> part = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, K);
   for (double theta : circle.theta) {
     const Vec3 radial(0, std::cos(theta), std::sin(theta));
     for (Index k = 0; k < K; ++k) {
-      const Vec3 f = circle.weight / gram_(k, k) * family_[static_cast<std::size_t>(k)].at(theta);
+      const Vec3 f = circle.weight / gram_(k, k) * basis_[static_cast<std::size_t>(k)].at(theta);
       part(0, k) += f.dot(v);
       part(1, k) += f.dot(w.cross(Vec3::UnitX()));
       part(2, k) += f.dot(w.cross(radial));
@@ -582,18 +583,18 @@ void HarmonicSolid::set_velocity(State& s, const Vec3& linear, const Vec3& angul
   }
   for (std::size_t i = 0; i < mesh_.nodes.size(); ++i)
     for (Index k = 0; k < K; ++k)
-      if (const Index e = equation(static_cast<int>(i), k); e >= 0)
+      if (const Index e = dof(static_cast<int>(i), k); e >= 0)
         s.v[e] = part(0, k) + mesh_.nodes[i].x() * part(1, k) + mesh_.nodes[i].y() * part(2, k);
 }
 
 MeanMotion HarmonicSolid::motion(const State& s) const {
   const Index K = unknowns();
   // The reference position is two more fields: s along e1, rho along e_rho.
-  Family family = family_;
-  family.push_back({0, Vec3::UnitX(), Vec3::Zero()});
-  family.push_back({1, Vec3::UnitY(), Vec3::UnitZ()});
-  const AngularRule circle = full_circle(2 * largest_order(family) + 3);
-  const auto at = [&](Index k, double theta) { return family[static_cast<std::size_t>(k)].at(theta); };
+  FourierBasis basis = basis_;
+  basis.push_back({0, Vec3::UnitX(), Vec3::Zero()});
+  basis.push_back({1, Vec3::UnitY(), Vec3::UnitZ()});
+  const AngularRule circle = full_circle(2 * largest_order(basis) + 3);
+  const auto at = [&](Index k, double theta) { return basis[static_cast<std::size_t>(k)].at(theta); };
 
   double mass = 0;
   Vec3 first = Vec3::Zero(), momentum = Vec3::Zero();

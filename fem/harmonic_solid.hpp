@@ -44,7 +44,7 @@ class HarmonicSolid final : public Term {
  public:
   /// `materials[layer]` for the mesh's layers. Adds its unknowns to `layout`. Throws
   /// std::invalid_argument where a material or the number of them cannot be.
-  HarmonicSolid(Layout& layout, mesh::Meridian mesh, Family family, SolidQuadrature quadrature,
+  HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis basis, SolidQuadrature quadrature,
                 std::vector<Solid> materials, Placement placement, std::string body = "ball");
 
   std::string body() const override { return body_; }
@@ -52,17 +52,17 @@ class HarmonicSolid final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
   const mesh::Meridian& mesh() const { return mesh_; }
-  const Family& family() const { return family_; }
+  const FourierBasis& basis() const { return basis_; }
   const Placement& placement() const { return placement_; }
   const std::vector<Solid>& materials() const { return materials_; }
-  Index unknowns() const { return static_cast<Index>(family_.size()); }
+  Index unknowns() const { return static_cast<Index>(basis_.size()); }
   /// Equation of unknown k at a node; -1 where the axis leaves none.
-  Index equation(int node, Index k) const { return equation_[static_cast<std::size_t>(node * unknowns() + k)]; }
+  Index dof(int node, Index k) const { return dof_[static_cast<std::size_t>(node * unknowns() + k)]; }
   Index offset(int node, Index k) const;  ///< the same as an entry of State::q, or -1
 
   /// Meridian fields U (nodes x unknowns) of the state's displacement [m], velocity [m/s].
@@ -115,14 +115,14 @@ class HarmonicSolid final : public Term {
 
   std::string body_;
   mesh::Meridian mesh_;
-  Family family_;
+  FourierBasis basis_;
   SolidQuadrature quadrature_;
   std::vector<Solid> materials_;
   Placement placement_;
-  Layout::Block block_;
-  std::vector<Index> equation_;
+  DofMap::Block block_;
+  std::vector<Index> dof_;
   std::vector<std::vector<Index>> element_equations_;      // free ones of each element
-  std::vector<std::vector<int>> element_places_;           // their place i * K + k in the element's fields
+  std::vector<std::vector<int>> element_dofs_;             // their place i * K + k in the element's fields
   std::vector<Point> points_;                              // element by element
   std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;  // density included, angular part not
   Eigen::MatrixXd gradients_;  // element by element 8 x 3 points: ds and drho point by point, then value / rho

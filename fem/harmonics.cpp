@@ -14,10 +14,10 @@ Vec3 AngularFunction::derivative(double theta) const {
   return order * (-std::sin(order * theta) * cosine + std::cos(order * theta) * sine);
 }
 
-Family axisymmetric_family() { return {{0, Vec3::UnitX(), Vec3::Zero()}, {1, Vec3::UnitY(), Vec3::UnitZ()}}; }
+FourierBasis axisymmetric_basis() { return {{0, Vec3::UnitX(), Vec3::Zero()}, {1, Vec3::UnitY(), Vec3::UnitZ()}}; }
 
-Family cartesian_family(int symmetric, int antisymmetric) {
-  Family f;
+FourierBasis cartesian_basis(int symmetric, int antisymmetric) {
+  FourierBasis f;
   const Vec3 none = Vec3::Zero();
   for (int m = 0; m <= symmetric; ++m) {
     f.push_back({m, Vec3::UnitX(), none});
@@ -32,15 +32,15 @@ Family cartesian_family(int symmetric, int antisymmetric) {
   return f;
 }
 
-Family cylindrical_family(int m) {
+FourierBasis cylindrical_basis(int m) {
   // u_r e_r + u_theta e_theta = (U - V)/2 [harmonic m - 1] + (U + V)/2 [harmonic m + 1].
-  Family f{{m, Vec3::UnitX(), Vec3::Zero()}};
+  FourierBasis f{{m, Vec3::UnitX(), Vec3::Zero()}};
   if (m > 0) f.push_back({m - 1, Vec3::UnitY(), -Vec3::UnitZ()});
   f.push_back({m + 1, Vec3::UnitY(), Vec3::UnitZ()});
   return f;
 }
 
-Family torsion_family() { return {{1, Vec3::UnitZ(), -Vec3::UnitY()}}; }
+FourierBasis torsion_basis() { return {{1, Vec3::UnitZ(), -Vec3::UnitY()}}; }
 
 AngularRule single_angle() { return {{0.0}, 2 * kPi}; }
 

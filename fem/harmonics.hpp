@@ -20,21 +20,21 @@ struct AngularFunction {
 };
 
 /// The displacement of a meridian point is sum_k U_k f_k(theta).
-using Family = std::vector<AngularFunction>;
+using FourierBasis = std::vector<AngularFunction>;
 
 /// Axial and radial displacement of a solid of revolution: 2 unknowns a node.
-Family axisymmetric_family();
+FourierBasis axisymmetric_basis();
 /// Cartesian components, 1 and 2 in cos m theta (m = 0...symmetric), 3 in sin m theta: 3 N + 2
 /// unknowns, mirror symmetry about the plane of axes 1 and 2; then, up to `antisymmetric`, the other
 /// half (1 and 2 in sin, 3 in cos): with antisymmetric = symmetric the full family of 3 (2 N + 1)
 /// unknowns; -1 leaves it out. Rigid rotations of any size are exact from order 1 on, in the plane of
 /// symmetry, and in space where antisymmetric >= 1.
-Family cartesian_family(int symmetric, int antisymmetric = -1);
+FourierBasis cartesian_basis(int symmetric, int antisymmetric = -1);
 /// The displacements u = U cos m theta, v = V sin m theta, w = W cos m theta in cylindrical components:
 /// the linear problem of one harmonic; with m = 0 the radial and axial part.
-Family cylindrical_family(int order);
+FourierBasis cylindrical_basis(int order);
 /// Rotation of every meridian point about the axis.
-Family torsion_family();
+FourierBasis torsion_basis();
 
 /// Equidistant angles of equal weight.
 struct AngularRule {

@@ -48,7 +48,7 @@ void ModalDamping::residual(const State& s, Vector&, Vector& force) const {
   }
 }
 
-void ModalDamping::accept(const State& s) {
+void ModalDamping::commit(const State& s) {
   const Vector eta = speeds(s);
   const double power = eta.dot(rates_.cwiseProduct(eta));
   if (started_) viscous_ += 0.5 * (power_ + power) * (s.time - time_);

@@ -24,7 +24,7 @@ class ModalDamping final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State&, const Weights&, TangentSink&) const override {}
   Energies energies(const State&) const override { return {.viscous = viscous_}; }
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 

@@ -4,18 +4,18 @@
 
 namespace hosel::fem {
 
-RigidBody::RigidBody(std::string body, const Layout::Block& translation, const Layout::Block& rotation,
+RigidBody::RigidBody(std::string body, const DofMap::Block& translation, const DofMap::Block& rotation,
                      const RigidBodyProperties& properties, const Vec3& gravity)
     : body_(std::move(body)),
       translation_(translation),
       rotation_(rotation),
       properties_(properties),
       gravity_(gravity) {
-  for (Index i = 0; i < 3; ++i) equations_.push_back(translation_.v + i);
-  for (Index i = 0; i < 3; ++i) equations_.push_back(rotation_.v + i);
+  for (Index i = 0; i < 3; ++i) dofs_.push_back(translation_.v + i);
+  for (Index i = 0; i < 3; ++i) dofs_.push_back(rotation_.v + i);
 }
 
-void RigidBody::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(equations_); }
+void RigidBody::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(dofs_); }
 
 void RigidBody::residual(const State& s, Vector& inertia, Vector& force) const {
   const Mat3 R = rotation(s, rotation_).toRotationMatrix();
@@ -49,7 +49,7 @@ void RigidBody::tangent(const State& s, const Weights& weights, TangentSink& sin
   k.bottomRightCorner<3, 3>() = weights.mass * (J - m * cx * cx) +
                                 weights.damping * (m * cx * centripetal + wx * J - skew(J * w)) +
                                 weights.stiffness * m * cx * skew(node);
-  sink.add(equations_, equations_, k);
+  sink.add(dofs_, dofs_, k);
 }
 
 Energies RigidBody::energies(const State& s) const {
@@ -60,7 +60,7 @@ Energies RigidBody::energies(const State& s) const {
   return e;
 }
 
-void RigidBody::accept(const State& s) {
+void RigidBody::commit(const State& s) {
   const Vec3 now = position(s);
   // The first accepted state is the start: no work has been done yet.
   if (has_position_) external_work_ += properties_.mass * gravity_.dot(now - last_position_);

@@ -22,7 +22,7 @@ class RigidBody final : public Term {
  public:
   /// `translation` holds the node's global position, `rotation` its attitude; the body's own frame is
   /// the node's. `gravity` is the global acceleration of free fall [m/s^2].
-  RigidBody(std::string body, const Layout::Block& translation, const Layout::Block& rotation,
+  RigidBody(std::string body, const DofMap::Block& translation, const DofMap::Block& rotation,
             const RigidBodyProperties& properties, const Vec3& gravity = Vec3::Zero());
 
   std::string body() const override { return body_; }
@@ -30,7 +30,7 @@ class RigidBody final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
 
   const RigidBodyProperties& properties() const { return properties_; }
   Vec3 position(const State& s) const;          ///< of the centre of gravity, global [m]
@@ -41,13 +41,13 @@ class RigidBody final : public Term {
 
  private:
   std::string body_;
-  Layout::Block translation_, rotation_;
+  DofMap::Block translation_, rotation_;
   RigidBodyProperties properties_;
   Vec3 gravity_;
   double external_work_ = 0;
   bool has_position_ = false;
   Vec3 last_position_ = Vec3::Zero();
-  std::vector<Index> equations_;
+  std::vector<Index> dofs_;
 };
 
 }  // namespace hosel::fem

@@ -4,28 +4,28 @@
 
 namespace hosel::fem {
 
-Layout::Block Layout::add_vector(Index size) {
+DofMap::Block DofMap::add_vector(Index size) {
   blocks_.push_back({q_size_, v_size_, size, false});
   q_size_ += size;
   v_size_ += size;
   return blocks_.back();
 }
 
-Layout::Block Layout::add_rotation() {
+DofMap::Block DofMap::add_rotation() {
   blocks_.push_back({q_size_, v_size_, 3, true});
   q_size_ += 4;
   v_size_ += 3;
   return blocks_.back();
 }
 
-State Layout::rest() const {
+State DofMap::rest() const {
   State s{0, Vector::Zero(q_size_), Vector::Zero(v_size_), Vector::Zero(v_size_)};
   for (const Block& b : blocks_)
     if (b.rotation) s.q[b.q + 3] = 1;
   return s;
 }
 
-Vector Layout::advanced(const Vector& q, const Vector& dq) const {
+Vector DofMap::advanced(const Vector& q, const Vector& dq) const {
   Vector out(q_size_);
   for (const Block& b : blocks_) {
     if (!b.rotation) {
@@ -38,11 +38,11 @@ Vector Layout::advanced(const Vector& q, const Vector& dq) const {
   return out;
 }
 
-Eigen::Quaterniond rotation(const State& s, const Layout::Block& block) {
+Eigen::Quaterniond rotation(const State& s, const DofMap::Block& block) {
   return Eigen::Quaterniond(Eigen::Vector4d(s.q.segment<4>(block.q)));
 }
 
-void set_rotation(State& s, const Layout::Block& block, const Eigen::Quaterniond& r) {
+void set_rotation(State& s, const DofMap::Block& block, const Eigen::Quaterniond& r) {
   s.q.segment<4>(block.q) = r.normalized().coeffs();
 }
 

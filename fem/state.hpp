@@ -15,13 +15,13 @@ using Vector = Eigen::VectorXd;
 /// in `q` and a material (body-frame) angular velocity in `v`; everything else is a plain number.
 struct State {
   double time = 0;  ///< [s]
-  Vector q;         ///< configuration, Layout::q_size() entries
-  Vector v;         ///< velocity, Layout::size() entries
-  Vector a;         ///< acceleration, Layout::size() entries
+  Vector q;         ///< configuration, DofMap::q_size() entries
+  Vector v;         ///< velocity, DofMap::size() entries
+  Vector a;         ///< acceleration, DofMap::size() entries
 };
 
 /// Which entries of q, v and a belong to what. Equations, increments, v and a share one numbering.
-class Layout {
+class DofMap {
  public:
   struct Block {
     Index q = 0;     ///< first entry in State::q
@@ -50,8 +50,8 @@ class Layout {
 };
 
 /// Rotation stored at `block`.
-Eigen::Quaterniond rotation(const State& s, const Layout::Block& block);
-void set_rotation(State& s, const Layout::Block& block, const Eigen::Quaterniond& r);
+Eigen::Quaterniond rotation(const State& s, const DofMap::Block& block);
+void set_rotation(State& s, const DofMap::Block& block, const Eigen::Quaterniond& r);
 
 /// exp of so(3) as a quaternion; exact series near zero.
 Eigen::Quaterniond rotation_exp(const Vec3& w);

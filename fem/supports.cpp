@@ -12,7 +12,7 @@ Motion at_rest(const Vec3& position, const Eigen::Quaterniond& rotation) {
 }
 
 ImposedMotion::ImposedMotion(const Node& node, Motion motion)
-    : node_(node), motion_(std::move(motion)), equations_(fem::equations(node)) {}
+    : node_(node), motion_(std::move(motion)), dofs_(fem::dofs(node)) {}
 
 void ImposedMotion::impose(State& s) const {
   const Pose p = motion_(s.time);
@@ -25,13 +25,9 @@ void ImposedMotion::impose(State& s) const {
 }
 
 NodeLoad::NodeLoad(std::string body, const Node& node, std::function<Wrench(double)> wrench, Moment moment)
-    : body_(std::move(body)),
-      node_(node),
-      wrench_(std::move(wrench)),
-      kind_(moment),
-      equations_(fem::equations(node)) {}
+    : body_(std::move(body)), node_(node), wrench_(std::move(wrench)), kind_(moment), dofs_(fem::dofs(node)) {}
 
-void NodeLoad::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(equations_); }
+void NodeLoad::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(dofs_); }
 
 Vec3 NodeLoad::body_moment(const State& s, const Wrench& w) const {
   return kind_ == Moment::body ? w.moment : Vec3(rotation(s, node_.rotation).conjugate() * w.moment);
@@ -46,12 +42,12 @@ void NodeLoad::residual(const State& s, Vector&, Vector& force) const {
 void NodeLoad::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
   Eigen::Matrix<double, 6, 6> K = Eigen::Matrix<double, 6, 6>::Zero();
   if (kind_ == Moment::global) K.bottomRightCorner<3, 3>() = -weights.stiffness * skew(body_moment(s, wrench_(s.time)));
-  sink.add(equations_, equations_, K);
+  sink.add(dofs_, dofs_, K);
 }
 
 Energies NodeLoad::energies(const State&) const { return {.external = work_}; }
 
-void NodeLoad::accept(const State& s) {
+void NodeLoad::commit(const State& s) {
   const Wrench w = wrench_(s.time);
   const Vec3 x = s.q.segment<3>(node_.translation.q), m = body_moment(s, w);
   const Eigen::Quaterniond r = rotation(s, node_.rotation);
@@ -95,8 +91,8 @@ struct SpringJoint::Strain {
 
 SpringJoint::SpringJoint(std::string body, const Node& first, const Node& second, const JointStiffness& k)
     : body_(std::move(body)), first_(first), second_(second) {
-  equations_ = fem::equations(first);
-  for (Index e : fem::equations(second)) equations_.push_back(e);
+  dofs_ = fem::dofs(first);
+  for (Index e : fem::dofs(second)) dofs_.push_back(e);
   const auto in_reference = [&](const Vec3& v) { return Mat3(k.frame * v.asDiagonal() * k.frame.transpose()); };
   Kt_ = in_reference(k.translation);
   Kr_ = in_reference(k.rotation);
@@ -108,7 +104,7 @@ SpringJoint::SpringJoint(std::string body, Motion first, const Node& second, con
     : SpringJoint(std::move(body), second, second, k) {
   first_.reset();
   motion_ = std::move(first);
-  equations_ = fem::equations(second);
+  dofs_ = fem::dofs(second);
 }
 
 Pose SpringJoint::first(const State& s) const {
@@ -142,15 +138,15 @@ SpringJoint::Strain SpringJoint::strain(const State& s) const {
   return e;
 }
 
-void SpringJoint::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(equations_); }
+void SpringJoint::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(dofs_); }
 
 void SpringJoint::residual(const State& s, Vector&, Vector& force) const {
   const Strain e = strain(s);
   Eigen::Matrix<double, 6, 1> stress;
   stress << Kt_ * e.d + Ct_ * e.d_rate, Kr_ * e.r + Cr_ * e.r_rate;
   const Eigen::Matrix<double, 12, 1> f = e.B.transpose() * stress;
-  const Index skip = 12 - static_cast<Index>(equations_.size());
-  for (std::size_t i = 0; i < equations_.size(); ++i) force[equations_[i]] += f[skip + static_cast<Index>(i)];
+  const Index skip = 12 - static_cast<Index>(dofs_.size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) force[dofs_[i]] += f[skip + static_cast<Index>(i)];
 }
 
 void SpringJoint::tangent(const State& s, const Weights& w, TangentSink& sink) const {
@@ -174,8 +170,8 @@ void SpringJoint::tangent(const State& s, const Weights& w, TangentSink& sink) c
     K.block<3, 3>(3, 9) += turned;
     K.block<3, 3>(3, 3) -= turned * e.relative.transpose();
   }
-  const auto n_eq = static_cast<Index>(equations_.size());
-  sink.add(equations_, equations_, K.bottomRightCorner(n_eq, n_eq));
+  const auto n_eq = static_cast<Index>(dofs_.size());
+  sink.add(dofs_, dofs_, K.bottomRightCorner(n_eq, n_eq));
 }
 
 Energies SpringJoint::energies(const State& s) const {
@@ -183,7 +179,7 @@ Energies SpringJoint::energies(const State& s) const {
   return {.strain = 0.5 * (e.d.dot(Kt_ * e.d) + e.r.dot(Kr_ * e.r)), .viscous = viscous_, .external = work_};
 }
 
-void SpringJoint::accept(const State& s) {
+void SpringJoint::commit(const State& s) {
   const Strain e = strain(s);
   const double power = e.d_rate.dot(Ct_ * e.d_rate) + e.r_rate.dot(Cr_ * e.r_rate);
   double drive = 0;

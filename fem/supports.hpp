@@ -27,13 +27,13 @@ Motion at_rest(const Vec3& position, const Eigen::Quaterniond& rotation = Eigen:
 class ImposedMotion final : public Prescribed {
  public:
   ImposedMotion(const Node& node, Motion motion);
-  const std::vector<Index>& equations() const override { return equations_; }
+  const std::vector<Index>& dofs() const override { return dofs_; }
   void impose(State& state) const override;
 
  private:
   Node node_;
   Motion motion_;
-  std::vector<Index> equations_;
+  std::vector<Index> dofs_;
 };
 
 /// Force (global) and moment at a node.
@@ -53,7 +53,7 @@ class NodeLoad final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
@@ -64,7 +64,7 @@ class NodeLoad final : public Term {
   Node node_;
   std::function<Wrench(double)> wrench_;
   Moment kind_;
-  std::vector<Index> equations_;
+  std::vector<Index> dofs_;
   double work_ = 0;
   bool started_ = false;
   Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero(), moment_ = Vec3::Zero();
@@ -94,7 +94,7 @@ class SpringJoint final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
-  void accept(const State& accepted) override;
+  void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
   void restore(std::span<const double>& history) override;
 
@@ -108,7 +108,7 @@ class SpringJoint final : public Term {
   Motion motion_;
   Node second_;
   Mat3 Kt_, Kr_, Ct_, Cr_;
-  std::vector<Index> equations_;
+  std::vector<Index> dofs_;
   double viscous_ = 0, work_ = 0, power_ = 0, drive_ = 0, time_ = 0;
   bool started_ = false;
 };

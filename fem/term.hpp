@@ -3,7 +3,7 @@
 /// The equations at time t are   inertia(q, v, a, t) + force(q, v, t) = 0,
 /// `force` being internal minus external. A term adds to one or both, gives its tangent and its
 /// energies, and owns its history (viscous strains, friction tractions): history moves only in
-/// accept(). Evaluations at a trial state are made against the last accepted state.
+/// commit(). Evaluations at a trial state are made against the last accepted state.
 #pragma once
 
 #include <memory>
@@ -47,17 +47,17 @@ class Term {
   virtual std::string body() const = 0;
   /// Lists of equations that this term couples (each a dense block of the pattern).
   virtual void pattern(std::vector<std::vector<Index>>& blocks) const = 0;
-  /// Adds to both vectors (Layout::size() entries).
+  /// Adds to both vectors (DofMap::size() entries).
   virtual void residual(const State& trial, Vector& inertia, Vector& force) const = 0;
   virtual void tangent(const State& trial, const Weights& weights, TangentSink& sink) const = 0;
   /// Whether the tangent changes at once as points touch, stick or slide, and is unsymmetric: solvers keep
   /// what is smooth and symmetric apart.
   virtual bool abrupt() const { return false; }
-  /// At the accepted state (cumulative figures as of the last accept()).
+  /// At the accepted state (cumulative figures as of the last commit()).
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.
   /// The initial state of a run is accepted first.
-  virtual void accept(const State& accepted) { (void)accepted; }
+  virtual void commit(const State& accepted) { (void)accepted; }
   /// The history as numbers, appended for a restart; restore() takes them back from the front.
   virtual void save(std::vector<double>& history) const { (void)history; }
   virtual void restore(std::span<const double>& history) { (void)history; }
@@ -69,13 +69,13 @@ class Term {
 class Prescribed {
  public:
   virtual ~Prescribed() = default;
-  virtual const std::vector<Index>& equations() const = 0;
+  virtual const std::vector<Index>& dofs() const = 0;
   /// Writes q (whole blocks), v and a of the imposed motion at state.time.
   virtual void impose(State& state) const = 0;
 };
 
 struct System {
-  Layout layout;
+  DofMap dof_map;
   std::vector<std::unique_ptr<Term>> terms;
   std::vector<std::unique_ptr<Prescribed>> prescribed;
 };

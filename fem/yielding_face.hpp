@@ -10,14 +10,14 @@ namespace hosel::fem {
 class YieldingFace final : public FaceSurface {
  public:
   /// `travel`: a block of one number, the travel at the centre of the face [m].
-  YieldingFace(const Face& face, const FaceCompliance& compliance, const Layout::Block& travel)
+  YieldingFace(const Face& face, const FaceCompliance& compliance, const DofMap::Block& travel)
       : FaceSurface(face), compliance_(compliance), travel_(travel) {}
-  std::optional<Layout::Block> unknowns() const override { return travel_; }
+  std::optional<DofMap::Block> unknowns() const override { return travel_; }
   Travel travel(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
 
  private:
   FaceCompliance compliance_;
-  Layout::Block travel_;
+  DofMap::Block travel_;
 };
 
 }  // namespace hosel::fem

@@ -9,13 +9,13 @@
 namespace hosel::loop {
 
 std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& base,
-                                           const std::vector<const Form*>& forms, const Rules& rules) {
+                                           const std::vector<const Parametrisation*>& forms, const Rules& rules) {
   // Found nine times in ten: the threshold and 1.3 standard deviations more.
   const double wanted = std::sqrt(rules.gain) + 1.3;
   const Eigen::VectorXd z0 = whitened(problem, Part::select, base.model, base.p);
   const Eigen::MatrixXd Q = orthonormal(problem.jacobian(Part::select, base.model, base.p));
   // Nothing where the data do not show the form.
-  const auto size_of = [&](const Form* f) -> std::optional<Detectable> {
+  const auto size_of = [&](const Parametrisation* f) -> std::optional<Detectable> {
     const Parameter& par = f->parameters.front();
     Fit probe = beside(base, f);
     const auto signal = [&](double x) {
@@ -38,15 +38,15 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
     out.value = std::abs(0.5 * (low + high) * end) / par.si;
     return out;
   };
-  std::vector<std::vector<const Form*>> of_effect;
-  for (const Form* f : forms) {
+  std::vector<std::vector<const Parametrisation*>> of_effect;
+  for (const Parametrisation* f : forms) {
     const auto same = std::ranges::find(of_effect, f->effect, [](const auto& list) { return list.front()->effect; });
     if (same == of_effect.end()) of_effect.push_back({f});
     else same->push_back(f);
   }
   std::vector<std::optional<Detectable>> found(of_effect.size());
   tbb::parallel_for(std::size_t(0), of_effect.size(), [&](std::size_t k) {
-    for (const Form* f : of_effect[k])
+    for (const Parametrisation* f : of_effect[k])
       if (!found[k]) found[k] = size_of(f);
   });
   std::vector<Detectable> all;

@@ -13,11 +13,11 @@
 
 namespace hosel::loop {
 
-struct Rig;  // a club test: history/rig.hpp
+struct TestSetup;  // a club test: history/test_setup.hpp
 struct HistorySetting;
 
 /// One shot as an effect sees it.
-struct Trial {
+struct Shot {
   Blow blow;
   double order = 0;  ///< place in the session: 0 the first shot, 1 the last
 };
@@ -31,24 +31,24 @@ struct Parameter {
 };
 
 /// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.
-struct Form {
+struct Parametrisation {
   std::string effect;  ///< name of the contract
   std::string what;    ///< what this form varies, in words
   std::vector<Parameter> parameters;
   /// How much better than the effect's usual forms an unusual one must fit [units of deviance].
-  double rarity = 0;
+  double complexity = 0;
   /// Further starting points [SI].
   std::vector<std::vector<double>> starts;
   /// Nothing happens below some size: the gradient at zero vanishes, and the starts are probes that stand for it.
   bool threshold = false;
   /// Shot: changes the blow before the model answers.
-  std::function<void(std::span<const double>, Trial&)> before;
+  std::function<void(std::span<const double>, Shot&)> before;
   /// Shot: changes the model's answer (the blow as the other hooks left it).
-  std::function<void(std::span<const double>, const Trial&, Launch&)> after;
+  std::function<void(std::span<const double>, const Shot&, Launch&)> after;
   /// Shot: changes what the instrument shows of one output [SI].
-  std::function<double(std::span<const double>, const Trial&, Output, double)> reading;
+  std::function<double(std::span<const double>, const Shot&, Output, double)> reading;
   /// Club test: changes club, clamp or sensors.
-  std::function<void(std::span<const double>, Rig&)> setup;
+  std::function<void(std::span<const double>, TestSetup&)> setup;
 };
 
 /// What the forms of an effect on shots depend on.
@@ -63,8 +63,8 @@ struct EffectEntry {
   std::string_view what;    ///< what a model without it lacks
   std::string_view sensor;  ///< the quantity whose direct measurement would settle it
   /// Its forms on shots and on records of a club test; they return none where it cannot act on this base.
-  std::vector<Form> (*on_shots)(const Setting&) = nullptr;
-  std::vector<Form> (*on_tests)(const HistorySetting&) = nullptr;
+  std::vector<Parametrisation> (*on_shots)(const Setting&) = nullptr;
+  std::vector<Parametrisation> (*on_tests)(const HistorySetting&) = nullptr;
 };
 
 /// Every effect, in the order in which reports name them.

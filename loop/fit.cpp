@@ -47,7 +47,7 @@ double deviance(const Problem& problem, Part part, const Fit& f) {
 std::vector<Eigen::VectorXd> starts(const Model& model) {
   std::vector<Eigen::VectorXd> all = {Eigen::VectorXd::Zero(model.size())};
   int at = 0;
-  for (const Form* f : model.forms) {
+  for (const Parametrisation* f : model.forms) {
     const int n = int(f->parameters.size());
     const std::size_t known = all.size();
     for (const auto& s : f->starts)
@@ -121,7 +121,7 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
   return best;
 }
 
-Fit beside(const Fit& f, const Form* more) {
+Fit beside(const Fit& f, const Parametrisation* more) {
   Fit out{.model = f.model.with(more), .p = Eigen::VectorXd::Zero(f.size() + Eigen::Index(more->parameters.size()))};
   out.p.head(f.size()) = f.p;
   return out;

@@ -25,7 +25,7 @@ std::vector<Eigen::VectorXd> starts(const Model& model);
 Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, const Eigen::VectorXd& p);
 double deviance(const Problem& problem, Part part, const Fit& fit);
 /// A fit with one more form, its parameters zero: where a look beside the fit begins.
-Fit beside(const Fit& fit, const Form* more);
+Fit beside(const Fit& fit, const Parametrisation* more);
 
 /// Covariance of the parameters [SI] on the selection's data; infinite along null vectors. Where the noise of a channel
 /// is not known, by the scatter of the scores.

@@ -55,12 +55,12 @@ Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixX
   return out;
 }
 
-Likeness likeness(const Problem& problem, const Fit& at, const std::vector<const Form*>& forms) {
+Likeness likeness(const Problem& problem, const Fit& at, const std::vector<const Parametrisation*>& forms) {
   std::vector<EffectColumn> columns;
   std::set<std::string> seen;
-  for (const Form* f : at.model.forms) seen.insert(f->effect);
+  for (const Parametrisation* f : at.model.forms) seen.insert(f->effect);
   const Eigen::VectorXd z = whitened(problem, Part::select, at.model, at.p);
-  for (const Form* f : forms) {
+  for (const Parametrisation* f : forms) {
     if (f->parameters.size() != 1 || !seen.insert(f->effect).second) continue;
     Fit more = beside(at, f);
     EffectColumn c{f->effect, f->parameters.front().name, {}};

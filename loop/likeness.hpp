@@ -34,6 +34,6 @@ struct EffectColumn {
 Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixXd& fitted);
 /// Of the effects beside a fit, one column each: their first form with one parameter, a finite probe where it is a
 /// threshold.
-Likeness likeness(const Problem& problem, const Fit& at, const std::vector<const Form*>& forms);
+Likeness likeness(const Problem& problem, const Fit& at, const std::vector<const Parametrisation*>& forms);
 
 }  // namespace hosel::loop

@@ -36,11 +36,11 @@ struct Channel {
 
 /// Effects on top of the base model, in the order in which they are applied.
 struct Model {
-  std::vector<const Form*> forms;
+  std::vector<const Parametrisation*> forms;
 
   int size() const;  ///< number of parameters
   std::vector<const Parameter*> parameters() const;
-  Model with(const Form* more) const;
+  Model with(const Parametrisation* more) const;
 };
 
 /// Which of the data: those that effects are selected on (not more than needed), all that train, those held out.

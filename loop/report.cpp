@@ -91,7 +91,7 @@ json to_json(const LoopResult& r) {
                                  {"sd", value(c.sd[k] / parameters[k]->si)},
                                  {"unit", parameters[k]->unit}});
     std::vector<std::string> forms;
-    for (const Form* f : c.candidate.fit.model.forms) forms.push_back(f->effect + ": " + f->what);
+    for (const Parametrisation* f : c.candidate.fit.model.forms) forms.push_back(f->effect + ": " + f->what);
     e["forms"] = forms;
     e["deviance_fall"] = value(s.base.deviance - c.candidate.fit.deviance);
     e["at_bound"] = c.candidate.fit.at_bound;

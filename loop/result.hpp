@@ -76,7 +76,7 @@ struct LoopResult {
   LoopResult(LoopResult&&) = default;  // the models below point into `forms`: moved, never copied
   LoopResult& operator=(LoopResult&&) = default;
 
-  std::vector<Form> forms;  ///< every form that was tried
+  std::vector<Parametrisation> forms;  ///< every form that was tried
   std::string title, base;
   int read = 0, used = 0, train = 0, holdout = 0;
   unsigned long seed = 1;

@@ -13,7 +13,7 @@ struct Rules {
   double threshold_gain = 32;     ///< least fall by a threshold effect that opens the gate on its own
   double further_gain = 16;       ///< least fall of the criterion for one more effect
   double further_share = 0.7;     ///< of it is enough where structure is left without it
-  double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + rarity of the forms
+  double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + complexity of the forms
   double tie = 7;                 ///< candidates within this of the best criterion tie with it
   double holdout_loss = 4;        ///< the held-out deviance must not rise by more
   double noise_change = 0.03;     ///< relative; more, and effects are selected anew

@@ -44,8 +44,8 @@ std::size_t order_of(const std::string& effect) {
   return std::size_t(std::ranges::find(all, effect, &EffectEntry::name) - all.begin());
 }
 
-Search::Search(const Problem& problem, const std::vector<const Form*>& base_forms,
-               const std::vector<const Form*>& forms, const Rules& rules)
+Search::Search(const Problem& problem, const std::vector<const Parametrisation*>& base_forms,
+               const std::vector<const Parametrisation*>& forms, const Rules& rules)
     : problem_(problem),
       base_forms_(base_forms.size()),
       rules_(rules),
@@ -148,7 +148,7 @@ void Search::fit_triples() { triples = refined(grown(pairs, effort_.pairs_grown)
 std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::size_t few) const {
   struct Plan {
     const Candidate* set;
-    const Form* more;
+    const Parametrisation* more;
   };
   std::vector<Plan> plans;
   std::set<std::vector<std::string>> seen;
@@ -156,7 +156,7 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
     const Fit& f = sets[k].fit;
     const Eigen::VectorXd z = weighted(whitened(problem_, Part::select, f.model, f.p));
     const Eigen::MatrixXd Q = orthonormal(weighted(problem_.jacobian(Part::select, f.model, f.p)));
-    std::vector<std::pair<double, const Form*>> ranked(linear_.size());
+    std::vector<std::pair<double, const Parametrisation*>> ranked(linear_.size());
     tbb::parallel_for(std::size_t(0), linear_.size(), [&](std::size_t j) {
       const Linear& l = linear_[j];
       Eigen::MatrixXd A = columns_.middleCols(l.first, l.count);
@@ -166,13 +166,14 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
       }
       A -= Q * (Q.transpose() * A);
       const double fall = (orthonormal(A).transpose() * z).squaredNorm();
-      ranked[j] = {-fall + rules_.parameter_cost * double(l.count) + l.form->rarity, l.form};
+      ranked[j] = {-fall + rules_.parameter_cost * double(l.count) + l.form->complexity, l.form};
     });
     std::erase_if(ranked, [&](const auto& r) { return std::ranges::count(sets[k].effects, r.second->effect) > 0; });
     std::ranges::stable_sort(ranked, {}, [](const auto& r) { return r.first; });
     for (std::size_t j = 0; j < std::min(ranked.size(), effort_.grown); ++j) {
       std::vector<std::string> names;
-      for (const Form* form : f.model.with(ranked[j].second).forms) names.push_back(form->effect + form->what);
+      for (const Parametrisation* form : f.model.with(ranked[j].second).forms)
+        names.push_back(form->effect + form->what);
       std::ranges::sort(names);
       if (seen.insert(names).second) plans.push_back({&sets[k], ranked[j].second});
     }
@@ -239,7 +240,7 @@ void Search::weigh(const Fit& f) {
 
 Eigen::MatrixXd Search::weighted(Eigen::MatrixXd a) const { return weight_.asDiagonal() * a; }
 
-bool Search::acts(const Form* form) const {
+bool Search::acts(const Parametrisation* form) const {
   Fit probe = beside(base, form);
   const auto n = Eigen::Index(form->parameters.size());
   std::vector<Eigen::VectorXd> places;
@@ -255,7 +256,7 @@ bool Search::acts(const Form* form) const {
   });
 }
 
-Eigen::VectorXd Search::optimum(const Form* form) const {
+Eigen::VectorXd Search::optimum(const Parametrisation* form) const {
   const auto n = Eigen::Index(form->parameters.size());
   for (const Candidate& c : of_form_)
     if (c.fit.model.forms.back() == form) return c.fit.p.tail(n);
@@ -265,7 +266,7 @@ Eigen::VectorXd Search::optimum(const Form* form) const {
 Candidate Search::candidate(Fit f) const {
   Candidate c{.effects = {}, .fit = std::move(f)};
   c.criterion = c.fit.deviance + rules_.parameter_cost * c.fit.size();
-  for (const Form* form : c.fit.model.forms) c.criterion += form->rarity;
+  for (const Parametrisation* form : c.fit.model.forms) c.criterion += form->complexity;
   for (std::size_t k = base_forms_; k < c.fit.model.forms.size(); ++k)
     c.effects.push_back(c.fit.model.forms[k]->effect);
   std::ranges::stable_sort(c.effects, {}, order_of);
@@ -274,7 +275,7 @@ Candidate Search::candidate(Fit f) const {
 
 /// A form's columns beside the base, per scale of its parameters. The gradient of a threshold vanishes at zero: finite
 /// probes stand for it, one column each.
-Eigen::MatrixXd Search::about_zero(const Form& form) const {
+Eigen::MatrixXd Search::about_zero(const Parametrisation& form) const {
   Fit at = beside(base, &form);
   const auto n = Eigen::Index(form.parameters.size());
   if (!form.threshold) return problem_.jacobian(Part::select, at.model, at.p).rightCols(n);
@@ -293,7 +294,7 @@ void Search::linearise(std::vector<Eigen::MatrixXd> about_zero) {
   Eigen::Index total = 0;
   for (std::size_t k = 0; k < of_form_.size(); ++k) {
     const Fit& f = of_form_[k].fit;
-    const Form* form = f.model.forms.back();
+    const Parametrisation* form = f.model.forms.back();
     const auto n = Eigen::Index(form->parameters.size());
     const auto add = [&](const Eigen::MatrixXd& J) {
       for (Eigen::Index first = 0; first < J.cols(); first += n) {
@@ -331,7 +332,7 @@ double Search::promise(const std::vector<std::size_t>& which, Eigen::VectorXd& p
   double cost = rules_.parameter_cost * double(q.size());
   Eigen::Index k = 0;
   for (const std::size_t w : which) {
-    cost += linear_[w].form->rarity;
+    cost += linear_[w].form->complexity;
     for (const Parameter& par : linear_[w].form->parameters) {
       p[k] = std::clamp(q[k] * par.scale, par.min, par.max);
       q[k] = p[k] / par.scale;

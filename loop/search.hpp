@@ -10,7 +10,7 @@ namespace hosel::loop {
 struct Candidate {
   std::vector<std::string> effects;  ///< in the order of the registry
   Fit fit;                           ///< effects of the base first
-  double criterion = 0;              ///< deviance + cost of the parameters + rarity of the forms
+  double criterion = 0;              ///< deviance + cost of the parameters + complexity of the forms
 };
 
 /// Place of an effect in the registry: the order in which sets of effects are told.
@@ -19,8 +19,8 @@ std::size_t order_of(const std::string& effect);
 class Search {
  public:
   /// Fits the base and every single form. `forms`: what may be added to the forms of the base.
-  Search(const Problem& problem, const std::vector<const Form*>& base, const std::vector<const Form*>& forms,
-         const Rules& rules);
+  Search(const Problem& problem, const std::vector<const Parametrisation*>& base,
+         const std::vector<const Parametrisation*>& forms, const Rules& rules);
   void fit_pairs();
   void fit_triples();
 
@@ -39,29 +39,29 @@ class Search {
  private:
   /// A form made linear about a point: whitened columns per unit of scale.
   struct Linear {
-    const Form* form;
+    const Parametrisation* form;
     Eigen::Index first, count;
   };
 
   /// A pair, what linear algebra promises of it, and where to begin.
   struct Guess {
     double criterion;
-    const Form *a, *b;
+    const Parametrisation *a, *b;
     Eigen::VectorXd p;
   };
 
   void weigh(const Fit& fit);
   Eigen::MatrixXd weighted(Eigen::MatrixXd a) const;
-  bool acts(const Form* form) const;
+  bool acts(const Parametrisation* form) const;
   bool nothing_to_find(const std::vector<Eigen::MatrixXd>& columns) const;
-  Eigen::MatrixXd about_zero(const Form& form) const;
+  Eigen::MatrixXd about_zero(const Parametrisation& form) const;
   void linearise(std::vector<Eigen::MatrixXd> about_zero);
   double promise(const std::vector<std::size_t>& which, Eigen::VectorXd& p) const;
   std::vector<Guess> guesses() const;
   std::vector<Candidate> grown(const std::vector<Candidate>& sets, std::size_t few) const;
   Candidate candidate(Fit fit) const;
   std::vector<Candidate> refined(std::vector<Candidate> all) const;
-  Eigen::VectorXd optimum(const Form* form) const;
+  Eigen::VectorXd optimum(const Parametrisation* form) const;
 
   const Problem& problem_;
   const std::size_t base_forms_;

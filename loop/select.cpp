@@ -32,8 +32,8 @@ void tell_ties(const std::vector<const Candidate*>& tied, Selection& out) {
 
 }  // namespace
 
-Selection select(const Problem& problem, const std::vector<const Form*>& base, const std::vector<const Form*>& forms,
-                 const Rules& rules, bool deep) {
+Selection select(const Problem& problem, const std::vector<const Parametrisation*>& base,
+                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep) {
   Selection s;
   Search search(problem, base, forms, rules);
   s.base = s.chosen = search.base;
@@ -92,8 +92,8 @@ Selection select(const Problem& problem, const std::vector<const Form*>& base, c
       double value = c.criterion;
       for (const std::string& e : c.effects) {
         double usual = std::numeric_limits<double>::infinity();
-        for (const Form* f : forms)
-          if (f->effect == e) usual = std::min(usual, f->rarity);
+        for (const Parametrisation* f : forms)
+          if (f->effect == e) usual = std::min(usual, f->complexity);
         if (usual <= rules.parameter_cost) value -= usual;
       }
       return value;

@@ -23,7 +23,7 @@ struct Selection {
 
 /// `base`: forms that are always part of the model; `forms`: what may be added. `deep`: go on to triples where pairs
 /// leave structure.
-Selection select(const Problem& problem, const std::vector<const Form*>& base, const std::vector<const Form*>& forms,
-                 const Rules& rules, bool deep);
+Selection select(const Problem& problem, const std::vector<const Parametrisation*>& base,
+                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep);
 
 }  // namespace hosel::loop

@@ -9,15 +9,15 @@
 
 namespace hosel::loop {
 
-Study::Study(Problem& data, const std::vector<Form>& forms, const std::vector<std::string>& declared,
+Study::Study(Problem& data, const std::vector<Parametrisation>& forms, const std::vector<std::string>& declared,
              const Rules& figures)
     : problem(data), rules(figures) {
   for (const std::string& name : declared) {
-    const auto first = std::ranges::find(forms, name, &Form::effect);
+    const auto first = std::ranges::find(forms, name, &Parametrisation::effect);
     if (first == forms.end()) throw DataError(fmt::format("effect '{}' cannot act here", name));
     base.push_back(&*first);
   }
-  for (const Form& f : forms)
+  for (const Parametrisation& f : forms)
     if (!std::ranges::count(declared, f.effect)) candidates.push_back(&f);
   settle();
 }

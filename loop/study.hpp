@@ -8,11 +8,12 @@ namespace hosel::loop {
 struct Study {
   /// `forms`: every form that can act, outliving the study; `declared`: effects that are part of the base, their first
   /// form's parameters fitted. Throws DataError where one of them has no form.
-  Study(Problem& problem, const std::vector<Form>& forms, const std::vector<std::string>& declared, const Rules& rules);
+  Study(Problem& problem, const std::vector<Parametrisation>& forms, const std::vector<std::string>& declared,
+        const Rules& rules);
 
   Problem& problem;
   const Rules rules;
-  std::vector<const Form*> base, candidates;
+  std::vector<const Parametrisation*> base, candidates;
   Selection selection;
 
  private:

@@ -41,7 +41,7 @@ void assemble(Assembly& a, const Shaft& shaft, const BenchOptions& o) {
   const fem::SectionLaw law = [sections = fem::shaft_sections(shaft, o.shear), from = o.clamped_length](double s) {
     return sections(s + from);
   };
-  auto owned = std::make_unique<fem::Beam>(a.system.layout, line, law, fem::BeamOptions{});
+  auto owned = std::make_unique<fem::Beam>(a.system.dof_map, line, law, fem::BeamOptions{});
   a.beam = owned.get();
   a.system.terms.push_back(std::move(owned));
   a.system.prescribed.push_back(
@@ -171,7 +171,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   Assembly plain, stiff;
   assemble(plain, *club.shaft, options);
   assemble(stiff, scaled(*club.shaft, 2, 1), options);
-  fem::State rest = plain.system.layout.rest();
+  fem::State rest = plain.system.dof_map.rest();
   plain.beam->place(rest);
   const MatrixXd K = tangent(plain, rest, {1, 0, 0}), Mb = tangent(plain, rest, {0, 0, 1});
   const auto nb = K.rows(), n = nb + 6;

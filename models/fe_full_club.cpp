@@ -25,7 +25,7 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
 
   // The node that head and shaft share is at the hosel, its frame the face frame.
   const Vec3& hosel = blow.club.geometry.hosel;
-  out.hosel = {out.system.layout.add_vector(3), out.system.layout.add_rotation()};
+  out.hosel = {out.system.dof_map.add_vector(3), out.system.dof_map.add_rotation()};
   auto body =
       std::make_unique<fem::RigidBody>("head", out.hosel.translation, out.hosel.rotation,
                                        fem::RigidBodyProperties{head.mass, head.inertia, head.cg - hosel},
@@ -39,7 +39,7 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   carrier.centre = -hosel;
   out.parts = add_ball(out.system, blow, options.impact, carrier, true);
 
-  out.initial = out.system.layout.rest();
+  out.initial = out.system.dof_map.rest();
   const Vec3& w = blow.delivery.head_angular_velocity;
   out.initial.q.segment<3>(out.hosel.translation.q) = e.face_centre + e.face_axes * hosel;
   fem::set_rotation(out.initial, out.hosel.rotation, Eigen::Quaterniond(e.face_axes));

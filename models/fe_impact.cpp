@@ -128,9 +128,9 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
           "its "
           "centre");
   }
-  const fem::Family family = axial    ? fem::axisymmetric_family()
-                             : planar ? fem::cartesian_family(o.harmonics)
-                                      : fem::cartesian_family(o.harmonics, std::min(o.antisymmetric, o.harmonics));
+  const fem::FourierBasis basis = axial    ? fem::axisymmetric_basis()
+                                  : planar ? fem::cartesian_basis(o.harmonics)
+                                           : fem::cartesian_basis(o.harmonics, std::min(o.antisymmetric, o.harmonics));
   const int angles = o.angles > 0 ? o.angles : 2 * o.harmonics + 4;
   const int patch = o.contact_angles > 0 ? o.contact_angles : 3 * o.harmonics + 8;
   const auto rule = [&](int half) {
@@ -141,14 +141,14 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
 
   // The mesh weighs what the ball weighs, layer by layer in proportion to the densities given.
   const auto mass_of = [&](const std::vector<fem::Solid>& m) {
-    fem::Layout layout;
-    return fem::HarmonicSolid(layout, meridian, fem::axisymmetric_family(), {fem::single_angle(), 2}, m, placement)
+    fem::DofMap dof_map;
+    return fem::HarmonicSolid(dof_map, meridian, fem::axisymmetric_basis(), {fem::single_angle(), 2}, m, placement)
         .mass();
   };
   const double scale = blow.ball.mass / mass_of(materials);
   for (fem::Solid& m : materials) m.density *= scale;
 
-  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian, family,
+  auto ball = std::make_unique<fem::HarmonicSolid>(system.dof_map, meridian, basis,
                                                    fem::SolidQuadrature{rule(angles), 2}, materials, placement);
   fem::ContactLaws laws{o.penalty * o.ball.instant_young() / R, nullptr};
   if (!axial && o.friction > 0) {
@@ -161,7 +161,7 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   std::unique_ptr<const fem::ContactSurface> surface;
   std::unique_ptr<fem::FaceSpring> spring;
   if (o.face) {
-    const fem::Layout::Block travel = system.layout.add_vector(1);
+    const fem::DofMap::Block travel = system.dof_map.add_vector(1);
     surface = std::make_unique<fem::YieldingFace>(face, *o.face, travel);
     spring = std::make_unique<fem::FaceSpring>(*o.face, carrier, travel);
     parts.face = spring.get();
@@ -203,7 +203,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.predict_acceleration = false;
   options.error_vector = options.error_rotation = INFINITY;
 
-  const Mat3 inertia = parts.ball->motion(system.layout.rest()).inertia;
+  const Mat3 inertia = parts.ball->motion(system.dof_map.rest()).inertia;
   const double gap0 = parts.contact->centre_gap(initial);
   solvers::GeneralizedAlpha solver(system, options, std::move(initial));
   ImpactCheckpoint at{.last_gap = gap0};
@@ -294,15 +294,15 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
   if (options.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
   fem::SurfaceCarrier carrier;
-  fem::Layout::Block x, r;
+  fem::DofMap::Block x, r;
   if (wall) {
     // In the wall's frame: it stands, the ball comes.
     carrier.position = e.face_centre;
     carrier.attitude = e.face_axes;
   } else {
     if (const auto faults = head.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
-    x = out.system.layout.add_vector(3);
-    r = out.system.layout.add_rotation();
+    x = out.system.dof_map.add_vector(3);
+    r = out.system.dof_map.add_rotation();
     carrier.translation = x;
     carrier.rotation = r;
     carrier.centre = -head.cg;
@@ -312,7 +312,7 @@ FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& optio
     out.system.terms.push_back(std::move(body));
   }
   out.parts = add_ball(out.system, blow, options, carrier, false);
-  out.initial = out.system.layout.rest();
+  out.initial = out.system.dof_map.rest();
   if (wall) {
     out.parts.ball->set_velocity(out.initial, -blow.delivery.velocity(), Vec3::Zero());
   } else {

@@ -57,12 +57,12 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
 
   // A system of its own in face axes: the head's node at the origin, held; the butt under the wrench.
   fem::System system;
-  const fem::Node head{system.layout.add_vector(3), system.layout.add_rotation()};
+  const fem::Node head{system.dof_map.add_vector(3), system.dof_map.add_rotation()};
   system.terms.push_back(
       std::make_unique<fem::RigidBody>("head", head.translation, head.rotation,
                                        fem::RigidBodyProperties{club.head.mass, club.head.inertia, c}, gravity));
   const auto line = shaft_line(club, grip_point, elements, growth);
-  auto owned = std::make_unique<fem::Beam>(system.layout, line, mounted_sections(club, grip_point, shear),
+  auto owned = std::make_unique<fem::Beam>(system.dof_map, line, mounted_sections(club, grip_point, shear),
                                            fem::BeamOptions{.gravity = gravity, .last = head});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
@@ -73,7 +73,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
     return fem::Pose{.velocity = v, .acceleration = a, .angular_velocity = w, .angular_acceleration = alpha};
   }));
 
-  fem::State s = system.layout.rest();
+  fem::State s = system.dof_map.rest();
   beam.place(s);
   const auto move = [&](const Vec3& linear, const Vec3& angular, const Vec3& spin) {
     for (const fem::Node& n : beam.nodes()) {
@@ -87,7 +87,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
   };
   /// What is out of balance: force and moment about the hosel.
   const auto resultant = [&] {
-    fem::Vector inertia = fem::Vector::Zero(system.layout.size()), force = inertia;
+    fem::Vector inertia = fem::Vector::Zero(system.dof_map.size()), force = inertia;
     for (const auto& term : system.terms) term->residual(s, inertia, force);
     const fem::Vector r = inertia + force;
     Eigen::Matrix<double, 6, 1> out = Eigen::Matrix<double, 6, 1>::Zero();

@@ -34,12 +34,12 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   const Vec3 w = initial.v.segment<3>(head.rotation.v);  // body frame
   const Eigen::Quaterniond R = fem::rotation(initial, head.rotation);
   auto owned = std::make_unique<fem::Beam>(
-      system.layout, line, mounted_sections(club, mount.grip_point, mount.shear),
+      system.dof_map, line, mounted_sections(club, mount.grip_point, mount.shear),
       fem::BeamOptions{.gravity = R * shaft.gravity, .damping_time = club.shaft->damping_time, .last = head});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
 
-  fem::State grown = system.layout.rest();
+  fem::State grown = system.dof_map.rest();
   grown.time = initial.time;
   grown.q.head(initial.q.size()) = initial.q;
   grown.v.head(initial.v.size()) = initial.v;

@@ -94,15 +94,16 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
                                    mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
   const fem::SectionLaw sections = [law = fem::shaft_sections(shaft, options.shear),
                                     from = options.grip_point](double s) { return law(s + from); };
-  auto beam = std::make_unique<fem::Beam>(
-      system_.layout, line, sections, fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
+  auto beam =
+      std::make_unique<fem::Beam>(system_.dof_map, line, sections,
+                                  fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
   shaft_ = beam.get();
   system_.terms.push_back(std::move(beam));
   head_node_ = shaft_->nodes().back();
 
   if (options.joint != HeadJoint::none) {
     if (options.joint != HeadJoint::rigid) {
-      head_node_ = {system_.layout.add_vector(3), system_.layout.add_rotation()};
+      head_node_ = {system_.dof_map.add_vector(3), system_.dof_map.add_rotation()};
       fem::JointStiffness k = joint_of(options, shaft);
       k.frame = (face_to_grip_ * k.frame).eval();
       system_.terms.push_back(std::make_unique<fem::SpringJoint>("joint", shaft_->nodes().back(), head_node_, k));
@@ -135,7 +136,7 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
 
 std::unique_ptr<fem::Term> Swing::modal_damping() {
   // The club at rest, held at the grip: its modes, and M phi gathered from the terms' blocks.
-  fem::State rest = system_.layout.rest();
+  fem::State rest = system_.dof_map.rest();
   shaft_->place(rest);
   if (head_node_.translation.v != shaft_->nodes().back().translation.v)
     rest.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
@@ -184,7 +185,7 @@ fem::State Swing::equilibrium(double time, bool kinsol) {
     throw std::invalid_argument("a club that nothing holds has no equilibrium");
   held_ = time;
   fem::State s = start(time, [&] {
-    fem::State straight = system_.layout.rest();
+    fem::State straight = system_.dof_map.rest();
     shaft_->place(straight);
     if (head_node_.translation.v != shaft_->nodes().back().translation.v)
       straight.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
@@ -226,7 +227,7 @@ fem::State Swing::start(double time, const fem::State& deflected) const {
 
 fem::State Swing::hold(double time, double seconds) {
   held_ = time;
-  fem::State s = system_.layout.rest();
+  fem::State s = system_.dof_map.rest();
   shaft_->place(s);
   if (head_node_.translation.v != shaft_->nodes().back().translation.v)
     s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;

@@ -69,7 +69,7 @@ VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& 
   std::vector<Vec3> displacement, velocity;
   VtkField radius{"radius", "m", 1, {}};
   for (std::size_t i = 0; i < beam.nodes().size(); ++i) {
-    const fem::Layout::Block& block = beam.nodes()[i].translation;
+    const fem::DofMap::Block& block = beam.nodes()[i].translation;
     m.points.push_back(beam.line()[i].position);
     displacement.push_back(Vec3(state.q.segment<3>(block.q)) - m.points.back());
     velocity.emplace_back(state.v.segment<3>(block.v));

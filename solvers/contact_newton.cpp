@@ -39,7 +39,7 @@ class Secants {
 }  // namespace
 
 Vector abrupt_residual(const fem::System& system, const fem::State& trial) {
-  Vector inertia = Vector::Zero(system.layout.size()), force = inertia;
+  Vector inertia = Vector::Zero(system.dof_map.size()), force = inertia;
   for (const auto& term : system.terms)
     if (term->abrupt()) term->residual(trial, inertia, force);
   return inertia + force;

@@ -11,9 +11,9 @@ namespace hosel::solvers {
 namespace {
 
 /// x with q1 = q0 o exp(x).
-Vector difference(const fem::Layout& layout, const Vector& q0, const Vector& q1) {
-  Vector x(layout.size());
-  for (const auto& b : layout.blocks()) {
+Vector difference(const fem::DofMap& dof_map, const Vector& q0, const Vector& q1) {
+  Vector x(dof_map.size());
+  for (const auto& b : dof_map.blocks()) {
     if (!b.rotation) {
       x.segment(b.v, b.size) = q1.segment(b.q, b.size) - q0.segment(b.q, b.size);
       continue;
@@ -58,10 +58,10 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
   af_ = rho / (rho + 1);
   gamma_ = 0.5 + af_ - am_;
   beta_ = 0.25 * (gamma_ + 0.5) * (gamma_ + 0.5);
-  for (const auto& p : system.prescribed) imposed_.insert(imposed_.end(), p->equations().begin(), p->equations().end());
+  for (const auto& p : system.prescribed) imposed_.insert(imposed_.end(), p->dofs().begin(), p->dofs().end());
   step_ = options.step_first > 0 ? options.step_first : options.step_max;
 
-  state_.a = Vector::Zero(system.layout.size());
+  state_.a = Vector::Zero(system.dof_map.size());
   impose(state_);
   evaluate(state_, trial_inertia_, trial_force_);
   if (tangent_.size() > 0) {
@@ -73,7 +73,7 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
   auxiliary_ = state_.a;
   evaluate(state_, inertia_, trial_force_);
   residual_ = inertia_ + trial_force_;
-  for (const auto& term : system_.terms) term->accept(state_);
+  for (const auto& term : system_.terms) term->commit(state_);
   take_stock();
   ledger_.initial = ledger_.kinetic + ledger_.strain_total() + ledger_.contact;
   friction_before_ = ledger_.friction;
@@ -87,8 +87,8 @@ void GeneralizedAlpha::impose(fem::State& s) const {
 }
 
 void GeneralizedAlpha::evaluate(const fem::State& s, Vector& inertia, Vector& force) const {
-  inertia.setZero(system_.layout.size());
-  force.setZero(system_.layout.size());
+  inertia.setZero(system_.dof_map.size());
+  force.setZero(system_.dof_map.size());
   for (const auto& term : system_.terms) term->residual(s, inertia, force);
 }
 
@@ -107,14 +107,14 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
   increment_ = h * state_.v + h * h * ((0.5 - beta_) * a0 + beta_ * a1);
   trial_.v = state_.v + h * ((1 - gamma_) * a0 + gamma_ * a1);
-  trial_.q = system_.layout.advanced(state_.q, increment_);
+  trial_.q = system_.dof_map.advanced(state_.q, increment_);
   if (!imposed_.empty()) {
     impose(trial_);
-    const Vector x = difference(system_.layout, state_.q, trial_.q);
+    const Vector x = difference(system_.dof_map, state_.q, trial_.q);
     for (Index e : imposed_) increment_[e] = x[e];
   }
 
-  Vector full = Vector::Zero(system_.layout.size());
+  Vector full = Vector::Zero(system_.dof_map.size());
   const auto residual = [&](double& scale) {
     evaluate(trial_, trial_inertia_, trial_force_);
     scale = trial_inertia_.norm() + trial_force_.norm();
@@ -130,7 +130,7 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
     increment_ += full;
     trial_.v += to_v * full;
     trial_.a += to_a * full;
-    trial_.q = system_.layout.advanced(state_.q, increment_);
+    trial_.q = system_.dof_map.advanced(state_.q, increment_);
     if (!imposed_.empty()) impose(trial_);
   };
   if (std::abs(h - tangent_step_) > 0.1 * tangent_step_) {
@@ -156,7 +156,7 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   // O. C. Zienkiewicz, Y. M. Xie, Earthquake Eng. Struct. Dyn. 20 (1991): local error of Newmark's family.
   const Vector e = (beta_ - 1.0 / 6) * h * h * (trial_auxiliary_ - a0);
   error_ = 0;
-  for (const auto& b : system_.layout.blocks()) {
+  for (const auto& b : system_.dof_map.blocks()) {
     const double allowed = b.rotation ? options_.error_rotation : options_.error_vector;
     error_ = std::max(error_, e.segment(b.v, b.size).cwiseAbs().maxCoeff() / allowed);
   }
@@ -172,7 +172,7 @@ void GeneralizedAlpha::accept(double h) {
   residual_ = trial_inertia_ + trial_force_;
   std::swap(inertia_, trial_inertia_);
   last_step_ = h;
-  for (const auto& term : system_.terms) term->accept(state_);
+  for (const auto& term : system_.terms) term->commit(state_);
   take_stock();
   ledger_.numerical += inertial_work - (ledger_.kinetic - kinetic);
   ledger_.closure = ledger_.initial + ledger_.external - ledger_.kinetic - ledger_.strain_total() - ledger_.contact -

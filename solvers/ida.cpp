@@ -23,11 +23,11 @@ struct Problem {
   Index size = 0, half_band = 0;
 
   explicit Problem(const fem::System& s) : system(s) {
-    const auto& blocks = s.layout.blocks();
-    std::vector<bool> held(static_cast<std::size_t>(s.layout.size()), false);
+    const auto& blocks = s.dof_map.blocks();
+    std::vector<bool> held(static_cast<std::size_t>(s.dof_map.size()), false);
     for (const auto& p : s.prescribed)
-      for (Index e : p->equations()) held[static_cast<std::size_t>(e)] = true;
-    std::vector<Index> first(static_cast<std::size_t>(s.layout.size())), last = first;
+      for (Index e : p->dofs()) held[static_cast<std::size_t>(e)] = true;
+    std::vector<Index> first(static_cast<std::size_t>(s.dof_map.size())), last = first;
     for (const auto& b : blocks) {
       q_at.push_back(size);
       v_at.push_back(size + (b.rotation ? 4 : b.size));
@@ -52,9 +52,9 @@ struct Problem {
   }
 
   fem::State unpack(double t, const double* y, const double* yp) const {
-    fem::State s = system.layout.rest();
+    fem::State s = system.dof_map.rest();
     s.time = t;
-    const auto& blocks = system.layout.blocks();
+    const auto& blocks = system.dof_map.blocks();
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const auto& b = blocks[i];
       const Index nq = b.rotation ? 4 : b.size;
@@ -79,9 +79,9 @@ int residual(double t, N_Vector yv, N_Vector ypv, N_Vector fv, void* user) {
   double* f = N_VGetArrayPointer(fv);
   fem::State s = p.unpack(t, y, yp);
   for (const auto& m : p.system.prescribed) m->impose(s);
-  Vector inertia = Vector::Zero(p.system.layout.size()), force = inertia;
+  Vector inertia = Vector::Zero(p.system.dof_map.size()), force = inertia;
   for (const auto& term : p.system.terms) term->residual(s, inertia, force);
-  const auto& blocks = p.system.layout.blocks();
+  const auto& blocks = p.system.dof_map.blocks();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto& b = blocks[i];
     const Index nq = b.rotation ? 4 : b.size, q = p.q_at[i], v = p.v_at[i];
@@ -111,7 +111,7 @@ void integrate_ida(const fem::System& system, const fem::State& initial, const s
   const auto n = static_cast<sunindextype>(problem.size);
   N_Vector y = N_VNew_Serial(n, context), yp = N_VNew_Serial(n, context), tolerance = N_VNew_Serial(n, context);
   double *py = N_VGetArrayPointer(y), *pyp = N_VGetArrayPointer(yp), *pt = N_VGetArrayPointer(tolerance);
-  const auto& blocks = system.layout.blocks();
+  const auto& blocks = system.dof_map.blocks();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto& b = blocks[i];
     const Index nq = b.rotation ? 4 : b.size;

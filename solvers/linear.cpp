@@ -17,17 +17,17 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 namespace hosel::solvers {
 
 SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(terms) {
-  const auto n = static_cast<std::size_t>(system.layout.size());
+  const auto n = static_cast<std::size_t>(system.dof_map.size());
   reduced_.assign(n, 0);
   for (const auto& p : system.prescribed)
-    for (Index e : p->equations()) reduced_[static_cast<std::size_t>(e)] = -1;
+    for (Index e : p->dofs()) reduced_[static_cast<std::size_t>(e)] = -1;
   for (std::size_t e = 0; e < n; ++e)
     if (reduced_[e] == 0) {
       reduced_[e] = static_cast<int>(free_.size());
       free_.push_back(static_cast<Index>(e));
     }
   rotation_of_.assign(n, -1);
-  for (const auto& b : system.layout.blocks())
+  for (const auto& b : system.dof_map.blocks())
     if (b.rotation) {
       for (Index i = 0; i < 3; ++i)
         rotation_of_[static_cast<std::size_t>(b.v + i)] = static_cast<int>(rotation_at_.size());
@@ -160,8 +160,8 @@ Vector SparseTangent::multiply(const Vector& x) const {
 }
 
 double SparseTangent::round_off(const fem::System& system, const fem::State& state) const {
-  Vector size = Vector::Ones(system.layout.size());
-  for (const auto& b : system.layout.blocks())
+  Vector size = Vector::Ones(system.dof_map.size());
+  for (const auto& b : system.dof_map.blocks())
     if (!b.rotation) size.segment(b.v, b.size) = state.q.segment(b.q, b.size).cwiseAbs();
   Vector y = Vector::Zero(this->size());
   for (std::size_t c = 0; c < free_.size(); ++c)

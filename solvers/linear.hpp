@@ -23,14 +23,14 @@ class SparseTangent final : public fem::TangentSink {
 
   Index size() const { return static_cast<Index>(free_.size()); }
   /// Equation number of each row.
-  const std::vector<Index>& free_equations() const { return free_; }
+  const std::vector<Index>& free_dofs() const { return free_; }
   /// Row of an equation; -1 where it is imposed.
   int row(Index equation) const { return reduced_[static_cast<std::size_t>(equation)]; }
   Vector gather(const Vector& full) const;                  ///< entries of the free equations
   void scatter(const Vector& reduced, Vector& full) const;  ///< writes the free equations only
 
   /// Assembles weights.stiffness K T + weights.damping C + weights.mass M, where T is the tangent of
-  /// the exponential map at `increment` (Layout::size() entries, body-frame rotation increments
+  /// the exponential map at `increment` (DofMap::size() entries, body-frame rotation increments
   /// since the start of the step): the derivative of the residual by the increment itself. An empty
   /// increment means T = 1.
   void assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,

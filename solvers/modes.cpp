@@ -31,14 +31,14 @@ Modes modes(const fem::System& system, const fem::State& state, int count) {
     throw NonConvergence("the eigenvalue problem was not solved: is the mass matrix positive definite?");
   const Index n = std::min<Index>(count, K.rows());
   Modes out;
-  out.shapes = Eigen::MatrixXd::Zero(system.layout.size(), n);
+  out.shapes = Eigen::MatrixXd::Zero(system.dof_map.size(), n);
   for (Index i = 0; i < n; ++i) {
     const Index at = K.rows() - 1 - i;
     const Vector phi = solver.eigenvectors().col(at);  // phi' (K + shift M) phi = 1, phi' M phi = mu
     const double mu = solver.eigenvalues()[at];
     if (!(mu > 0)) throw NonConvergence("the mass matrix is not positive definite: modes need inertia everywhere");
     out.omega.push_back(std::sqrt(std::max(0.0, 1 / mu - shift)));
-    Vector full = Vector::Zero(system.layout.size());
+    Vector full = Vector::Zero(system.dof_map.size());
     tangent.scatter(scale.cwiseProduct(phi) / std::sqrt(mu), full);
     out.shapes.col(i) = full;
   }

@@ -21,11 +21,11 @@ std::vector<std::string> NewtonOptions::faults() const {
 
 IncrementTest::IncrementTest(const fem::System& system, const SparseTangent& tangent, const NewtonOptions& options)
     : vector_(options.increment_vector), rotation_(options.increment_rotation) {
-  std::vector<bool> full(static_cast<std::size_t>(system.layout.size()), false);
-  for (const auto& b : system.layout.blocks())
+  std::vector<bool> full(static_cast<std::size_t>(system.dof_map.size()), false);
+  for (const auto& b : system.dof_map.blocks())
     if (b.rotation)
       for (Index i = 0; i < 3; ++i) full[static_cast<std::size_t>(b.v + i)] = true;
-  for (Index e : tangent.free_equations()) is_rotation_.push_back(full[static_cast<std::size_t>(e)]);
+  for (Index e : tangent.free_dofs()) is_rotation_.push_back(full[static_cast<std::size_t>(e)]);
 }
 
 double IncrementTest::measure(const Vector& increment) const {

@@ -16,7 +16,7 @@ namespace hosel::solvers {
 namespace {
 
 Vector residual_of(const fem::System& system, const fem::State& s, double* scale = nullptr) {
-  Vector inertia = Vector::Zero(system.layout.size()), force = inertia;
+  Vector inertia = Vector::Zero(system.dof_map.size()), force = inertia;
   for (const auto& term : system.terms) term->residual(s, inertia, force);
   if (scale) *scale = inertia.norm() + force.norm();
   return inertia + force;
@@ -41,7 +41,7 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
     double next = done + step;
     if (next > 1 - 1e-9) next = 1;
     trial = out.state;
-    Vector full = Vector::Zero(system.layout.size());
+    Vector full = Vector::Zero(system.dof_map.size());
     const auto residual = [&](double& scale) {
       const Vector r = tangent.gather(residual_of(system, trial, &scale)) - (1 - next) * r0;
       scale = std::max(scale, scale0);
@@ -62,7 +62,7 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
     };
     const auto advance = [&](const Vector& dx) {
       tangent.scatter(dx, full);
-      trial.q = system.layout.advanced(trial.q, full);
+      trial.q = system.dof_map.advanced(trial.q, full);
     };
     const NewtonReport report =
         contact ? contact_newton.solve({residual, assemble_held,
@@ -99,7 +99,7 @@ struct KinsolProblem {
 
   void set(N_Vector y) {
     tangent.scatter(Eigen::Map<const Vector>(N_VGetArrayPointer(y), tangent.size()), x);
-    trial.q = system.layout.advanced(start.q, x);
+    trial.q = system.dof_map.advanced(start.q, x);
   }
 };
 
@@ -123,7 +123,7 @@ int kinsol_tangent(N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Ve
 StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& start, double residual_tolerance) {
   fem::State from = start;
   for (const auto& p : system.prescribed) p->impose(from);
-  KinsolProblem problem{system, from, SparseTangent(system), from, Vector::Zero(system.layout.size())};
+  KinsolProblem problem{system, from, SparseTangent(system), from, Vector::Zero(system.dof_map.size())};
   const auto n = static_cast<sunindextype>(problem.tangent.size());
   SUNContext context = nullptr;
   SUNContext_Create(nullptr, &context);

@@ -239,11 +239,11 @@ class ClubsJob final : public Job {
   /// monitor may have computed from the ball, and at the measured launch angle with the loft unknown.
   void compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out, nlohmann::json& summary) const {
     const auto model = models::find(name)->make(options_);
-    struct Answer {
+    struct Prediction {
       Blow blow;
       Launch launch;
     };
-    std::vector<Answer> recorded, matched;
+    std::vector<Prediction> recorded, matched;
     Progress progress = out.progress(name);
     for (const ClubRow& c : clubs) {
       progress.update(double(recorded.size()) / double(clubs.size()), c.name);

@@ -35,15 +35,15 @@ constexpr std::array kQuantities = {Quantity{"contact time", "ms", 1e-3}, Quanti
                                     Quantity{"normal impulse", "N s", 1}, Quantity{"tangential impulse", "N s", 1},
                                     Quantity{"head rotation", "rad/s", 1}};
 
-struct Answer {
+struct Prediction {
   bool good = false;
   std::string why;
   Launch launch;
   std::array<double, kQuantities.size()> quantity{};  // NaN where the model has none
 };
 
-Answer answer(const models::ImpactModel& model, const Blow& blow) {
-  Answer a;
+Prediction answer(const models::ImpactModel& model, const Blow& blow) {
+  Prediction a;
   try {
     a.launch = models::checked_launch(model, blow);
     const Vec3 n = models::contact_geometry(blow).normal, J = blow.ball.mass * a.launch.velocity;
@@ -76,7 +76,7 @@ class CrossCheckJob final : public Job {
   }
 
   void run(Output& out) override {
-    std::vector<std::vector<Answer>> answers(models_.size(), std::vector<Answer>(points_));
+    std::vector<std::vector<Prediction>> answers(models_.size(), std::vector<Prediction>(points_));
     {
       Progress progress = out.progress("cross-check");
       std::atomic<std::size_t> done = 0;
@@ -113,7 +113,7 @@ class CrossCheckJob final : public Job {
     for (std::size_t m = 0; m < models_.size(); ++m) {
       std::size_t failed = 0;
       std::string first;
-      for (const Answer& a : answers[m])
+      for (const Prediction& a : answers[m])
         if (!a.good && failed++ == 0) first = a.why;
       if (failed) {
         const std::string text =
@@ -200,21 +200,21 @@ class CrossCheckJob final : public Job {
     const std::vector<std::size_t> at = index(k);
     for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].parameter->set(options, blow, axes_[a].values[at[a]]);
   }
-  double difference(const std::vector<std::vector<Answer>>& answers, std::size_t m, std::size_t k,
+  double difference(const std::vector<std::vector<Prediction>>& answers, std::size_t m, std::size_t k,
                     const ShotChannel& c) const {
-    const Answer &mine = answers[m][k], &theirs = answers[reference_][k];
+    const Prediction &mine = answers[m][k], &theirs = answers[reference_][k];
     if (!mine.good || !theirs.good) return std::numeric_limits<double>::quiet_NaN();
     return (c.value(mine.launch) - c.value(theirs.launch)) / c.si;
   }
 
-  void write_points(Output& out, const std::vector<std::vector<Answer>>& answers) const {
+  void write_points(Output& out, const std::vector<std::vector<Prediction>>& answers) const {
     std::string csv = "model";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
     for (const ShotChannel& c : channels_) csv += fmt::format(",{}_{}", c.name, c.unit);
     csv += ",contact_time_ms,peak_force_kN,normal_impulse_N_s,tangential_impulse_N_s,head_rotation_rad_per_s\n";
     for (std::size_t m = 0; m < models_.size(); ++m)
       for (std::size_t k = 0; k < points_; ++k) {
-        const Answer& a = answers[m][k];
+        const Prediction& a = answers[m][k];
         if (!a.good) continue;
         csv += models_[m];
         const std::vector<std::size_t> at = index(k);
@@ -230,7 +230,7 @@ class CrossCheckJob final : public Job {
   }
 
   /// Over the first two axes (or the first), the others at their middle value.
-  post::Figure figure(const std::vector<std::vector<Answer>>& answers, std::size_t m) const {
+  post::Figure figure(const std::vector<std::vector<Prediction>>& answers, std::size_t m) const {
     std::size_t base = 0, stride = 1;
     std::string rest;
     for (std::size_t a = 0; a < axes_.size(); ++a) {

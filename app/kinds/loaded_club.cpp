@@ -26,7 +26,7 @@ namespace {
 using models::Grip;
 
 /// One answer at one point of the face.
-struct Answer {
+struct Prediction {
   std::string name;
   Launch launch;
   models::HoselHistory hosel;  // of finite-element clubs
@@ -104,10 +104,10 @@ class LoadedClubJob final : public Job {
       blow.delivery.impact_toe = std::cos(lie) * toe_[k] - std::sin(lie) * high_[k];
       blow.delivery.impact_high = std::sin(lie) * toe_[k] + std::cos(lie) * high_[k];
       const std::string at = fmt::format("toe {:g} mm, high {:g} mm", 1e3 * toe_[k], 1e3 * high_[k]);
-      const std::vector<Answer> answers = ask(out, blow, end, weightless, at);
+      const std::vector<Prediction> answers = ask(out, blow, end, weightless, at);
       std::vector<post::LaunchColumn> columns;
       nlohmann::json point = {{"impact_toe_mm", 1e3 * toe_[k]}, {"impact_high_mm", 1e3 * high_[k]}};
-      for (const Answer& a : answers) {
+      for (const Prediction& a : answers) {
         columns.push_back({a.name, a.launch});
         if (flight_) columns.back().flight = flight_->follow(a.launch, blow_.ball);
         table += fmt::format("{:g},{:g},{}", 1e3 * toe_[k], 1e3 * high_[k], post::csv_cell(a.name));
@@ -173,8 +173,8 @@ class LoadedClubJob final : public Job {
     j["head_rotation_rad_per_s"] = a.head_spin.norm() - b.head_spin.norm();
     return j;
   }
-  static const Answer& find(const std::vector<Answer>& answers, std::string_view name) {
-    for (const Answer& a : answers)
+  static const Prediction& find(const std::vector<Prediction>& answers, std::string_view name) {
+    for (const Prediction& a : answers)
       if (a.name == name) return a;
     throw std::logic_error("no such club");
   }
@@ -198,13 +198,13 @@ class LoadedClubJob final : public Job {
             last.droop};
   }
 
-  std::vector<Answer> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
-                          const std::string& at) const {
-    std::vector<Answer> answers;
+  std::vector<Prediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
+                              const std::string& at) const {
+    std::vector<Prediction> answers;
     Progress progress = out.progress(at);
     const auto fe = [&](const std::string& name, const models::ShaftMount* mount) {
       progress.update(static_cast<double>(answers.size()) / 11, name);
-      Answer a{.name = name};
+      Prediction a{.name = name};
       const auto watch = [&](const models::ImpactView& view) {
         if (view.shaft) a.hosel.add(*view.shaft, view.state);
       };
@@ -247,7 +247,7 @@ class LoadedClubJob final : public Job {
     return answers;
   }
 
-  static std::string history(const Answer& a) {
+  static std::string history(const Prediction& a) {
     std::string csv = "time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
     for (std::size_t i = 0; i < a.hosel.times.size(); ++i) {
       const fem::Wrench& w = a.hosel.loads[i];
@@ -257,12 +257,12 @@ class LoadedClubJob final : public Job {
     return csv;
   }
   /// Loaded: lines; at rest: points.
-  static post::Panel panel(const Answer& loaded, const Answer& at_rest, const std::string& at, bool force) {
+  static post::Panel panel(const Prediction& loaded, const Prediction& at_rest, const std::string& at, bool force) {
     post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"),
                   .x_label = "time [ms]",
                   .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]",
                   .key = "outside right"};
-    for (const Answer* a : {&loaded, &at_rest})
+    for (const Prediction* a : {&loaded, &at_rest})
       for (int c = 0; c < 3; ++c) {
         post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"),
                        .style = a == &loaded ? "lines" : "points"};
@@ -288,7 +288,7 @@ class LoadedClubJob final : public Job {
     return time;
   }
   /// What a clamped or a free grip changes in the hosel's force against the forced one, along the shaft and across.
-  post::Panel grip_panel(const std::vector<Answer>& answers, const std::string& at, double back) const {
+  post::Panel grip_panel(const std::vector<Prediction>& answers, const std::string& at, double back) const {
     post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back),
                   .x_label = "time [ms]",
                   .y_label = "force at the hosel, change [N]",

@@ -44,8 +44,8 @@ class MaterialPointJob final : public Job {
     const double dt = duration_ / double(steps_);
     fem::PointResponse r;
     const auto record = [&](double t, double x, const Mat3& F, double lateral, double step) {
-      fem::respond(solid_, F, Mat3::Identity(), step, history, false, r);
-      dissipated += fem::move_history(solid_, F, step, history);
+      fem::evaluate(solid_, F, Mat3::Identity(), step, history, false, r);
+      dissipated += fem::update_internal_variables(solid_, F, step, history);
       if (what_ == "uniaxial") {
         last = r.stress(0, 0);
         csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t, x, lateral, last,
@@ -108,7 +108,7 @@ class MaterialPointJob final : public Job {
     fem::PointResponse r;
     double lateral = start;
     for (int i = 0; i < 50; ++i) {
-      fem::respond(solid_, Vec3(stretch, lateral, lateral).asDiagonal(), Mat3::Identity(), dt, history, true, r);
+      fem::evaluate(solid_, Vec3(stretch, lateral, lateral).asDiagonal(), Mat3::Identity(), dt, history, true, r);
       const double step = r.stress(1, 1) / (r.tangent(4, 4) + r.tangent(4, 8));
       lateral -= step;
       if (!(lateral > 0)) break;

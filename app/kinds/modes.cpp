@@ -43,23 +43,23 @@ class ModesJob final : public Job {
     const mesh::Meridian mesh = mesh::sphere_meridian(radii, mesh_);
     double mass = 0;
     {
-      fem::Layout layout;
+      fem::DofMap dof_map;
       mass =
-          fem::HarmonicSolid(layout, mesh, fem::axisymmetric_family(), {fem::single_angle(), 2}, materials, {}).mass();
+          fem::HarmonicSolid(dof_map, mesh, fem::axisymmetric_basis(), {fem::single_angle(), 2}, materials, {}).mass();
     }
     for (auto& m : materials) m.density *= ball_.mass / mass;
     const double unit = std::sqrt(materials.back().instant_shear() / materials.back().density) / ball_.radius;
     summary["nodes"] = mesh.nodes.size();
     out.say(fmt::format("{} nodes; eta = omega R / c_s with c_s = {:.5f} m/s", mesh.nodes.size(), unit * ball_.radius));
-    out.say("family            frequency [Hz]          eta");
+    out.say("family           frequency [Hz]          eta");
     std::string csv = "family,harmonic,frequency_Hz,eta\n";
-    const auto solve = [&](const std::string& name, int m, const fem::Family& family) {
+    const auto solve = [&](const std::string& name, int m, const fem::FourierBasis& basis) {
       fem::System system;
       system.terms.push_back(std::make_unique<fem::HarmonicSolid>(
-          system.layout, mesh, family,
+          system.dof_map, mesh, basis,
           fem::SolidQuadrature{m == 0 ? fem::single_angle() : fem::full_circle(4 * m + 5), 2}, materials,
           fem::Placement{}));
-      const solvers::Modes modes = solvers::modes(system, system.layout.rest(), int(count_) + 2);
+      const solvers::Modes modes = solvers::modes(system, system.dof_map.rest(), int(count_) + 2);
       nlohmann::json list = nlohmann::json::array();
       for (const double omega : modes.omega) {
         if (omega < 1e-4 * unit || long(list.size()) == count_) continue;  // rigid motions
@@ -70,8 +70,8 @@ class ModesJob final : public Job {
       summary["modes"][name] = list;
     };
     for (const int m : harmonics_) {
-      solve(fmt::format("harmonic {}", m), m, fem::cylindrical_family(m));
-      if (m == 0) solve("torsion", 0, fem::torsion_family());
+      solve(fmt::format("harmonic {}", m), m, fem::cylindrical_basis(m));
+      if (m == 0) solve("torsion", 0, fem::torsion_basis());
     }
     out.write("modes.csv", csv);
     out.write_summary(summary);

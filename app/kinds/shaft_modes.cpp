@@ -43,7 +43,7 @@ class ShaftModesJob final : public Job {
     const fem::SectionLaw law = [sections = fem::shaft_sections(*club_.shaft, shear_), from = clamped_](double s) {
       return sections(s + from);
     };
-    auto owned = std::make_unique<fem::Beam>(system.layout, line, law, fem::BeamOptions{});
+    auto owned = std::make_unique<fem::Beam>(system.dof_map, line, law, fem::BeamOptions{});
     const fem::Beam& beam = *owned;
     system.terms.push_back(std::move(owned));
     const fem::Node tip = beam.nodes().back();
@@ -57,7 +57,7 @@ class ShaftModesJob final : public Job {
     if (support_ == "clamped")
       system.prescribed.push_back(
           std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
-    fem::State rest = system.layout.rest();
+    fem::State rest = system.dof_map.rest();
     beam.place(rest);
     const int rigid = support_ == "free" ? 6 : 0;
     const solvers::Modes modes = solvers::modes(system, rest, count_ + rigid);

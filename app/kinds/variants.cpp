@@ -34,7 +34,7 @@ struct Variant {
   Seen seen;
 };
 
-struct Answer {
+struct Prediction {
   std::string error;
   double elastic = 1, viscous = 1;  ///< factors on the moduli that keep the bounce
   double normal_restitution = NAN, contact_time = NAN;
@@ -59,7 +59,7 @@ class VariantsJob final : public Job {
   }
 
   void run(Output& out) override {
-    std::vector<Answer> answers(variants_.size());
+    std::vector<Prediction> answers(variants_.size());
     answers.front() = answer(variants_.front(), nullptr);
     if (!answers.front().error.empty())
       throw InputError(fmt::format("{}: {}", variants_.front().name, answers.front().error));
@@ -106,8 +106,8 @@ class VariantsJob final : public Job {
     return s;
   }
 
-  Answer answer(const Variant& v, const Answer* reference) const {
-    Answer a;
+  Prediction answer(const Variant& v, const Prediction* reference) const {
+    Prediction a;
     try {
       models::Options options = v.options;
       if (bounce_speed_) keep_bounce(options.fe, v.blow.ball, reference, a);
@@ -129,7 +129,7 @@ class VariantsJob final : public Job {
 
   /// A lever that changes the ball's bounce would be judged by that: moduli and branches are scaled until restitution
   /// and contact time on a wall are the first variant's again.
-  void keep_bounce(models::FeImpactOptions& fe, const Ball& ball, const Answer* reference, Answer& a) const {
+  void keep_bounce(models::FeImpactOptions& fe, const Ball& ball, const Prediction* reference, Prediction& a) const {
     models::FeImpactOptions axial = fe;
     axial.harmonics = 0;
     const models::NormalImpactPoint own = models::normal_impact(axial, ball, *bounce_speed_);
@@ -154,7 +154,7 @@ class VariantsJob final : public Job {
     a.contact_time = fit.points.front().contact_time;
   }
 
-  void report(Output& out, const std::vector<Answer>& answers) const {
+  void report(Output& out, const std::vector<Prediction>& answers) const {
     std::size_t width = 8;
     for (const Variant& v : variants_) width = std::max(width, v.name.size() + 1);
     out.say(fmt::format("\n{:<{}} {:>7} {:>7} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {}", "variant", width, "loft",
@@ -165,7 +165,7 @@ class VariantsJob final : public Job {
     nlohmann::json summary;
     for (std::size_t i = 0; i < variants_.size(); ++i) {
       const Variant& v = variants_[i];
-      const Answer& a = answers[i];
+      const Prediction& a = answers[i];
       if (!a.error.empty()) {
         out.say(fmt::format("{:<{}} {}", v.name, width, a.error));
         csv += fmt::format("{},,,,,,,,,,,,{}\n", post::csv_cell(v.name), post::csv_cell(a.error));

@@ -45,7 +45,7 @@ concept MetricLaw = NamedModuli<L> && requires(const L& law, const Sym& C, Respo
 /// A law of small strain in the body's mean attitude Q: sets all of the point's response.
 template <class L>
 concept CorotatedLaw = NamedModuli<L> && requires(const L& law, const Mat3& F, const Mat3& Q, PointResponse& out) {
-  law.respond(F, Q, true, out);
+  law.evaluate(F, Q, true, out);
 };
 
 /// Any elastic law as a value. A new law is a struct that meets one of the concepts above: the compiler says what it
@@ -66,8 +66,8 @@ class Elastic {
   /// Of a MetricLaw.
   void add(const Sym& C, bool tangent, Response& out) const { self_->add(C, tangent, out); }
   /// Of a CorotatedLaw.
-  void respond(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const {
-    self_->respond(F, frame, tangent, out);
+  void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const {
+    self_->evaluate(F, frame, tangent, out);
   }
 
   /// nullptr where it is another law.
@@ -86,7 +86,7 @@ class Elastic {
     virtual std::vector<std::string> faults() const = 0;
     virtual Elastic stiffened(double factor) const = 0;
     virtual void add(const Sym& C, bool tangent, Response& out) const = 0;
-    virtual void respond(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const = 0;
+    virtual void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const = 0;
     bool corotated, inversion;
   };
   template <class Law>
@@ -108,8 +108,8 @@ class Elastic {
       if constexpr (MetricLaw<Law>) law.add(C, tangent, out);
       else throw std::logic_error("a law of small strain has no answer to C");
     }
-    void respond(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const override {
-      if constexpr (CorotatedLaw<Law>) law.respond(F, frame, tangent, out);
+    void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const override {
+      if constexpr (CorotatedLaw<Law>) law.evaluate(F, frame, tangent, out);
       else throw std::logic_error("a law of finite strain answers to C");
     }
     Law law;

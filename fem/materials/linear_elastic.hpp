@@ -9,7 +9,7 @@ namespace hosel::fem {
 /// Stress lambda tr(e) + 2 mu e of the small strain e = sym(R^T F) - 1, where R is the body's mean rotation. Only for
 /// comparison with small-strain theory.
 struct LinearElastic : Lame {
-  void respond(const Mat3& F, const Mat3& Q, bool tangent, PointResponse& out) const {
+  void evaluate(const Mat3& F, const Mat3& Q, bool tangent, PointResponse& out) const {
     const Mat3 H = Q.transpose() * F;
     const Mat3 e = 0.5 * (H + H.transpose()) - Mat3::Identity();
     const double trace = e.trace();

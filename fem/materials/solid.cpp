@@ -59,9 +59,9 @@ void Solid::start(std::span<double> history) const {
   }
 }
 
-void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, std::span<const double> history,
-             bool tangent, PointResponse& out) {
-  if (solid.elastic.corotated()) return solid.elastic.respond(F, frame, tangent, out);
+void evaluate(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, std::span<const double> history,
+              bool tangent, PointResponse& out) {
+  if (solid.elastic.corotated()) return solid.elastic.evaluate(F, frame, tangent, out);
   // det C cannot tell an inverted point from an upright one: only F can.
   if (!solid.elastic.bears_inversion() && !(F.determinant() > 0)) {
     out.energy = NAN;
@@ -82,7 +82,7 @@ void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, st
   push(F, r, tangent, out);
 }
 
-double move_history(const Solid& solid, const Mat3& F, double dt, std::span<double> history) {
+double update_internal_variables(const Solid& solid, const Mat3& F, double dt, std::span<double> history) {
   if (solid.branches.empty()) return 0;
   const Sym C = to_sym(F.transpose() * F);
   const Sym C1 = C / std::cbrt(determinant(C));

@@ -29,10 +29,10 @@ struct Solid {
 
 /// Response to F at the end of a step of `dt` from the history's state. `frame` turns the local
 /// reference frame to the body's mean attitude; only a CorotatedLaw looks at it.
-void respond(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, std::span<const double> history,
-             bool tangent, PointResponse& out);
+void evaluate(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, std::span<const double> history,
+              bool tangent, PointResponse& out);
 
 /// Moves the history over the step; returns the energy dissipated in it [J/m^3] (trapezoidal in time).
-double move_history(const Solid& solid, const Mat3& F, double dt, std::span<double> history);
+double update_internal_variables(const Solid& solid, const Mat3& F, double dt, std::span<double> history);
 
 }  // namespace hosel::fem

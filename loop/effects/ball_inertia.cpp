@@ -3,11 +3,11 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> ball_inertia(const Setting&) {
-  Form f{.effect = "ball-inertia",
-         .what = "inertia factor I / (m r^2)",
-         .parameters = {{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}}};
-  f.before = [](std::span<const double> p, Trial& t) { t.blow.ball.inertia_factor += p[0]; };
+std::vector<Parametrisation> ball_inertia(const Setting&) {
+  Parametrisation f{.effect = "ball-inertia",
+                    .what = "inertia factor I / (m r^2)",
+                    .parameters = {{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}}};
+  f.before = [](std::span<const double> p, Shot& t) { t.blow.ball.inertia_factor += p[0]; };
   return {f};
 }
 

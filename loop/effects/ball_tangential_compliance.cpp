@@ -3,17 +3,17 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> ball_tangential_compliance(const Setting&) {
+std::vector<Parametrisation> ball_tangential_compliance(const Setting&) {
   const Parameter level{"tangential_restitution", "1", 1, -0.3, 0.8, 0.1};
   const Parameter slope{"tangential_restitution_slope", "s/m", 1, -0.02, 0.02, 0.002};
-  Form constant{
+  Parametrisation constant{
       .effect = "ball-tangential-compliance", .what = "constant tangential restitution", .parameters = {level}};
-  constant.before = [](std::span<const double> p, Trial& t) { t.blow.contact.tangential_restitution += p[0]; };
+  constant.before = [](std::span<const double> p, Shot& t) { t.blow.contact.tangential_restitution += p[0]; };
   // The slope is about 40 m/s, so that level and slope are nearly independent over usual club speeds.
-  Form speed{.effect = "ball-tangential-compliance",
-             .what = "tangential restitution, linear in the club speed about 40 m/s",
-             .parameters = {level, slope}};
-  speed.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation speed{.effect = "ball-tangential-compliance",
+                        .what = "tangential restitution, linear in the club speed about 40 m/s",
+                        .parameters = {level, slope}};
+  speed.before = [](std::span<const double> p, Shot& t) {
     t.blow.contact.tangential_restitution += p[0] + p[1] * (t.blow.delivery.club_speed - 40.0);
   };
   return {constant, speed};

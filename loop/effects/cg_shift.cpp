@@ -1,35 +1,35 @@
 // The centre of gravity is not where it is declared.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> cg_shift(const Setting& setting) {
+std::vector<Parametrisation> cg_shift(const Setting& setting) {
   if (!setting.inertia_declared) return {};
   const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}; };
   const auto along = [&](std::vector<int> axes, const char* what) {
     static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
-    Form f{.effect = "cg-shift", .what = what};
+    Parametrisation f{.effect = "cg-shift", .what = what};
     for (const int a : axes) f.parameters.push_back(component(names[a]));
-    f.before = [axes](std::span<const double> p, Trial& t) {
+    f.before = [axes](std::span<const double> p, Shot& t) {
       for (std::size_t k = 0; k < axes.size(); ++k) t.blow.club.head.cg[axes[k]] += p[k];
     };
     return f;
   };
-  Form depth = along({0}, "out of the face");
-  depth.rarity = 8;  // the depth is what a balance finds first
-  Form all = along({0, 1, 2}, "in three directions");
-  all.rarity = 6;
+  Parametrisation depth = along({0}, "out of the face");
+  depth.complexity = 8;  // the depth is what a balance finds first
+  Parametrisation all = along({0, 1, 2}, "in three directions");
+  all.complexity = 6;
   return {along({1}, "towards the heel"), along({2}, "up"), depth, along({1, 2}, "in the face plane"), all};
 }
 
-std::vector<Form> cg_shift(const HistorySetting& setting) {
+std::vector<Parametrisation> cg_shift(const HistorySetting& setting) {
   if (!setting.head) return {};
-  const auto along = [](std::vector<int> axes, const char* what, double rarity) {
+  const auto along = [](std::vector<int> axes, const char* what, double complexity) {
     static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
-    Form f{.effect = "cg-shift", .what = what, .rarity = rarity};
+    Parametrisation f{.effect = "cg-shift", .what = what, .complexity = complexity};
     for (const int a : axes) f.parameters.push_back({names[a], "mm", 1e-3, -0.03, 0.03, 1e-3});
-    f.setup = [axes](std::span<const double> p, Rig& r) {
+    f.setup = [axes](std::span<const double> p, TestSetup& r) {
       for (std::size_t k = 0; k < axes.size(); ++k) r.club.cg[axes[k]] += p[k];
     };
     return f;

@@ -1,22 +1,23 @@
 // The clamp (or the hands) yields.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> clamp_compliance(const HistorySetting& setting) {
+std::vector<Parametrisation> clamp_compliance(const HistorySetting& setting) {
   const double unit = setting.compliance;
-  const auto form = [&](const char* what, double rarity, Vec3 axes) {
-    Form f{.effect = "clamp-compliance",
-           .what = what,
-           .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
-           .rarity = rarity,
-           .starts = {{0.05 * unit}, {0.3 * unit}}};
-    f.setup = [axes](std::span<const double> p, Rig& r) { r.club.clamp += p[0] * axes; };
+  const auto form = [&](const char* what, double complexity, Vec3 axes) {
+    Parametrisation f{.effect = "clamp-compliance",
+                      .what = what,
+                      .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
+                      .complexity = complexity,
+                      .starts = {{0.05 * unit}, {0.3 * unit}}};
+    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.clamp += p[0] * axes; };
     return f;
   };
-  std::vector<Form> forms = {form("alike in both planes", 0, Vec3(1, 1, 0)),
-                             form("in the lead plane", 2, Vec3::UnitY()), form("in the droop plane", 2, Vec3::UnitX())};
+  std::vector<Parametrisation> forms = {form("alike in both planes", 0, Vec3(1, 1, 0)),
+                                        form("in the lead plane", 2, Vec3::UnitY()),
+                                        form("in the droop plane", 2, Vec3::UnitX())};
   if (setting.head) forms.push_back(form("about the shaft", 2, Vec3::UnitZ()));
   return forms;
 }

@@ -6,18 +6,18 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> friction_limit(const Setting&) {
+std::vector<Parametrisation> friction_limit(const Setting&) {
   // 1 / mu, so that zero is the base model; 12 is mu = 0.083, a wet face.
   const Parameter slipperiness{"inverse_friction", "1", 1, 0, 12, 0.5};
   // The limit may reach one shot alone: then only starts a few per cent apart come near it.
   std::vector<std::vector<double>> starts;
   for (double x = 1.4; x < 11.5; x *= 1.025) starts.push_back({x});
-  Form coulomb{.effect = "friction-limit",
-               .what = "Coulomb limit of the impulse",
-               .parameters = {slipperiness},
-               .starts = starts,
-               .threshold = true};
-  coulomb.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation coulomb{.effect = "friction-limit",
+                          .what = "Coulomb limit of the impulse",
+                          .parameters = {slipperiness},
+                          .starts = starts,
+                          .threshold = true};
+  coulomb.before = [](std::span<const double> p, Shot& t) {
     if (p[0] > 0) t.blow.contact.friction = std::min(t.blow.contact.friction, 1 / p[0]);
   };
   return {coulomb};

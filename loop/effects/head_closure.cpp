@@ -7,7 +7,7 @@ namespace {
 
 /// For a base without rotation of the head: the difference that the angular velocity makes on a head of
 /// endless inertia, which is the extra velocity of the contact point.
-void add_moving_point(const Vec3& spin, const Trial& t, Launch& launch) {
+void add_moving_point(const Vec3& spin, const Shot& t, Launch& launch) {
   Blow still = t.blow;
   still.club.head.inertia = 1e3 * Mat3::Identity();
   Blow turning = still;
@@ -17,11 +17,11 @@ void add_moving_point(const Vec3& spin, const Trial& t, Launch& launch) {
 
 }  // namespace
 
-std::vector<Form> head_closure(const Setting& setting) {
+std::vector<Parametrisation> head_closure(const Setting& setting) {
   const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}; };
   const auto about = [&](std::vector<int> axes, const char* what) {
     static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
-    Form f{.effect = "head-closure", .what = what};
+    Parametrisation f{.effect = "head-closure", .what = what};
     for (const int a : axes) f.parameters.push_back(rate(names[a]));
     const auto vector = [axes](std::span<const double> p) {
       Vec3 w = Vec3::Zero();
@@ -29,31 +29,31 @@ std::vector<Form> head_closure(const Setting& setting) {
       return w;
     };
     if (setting.head_turns)
-      f.before = [vector](std::span<const double> p, Trial& t) { t.blow.delivery.head_angular_velocity += vector(p); };
+      f.before = [vector](std::span<const double> p, Shot& t) { t.blow.delivery.head_angular_velocity += vector(p); };
     else
-      f.after = [vector](std::span<const double> p, const Trial& t, Launch& launch) {
+      f.after = [vector](std::span<const double> p, const Shot& t, Launch& launch) {
         if (const Vec3 w = vector(p); !w.isZero(0)) add_moving_point(w, t, launch);
       };
     return f;
   };
-  Form shaft{.effect = "head-closure", .what = "about the shaft", .parameters = {rate("rate_shaft")}};
+  Parametrisation shaft{.effect = "head-closure", .what = "about the shaft", .parameters = {rate("rate_shaft")}};
   const auto about_shaft = [](double w, const Blow& b) {
     return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis));
   };
   if (setting.head_turns)
-    shaft.before = [about_shaft](std::span<const double> p, Trial& t) {
+    shaft.before = [about_shaft](std::span<const double> p, Shot& t) {
       if (p[0] != 0) t.blow.delivery.head_angular_velocity += about_shaft(p[0], t.blow);
     };
   else
-    shaft.after = [about_shaft](std::span<const double> p, const Trial& t, Launch& launch) {
+    shaft.after = [about_shaft](std::span<const double> p, const Shot& t, Launch& launch) {
       if (p[0] != 0) add_moving_point(about_shaft(p[0], t.blow), t, launch);
     };
   // A club closes about its shaft, which stands more upright than flat: rates about the horizontal are unusual, and
   // they do to the launch what a shifted centre of gravity does.
-  std::vector<Form> all = {about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
-                           about({1, 2}, "about the vertical and the horizontal"),
-                           about({0, 1, 2}, "about three axes")};
-  for (std::size_t k = 1; k < all.size(); ++k) all[k].rarity = 10;
+  std::vector<Parametrisation> all = {
+      about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
+      about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
+  for (std::size_t k = 1; k < all.size(); ++k) all[k].complexity = 10;
   all.push_back(shaft);
   return all;
 }

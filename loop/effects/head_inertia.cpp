@@ -2,19 +2,20 @@
 #include <cmath>
 
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> head_inertia(const Setting& setting) {
+std::vector<Parametrisation> head_inertia(const Setting& setting) {
   if (!setting.head_turns) return {};
   // Logarithm of the factor: zero is the declared tensor, and no factor can turn negative.
   const auto factor = [](const char* name) { return Parameter{name, "1", 1, -0.8, 1.5, 0.1}; };
-  Form all{.effect = "head-inertia", .what = "one factor on the tensor", .parameters = {factor("log_factor")}};
-  all.before = [](std::span<const double> p, Trial& t) { t.blow.club.head.inertia *= std::exp(p[0]); };
+  Parametrisation all{
+      .effect = "head-inertia", .what = "one factor on the tensor", .parameters = {factor("log_factor")}};
+  all.before = [](std::span<const double> p, Shot& t) { t.blow.club.head.inertia *= std::exp(p[0]); };
   const auto along = [&](int axis, const char* name, const char* what) {
-    Form one{.effect = "head-inertia", .what = what, .parameters = {factor(name)}};
-    one.before = [axis](std::span<const double> p, Trial& t) {
+    Parametrisation one{.effect = "head-inertia", .what = what, .parameters = {factor(name)}};
+    one.before = [axis](std::span<const double> p, Shot& t) {
       Mat3& inertia = t.blow.club.head.inertia;
       const double root = std::exp(0.5 * p[0]);
       inertia.row(axis) *= root;
@@ -22,10 +23,10 @@ std::vector<Form> head_inertia(const Setting& setting) {
     };
     return one;
   };
-  Form two{.effect = "head-inertia",
-           .what = "factors about the horizontal and the vertical axis",
-           .parameters = {factor("log_factor_horizontal"), factor("log_factor_vertical")}};
-  two.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation two{.effect = "head-inertia",
+                      .what = "factors about the horizontal and the vertical axis",
+                      .parameters = {factor("log_factor_horizontal"), factor("log_factor_vertical")}};
+  two.before = [](std::span<const double> p, Shot& t) {
     Mat3& inertia = t.blow.club.head.inertia;
     for (const int k : {0, 1}) {
       const double root = std::exp(0.5 * p[std::size_t(k)]);
@@ -37,15 +38,15 @@ std::vector<Form> head_inertia(const Setting& setting) {
           along(1, "log_factor_horizontal", "about the horizontal axis of the face"), two};
 }
 
-std::vector<Form> head_inertia(const HistorySetting& setting) {
+std::vector<Parametrisation> head_inertia(const HistorySetting& setting) {
   if (!setting.head) return {};
-  const auto about = [](const char* what, const char* name, double rarity, Vec3 axes) {
-    Form f{.effect = "head-inertia",
-           .what = what,
-           .parameters = {{name, "1", 1, -0.8, 1.2, 0.02}},
-           .rarity = rarity,
-           .starts = {{-0.3}, {0.3}}};
-    f.setup = [axes](std::span<const double> p, Rig& r) { r.club.inertia += p[0] * axes; };
+  const auto about = [](const char* what, const char* name, double complexity, Vec3 axes) {
+    Parametrisation f{.effect = "head-inertia",
+                      .what = what,
+                      .parameters = {{name, "1", 1, -0.8, 1.2, 0.02}},
+                      .complexity = complexity,
+                      .starts = {{-0.3}, {0.3}}};
+    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.inertia += p[0] * axes; };
     return f;
   };
   return {about("one factor on the tensor", "log_factor", 0, Vec3::Ones()),

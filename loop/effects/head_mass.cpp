@@ -3,11 +3,11 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> head_mass(const Setting&) {
-  Form f{.effect = "head-mass",
-         .what = "added mass at the centre of gravity",
-         .parameters = {{"added_mass", "g", 1e-3, -0.08, 0.1, 5e-3}}};
-  f.before = [](std::span<const double> p, Trial& t) { t.blow.club.head.mass += p[0]; };
+std::vector<Parametrisation> head_mass(const Setting&) {
+  Parametrisation f{.effect = "head-mass",
+                    .what = "added mass at the centre of gravity",
+                    .parameters = {{"added_mass", "g", 1e-3, -0.08, 0.1, 5e-3}}};
+  f.before = [](std::span<const double> p, Shot& t) { t.blow.club.head.mass += p[0]; };
   return {f};
 }
 

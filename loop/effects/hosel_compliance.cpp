@@ -1,19 +1,19 @@
 // The joint between shaft tip and head yields.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> hosel_compliance(const HistorySetting& setting) {
+std::vector<Parametrisation> hosel_compliance(const HistorySetting& setting) {
   if (!setting.head) return {};
   const double unit = setting.compliance;
-  const auto form = [&](const char* what, double rarity, Vec3 axes) {
-    Form f{.effect = "hosel-compliance",
-           .what = what,
-           .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
-           .rarity = rarity,
-           .starts = {{0.05 * unit}, {0.3 * unit}}};
-    f.setup = [axes](std::span<const double> p, Rig& r) { r.club.hosel += p[0] * axes; };
+  const auto form = [&](const char* what, double complexity, Vec3 axes) {
+    Parametrisation f{.effect = "hosel-compliance",
+                      .what = what,
+                      .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
+                      .complexity = complexity,
+                      .starts = {{0.05 * unit}, {0.3 * unit}}};
+    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.hosel += p[0] * axes; };
     return f;
   };
   return {form("alike about all axes", 0, Vec3::Ones()), form("across the shaft", 0, Vec3(1, 1, 0)),

@@ -3,15 +3,16 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> loft_bias(const Setting&) {
+std::vector<Parametrisation> loft_bias(const Setting&) {
   const Parameter offset{"offset", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)};
   const Parameter gain{"gain", "1", 1, -0.3, 0.3, 0.03};
-  Form constant{.effect = "loft-bias", .what = "constant", .parameters = {offset}};
-  constant.before = [](std::span<const double> p, Trial& t) { t.blow.delivery.dynamic_loft += p[0]; };
-  Form scale{.effect = "loft-bias", .what = "in proportion to the loft", .parameters = {gain}};
-  scale.before = [](std::span<const double> p, Trial& t) { t.blow.delivery.dynamic_loft *= 1 + p[0]; };
-  Form line{.effect = "loft-bias", .what = "constant and in proportion to the loft", .parameters = {offset, gain}};
-  line.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation constant{.effect = "loft-bias", .what = "constant", .parameters = {offset}};
+  constant.before = [](std::span<const double> p, Shot& t) { t.blow.delivery.dynamic_loft += p[0]; };
+  Parametrisation scale{.effect = "loft-bias", .what = "in proportion to the loft", .parameters = {gain}};
+  scale.before = [](std::span<const double> p, Shot& t) { t.blow.delivery.dynamic_loft *= 1 + p[0]; };
+  Parametrisation line{
+      .effect = "loft-bias", .what = "constant and in proportion to the loft", .parameters = {offset, gain}};
+  line.before = [](std::span<const double> p, Shot& t) {
     t.blow.delivery.dynamic_loft += p[0] + p[1] * t.blow.delivery.dynamic_loft;
   };
   return {constant, scale, line};

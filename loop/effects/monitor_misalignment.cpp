@@ -5,16 +5,16 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> monitor_misalignment(const Setting& setting) {
+std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
   const auto angle = [](const char* name) {
     return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)};
   };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](std::vector<int> axes, const char* what) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};
-    Form f{.effect = "monitor-misalignment", .what = what};
+    Parametrisation f{.effect = "monitor-misalignment", .what = what};
     for (const int a : axes) f.parameters.push_back(angle(names[a]));
-    f.after = [axes](std::span<const double> p, const Trial&, Launch& launch) {
+    f.after = [axes](std::span<const double> p, const Shot&, Launch& launch) {
       Mat3 turn = Mat3::Identity();
       bool turned = false;
       for (std::size_t k = 0; k < axes.size(); ++k) {

@@ -4,14 +4,14 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> normal_force_offset(const Setting&) {
+std::vector<Parametrisation> normal_force_offset(const Setting&) {
   const Parameter offset{"offset", "1", 1, -0.2, 0.2, 0.01};
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
-  Form couple{.effect = "normal-force-offset",
-              .what = "offset over the ball's radius, its couple added to rolling",
-              .parameters = {offset},
-              .rarity = 3};
-  couple.after = [](std::span<const double> p, const Trial& t, Launch& launch) {
+  Parametrisation couple{.effect = "normal-force-offset",
+                         .what = "offset over the ball's radius, its couple added to rolling",
+                         .parameters = {offset},
+                         .complexity = 3};
+  couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     const models::ContactGeometry g = models::contact_geometry(t.blow);
     const Vec3 slip = g.approach - g.approach.dot(g.normal) * g.normal;
@@ -20,11 +20,11 @@ std::vector<Form> normal_force_offset(const Setting&) {
     launch.spin += p[0] * t.blow.ball.radius * impulse / t.blow.ball.inertia() * slip.normalized().cross(g.normal);
   };
   // Friction closes the slip all the same: then the offset moves impulse from the tangent to the couple.
-  Form closed{.effect = "normal-force-offset",
-              .what = "offset over the ball's radius, rolling kept",
-              .parameters = {offset},
-              .rarity = 3};
-  closed.before = [](std::span<const double> p, Trial& t) { t.blow.contact.normal_force_offset += p[0]; };
+  Parametrisation closed{.effect = "normal-force-offset",
+                         .what = "offset over the ball's radius, rolling kept",
+                         .parameters = {offset},
+                         .complexity = 3};
+  closed.before = [](std::span<const double> p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
   return {couple, closed};
 }
 

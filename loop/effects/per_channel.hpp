@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
 /// What a sensor does to its channel: one form per channel, and one of all alike. Where the start is unknown, it takes
 /// up what all channels do, and what the only one does.
-inline std::vector<Form> per_channel(const HistorySetting& setting, const Form& one,
-                                     std::vector<double> Rig::*changed) {
-  std::vector<Form> forms;
+inline std::vector<Parametrisation> per_channel(const HistorySetting& setting, const Parametrisation& one,
+                                                std::vector<double> TestSetup::*changed) {
+  std::vector<Parametrisation> forms;
   const auto add = [&](const std::string& what, std::size_t first, std::size_t last) {
-    Form f = one;
+    Parametrisation f = one;
     f.what = what;
-    f.setup = [=](std::span<const double> p, Rig& r) {
+    f.setup = [=](std::span<const double> p, TestSetup& r) {
       for (std::size_t c = first; c < last; ++c) (r.*changed)[c] += p[0];
     };
     forms.push_back(std::move(f));

@@ -3,16 +3,16 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> restitution_law(const Setting&) {
+std::vector<Parametrisation> restitution_law(const Setting&) {
   const Parameter level{"level", "1", 1, -0.2, 0.2, 0.02};
   const Parameter slope{"slope", "s/m", 1, -0.015, 0.015, 0.001};
-  Form constant{.effect = "restitution-law", .what = "level", .parameters = {level}};
-  constant.before = [](std::span<const double> p, Trial& t) { t.blow.contact.restitution += p[0]; };
-  Form tilt{.effect = "restitution-law", .what = "slope", .parameters = {slope}};
-  tilt.before = [](std::span<const double> p, Trial& t) { t.blow.contact.restitution_slope += p[0]; };
+  Parametrisation constant{.effect = "restitution-law", .what = "level", .parameters = {level}};
+  constant.before = [](std::span<const double> p, Shot& t) { t.blow.contact.restitution += p[0]; };
+  Parametrisation tilt{.effect = "restitution-law", .what = "slope", .parameters = {slope}};
+  tilt.before = [](std::span<const double> p, Shot& t) { t.blow.contact.restitution_slope += p[0]; };
   // The level is that at 40 m/s, so that the two parameters are nearly independent.
-  Form line{.effect = "restitution-law", .what = "level at 40 m/s and slope", .parameters = {level, slope}};
-  line.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation line{.effect = "restitution-law", .what = "level at 40 m/s and slope", .parameters = {level, slope}};
+  line.before = [](std::span<const double> p, Shot& t) {
     t.blow.contact.restitution += p[0] - 40.0 * p[1];
     t.blow.contact.restitution_slope += p[1];
   };

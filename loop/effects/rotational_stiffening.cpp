@@ -1,17 +1,17 @@
 // A shaft that is swung round is stiffened by its own pull. The bench's base is linear and has none; the swing is
 // geometrically exact and has all of it, so that nothing is left to add there.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> rotational_stiffening(const HistorySetting& setting) {
+std::vector<Parametrisation> rotational_stiffening(const HistorySetting& setting) {
   if (!setting.turning) return {};
-  Form f{.effect = "rotational-stiffening",
-         .what = "share of the centrifugal stiffness",
-         .parameters = {{"share", "1", 1, 0, 2, 0.02}},
-         .starts = {{0.5}, {1}}};
-  f.setup = [](std::span<const double> p, Rig& r) { r.club.stiffening += p[0]; };
+  Parametrisation f{.effect = "rotational-stiffening",
+                    .what = "share of the centrifugal stiffness",
+                    .parameters = {{"share", "1", 1, 0, 2, 0.02}},
+                    .starts = {{0.5}, {1}}};
+  f.setup = [](std::span<const double> p, TestSetup& r) { r.club.stiffening += p[0]; };
   return {f};
 }
 

@@ -4,11 +4,11 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> sensor_delay(const HistorySetting& setting) {
-  const Form one{.effect = "sensor-delay",
-                 .parameters = {{"delay", "ms", 1e-3, -0.05, 0.05, 2e-4}},
-                 .starts = {{-0.005}, {0.005}}};
-  return per_channel(setting, one, &Rig::delay);
+std::vector<Parametrisation> sensor_delay(const HistorySetting& setting) {
+  const Parametrisation one{.effect = "sensor-delay",
+                            .parameters = {{"delay", "ms", 1e-3, -0.05, 0.05, 2e-4}},
+                            .starts = {{-0.005}, {0.005}}};
+  return per_channel(setting, one, &TestSetup::delay);
 }
 
 }  // namespace hosel::loop::forms

@@ -4,9 +4,9 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Form> sensor_gain(const HistorySetting& setting) {
-  const Form one{.effect = "sensor-gain", .parameters = {{"gain_error", "1", 1, -0.6, 1.5, 0.01}}};
-  return per_channel(setting, one, &Rig::gain);
+std::vector<Parametrisation> sensor_gain(const HistorySetting& setting) {
+  const Parametrisation one{.effect = "sensor-gain", .parameters = {{"gain_error", "1", 1, -0.6, 1.5, 0.01}}};
+  return per_channel(setting, one, &TestSetup::gain);
 }
 
 }  // namespace hosel::loop::forms

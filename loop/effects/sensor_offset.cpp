@@ -2,22 +2,22 @@
 #include <fmt/format.h>
 
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> sensor_offset(const HistorySetting& setting) {
+std::vector<Parametrisation> sensor_offset(const HistorySetting& setting) {
   if (!setting.driven) return {};
-  std::vector<Form> forms;
+  std::vector<Parametrisation> forms;
   for (std::size_t c = 0; c < setting.channels.size(); ++c) {
     const HistoryChannel& channel = setting.channels[c];
     // Plausible: a hundred noise units; the scale is the noise, since channels have their own units.
     const double unit = channel.noise * channel.si;
-    Form one{.effect = "sensor-offset",
-             .what = fmt::format("of {}", channel.name),
-             .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si, -100 * unit,
-                             100 * unit, 0.1 * unit}}};
-    one.setup = [c](std::span<const double> p, Rig& r) { r.offset[c] += p[0]; };
+    Parametrisation one{.effect = "sensor-offset",
+                        .what = fmt::format("of {}", channel.name),
+                        .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si,
+                                        -100 * unit, 100 * unit, 0.1 * unit}}};
+    one.setup = [c](std::span<const double> p, TestSetup& r) { r.offset[c] += p[0]; };
     forms.push_back(one);
   }
   return forms;

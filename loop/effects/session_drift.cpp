@@ -25,15 +25,15 @@ Parameter size_of(Output output) {
 
 }  // namespace
 
-std::vector<Form> session_drift(const Setting& setting) {
-  std::vector<Form> forms;
+std::vector<Parametrisation> session_drift(const Setting& setting) {
+  std::vector<Parametrisation> forms;
   // Zero at the first shot (something wears or warms), or zero in the middle (calibrated over the session).
   for (const double zero : {0.0, 0.5}) {
     const std::string from = zero == 0 ? ", from the first shot" : ", about the middle";
-    const auto readings = [&](const std::vector<Output>& outputs, const std::string& what, double rarity) {
-      Form f{.effect = "session-drift", .what = what + from, .rarity = rarity};
+    const auto readings = [&](const std::vector<Output>& outputs, const std::string& what, double complexity) {
+      Parametrisation f{.effect = "session-drift", .what = what + from, .complexity = complexity};
       for (const Output output : outputs) f.parameters.push_back(size_of(output));
-      f.reading = [outputs, zero](std::span<const double> q, const Trial& t, Output o, double value) {
+      f.reading = [outputs, zero](std::span<const double> q, const Shot& t, Output o, double value) {
         for (std::size_t k = 0; k < outputs.size(); ++k)
           if (o == outputs[k] && q[k] != 0) return value + q[k] * (t.order - zero);
         return value;
@@ -49,8 +49,8 @@ std::vector<Form> session_drift(const Setting& setting) {
     if (all.size() > 2) readings(all, "of all readings", 4);
     // What drifts is the instrument before it is the club or the ball.
     const auto blow = [&](const char* what, Parameter p, double& (*of)(Blow&), bool relative) {
-      Form f{.effect = "session-drift", .what = what + from, .parameters = {std::move(p)}, .rarity = 8};
-      f.before = [of, relative, zero](std::span<const double> q, Trial& t) {
+      Parametrisation f{.effect = "session-drift", .what = what + from, .parameters = {std::move(p)}, .complexity = 8};
+      f.before = [of, relative, zero](std::span<const double> q, Shot& t) {
         double& x = of(t.blow);
         x += q[0] * (t.order - zero) * (relative ? x : 1);
       };

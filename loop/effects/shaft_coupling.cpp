@@ -23,23 +23,23 @@ void attach(Blow& blow, double mass, double inertia) {
 
 }  // namespace
 
-std::vector<Form> shaft_coupling(const Setting& setting) {
+std::vector<Parametrisation> shaft_coupling(const Setting& setting) {
   const Parameter mass{"added_mass_at_hosel", "g", 1e-3, 0, 0.04, 3e-3};
   const Parameter stiffening{"added_inertia", "kg m^2", 1, 0, 4e-4, 3e-5};
-  Form point{.effect = "shaft-coupling", .what = "added mass at the hosel", .parameters = {mass}};
-  point.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation point{.effect = "shaft-coupling", .what = "added mass at the hosel", .parameters = {mass}};
+  point.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0) attach(t.blow, p[0], 0);
   };
   if (!setting.head_turns) return {};
-  Form both{.effect = "shaft-coupling",
-            .what = "added mass and rotational inertia at the hosel",
-            .parameters = {mass, stiffening}};
-  both.before = [](std::span<const double> p, Trial& t) {
+  Parametrisation both{.effect = "shaft-coupling",
+                       .what = "added mass and rotational inertia at the hosel",
+                       .parameters = {mass, stiffening}};
+  both.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
   };
-  Form stiff{
+  Parametrisation stiff{
       .effect = "shaft-coupling", .what = "added rotational inertia across the shaft", .parameters = {stiffening}};
-  stiff.before = [](std::span<const double> p, Trial& t) {
+  stiff.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0) attach(t.blow, 0, p[0]);
   };
   return {point, stiff, both};

@@ -2,30 +2,30 @@
 #include <algorithm>
 
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> shaft_damping(const HistorySetting& setting) {
+std::vector<Parametrisation> shaft_damping(const HistorySetting& setting) {
   const double first = setting.frequency;
   // What is taken away cannot exceed what is declared.
   const Parameter ratio{"damping_ratio", "1", 1, -0.999 * setting.ratio, 0.3, 1e-3};
-  const auto form = [&](const char* what, double rarity, auto&& apply) {
-    return Form{.effect = "shaft-damping",
-                .what = what,
-                .parameters = {ratio},
-                .rarity = rarity,
-                .starts = {{0.01}},
-                .setup = apply};
+  const auto form = [&](const char* what, double complexity, auto&& apply) {
+    return Parametrisation{.effect = "shaft-damping",
+                           .what = what,
+                           .parameters = {ratio},
+                           .complexity = complexity,
+                           .starts = {{0.01}},
+                           .setup = apply};
   };
-  std::vector<Form> forms = {form("in proportion to the stiffness", 0, [first](std::span<const double> p, Rig& r) {
-    r.club.damping_time += 2 * p[0] / first;
-  })};
+  std::vector<Parametrisation> forms = {
+      form("in proportion to the stiffness", 0,
+           [first](std::span<const double> p, TestSetup& r) { r.club.damping_time += 2 * p[0] / first; })};
   if (setting.swing) return forms;
   forms.push_back(form("the same ratio for every mode", 0,
-                       [](std::span<const double> p, Rig& r) { r.club.damping_ratio += p[0]; }));
+                       [](std::span<const double> p, TestSetup& r) { r.club.damping_ratio += p[0]; }));
   forms.push_back(form("in proportion to the mass", 0,
-                       [first](std::span<const double> p, Rig& r) { r.club.mass_damping += 2 * p[0] * first; }));
+                       [first](std::span<const double> p, TestSetup& r) { r.club.mass_damping += 2 * p[0] * first; }));
   return forms;
 }
 

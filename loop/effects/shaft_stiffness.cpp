@@ -1,27 +1,28 @@
 // The shaft is stiffer or softer than its table.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> shaft_stiffness(const HistorySetting& setting) {
+std::vector<Parametrisation> shaft_stiffness(const HistorySetting& setting) {
   // Logarithm of the factor: zero is the table, and no factor can turn negative.
   const auto form = [](const char* what, const char* name, auto&& apply) {
-    return Form{.effect = "shaft-stiffness",
-                .what = what,
-                .parameters = {{name, "1", 1, -1.2, 1.2, 0.02}},
-                .starts = {{-0.4}, {-0.2}, {0.2}, {0.4}},
-                .setup = apply};
+    return Parametrisation{.effect = "shaft-stiffness",
+                           .what = what,
+                           .parameters = {{name, "1", 1, -1.2, 1.2, 0.02}},
+                           .starts = {{-0.4}, {-0.2}, {0.2}, {0.4}},
+                           .setup = apply};
   };
-  std::vector<Form> forms = {form("factor on bending", "log_factor_bending",
-                                  [](std::span<const double> p, Rig& r) { r.club.bending += p[0]; })};
+  std::vector<Parametrisation> forms = {form("factor on bending", "log_factor_bending",
+                                             [](std::span<const double> p, TestSetup& r) { r.club.bending += p[0]; })};
   if (setting.head && !setting.swing) {
     forms.push_back(form("factor on torsion", "log_factor_torsion",
-                         [](std::span<const double> p, Rig& r) { r.club.torsion += p[0]; }));
-    forms.push_back(form("one factor on bending and torsion", "log_factor", [](std::span<const double> p, Rig& r) {
-      r.club.bending += p[0];
-      r.club.torsion += p[0];
-    }));
+                         [](std::span<const double> p, TestSetup& r) { r.club.torsion += p[0]; }));
+    forms.push_back(
+        form("one factor on bending and torsion", "log_factor", [](std::span<const double> p, TestSetup& r) {
+          r.club.bending += p[0];
+          r.club.torsion += p[0];
+        }));
   }
   return forms;
 }

@@ -1,15 +1,15 @@
 // More (or less) mass at the tip than declared.
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 
-std::vector<Form> tip_mass(const HistorySetting& setting) {
-  Form f{.effect = "tip-mass",
-         .what = "a point mass at the hosel",
-         .parameters = {{"mass", "g", 1e-3, setting.head ? -0.06 : 0.0, 0.12, 2e-3}},
-         .starts = {{0.01}, {0.03}}};
-  f.setup = [](std::span<const double> p, Rig& r) { r.club.tip_mass += p[0]; };
+std::vector<Parametrisation> tip_mass(const HistorySetting& setting) {
+  Parametrisation f{.effect = "tip-mass",
+                    .what = "a point mass at the hosel",
+                    .parameters = {{"mass", "g", 1e-3, setting.head ? -0.06 : 0.0, 0.12, 2e-3}},
+                    .starts = {{0.01}, {0.03}}};
+  f.setup = [](std::span<const double> p, TestSetup& r) { r.club.tip_mass += p[0]; };
   return {f};
 }
 

@@ -27,13 +27,13 @@ std::pair<double, double> BenchHistory::first_mode() const {
   return {m.omega[0], m.ratio[0]};
 }
 
-bool BenchHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
+bool BenchHistory::answer(const TestSetup& setup, std::vector<Prediction>& out) const {
   std::vector<models::BenchModes> modes;
   try {
-    for (const auto& b : benches_) modes.push_back(b->modes(rig.club));
+    for (const auto& b : benches_) modes.push_back(b->modes(setup.club));
   } catch (const std::invalid_argument&) { return false; }
   std::vector<models::BenchReading> readings;
-  for (std::size_t c = 0; c < channels_.size(); ++c) readings.push_back({channels_[c].order, rig.delay[c]});
+  for (std::size_t c = 0; c < channels_.size(); ++c) readings.push_back({channels_[c].order, setup.delay[c]});
   out.clear();
   for (std::size_t r = 0; r < records_.size(); ++r)
     out.push_back(models::response(modes[bench_of_[r]], start_, records_[r], readings));

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 
 namespace hosel::loop {
 
@@ -12,7 +12,7 @@ class BenchHistory final : public HistoryModel {
   /// Throws std::invalid_argument as models::Bench does.
   BenchHistory(const Club& club, bool with_head, models::BenchOptions options, const models::BenchStart& start,
                std::vector<models::BenchRecord> records, const std::vector<HistoryChannel>& channels);
-  bool answer(const Rig& rig, std::vector<Answer>& out) const override;
+  bool answer(const TestSetup& setup, std::vector<Prediction>& out) const override;
   /// Circular frequency and damping ratio of the first mode as declared.
   std::pair<double, double> first_mode() const;
 

@@ -77,11 +77,11 @@ void HistoryProblem::split(const Split& how) {
   }
 }
 
-std::vector<Form> HistoryProblem::forms() const {
-  std::vector<Form> all;
+std::vector<Parametrisation> HistoryProblem::forms() const {
+  std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects())
     if (e.on_tests)
-      for (Form& f : e.on_tests(setting_)) all.push_back(std::move(f));
+      for (Parametrisation& f : e.on_tests(setting_)) all.push_back(std::move(f));
   return all;
 }
 
@@ -132,23 +132,23 @@ double HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd
 
 bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double window, Solution& out,
                            Eigen::VectorXd* z) const {
-  Rig rig(setting_.channels.size());
+  TestSetup setup(setting_.channels.size());
   const double* at = p.data();
-  for (const Form* f : model.forms) {
-    f->setup({at, f->parameters.size()}, rig);
+  for (const Parametrisation* f : model.forms) {
+    f->setup({at, f->parameters.size()}, setup);
     at += f->parameters.size();
   }
-  if (!model_.answer(rig, out.answers)) return false;
+  if (!model_.answer(setup, out.answers)) return false;
   if (z) z->resize(measured_.size());
   out.unknowns.assign(records_.size(), {});
   std::ptrdiff_t place = 0;
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const HistoryRecord& record = records_[r];
-    Answer& a = out.answers[r];
+    Prediction& a = out.answers[r];
     const auto size = record.measured.size();
     for (std::ptrdiff_t c = 0; c < record.measured.cols(); ++c) {
-      const double gain = 1 + rig.gain[std::size_t(c)], si = channel(int(c)).si;
-      a.value.col(c) = (gain * a.value.col(c).array() + rig.offset[std::size_t(c)]) / si;
+      const double gain = 1 + setup.gain[std::size_t(c)], si = channel(int(c)).si;
+      a.value.col(c) = (gain * a.value.col(c).array() + setup.offset[std::size_t(c)]) / si;
       for (Eigen::MatrixXd& u : a.unknown) u.col(c) *= gain / si;
     }
     if (!a.unknown.empty())  // where the start is unknown, so is every zero

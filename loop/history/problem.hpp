@@ -3,7 +3,7 @@
 #pragma once
 
 #include "hosel/loop/case.hpp"
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 #include "hosel/loop/result.hpp"
 
 namespace hosel::loop {
@@ -23,7 +23,7 @@ class HistoryProblem final : public Problem {
                  const Split& split, std::vector<std::string> notes = {});
 
   /// Every form that can act on this test.
-  std::vector<Form> forms() const;
+  std::vector<Parametrisation> forms() const;
   const std::vector<HistoryRecord>& records() const { return records_; }
 
   int width() const override { return int(setting_.channels.size()); }
@@ -57,7 +57,7 @@ class HistoryProblem final : public Problem {
 
  private:
   struct Solution {
-    std::vector<Answer> answers;            ///< per record, header's units
+    std::vector<Prediction> answers;        ///< per record, header's units
     std::vector<Eigen::VectorXd> unknowns;  ///< of the start, at their best on the training readings
   };
   void split(const Split& how);

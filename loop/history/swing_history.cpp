@@ -24,8 +24,8 @@ std::pair<double, double> SwingHistory::first_mode() const {
   return {m.omega[0], m.ratio[0]};
 }
 
-bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
-  const models::ClubChange& c = rig.club;
+bool SwingHistory::answer(const TestSetup& setup, std::vector<Prediction>& out) const {
+  const models::ClubChange& c = setup.club;
   std::vector<models::SwingSample> samples;
   {
     const std::lock_guard lock(mutex_);
@@ -50,7 +50,7 @@ bool SwingHistory::answer(const Rig& rig, std::vector<Answer>& out) const {
     out[r].value.resize(std::ptrdiff_t(times_[r].size()), std::ptrdiff_t(channels_.size()));
     for (std::size_t k = 0; k < channels_.size(); ++k) {
       std::vector<double> at = times_[r];
-      for (double& t : at) t -= rig.delay[k];
+      for (double& t : at) t -= setup.delay[k];
       const Reading reading = channels_[k].reading;
       out[r].value.col(std::ptrdiff_t(k)) = models::sampled(samples, at,
                                                             reading == Reading::lead         ? +lead

@@ -3,7 +3,7 @@
 
 #include <mutex>
 
-#include "hosel/loop/history/rig.hpp"
+#include "hosel/loop/history/test_setup.hpp"
 #include "hosel/models/changed_swing.hpp"
 #include "hosel/models/grip_motion.hpp"
 
@@ -14,7 +14,7 @@ class SwingHistory final : public HistoryModel {
   /// Every record is of the same motion; `times` per record.
   SwingHistory(Club club, const models::SwingOptions& options, models::GripMotion motion, double begin,
                std::vector<std::vector<double>> times, const std::vector<HistoryChannel>& channels);
-  bool answer(const Rig& rig, std::vector<Answer>& out) const override;
+  bool answer(const TestSetup& setup, std::vector<Prediction>& out) const override;
   bool slow() const override { return true; }
   /// Circular frequency and damping ratio of the first mode with the grip held.
   std::pair<double, double> first_mode() const;

@@ -18,7 +18,7 @@ Balance balance(const ShotModel& shots, const std::vector<int>& rows, const Mode
   const int m = shots.width();
   const Eigen::MatrixXd residuals = shots.residuals(model, parameters);
   for (const int row : rows) {
-    const Trial& trial = shots.trial(row);
+    const Shot& trial = shots.trial(row);
     const Ball& ball = trial.blow.ball;
     Launch l;
     if (!shots.launch(trial, model, parameters, l)) continue;

@@ -76,9 +76,9 @@ struct Box {
   }
 
   /// Corners, edges and a random inside, always the same.
-  std::vector<Trial> sites(Trial t) const {
+  std::vector<Shot> sites(Shot t) const {
     std::mt19937_64 random(20240607);
-    std::vector<Trial> all;
+    std::vector<Shot> all;
     t.order = 0.5;
     for (int s = 0; s < 384; ++s) {
       for (std::size_t k = 0; k < input.size(); ++k) {
@@ -95,22 +95,22 @@ struct Box {
 /// A set of effects as fitted, and with the widest of the usual forms of one of its names: that name is out only where
 /// none of them fits.
 std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std::string& name,
-                        const std::vector<Form>& forms) {
+                        const std::vector<Parametrisation>& forms) {
   std::vector<Fit> all = {as_fitted};
   double usual = std::numeric_limits<double>::infinity();
   std::size_t widest = 0;
-  for (const Form& f : forms)
-    if (f.effect == name) usual = std::min(usual, f.rarity);
-  for (const Form& f : forms)
-    if (f.effect == name && f.rarity <= usual) widest = std::max(widest, f.parameters.size());
-  for (const Form& f : forms) {
-    if (f.effect != name || f.rarity > usual || f.parameters.size() < widest ||
+  for (const Parametrisation& f : forms)
+    if (f.effect == name) usual = std::min(usual, f.complexity);
+  for (const Parametrisation& f : forms)
+    if (f.effect == name && f.complexity <= usual) widest = std::max(widest, f.parameters.size());
+  for (const Parametrisation& f : forms) {
+    if (f.effect != name || f.complexity > usual || f.parameters.size() < widest ||
         std::ranges::count(as_fitted.model.forms, &f))
       continue;
     Model m;
     std::vector<double> start;
     std::ptrdiff_t at = 0;
-    for (const Form* old : as_fitted.model.forms) {
+    for (const Parametrisation* old : as_fitted.model.forms) {
       const auto n = std::ptrdiff_t(old->parameters.size());
       m.forms.push_back(old->effect == name ? &f : old);
       if (old->effect == name) start.resize(start.size() + f.parameters.size());
@@ -139,7 +139,7 @@ class Separation {
     Eigen::MatrixXd J;  ///< of the second by its parameters
   };
   /// False where the blow cannot happen.
-  bool look(const Trial& t, int shot, Site& out) const {
+  bool look(const Shot& t, int shot, Site& out) const {
     const int m = model_.width();
     Eigen::VectorXd one(m), two(m);
     out.J.resize(m, rival_.size());
@@ -182,7 +182,7 @@ class Contest {
     for (const Fit& f : one) each_.emplace_back(model, two.front(), f, noise);
   }
   using Site = std::vector<Separation::Site>;
-  bool look(const Trial& t, int shot, Site& out) const {
+  bool look(const Shot& t, int shot, Site& out) const {
     out.resize(each_.size());
     for (std::size_t k = 0; k < each_.size(); ++k)
       if (!each_[k].look(t, shot, out[k])) return false;
@@ -234,7 +234,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   }
 
   const Box box(c.shots, model, rows);
-  const std::vector<Trial> sites = box.sites(model.trial(rows[rows.size() / 2]));
+  const std::vector<Shot> sites = box.sites(model.trial(rows[rows.size() / 2]));
   Eigen::VectorXd noise(model.width());
   for (int ch = 0; ch < noise.size(); ++ch) {
     double sum = 0;

@@ -55,7 +55,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
           {int(i), wrong->name, fmt::format("{:g} is no value that a blow can have", wrong->native(i))});
       continue;
     }
-    Trial t;
+    Shot t;
     t.blow = blow;
     for (int k = 0; k < kInputs; ++k)
       if (const Column* c = column[std::size_t(k)]; c && std::isfinite(c->value[i])) set(t.blow, Input(k), c->value[i]);

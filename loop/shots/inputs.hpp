@@ -12,7 +12,7 @@
 namespace hosel::loop {
 
 struct Inputs {
-  std::vector<Trial> trials;                ///< one per usable row
+  std::vector<Shot> trials;                 ///< one per usable row
   std::vector<int> row_of;                  ///< the row of each trial
   std::vector<Eigen::MatrixXd> covariance;  ///< of the inputs given their record, 8 x 8 SI; empty: all exact
   std::map<std::string, int> unused;        ///< reason, rows

@@ -32,7 +32,7 @@ bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimu
 
 }  // namespace
 
-ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Trial> trials,
+ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials,
                      std::vector<ShotChannel> channels, Eigen::MatrixXd measured)
     : base_(base),
       direct_(direct),
@@ -41,41 +41,41 @@ ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<T
       measured_(std::move(measured)) {
   if (!direct_) {
     offset_.reserve(trials_.size());
-    for (Trial& t : trials_) {
+    for (Shot& t : trials_) {
       offset_.push_back(plus(base_.launch(t.blow), companion().launch(t.blow), -1));
       t.blow.club.shaft.reset();  // the companion needs none, and copies stay cheap
     }
   }
 }
 
-Launch ShotModel::answer(const Trial& trial, int shot) const {
+Launch ShotModel::answer(const Shot& trial, int shot) const {
   if (direct_) return base_.launch(trial.blow);
   const Launch l = companion().launch(trial.blow);
   return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
 }
 
-void ShotModel::change(const Model& model, const double* p, Trial& trial) {
-  for (const Form* f : model.forms) {
+void ShotModel::change(const Model& model, const double* p, Shot& trial) {
+  for (const Parametrisation* f : model.forms) {
     if (f->before) f->before({p, f->parameters.size()}, trial);
     p += f->parameters.size();
   }
 }
 
-void ShotModel::change(const Model& model, const double* p, const Trial& trial, Launch& launch) {
-  for (const Form* f : model.forms) {
+void ShotModel::change(const Model& model, const double* p, const Shot& trial, Launch& launch) {
+  for (const Parametrisation* f : model.forms) {
     if (f->after) f->after({p, f->parameters.size()}, trial, launch);
     p += f->parameters.size();
   }
 }
 
-bool ShotModel::read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
+bool ShotModel::read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
                      double* out) const {
   bool good = true;
   for (int c = 0; c < width(); ++c) {
     const ShotChannel& channel = channels_[std::size_t(c)];
     double value = get(launch, channel.output);
     const double* p = parameters;
-    for (const Form* f : model.forms) {
+    for (const Parametrisation* f : model.forms) {
       if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
       p += f->parameters.size();
     }
@@ -87,9 +87,9 @@ bool ShotModel::read(const Trial& trial, int shot, const Model& model, const dou
   return good;
 }
 
-bool ShotModel::predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const {
+bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const double* parameters, double* out) const {
   try {
-    Trial t = trial;
+    Shot t = trial;
     change(model, parameters, t);
     Launch l = answer(t, shot);
     change(model, parameters, t, l);
@@ -97,10 +97,10 @@ bool ShotModel::predict(const Trial& trial, int shot, const Model& model, const 
   } catch (const std::invalid_argument&) { return false; }
 }
 
-bool ShotModel::differences(const Trial& trial, int shot, const Model& model, const double* parameters, double step,
+bool ShotModel::differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step,
                             bool central, double* out, double* derivative) const {
   try {
-    Trial t = trial;
+    Shot t = trial;
     change(model, parameters, t);
     const Launch bare = answer(t, shot);
     Launch l = bare;
@@ -112,7 +112,7 @@ bool ShotModel::differences(const Trial& trial, int shot, const Model& model, co
     if (n > int(moved.size()) || m > int(there.size())) throw std::length_error("too many parameters for one model");
     std::copy_n(parameters, n, moved.begin());
     int k = 0;
-    for (const Form* f : model.forms)
+    for (const Parametrisation* f : model.forms)
       for (const Parameter& q : f->parameters) {
         const double h = step * q.scale, at = moved[std::size_t(k)];
         const auto look = [&](double x, double* values) {
@@ -141,7 +141,7 @@ bool ShotModel::differences(const Trial& trial, int shot, const Model& model, co
   } catch (const std::invalid_argument&) { return false; }
 }
 
-bool ShotModel::launch(Trial t, const Model& model, const double* parameters, Launch& out) const {
+bool ShotModel::launch(Shot t, const Model& model, const double* parameters, Launch& out) const {
   try {
     change(model, parameters, t);
     out = answer(t, -1);
@@ -155,7 +155,7 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
   Eigen::VectorXd up(width()), down(width());
   for (int k = 0; k < kInputs; ++k) {
     if (!(mask >> k & 1U)) continue;
-    Trial t = trial(shot);
+    Shot t = trial(shot);
     const double x = get(t.blow, Input(k)), h = quantity(Input(k)).step;
     set(t.blow, Input(k), x + h);
     const bool a = predict(t, shot, model, parameters, up.data());

@@ -16,31 +16,31 @@ class ShotModel {
   /// `base` must outlive the model. `direct`: the base answers in microseconds and honours the blow's contact
   /// law; otherwise its answers on the trials are computed once and the effects act through the difference that
   /// they make in the closed-form eccentric impact. `measured`: header's units, NaN where missing, shots x channels.
-  ShotModel(const models::ImpactModel& base, bool direct, std::vector<Trial> trials, std::vector<ShotChannel> channels,
+  ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials, std::vector<ShotChannel> channels,
             Eigen::MatrixXd measured);
 
   int shots() const { return int(trials_.size()); }
   int width() const { return int(channels_.size()); }
   const ShotChannel& channel(int c) const { return channels_[std::size_t(c)]; }
   ShotChannel& channel(int c) { return channels_[std::size_t(c)]; }
-  const Trial& trial(int shot) const { return trials_[std::size_t(shot)]; }
+  const Shot& trial(int shot) const { return trials_[std::size_t(shot)]; }
   const Eigen::MatrixXd& measured() const { return measured_; }
   bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
 
   /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
   /// happen.
-  bool predict(const Trial& trial, int shot, const Model& model, const double* parameters, double* out) const;
+  bool predict(const Shot& trial, int shot, const Model& model, const double* parameters, double* out) const;
   bool predict(int shot, const Model& model, const double* parameters, double* out) const {
     return predict(trial(shot), shot, model, parameters, out);
   }
   /// The same and its derivatives by the parameters, per Parameter::scale, by differences over `step` scales; what a
   /// parameter does not touch is not computed again. `derivative` is width x size, column-major. Also false where a
   /// neighbour cannot happen.
-  bool differences(const Trial& trial, int shot, const Model& model, const double* parameters, double step,
-                   bool central, double* out, double* derivative) const;
+  bool differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step, bool central,
+                   double* out, double* derivative) const;
   /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
   /// base's own answer).
-  bool launch(Trial trial, const Model& model, const double* parameters, Launch& out) const;
+  bool launch(Shot trial, const Model& model, const double* parameters, Launch& out) const;
   /// Raw residuals model - measured, shots x channels, NaN where missing.
   Eigen::MatrixXd residuals(const Model& model, const double* parameters) const;
 
@@ -65,11 +65,11 @@ class ShotModel {
   Eigen::MatrixXd jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
 
  private:
-  Launch answer(const Trial& trial, int shot) const;
+  Launch answer(const Shot& trial, int shot) const;
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
-  static void change(const Model& model, const double* parameters, Trial& trial);
-  static void change(const Model& model, const double* parameters, const Trial& trial, Launch& launch);
-  bool read(const Trial& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
+  static void change(const Model& model, const double* parameters, Shot& trial);
+  static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);
+  bool read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
             double* out) const;
   void whiten(int shot, const Model& model, const double* p, double* scratch, double* z) const;
   void linearise(int shot, const Model& model, const double* p, double step, bool central,
@@ -79,7 +79,7 @@ class ShotModel {
 
   const models::ImpactModel& base_;
   bool direct_;
-  std::vector<Trial> trials_;
+  std::vector<Shot> trials_;
   std::vector<ShotChannel> channels_;
   Eigen::MatrixXd measured_;
   std::vector<double> whiten_;

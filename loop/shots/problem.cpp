@@ -109,7 +109,7 @@ void ShotProblem::distrust(Input input) {
   if (inputs_.covariance.empty())
     inputs_.covariance.assign(inputs_.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-  for (const Trial& t : inputs_.trials) {
+  for (const Shot& t : inputs_.trials) {
     lo = std::min(lo, get(t.blow, input));
     hi = std::max(hi, get(t.blow, input));
   }
@@ -117,15 +117,15 @@ void ShotProblem::distrust(Input input) {
     cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
 }
 
-std::vector<Form> ShotProblem::forms() const {
+std::vector<Parametrisation> ShotProblem::forms() const {
   Setting setting{.head_turns = case_.head_turns, .inertia_declared = case_.inertia_declared, .outputs = {}};
   for (int c = 0; c < width(); ++c) setting.outputs.push_back(model_->channel(c).output);
-  std::vector<Form> all;
+  std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects()) {
     if (!e.on_shots) continue;
-    for (Form& f : e.on_shots(setting)) {
+    for (Parametrisation& f : e.on_shots(setting)) {
       // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
-      if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.rarity += 10;
+      if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.complexity += 10;
       all.push_back(std::move(f));
     }
   }

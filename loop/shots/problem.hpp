@@ -22,7 +22,7 @@ class ShotProblem final : public Problem {
               std::optional<Input> doubted);
 
   /// Every form that can act on these shots.
-  std::vector<Form> forms() const;
+  std::vector<Parametrisation> forms() const;
   const std::map<std::string, int>& unused() const { return inputs_.unused; }  ///< reason, rows
   const ShotModel& model() const { return *model_; }
   const std::vector<int>& training() const { return rows_.train; }

@@ -78,7 +78,7 @@ class Row {
   };
   double distance(std::initializer_list<Replaced> by = {}) const {
     Eigen::VectorXd r = prediction_, y = measured_;
-    Trial t = trial_;
+    Shot t = trial_;
     bool other = false;
     for (const auto& [use, si] : by) {
       if (use.input >= 0) set(t.blow, Input(use.input), si);
@@ -96,7 +96,7 @@ class Row {
   const Fit& fit_;
   int shot_;
   Eigen::VectorXd measured_, prediction_;
-  Trial trial_;
+  Shot trial_;
   bool predicted_ = false;
 };
 

@@ -27,37 +27,37 @@ struct Scrambled {
   explicit Scrambled(double damping_time) {
     const Mat3 frame = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     beam.emplace(
-        layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
+        dof_map, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
         [](double s) {
           Section q = thick();
           q.bending_y *= 1 + s;
           return q;
         },
         BeamOptions{.gravity = Vec3(1, 2, -9), .damping_time = damping_time});
-    state = layout.rest();
+    state = dof_map.rest();
     beam->place(state);
-    state.q = layout.advanced(state.q, test::random_vector(layout.size(), 11, 0.4));
-    state.v = test::random_vector(layout.size(), 12, 3);
-    state.a = test::random_vector(layout.size(), 13, 30);
+    state.q = dof_map.advanced(state.q, test::random_vector(dof_map.size(), 11, 0.4));
+    state.v = test::random_vector(dof_map.size(), 12, 3);
+    state.a = test::random_vector(dof_map.size(), 13, 30);
   }
-  Layout layout;
+  DofMap dof_map;
   std::optional<Beam> beam;
   State state;
 };
 
 TEST(Beam, ResidualIsTheGradientOfTheEnergyAndTheTangentItsDerivative) {
   Scrambled s(0);
-  test::check_tangent(*s.beam, s.layout, s.state, 1e-5, 1e-8);
+  test::check_tangent(*s.beam, s.dof_map, s.state, 1e-5, 1e-8);
   // Gravity is in the force but not in the stored energy.
-  Layout layout;
-  const Beam weightless(layout, s.beam->line(),
+  DofMap dof_map;
+  const Beam weightless(dof_map, s.beam->line(),
                         [](double a) {
                           Section q = thick();
                           q.bending_y *= 1 + a;
                           return q;
                         },
                         {});
-  test::check_gradient(weightless, layout, s.state, 1e-5, 1e-8);
+  test::check_gradient(weightless, dof_map, s.state, 1e-5, 1e-8);
 }
 
 TEST(Beam, DampingForceIsPowerOfTheStrainRates) {
@@ -68,17 +68,17 @@ TEST(Beam, DampingForceIsPowerOfTheStrainRates) {
   const double power = f.dot(damped.state.v);
   EXPECT_GT(power, 0);
   State later = damped.state;
-  damped.beam->accept(damped.state);
+  damped.beam->commit(damped.state);
   later.time += 2e-3;  // the same rates over 2 ms
-  damped.beam->accept(later);
+  damped.beam->commit(later);
   EXPECT_NEAR(damped.beam->energies(later).viscous, 2e-3 * power, 1e-12 * power);
 }
 
 TEST(Beam, RigidMotionStrainsNothing) {
-  Layout layout;
-  const Beam beam(layout, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), Mat3::Identity()),
+  DofMap dof_map;
+  const Beam beam(dof_map, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), Mat3::Identity()),
                   [](double) { return thick(); }, {});
-  State s = layout.rest();
+  State s = dof_map.rest();
   beam.place(s);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(2.9, Vec3(1, -2, 0.5).normalized()));
   for (const Node& n : beam.nodes()) {
@@ -89,10 +89,10 @@ TEST(Beam, RigidMotionStrainsNothing) {
 }
 
 TEST(Beam, RefusesNegativeStiffness) {
-  Layout layout;
+  DofMap dof_map;
   Section bad = thick();
   bad.bending_z = -1;
-  EXPECT_THROW(Beam(layout, mesh::straight({0, 1}, Vec3::Zero(), Mat3::Identity()), [&](double) { return bad; }, {}),
+  EXPECT_THROW(Beam(dof_map, mesh::straight({0, 1}, Vec3::Zero(), Mat3::Identity()), [&](double) { return bad; }, {}),
                std::invalid_argument);
 }
 

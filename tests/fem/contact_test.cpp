@@ -23,7 +23,7 @@ constexpr double kRadius = 0.021335;
 struct Scene {
   System system;
   HarmonicSolid* ball = nullptr;
-  Layout::Block x, r;
+  DofMap::Block x, r;
   std::unique_ptr<Contact> contact;
   State s;
   Face face{.bulge = 0.3, .roll = 0.25};
@@ -31,7 +31,7 @@ struct Scene {
 
   Scene(bool symmetric, std::unique_ptr<const FrictionLaw> friction,
         const std::optional<FaceCompliance>& compliance = std::nullopt) {
-    const Family family = symmetric ? cartesian_family(2) : cartesian_family(2, 1);
+    const FourierBasis basis = symmetric ? cartesian_basis(2) : cartesian_basis(2, 1);
     const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
     const Mat3 R = symmetric ? Mat3(Mat3::Identity())
                              : Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized().toRotationMatrix();
@@ -41,22 +41,22 @@ struct Scene {
     axes.col(1) = R.col(2);
     axes.col(2) = axes.col(0).cross(axes.col(1));
     ball = new HarmonicSolid(
-        system.layout, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
-        family, {symmetric ? half_circle(6) : full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
+        system.dof_map, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
+        basis, {symmetric ? half_circle(6) : full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
     system.terms.emplace_back(ball);
-    x = system.layout.add_vector(3);
-    r = system.layout.add_rotation();
+    x = system.dof_map.add_vector(3);
+    r = system.dof_map.add_rotation();
     centre = Vec3(0.01, symmetric ? 0 : 0.004, 0.02);
     std::unique_ptr<const ContactSurface> surface = std::make_unique<FaceSurface>(face);
-    std::optional<Layout::Block> travel;
+    std::optional<DofMap::Block> travel;
     if (compliance) {
-      travel = system.layout.add_vector(1);
+      travel = system.dof_map.add_vector(1);
       surface = std::make_unique<YieldingFace>(face, *compliance, *travel);
     }
     contact = std::make_unique<Contact>(
         *ball, std::move(surface), SurfaceCarrier{x, r, centre}, ContactLaws{1e11, std::move(friction)},
         symmetric ? half_circle(8) : full_circle(14), symmetric ? Symmetry::plane : Symmetry::none, 3);
-    s = system.layout.rest();
+    s = system.dof_map.rest();
     set_rotation(s, r, Eigen::Quaterniond(R));
     const Vec3 spot = face.point(symmetric ? 0 : 0.01, symmetric ? 0 : -0.015);
     s.q.segment<3>(x.q) = R * (Vec3(-kRadius, 0, 0) - centre - spot);
@@ -66,9 +66,9 @@ struct Scene {
       s.q.segment<3>(x.q) += R * Vec3(2e-4, symmetric ? 0 : 3e-6, -4e-6 * i);
       s.time += 1e-5;
       if (travel) s.q[travel->q] += 4e-5;
-      if (i < 4) contact->accept(s);
+      if (i < 4) contact->commit(s);
     }
-    s.v = test::random_vector(system.layout.size(), 8, 3);
+    s.v = test::random_vector(system.dof_map.size(), 8, 3);
     if (symmetric) s.v.segment<3>(x.v).y() = 0, s.v.segment<3>(r.v) = Vec3(0, 1, 0);
   }
 };
@@ -89,7 +89,7 @@ TEST(Contact, Tangent) {
       ASSERT_GT(report.points, 20);
       ASSERT_GT(report.normal_force, 10);
       // The curvature of the gap function is taken to first order: relative size gap / face radius.
-      test::check_tangent(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3, 1e-5);
+      test::check_tangent(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3, 1e-5);
     }
 }
 
@@ -98,7 +98,7 @@ TEST(Contact, ForceIsTheGradientOfTheEnergy) {
   for (const bool yields : {false, true}) {
     Scene scene(false, nullptr, yields ? std::optional(kYielding) : std::nullopt);
     ASSERT_GT(scene.contact->energies(scene.s).contact, 1e-4);
-    test::check_gradient(*scene.contact, scene.system.layout, scene.s, 1e-9, 2e-3);
+    test::check_gradient(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3);
   }
 }
 
@@ -107,13 +107,13 @@ TEST(Contact, ForcesBalance) {
   int sliding = 0, sticking = 0;
   for (bool symmetric : {false, true}) {
     Scene scene(symmetric, std::make_unique<Coulomb>(0.01, 5e10));
-    Vector inertia = Vector::Zero(scene.system.layout.size()), force = inertia;
+    Vector inertia = Vector::Zero(scene.system.dof_map.size()), force = inertia;
     scene.contact->residual(scene.s, inertia, force);
-    const auto& layout = scene.system.layout;
+    const auto& dof_map = scene.system.dof_map;
     // A rigid motion of everything does no work: translation, and rotation about the origin.
     for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
       if (symmetric && axis.y() != 0) continue;
-      State rigid = layout.rest();
+      State rigid = dof_map.rest();
       scene.ball->set_velocity(rigid, axis, Vec3::Zero());
       rigid.v.segment<3>(scene.x.v) = axis;
       const double push = force.segment<3>(scene.x.v).norm();
@@ -122,13 +122,13 @@ TEST(Contact, ForcesBalance) {
     }
     // The ball has not been deformed, so rotating it about its centre is exact too.
     const Vec3 axis = symmetric ? Vec3(0, 1, 0) : Vec3(0.3, -0.5, 0.8);
-    State rigid = layout.rest();
+    State rigid = dof_map.rest();
     scene.ball->set_velocity(rigid, Vec3::Zero(), axis);
     rigid.v.segment<3>(scene.x.v) = axis.cross(Vec3(scene.s.q.segment<3>(scene.x.q)));
     rigid.v.segment<3>(scene.r.v) = rotation(scene.s, scene.r).conjugate() * axis;
     EXPECT_LT(std::abs(force.dot(rigid.v)), 1e-10 * force.segment<3>(scene.x.v).norm() * kRadius);
     // The friction cone is exact at every point.
-    scene.contact->accept(scene.s);
+    scene.contact->commit(scene.s);
     for (const auto& p : scene.contact->points(scene.s)) {
       if (p.pressure == 0) continue;
       // Friction is what the traction has beside the pressure, which acts along the gradient of the gap

@@ -10,24 +10,24 @@ namespace {
 const FaceCompliance kFace{.mass = 0.012, .stiffness = 9e6, .damping = 12, .half_width = 0.05, .half_height = 0.03};
 
 struct Scene {
-  Layout layout;
-  SurfaceCarrier carrier{layout.add_vector(3), layout.add_rotation(), Vec3(0.035, -0.01, 0.02)};
-  Layout::Block travel = layout.add_vector(1);
+  DofMap dof_map;
+  SurfaceCarrier carrier{dof_map.add_vector(3), dof_map.add_rotation(), Vec3(0.035, -0.01, 0.02)};
+  DofMap::Block travel = dof_map.add_vector(1);
   FaceSpring spring{kFace, carrier, travel};
-  State s = layout.rest();
+  State s = dof_map.rest();
 
   Scene() {
     set_rotation(s, *carrier.rotation, Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized());
     s.q[travel.q] = 8e-4;
-    s.v = test::random_vector(layout.size(), 3, 20);
-    s.a = test::random_vector(layout.size(), 4, 2e4);
+    s.v = test::random_vector(dof_map.size(), 3, 20);
+    s.a = test::random_vector(dof_map.size(), 4, 2e4);
   }
 };
 
 TEST(FaceSpring, Tangent) {
   Scene scene;
   ASSERT_GT(test::total_residual(scene.spring, scene.s).norm(), 100);
-  test::check_tangent(scene.spring, scene.layout, scene.s, 1e-6, 1e-7);
+  test::check_tangent(scene.spring, scene.dof_map, scene.s, 1e-6, 1e-7);
 }
 
 /// What inertia takes is the rate of the kinetic energy, along any motion; what spring and damper take is stored or
@@ -35,12 +35,12 @@ TEST(FaceSpring, Tangent) {
 TEST(FaceSpring, PowerIsTheRateOfTheEnergies) {
   Scene scene;
   const State& s = scene.s;
-  Vector inertia = Vector::Zero(scene.layout.size()), force = inertia;
+  Vector inertia = Vector::Zero(scene.dof_map.size()), force = inertia;
   scene.spring.residual(s, inertia, force);
   const double h = 1e-7;
   const auto at = [&](double t) {
     State moved = s;
-    moved.q = scene.layout.advanced(s.q, t * s.v);
+    moved.q = scene.dof_map.advanced(s.q, t * s.v);
     moved.v += t * s.a;
     return scene.spring.energies(moved);
   };

@@ -18,19 +18,19 @@ JointStiffness stiffness(double damping) {
 }
 
 TEST(SpringJoint, ForceIsTheGradientAndTheTangentItsDerivative) {
-  Layout layout;
-  const Node a{layout.add_vector(3), layout.add_rotation()}, b{layout.add_vector(3), layout.add_rotation()};
-  State s = layout.rest();
-  s.q = layout.advanced(s.q, test::random_vector(layout.size(), 1, 0.7));
-  s.v = test::random_vector(layout.size(), 2);
+  DofMap dof_map;
+  const Node a{dof_map.add_vector(3), dof_map.add_rotation()}, b{dof_map.add_vector(3), dof_map.add_rotation()};
+  State s = dof_map.rest();
+  s.q = dof_map.advanced(s.q, test::random_vector(dof_map.size(), 1, 0.7));
+  s.v = test::random_vector(dof_map.size(), 2);
   const SpringJoint between("joint", a, b, stiffness(0));
-  test::check_gradient(between, layout, s, 1e-5, 1e-8);
-  test::check_tangent(between, layout, s, 1e-5, 1e-8);
+  test::check_gradient(between, dof_map, s, 1e-5, 1e-8);
+  test::check_tangent(between, dof_map, s, 1e-5, 1e-8);
   const SpringJoint hands("hands",
                           at_rest(Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3::UnitY()))), b,
                           stiffness(0));
-  test::check_gradient(hands, layout, s, 1e-5, 1e-8);
-  test::check_tangent(hands, layout, s, 1e-5, 1e-8);
+  test::check_gradient(hands, dof_map, s, 1e-5, 1e-8);
+  test::check_tangent(hands, dof_map, s, 1e-5, 1e-8);
 }
 
 }  // namespace

@@ -8,18 +8,18 @@ namespace hosel::fem {
 namespace {
 
 TEST(RigidBody, TangentAndMomentum) {
-  Layout layout;
-  const auto x = layout.add_vector(3), r = layout.add_rotation();
+  DofMap dof_map;
+  const auto x = dof_map.add_vector(3), r = dof_map.add_rotation();
   RigidBodyProperties p;
   p.mass = 0.2;
   p.inertia << 4.6e-4, 1e-5, 3e-5, 1e-5, 2.2e-4, -1.5e-5, 3e-5, -1.5e-5, 2.9e-4;
   p.offset = Vec3(0.02, 0.035, 0.015);
   const RigidBody body("head", x, r, p, Vec3(0, 0, -9.81));
-  State s = layout.rest();
-  s.q = layout.advanced(s.q, test::random_vector(6, 3));
+  State s = dof_map.rest();
+  s.q = dof_map.advanced(s.q, test::random_vector(6, 3));
   s.v = test::random_vector(6, 4, 10);
   s.a = test::random_vector(6, 5, 100);
-  test::check_tangent(body, layout, s, 1e-5, 1e-8);
+  test::check_tangent(body, dof_map, s, 1e-5, 1e-8);
 
   // Kinetic energy and both momenta change at the rate of the equations: dT/dt = v . inertia.
   Vector inertia = Vector::Zero(6), force = inertia;
@@ -27,7 +27,7 @@ TEST(RigidBody, TangentAndMomentum) {
   const double h = 1e-5;
   const auto later = [&](double t) {
     State n = s;
-    n.q = layout.advanced(s.q, t * s.v + 0.5 * t * t * s.a);
+    n.q = dof_map.advanced(s.q, t * s.v + 0.5 * t * t * s.a);
     n.v += t * s.a;
     return n;
   };

@@ -50,7 +50,7 @@ class Held final : public Prescribed {
   std::vector<Index> at;      // equations
   std::vector<Index> offset;  // the same in State::q
   std::vector<double> value;
-  const std::vector<Index>& equations() const override { return at; }
+  const std::vector<Index>& dofs() const override { return at; }
   void impose(State& s) const override {
     for (std::size_t i = 0; i < at.size(); ++i) s.q[offset[i]] = value[i];
   }
@@ -74,13 +74,13 @@ TEST(SolidStatics, PatchTest) {
     A(2, 2) += (1.001 - (Mat3::Identity() + A).determinant()) / plane;
     for (const Solid& law : laws) {
       System system;
-      const Family family = planar ? cartesian_family(2) : cartesian_family(1, 1);
+      const FourierBasis basis = planar ? cartesian_basis(2) : cartesian_basis(1, 1);
       const AngularRule angles = planar ? half_circle(8) : full_circle(12);
-      auto owned = std::make_unique<HarmonicSolid>(system.layout, distorted_patch(), family, SolidQuadrature{angles, 2},
+      auto owned = std::make_unique<HarmonicSolid>(system.dof_map, distorted_patch(), basis, SolidQuadrature{angles, 2},
                                                    std::vector<Solid>{law}, Placement{});
       const HarmonicSolid& solid = *owned;
       system.terms.push_back(std::move(owned));
-      const State rest = system.layout.rest();
+      const State rest = system.dof_map.rest();
       State exact = rest;
       auto held = std::make_unique<Held>();
       const AngularRule circle = full_circle(16);
@@ -90,7 +90,7 @@ TEST(SolidStatics, PatchTest) {
           if (offset < 0) continue;
           double sum = 0, norm = 0;
           for (const double theta : circle.theta) {
-            const Vec3 f = family[static_cast<std::size_t>(k)].at(theta);
+            const Vec3 f = basis[static_cast<std::size_t>(k)].at(theta);
             sum += f.dot(A * solid.reference(static_cast<int>(i), theta));
             norm += f.squaredNorm();
           }
@@ -98,17 +98,17 @@ TEST(SolidStatics, PatchTest) {
           const Eigen::Vector2d& x = solid.mesh().nodes[i];
           const double size = solid.mesh().radius;
           if (x.x() == 0 || x.x() == size || x.y() == size) {
-            held->at.push_back(solid.equation(static_cast<int>(i), k));
+            held->at.push_back(solid.dof(static_cast<int>(i), k));
             held->offset.push_back(offset);
             held->value.push_back(exact.q[offset]);
           }
         }
       const std::size_t imposed = held->at.size();
-      ASSERT_LT(imposed, static_cast<std::size_t>(system.layout.size()) * 3 / 4);
+      ASSERT_LT(imposed, static_cast<std::size_t>(system.dof_map.size()) * 3 / 4);
       system.prescribed.push_back(std::move(held));
       // From a disturbed start: the whole displacement at once would turn elements at the boundary inside out.
       State start = exact;
-      start.q += test::random_vector(system.layout.q_size(), 1, 1e-6);
+      start.q += test::random_vector(system.dof_map.q_size(), 1, 1e-6);
       const auto found = solvers::solve_static(system, start,
                                                {.newton = {.residual_relative = 1e-12,
                                                            .increment_vector = 1e-14,
@@ -122,7 +122,7 @@ TEST(SolidStatics, PatchTest) {
       PointResponse point;
       const Mat3 F = Mat3::Identity() + A;
       if (law.elastic.corotated()) continue;  // its frame is the patch's own mean rotation
-      respond(law, F, Mat3::Identity(), 0, {}, false, point);
+      evaluate(law, F, Mat3::Identity(), 0, {}, false, point);
       const Sym sigma = to_sym(point.stress * F.transpose() / F.determinant());
       for (const Sym& s : solid.cauchy_at_nodes(found.state, {angles.theta[0], angles.theta[3]}))
         EXPECT_LT((s - sigma).norm(), 1e-8 * sigma.norm());
@@ -152,7 +152,7 @@ class InnerPressure final : public Term {
         const Eigen::Vector2d load = 2 * M_PI * at.y() * w * pressure * Eigen::Vector2d(along.y(), -along.x());
         for (std::size_t i = 0; i < 3; ++i)
           for (Index k = 0; k < 2; ++k)
-            if (const Index q = solid.equation(ring[e + i].second, k); q >= 0)
+            if (const Index q = solid.dof(ring[e + i].second, k); q >= 0)
               loads_.emplace_back(q, N[static_cast<Index>(i)] * load[k]);
       }
   }
@@ -178,7 +178,7 @@ TEST(SolidStatics, PressurisedThickSphere) {
                          Row{.4999, 8.3606216470e-5, 1.8372030338e-5}}) {
     System system;
     auto owned = std::make_unique<HarmonicSolid>(
-        system.layout, mesh::shell_meridian(a, b, 8, 4), axisymmetric_family(), SolidQuadrature{single_angle(), 2},
+        system.dof_map, mesh::shell_meridian(a, b, 8, 4), axisymmetric_basis(), SolidQuadrature{single_angle(), 2},
         std::vector<Solid>{{.elastic = LinearElastic{Lame::of(100e6, row.nu)}, .branches = {}, .density = 1}},
         Placement{});
     const HarmonicSolid& solid = *owned;
@@ -193,12 +193,12 @@ TEST(SolidStatics, PressurisedThickSphere) {
                                        solid.mesh().nodes.begin());
     ASSERT_LT(node, static_cast<int>(solid.mesh().nodes.size()));
     auto held = std::make_unique<Held>();
-    held->at = {solid.equation(node, 0)};
+    held->at = {solid.dof(node, 0)};
     held->offset = {solid.offset(node, 0)};
     held->value = {0};
     system.prescribed.push_back(std::move(held));
     const auto found = solvers::solve_static(
-        system, system.layout.rest(),
+        system, system.dof_map.rest(),
         {.newton = {.residual_relative = 1e-10, .increment_vector = 1e-10, .increment_rotation = 1}});
     const auto u = solid.displacement_fields(found.state);
     for (std::size_t i = 0; i < solid.mesh().nodes.size(); ++i) {

@@ -49,23 +49,23 @@ TEST(Solid, EnergyStressTangentAgree) {
     for (int trial = 0; trial < 20; ++trial) {
       std::vector<double> history(static_cast<std::size_t>(solid.history_size()));
       solid.start(history);
-      move_history(solid, random_gradient(g, 0.2), 3e-5, history);
-      move_history(solid, random_gradient(g, 0.2), 3e-5, history);
+      update_internal_variables(solid, random_gradient(g, 0.2), 3e-5, history);
+      update_internal_variables(solid, random_gradient(g, 0.2), 3e-5, history);
       const Mat3 F = random_gradient(g, 0.2), Q = Eigen::Quaterniond::UnitRandom().toRotationMatrix();
       const Mat3 D = random_gradient(g, 1) - Mat3::Identity();
       const double h = 2e-6;
       // With dt = 0 the history is frozen and P is the energy's gradient; with dt > 0 the tangent is
       // that of the update.
       PointResponse at, plus, minus;
-      respond(solid, F, Q, 0, history, true, at);
-      respond(solid, F + h * D, Q, 0, history, false, plus);
-      respond(solid, F - h * D, Q, 0, history, false, minus);
+      evaluate(solid, F, Q, 0, history, true, at);
+      evaluate(solid, F + h * D, Q, 0, history, false, plus);
+      evaluate(solid, F - h * D, Q, 0, history, false, minus);
       const double slope = (plus.energy - minus.energy) / (2 * h), product = at.stress.cwiseProduct(D).sum();
       EXPECT_NEAR(slope, product, 1e-7 * (std::abs(product) + at.stress.norm() * D.norm())) << name;
       for (double dt : {0.0, 5e-5}) {
-        respond(solid, F, Q, dt, history, true, at);
-        respond(solid, F + h * D, Q, dt, history, false, plus);
-        respond(solid, F - h * D, Q, dt, history, false, minus);
+        evaluate(solid, F, Q, dt, history, true, at);
+        evaluate(solid, F + h * D, Q, dt, history, false, plus);
+        evaluate(solid, F - h * D, Q, dt, history, false, minus);
         const Eigen::Matrix<double, 9, 1> difference = ((plus.stress - minus.stress) / (2 * h)).reshaped();
         const Eigen::Matrix<double, 9, 1> predicted = at.tangent * D.reshaped();
         EXPECT_LE((difference - predicted).norm(), 1e-7 * predicted.norm()) << name << " dt " << dt;
@@ -81,8 +81,8 @@ TEST(Solid, OgdenHoldsMooneyRivlin) {
   const Mat3 twice = Vec3(1.2, 1.2, 0.7).asDiagonal();
   for (const Mat3& F : {Mat3(Mat3::Identity()), twice, random_gradient(g, 0.2), random_gradient(g, 0.2)}) {
     PointResponse a, b;
-    respond(ogden, F, Mat3::Identity(), 0, {}, true, a);
-    respond(mooney, F, Mat3::Identity(), 0, {}, true, b);
+    evaluate(ogden, F, Mat3::Identity(), 0, {}, true, a);
+    evaluate(mooney, F, Mat3::Identity(), 0, {}, true, b);
     EXPECT_NEAR(a.energy, b.energy, 1e-10 * (b.energy + 1e6));
     EXPECT_LT((a.stress - b.stress).norm(), 1e-10 * (b.stress.norm() + 1e6));
     EXPECT_LT((a.tangent - b.tangent).norm(), 1e-9 * b.tangent.norm());
@@ -100,7 +100,7 @@ TEST(Solid, NeoHookeUniaxial) {
     double lateral = 1 / std::sqrt(row[0]);
     PointResponse r;
     for (int i = 0; i < 30; ++i) {  // lateral stress to zero
-      respond(solid, Vec3(row[0], lateral, lateral).asDiagonal(), Mat3::Identity(), 0, {}, true, r);
+      evaluate(solid, Vec3(row[0], lateral, lateral).asDiagonal(), Mat3::Identity(), 0, {}, true, r);
       lateral -= r.stress(1, 1) / (r.tangent(4, 4) + r.tangent(4, 8));
     }
     EXPECT_NEAR(lateral, row[1], 1e-8);
@@ -110,12 +110,12 @@ TEST(Solid, NeoHookeUniaxial) {
   Mat3 shear = Mat3::Identity();
   shear(0, 1) = 0.5;
   PointResponse r;
-  respond(solid, shear, Mat3::Identity(), 0, {}, false, r);
+  evaluate(solid, shear, Mat3::Identity(), 0, {}, false, r);
   const Mat3 sigma = r.stress * shear.transpose();
   EXPECT_NEAR(sigma(0, 1), 16778523.49, 0.01);
   EXPECT_NEAR(sigma(0, 0), 5592841.16, 0.01);
   EXPECT_NEAR(sigma(1, 1), -2796420.58, 0.01);
-  respond(solid, Vec3(.9, 1, 1).asDiagonal(), Mat3::Identity(), 0, {}, false, r);
+  evaluate(solid, Vec3(.9, 1, 1).asDiagonal(), Mat3::Identity(), 0, {}, false, r);
   EXPECT_NEAR(r.stress(0, 0), -1.7173317268e8, 1);
 }
 
@@ -136,7 +136,7 @@ class Prony : public testing::Test {
   }
   double stress(double gamma, double dt) {
     PointResponse r;
-    respond(solid, shear(gamma), Mat3::Identity(), dt, history, false, r);
+    evaluate(solid, shear(gamma), Mat3::Identity(), dt, history, false, r);
     return r.stress(0, 1) / scale;
   }
   /// Shear stress after a ramp of `steps` from gamma(t0) to gamma(t1).
@@ -146,7 +146,7 @@ class Prony : public testing::Test {
     for (int i = 1; i <= steps; ++i) {
       const double dt = (t1 - t0) / steps, t = t0 + i * dt;
       tau = stress(gamma(t), dt);
-      move_history(solid, shear(gamma(t)), dt, history);
+      update_internal_variables(solid, shear(gamma(t)), dt, history);
     }
     return tau;
   }
@@ -157,7 +157,7 @@ TEST_F(Prony, Relaxation) {
   // A step: history sees the strain at once (dt = 0), then holds it.
   const auto hold = [](double) { return 0.01; };
   stress(0.01, 0);
-  move_history(solid, shear(0.01), 0, history);
+  update_internal_variables(solid, shear(0.01), 0, history);
   EXPECT_NEAR(run(hold, 0, 1e-4, 1), 3.27271686e5, 3.27e5 * 1e-8);
   EXPECT_NEAR(run(hold, 1e-4, 1e-3, 3), 2.36792484e5, 2.36e5 * 1e-8);
 }
@@ -182,7 +182,7 @@ TEST_F(Prony, HarmonicResponse) {
     for (int i = 1; i <= per_cycle; ++i) {
       const double t = cycles / f + i * dt;
       const double tau = stress(gamma(t), dt);
-      move_history(solid, shear(gamma(t)), dt, history);
+      update_internal_variables(solid, shear(gamma(t)), dt, history);
       in += tau * std::sin(w * t) * 2 / per_cycle / 0.01;
       out += tau * std::cos(w * t) * 2 / per_cycle / 0.01;
     }
@@ -205,7 +205,7 @@ TEST(Solid, DissipationIsNeverNegative) {
       const double size = 0.3 * u(g);
       for (int step = 0; step < 8; ++step) {
         const double dt = std::pow(10, -7 + 5 * u(g));
-        ASSERT_GE(move_history(solid, random_gradient(g, size), dt, history), 0) << name;
+        ASSERT_GE(update_internal_variables(solid, random_gradient(g, size), dt, history), 0) << name;
       }
     }
   }
@@ -226,12 +226,12 @@ TEST(Solid, EnergyBalanceClosesAtSecondOrder) {
     const double dt = 4e-4 / steps;
     double work = 0, dissipated = 0;
     PointResponse before, after;
-    respond(solid, gradient(0), Mat3::Identity(), 0, history, false, before);
+    evaluate(solid, gradient(0), Mat3::Identity(), 0, history, false, before);
     for (int i = 1; i <= steps; ++i) {
       const Mat3 F0 = gradient((i - 1) * dt), F1 = gradient(i * dt);
-      respond(solid, F1, Mat3::Identity(), dt, history, false, after);
+      evaluate(solid, F1, Mat3::Identity(), dt, history, false, after);
       work += 0.5 * (before.stress + after.stress).cwiseProduct(F1 - F0).sum();
-      dissipated += move_history(solid, F1, dt, history);
+      dissipated += update_internal_variables(solid, F1, dt, history);
       before = after;
     }
     return std::abs(work - dissipated - after.energy) / work;

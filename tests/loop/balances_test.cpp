@@ -22,10 +22,10 @@ Balance of(double tangential, double inertia_factor, double loft_error) {
       {{.name = "azimuth_deg", .si = radians(1), .noise = 0.05}, Output::azimuth},
       {{.name = "backspin_rpm", .si = kRadPerSecPerRpm, .noise = 12}, Output::backspin},
       {{.name = "sidespin_rpm", .si = kRadPerSecPerRpm, .noise = 12}, Output::sidespin}};
-  std::vector<Trial> trials;
+  std::vector<Shot> trials;
   Eigen::MatrixXd measured(60, 5);
   for (int i = 0; i < 60; ++i) {
-    Trial t;
+    Shot t;
     t.blow.club.head = {.mass = 0.2,
                         .cg = Vec3(-0.035, 0, 0),
                         .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),

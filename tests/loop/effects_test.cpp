@@ -9,8 +9,8 @@
 namespace hosel::loop {
 namespace {
 
-Trial blow_of(int k) {
-  Trial t;
+Shot blow_of(int k) {
+  Shot t;
   t.blow.club.head = {.mass = 0.2,
                       .cg = Vec3(-0.035, 0.002, 0.003),
                       .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
@@ -33,14 +33,14 @@ class OnModel : public testing::TestWithParam<const char*> {
         turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
     for (const EffectEntry& e : effects())
       if (e.on_shots)
-        for (Form& f : e.on_shots(setting)) forms.push_back(f);
+        for (Parametrisation& f : e.on_shots(setting)) forms.push_back(f);
     std::vector<ShotChannel> channels;
     const double noise[] = {0.25, 0.2, 0.25, 60, 60},
                  si[] = {1, kRadPerDeg, kRadPerDeg, kRadPerSecPerRpm, kRadPerSecPerRpm};
     for (std::size_t k = 0; k < setting.outputs.size(); ++k)
       channels.push_back(
           {{.name = std::string(stem(setting.outputs[k])), .si = si[k], .noise = noise[k]}, setting.outputs[k]});
-    std::vector<Trial> trials;
+    std::vector<Shot> trials;
     for (int k = 0; k < 8; ++k) {
       trials.push_back(blow_of(k));
       rows.push_back(k);
@@ -51,14 +51,14 @@ class OnModel : public testing::TestWithParam<const char*> {
   std::unique_ptr<models::ImpactModel> model;
   bool turns;
   Setting setting;
-  std::vector<Form> forms;
+  std::vector<Parametrisation> forms;
   std::vector<int> rows;
   std::unique_ptr<ShotModel> shots;
 };
 
 TEST_P(OnModel, ZeroParametersAreTheBaseBitForBit) {
   ASSERT_GT(forms.size(), 20U);
-  for (const Form& f : forms) {
+  for (const Parametrisation& f : forms) {
     const Model m{{&f}};
     const std::vector<double> zero(f.parameters.size(), 0.0);
     for (const int i : rows) {
@@ -72,7 +72,7 @@ TEST_P(OnModel, ZeroParametersAreTheBaseBitForBit) {
 }
 
 TEST_P(OnModel, DerivativesAgreeWithFinerDifferences) {
-  for (const Form& f : forms) {
+  for (const Parametrisation& f : forms) {
     const Model m{{&f}};
     Eigen::VectorXd p(m.size());
     for (int k = 0; k < p.size(); ++k) p[k] = 0.3 * f.parameters[std::size_t(k)].scale;
@@ -95,7 +95,7 @@ TEST_P(OnModel, DerivativesAgreeWithFinerDifferences) {
 
 TEST_P(OnModel, EveryEffectChangesSomethingWhereItCanAct) {
   int acting = 0;
-  for (const Form& f : forms) {
+  for (const Parametrisation& f : forms) {
     const Model m{{&f}};
     double largest = 0;
     // The far end of a range may be a blow that cannot happen: then a share of it.

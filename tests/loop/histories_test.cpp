@@ -222,23 +222,23 @@ TEST(Histories, NoiseThatIsNotTheDeclaredIsSaid) {
 
 TEST(Histories, ZeroParametersAreTheBaseBitForBit) {
   const Bench b = bench({});
-  std::vector<Answer> base, zero;
-  ASSERT_TRUE(b.model->answer(Rig(2), base));
+  std::vector<Prediction> base, zero;
+  ASSERT_TRUE(b.model->answer(TestSetup(2), base));
   const HistoryProblem problem(*b.model, b.c.setting, b.c.records, {});
   ASSERT_GT(problem.forms().size(), 8U);
-  for (const Form& f : problem.forms()) {
-    Rig rig(2);
+  for (const Parametrisation& f : problem.forms()) {
+    TestSetup setup(2);
     const std::vector<double> none(f.parameters.size(), 0.0);
-    f.setup(none, rig);
-    ASSERT_TRUE(b.model->answer(rig, zero));
+    f.setup(none, setup);
+    ASSERT_TRUE(b.model->answer(setup, zero));
     EXPECT_EQ((zero[0].value - base[0].value).cwiseAbs().maxCoeff(), 0.0) << f.effect;
-    EXPECT_EQ(rig.gain[0] + rig.gain[1] + rig.offset[0] + rig.offset[1], 0.0);
+    EXPECT_EQ(setup.gain[0] + setup.gain[1] + setup.offset[0] + setup.offset[1], 0.0);
   }
 }
 
 /// A club with its head on a bench that turns, released by a load in both planes and a twist: every effect acts.
 struct Turning {
-  std::vector<Form> forms;
+  std::vector<Parametrisation> forms;
   std::unique_ptr<BenchHistory> model;
   std::unique_ptr<HistoryProblem> problem;
 
@@ -262,8 +262,8 @@ struct Turning {
     BenchRecord drive{.times = record.times, .rotation_rate = 6};
     const models::BenchOptions options{.hub = 0.2};
     const BenchStart release{.kind = Start::release, .at = -0.1, .force = Vec3(3, 2, 0), .moment = Vec3(0, 0, 0.3)};
-    std::vector<Answer> as_declared;
-    Rig late(3);
+    std::vector<Prediction> as_declared;
+    TestSetup late(3);
     late.club.bending = -0.1;
     EXPECT_TRUE(BenchHistory(club, true, options, release, {drive}, setting.channels).answer(late, as_declared));
     for (int c = 0; c < 3; ++c)
@@ -287,7 +287,7 @@ TEST(Histories, DerivativesAgreeWithFinerDifferences) {
     const Turning t(start);
     ASSERT_GT(t.forms.size(), 20U);
     std::set<std::string> acting, every;
-    for (const Form& f : t.forms) {
+    for (const Parametrisation& f : t.forms) {
       every.insert(f.effect);
       const Model m{{&f}};
       for (int k = 0; k < m.size(); ++k) {
@@ -323,8 +323,8 @@ TEST(Histories, AModeThatNoChannelShowsIsNoUnknown) {
   // The droop plane moves alone when only its clamp yields: nothing that a lead channel reads may follow.
   const Bench b = bench({.stiffness = 1.02}, true, Start::unknown);
   const HistoryProblem problem(*b.model, b.c.setting, b.c.records, Split{.holdout_fraction = 0});
-  const std::vector<Form> forms = problem.forms();
-  const auto droop = std::ranges::find(forms, "in the droop plane", &Form::what);
+  const std::vector<Parametrisation> forms = problem.forms();
+  const auto droop = std::ranges::find(forms, "in the droop plane", &Parametrisation::what);
   ASSERT_NE(droop, forms.end());
   ASSERT_EQ(droop->effect, "clamp-compliance");
   Eigen::VectorXd rigid, yields;

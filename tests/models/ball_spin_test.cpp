@@ -21,31 +21,31 @@ struct Spinning {
     const fem::Solid rubber{
         .elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, .49)), .branches = {}, .density = kDensity};
     auto owned = std::make_unique<fem::HarmonicSolid>(
-        system.layout, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = 1, .skin = 1, .core = 0.4}),
-        fem::cartesian_family(3), fem::SolidQuadrature{fem::half_circle(10), 2}, std::vector<fem::Solid>{rubber},
+        system.dof_map, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = 1, .skin = 1, .core = 0.4}),
+        fem::cartesian_basis(3), fem::SolidQuadrature{fem::half_circle(10), 2}, std::vector<fem::Solid>{rubber},
         fem::Placement{});
     ball = owned.get();
     system.terms.push_back(std::move(owned));
-    state = system.layout.rest();
+    state = system.dof_map.rest();
     settle();
   }
 
   /// v = omega x (X + u) about axis 3, of fields U; the family holds it exactly.
   Eigen::VectorXd turned(const Eigen::VectorXd& q, bool with_reference) const {
-    const auto& family = ball->family();
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(system.layout.size());
+    const auto& basis = ball->basis();
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(system.dof_map.size());
     const fem::AngularRule circle =
         fem::full_circle(16);  // the flattened sphere needs harmonic 3 of Cartesian components
-    fem::State s = system.layout.rest();
+    fem::State s = system.dof_map.rest();
     s.q = q;
     const Eigen::MatrixXd U = ball->displacement_fields(s);
     for (std::size_t i = 0; i < ball->mesh().nodes.size(); ++i)
       for (Eigen::Index k = 0; k < ball->unknowns(); ++k) {
-        const auto e = ball->equation(static_cast<int>(i), k);
+        const auto e = ball->dof(static_cast<int>(i), k);
         if (e < 0) continue;
         double sum = 0, norm = 0;
         for (const double theta : circle.theta) {
-          const Vec3 f = family[static_cast<std::size_t>(k)].at(theta);
+          const Vec3 f = basis[static_cast<std::size_t>(k)].at(theta);
           Vec3 x = ball->vector_at(U, static_cast<int>(i), theta);
           if (with_reference) x += ball->reference(static_cast<int>(i), theta);
           sum += f.dot(Vec3(0, 0, omega).cross(x));
@@ -64,7 +64,7 @@ struct Spinning {
     for (int i = 0; i < 30; ++i) {
       state.v = turned(state.q, true);
       state.a = turned(state.v, false);
-      Eigen::VectorXd inertia = Eigen::VectorXd::Zero(system.layout.size()), force = inertia;
+      Eigen::VectorXd inertia = Eigen::VectorXd::Zero(system.dof_map.size()), force = inertia;
       ball->residual(state, inertia, force);
       if (i % 10 == 0) {
         tangent.assemble(system, state, {1, 0, 1e7});

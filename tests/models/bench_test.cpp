@@ -35,7 +35,7 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
   club.head = changed(club.head, c);
   const auto line = mesh::straight(mesh::graded(club.shaft->length(), 12), Vec3::Zero(),
                                    mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-  auto owned = std::make_unique<fem::Beam>(system.layout, line, fem::shaft_sections(*club.shaft), fem::BeamOptions{});
+  auto owned = std::make_unique<fem::Beam>(system.dof_map, line, fem::shaft_sections(*club.shaft), fem::BeamOptions{});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
   const auto compliant = [](const Vec3& v) {
@@ -51,7 +51,7 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
     system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
   fem::Node head = beam.nodes().back();
   if (c.hosel.norm() > 0) {
-    head = {system.layout.add_vector(3), system.layout.add_rotation()};
+    head = {system.dof_map.add_vector(3), system.dof_map.add_rotation()};
     system.terms.push_back(std::make_unique<fem::SpringJoint>("hosel", beam.nodes().back(), head, compliant(c.hosel)));
   }
   const Mat3 R = face_to_grip(club.geometry);
@@ -62,7 +62,7 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
   if (c.tip_mass > 0)
     system.terms.push_back(std::make_unique<fem::RigidBody>(
         "weight", head.translation, head.rotation, fem::RigidBodyProperties{c.tip_mass, Mat3::Zero(), Vec3::Zero()}));
-  fem::State rest = system.layout.rest();
+  fem::State rest = system.dof_map.rest();
   beam.place(rest);
   if (c.hosel.norm() > 0) rest.q.segment<3>(head.translation.q) = line.back().position;
   return solvers::modes(system, rest, count).omega;

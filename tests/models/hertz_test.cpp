@@ -26,12 +26,12 @@ class Squeeze {
   /// Force on each plate [N] at rest `after` the last call [s]; the material's history moves.
   double force(double approach, double after = 0) {
     fem::System system;
-    auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, meridian_, fem::axisymmetric_family(),
+    auto ball = std::make_unique<fem::HarmonicSolid>(system.dof_map, meridian_, fem::axisymmetric_basis(),
                                                      fem::SolidQuadrature{fem::single_angle(), 2},
                                                      std::vector<fem::Solid>{material_}, fem::Placement{});
     fem::HarmonicSolid* solid = ball.get();
     system.terms.push_back(std::move(ball));
-    fem::State state = system.layout.rest();
+    fem::State state = system.dof_map.rest();
     if (q_.size() > 0) state.q = q_;
     std::span<const double> history = history_;
     if (!history_.empty()) solid->restore(history);
@@ -54,7 +54,7 @@ class Squeeze {
                                                          .increment_vector = 1e-5 * approach,
                                                          .increment_rotation = 1,
                                                          .max_iterations = 60}});
-    solid->accept(found.state);
+    solid->commit(found.state);
     q_ = found.state.q;
     history_.clear();
     solid->save(history_);

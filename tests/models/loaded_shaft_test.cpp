@@ -44,7 +44,7 @@ struct Flight {
   fem::State state;
 
   Flight(const Club& club, const Delivery& d, const ShaftMount& mount) {
-    const fem::Node node{system.layout.add_vector(3), system.layout.add_rotation()};
+    const fem::Node node{system.dof_map.add_vector(3), system.dof_map.add_rotation()};
     const Mat3 face = d.face_to_global();
     const Vec3 c = club.head.cg - club.geometry.hosel;
     auto body = std::make_unique<fem::RigidBody>(
@@ -52,7 +52,7 @@ struct Flight {
         mount.loaded ? Vec3(face * mount.loaded->gravity) : Vec3(Vec3::Zero()));
     head = body.get();
     system.terms.push_back(std::move(body));
-    state = system.layout.rest();
+    state = system.dof_map.rest();
     fem::set_rotation(state, node.rotation, Eigen::Quaterniond(face));
     state.v.segment<3>(node.rotation.v) = face.transpose() * d.head_angular_velocity;
     state.v.segment<3>(node.translation.v) = d.velocity() - d.head_angular_velocity.cross(face * c);

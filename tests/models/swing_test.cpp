@@ -58,7 +58,7 @@ TEST(Swing, EquilibriumByNewtonKinsolAndAHold) {
   club.shaft->damping_time = 2 * 0.5 / (2 * kPi * 4);  // half critical, so that one second is enough
   Swing s(club, {.elements = 8}, {.motion = motion()});
   const fem::State newton = s.equilibrium(-1.1), kinsol = s.equilibrium(-1.1, true), held = s.hold(-1.1, 1.0);
-  const fem::Vector none = fem::Vector::Zero(s.system().layout.size());
+  const fem::Vector none = fem::Vector::Zero(s.system().dof_map.size());
   const SwingSample a = s.sample(newton, none), b = s.sample(kinsol, none), c = s.sample(held, none);
   EXPECT_GT(std::hypot(a.lead, a.droop), 5e-3);  // the head hangs
   EXPECT_NEAR(a.lead, b.lead, 1e-7);
@@ -92,7 +92,7 @@ TEST(Swing, IdaAgrees) {
                                            from)
                      .state();
   }
-  const fem::Vector none = fem::Vector::Zero(s.system().layout.size());
+  const fem::Vector none = fem::Vector::Zero(s.system().dof_map.size());
   const double scale = peak(ours);
   EXPECT_GT(scale, 0.05);
   std::size_t i = 0;
@@ -148,7 +148,7 @@ TEST(Swing, ModalDampingTakesTheStatedShareOfEachMode) {
     if (dynamic_cast<const fem::ModalDamping*>(term.get())) damping = term.get();
   ASSERT_NE(damping, nullptr);
   const auto& modal = dynamic_cast<const fem::ModalDamping&>(*damping);
-  fem::State rest = s.system().layout.rest();
+  fem::State rest = s.system().dof_map.rest();
   s.shaft().place(rest);
   const solvers::Modes modes = solvers::modes(s.system(), rest, 2);
   for (int k = 0; k < 2; ++k) {
@@ -166,7 +166,7 @@ TEST(Swing, ModalDampingTakesTheStatedShareOfEachMode) {
   fem::State moving = rest;
   std::srand(1);
   moving.v = fem::Vector::Random(moving.v.size());
-  moving.q = s.system().layout.advanced(moving.q, 0.1 * fem::Vector::Random(moving.v.size()));
+  moving.q = s.system().dof_map.advanced(moving.q, 0.1 * fem::Vector::Random(moving.v.size()));
   fem::Vector inertia = fem::Vector::Zero(moving.v.size()), force = inertia;
   damping->residual(moving, inertia, force);
   Vec3 sum = Vec3::Zero(), moment = sum;

@@ -40,10 +40,10 @@ Outcome finite_elements(const FaceCompliance& face, int steps) {
   const fem::Solid steel{.elastic = fem::LinearElastic{fem::Lame::of(1e5 * kSpring * length / area, 0)},
                          .branches = {},
                          .density = kBall / (area * length)};
-  auto ball = std::make_unique<fem::HarmonicSolid>(system.layout, rod, fem::axisymmetric_family(),
+  auto ball = std::make_unique<fem::HarmonicSolid>(system.dof_map, rod, fem::axisymmetric_basis(),
                                                    fem::SolidQuadrature{fem::single_angle(), 2},
                                                    std::vector<fem::Solid>{steel}, fem::Placement{Vec3::Zero(), axes});
-  const auto x = system.layout.add_vector(3), r = system.layout.add_rotation(), w = system.layout.add_vector(1);
+  const auto x = system.dof_map.add_vector(3), r = system.dof_map.add_rotation(), w = system.dof_map.add_vector(1);
   const fem::SurfaceCarrier carrier{x, r, Vec3(0.03, 0, 0)};
   auto head = std::make_unique<fem::RigidBody>("head", x, r,
                                                fem::RigidBodyProperties{kHead, 3e-4 * Mat3::Identity(), Vec3::Zero()});
@@ -59,7 +59,7 @@ Outcome finite_elements(const FaceCompliance& face, int steps) {
   system.terms.push_back(std::move(head));
   system.terms.push_back(std::move(spring));
   system.terms.push_back(std::move(contact));
-  fem::State initial = system.layout.rest();
+  fem::State initial = system.dof_map.rest();
   initial.q.segment<3>(x.q) = Vec3(-length / 2 - carrier.centre.x(), 0, 0);
   initial.v[x.v] = kSpeed;
   c.start(initial);

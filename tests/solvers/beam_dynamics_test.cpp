@@ -43,7 +43,7 @@ struct Momentum {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
 };
 Momentum momentum(const BeamSystem& b, const fem::State& s) {
-  DenseSink mass(b.system.layout.size());
+  DenseSink mass(b.system.dof_map.size());
   b.beam->tangent(s, {0, 0, 1}, mass);
   const fem::Vector p = mass.matrix * s.v;
   Momentum out;
@@ -220,11 +220,11 @@ TEST(RightAngleCantilever, PeaksOfElbowAndTip) {
   b.clamp_first();
   const fem::Node elbow = b.tip();
   auto leg = std::make_unique<fem::Beam>(
-      b.system.layout,
+      b.system.dof_map,
       mesh::straight(mesh::graded(10, 10), Vec3(10, 0, 0), mesh::frame_along(Vec3(0, 1, 0), Vec3(0, 0, 1))),
       constant(section), fem::BeamOptions{.first = elbow});
   const fem::Node tip = leg->nodes().back();
-  b.rest = b.system.layout.rest();
+  b.rest = b.system.dof_map.rest();
   b.beam->place(b.rest);
   leg->place(b.rest);
   b.system.terms.push_back(std::move(leg));
@@ -262,7 +262,7 @@ class Flap final : public fem::Prescribed {
         if (i == 0 || c != 1) held_.push_back(beam.nodes()[i].rotation.v + c);
       }
   }
-  const std::vector<fem::Index>& equations() const override { return held_; }
+  const std::vector<fem::Index>& dofs() const override { return held_; }
   void impose(fem::State&) const override {}
 
  private:
@@ -475,10 +475,10 @@ TEST(DrivenBase, TransferToTheTip) {
                          .bending_z = 1,
                          .mass = 1,
                          .rotary = Vec3::Constant(1e-9)}));
-  DenseSink K(b.system.layout.size()), M(b.system.layout.size());
+  DenseSink K(b.system.dof_map.size()), M(b.system.dof_map.size());
   b.beam->tangent(b.rest, {1, 0, 0}, K);
   b.beam->tangent(b.rest, {0, 0, 1}, M);
-  const auto n = static_cast<Eigen::Index>(b.system.layout.size()) - 6;
+  const auto n = static_cast<Eigen::Index>(b.system.dof_map.size()) - 6;
   for (const auto& [w, H] : {std::pair{1.0, 1.13614486},
                              {2.0, 1.74230989},
                              {3.0, 5.17628797},

@@ -38,7 +38,7 @@ class Only final : public fem::Prescribed {
       }
     }
   }
-  const std::vector<fem::Index>& equations() const override { return held_; }
+  const std::vector<fem::Index>& dofs() const override { return held_; }
   void impose(fem::State&) const override {}
 
  private:

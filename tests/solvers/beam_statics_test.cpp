@@ -118,9 +118,9 @@ TEST(Elastica, TaperedTubeAndOffsetLoad) {
 class OffsetForce final : public fem::Term {
  public:
   OffsetForce(const fem::Node& node, const Vec3& arm, const Vec3& force)
-      : node_(node), arm_(arm), force_(force), equations_(fem::equations(node)) {}
+      : node_(node), arm_(arm), force_(force), dofs_(fem::dofs(node)) {}
   std::string body() const override { return "load"; }
-  void pattern(std::vector<std::vector<fem::Index>>& blocks) const override { blocks.push_back(equations_); }
+  void pattern(std::vector<std::vector<fem::Index>>& blocks) const override { blocks.push_back(dofs_); }
   void residual(const fem::State& s, fem::Vector&, fem::Vector& f) const override {
     f.segment<3>(node_.translation.v) -= force_;
     f.segment<3>(node_.rotation.v) -= arm_.cross(fem::rotation(s, node_.rotation).conjugate() * force_);
@@ -129,14 +129,14 @@ class OffsetForce final : public fem::Term {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(6, 6);
     K.bottomRightCorner<3, 3>() = -w.stiffness * skew(arm_) *
                                   skew(fem::rotation(s, node_.rotation).conjugate() * force_);
-    sink.add(equations_, equations_, K);
+    sink.add(dofs_, dofs_, K);
   }
   fem::Energies energies(const fem::State&) const override { return {}; }
 
  private:
   fem::Node node_;
   Vec3 arm_, force_;
-  std::vector<fem::Index> equations_;
+  std::vector<fem::Index> dofs_;
 };
 
 TEST(Elastica, OffsetDeadLoadTwistsTheShaft) {

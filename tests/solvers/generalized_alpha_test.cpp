@@ -43,13 +43,13 @@ class ElasticPendulum final : public fem::Term {
 
 fem::System pendulum() {
   fem::System s;
-  s.layout.add_vector(2);
+  s.dof_map.add_vector(2);
   s.terms.push_back(std::make_unique<ElasticPendulum>());
   return s;
 }
 
 fem::State start(const fem::System& system) {
-  fem::State s = system.layout.rest();
+  fem::State s = system.dof_map.rest();
   s.q << 1.05, 0;
   return s;
 }
@@ -169,7 +169,7 @@ TEST(GeneralizedAlpha, GivesUpWithOneSentence) {
 
 TEST(Statics, NewtonAndKinsolHangThePendulum) {
   fem::System system = pendulum();
-  fem::State from = system.layout.rest();
+  fem::State from = system.dof_map.rest();
   from.q << 0.3, -1.0;
   const NewtonOptions newton{
       .residual_relative = 1e-12, .residual_absolute = 1e-10, .increment_vector = 1e-9, .increment_rotation = 1e-9};

@@ -80,10 +80,10 @@ inline fem::Section uniform(double EA, double GA, double GJ, double EI, double m
 /// A beam in a system of its own, with its reference placement.
 struct BeamSystem {
   BeamSystem(const std::vector<mesh::LineNode>& line, const fem::SectionLaw& sections, fem::BeamOptions options = {}) {
-    auto owned = std::make_unique<fem::Beam>(system.layout, line, sections, std::move(options));
+    auto owned = std::make_unique<fem::Beam>(system.dof_map, line, sections, std::move(options));
     beam = owned.get();
     system.terms.push_back(std::move(owned));
-    rest = system.layout.rest();
+    rest = system.dof_map.rest();
     beam->place(rest);
   }
   void clamp_first() {

@@ -38,9 +38,9 @@ inline fem::Vector total_residual(const fem::Term& term, const fem::State& s) {
 }
 
 /// Directional derivatives of the residual along random directions of q, v and a against the tangent.
-inline void check_tangent(const fem::Term& term, const fem::Layout& layout, const fem::State& s, double step,
+inline void check_tangent(const fem::Term& term, const fem::DofMap& dof_map, const fem::State& s, double step,
                           double tolerance, double rate_step = 1) {
-  const Eigen::Index n = layout.size();
+  const Eigen::Index n = dof_map.size();
   for (int what = 0; what < 3; ++what) {
     const fem::Weights weights{what == 0 ? 1.0 : 0.0, what == 1 ? 1.0 : 0.0, what == 2 ? 1.0 : 0.0};
     DenseSink sink(n);
@@ -51,7 +51,7 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
       const double h0 = what == 0 ? step : rate_step;
       const auto at = [&](double h) {
         fem::State t = s;
-        if (what == 0) t.q = layout.advanced(s.q, h * d);
+        if (what == 0) t.q = dof_map.advanced(s.q, h * d);
         if (what == 1) t.v += h * d;
         if (what == 2) t.a += h * d;
         return total_residual(term, t);
@@ -68,19 +68,19 @@ inline void check_tangent(const fem::Term& term, const fem::Layout& layout, cons
 }
 
 /// The force is the gradient of the stored energy (strain + contact) along random directions.
-inline void check_gradient(const fem::Term& term, const fem::Layout& layout, const fem::State& s, double step,
+inline void check_gradient(const fem::Term& term, const fem::DofMap& dof_map, const fem::State& s, double step,
                            double tolerance) {
   const auto stored = [&](const fem::State& t) {
     const fem::Energies e = term.energies(t);
     return e.strain + e.contact;
   };
-  fem::Vector inertia = fem::Vector::Zero(layout.size()), force = inertia;
+  fem::Vector inertia = fem::Vector::Zero(dof_map.size()), force = inertia;
   term.residual(s, inertia, force);
   for (unsigned seed = 1; seed <= 2; ++seed) {
-    const Eigen::VectorXd d = random_vector(layout.size(), seed);
+    const Eigen::VectorXd d = random_vector(dof_map.size(), seed);
     fem::State plus = s, minus = s;
-    plus.q = layout.advanced(s.q, step * d);
-    minus.q = layout.advanced(s.q, -step * d);
+    plus.q = dof_map.advanced(s.q, step * d);
+    minus.q = dof_map.advanced(s.q, -step * d);
     const double difference = (stored(plus) - stored(minus)) / (2 * step);
     EXPECT_NEAR(difference, force.dot(d), tolerance * (std::abs(difference) + std::abs(force.dot(d))));
   }

@@ -19,13 +19,13 @@ struct HistoryChannel : Channel {
 };
 
 /// What effects change; everything zero is the declared test.
-struct Rig {
+struct TestSetup {
   models::ClubChange club;
   std::vector<double> delay;   ///< of each channel [s]
   std::vector<double> gain;    ///< reading = (1 + gain) * quantity + offset
   std::vector<double> offset;  ///< [SI]
 
-  explicit Rig(std::size_t channels) : delay(channels), gain(channels), offset(channels) {}
+  explicit TestSetup(std::size_t channels) : delay(channels), gain(channels), offset(channels) {}
 };
 
 /// What the forms of an effect depend on.
@@ -41,14 +41,14 @@ struct HistorySetting {
 };
 
 /// What a channel reads of a test before gain and offset.
-using Answer = models::BenchResponse;
+using Prediction = models::BenchResponse;
 
 /// Answers for every record of a test.
 class HistoryModel {
  public:
   virtual ~HistoryModel() = default;
   /// False where the test cannot happen.
-  virtual bool answer(const Rig& rig, std::vector<Answer>& out) const = 0;
+  virtual bool answer(const TestSetup& setup, std::vector<Prediction>& out) const = 0;
   virtual bool slow() const { return false; }  ///< a second or so each
 };
 
