@@ -51,7 +51,7 @@ class ModesJob final : public Job {
     const double unit = std::sqrt(materials.back().instant_shear() / materials.back().density) / ball_.radius;
     summary["nodes"] = mesh.nodes.size();
     out.say(fmt::format("{} nodes; eta = omega R / c_s with c_s = {:.5f} m/s", mesh.nodes.size(), unit * ball_.radius));
-    out.say("family           frequency [Hz]          eta");
+    out.say("family            frequency [Hz]          eta");
     std::string csv = "family,harmonic,frequency_Hz,eta\n";
     const auto solve = [&](const std::string& name, int m, const fem::FourierBasis& basis) {
       fem::System system;
