@@ -37,6 +37,17 @@ void FeImpactOptions::resolve(Accuracy accuracy) {
   steps_per_contact = steps;
 }
 
+std::optional<FeImpactOptions> FeImpactOptions::coarser() const {
+  if (mesh.sector < 2 || mesh.rings < 2 || harmonics < 4 || antisymmetric < 3 || steps_per_contact < 40) return {};
+  FeImpactOptions out = *this;
+  --out.mesh.sector, --out.mesh.rings;
+  out.harmonics -= 2, out.antisymmetric -= 2;
+  if (angles > 0) out.angles -= 4;
+  if (contact_angles > 0) out.contact_angles = std::max(contact_angles - 6, 1);
+  out.steps_per_contact /= 2;
+  return out;
+}
+
 std::vector<std::string> FeImpactOptions::faults() const {
   std::vector<std::string> out = ball.faults();
   for (const auto& fault : mesh.faults()) out.push_back(fault);

@@ -85,7 +85,8 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
               {"penetration", r.penetration},
               {"creep", r.creep},
               {"face_travel", r.face_travel},
-              {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}}}},
+              {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}},
+              {"worst_residual", r.counts.worst_residual}}},
             {"touched", i.touched},
             {"over", i.over},
             {"last_touch", i.last_touch},
@@ -127,7 +128,7 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.so_far.creep = r.at("creep");
   i.so_far.face_travel = r.at("face_travel");
   const auto counts = r.at("counts").get<std::array<long, 4>>();
-  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3]};
+  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], r.at("worst_residual")};
   i.touched = j.at("touched");
   i.over = j.at("over");
   i.last_touch = j.at("last_touch");

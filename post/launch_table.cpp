@@ -48,10 +48,13 @@ std::string launch_table(const std::vector<LaunchColumn>& columns, const Measure
     text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
       double shown = (c.launch.*channel.value)() / channel.si;
+      const double error = c.coarser ? std::abs(shown - ((*c.coarser).*channel.value)() / channel.si) : 0;
       // Without spin its axis has no direction.
       if (channel.name == "spin_axis" && rpm(c.launch.spin_rate()) < 0.5) shown = 0;
       if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
-      text += fmt::format("{:>{}.{}f}", shown, width, channel.decimals);
+      std::string cell = fmt::format("{:.{}f}", shown, channel.decimals);
+      if (c.coarser) cell += fmt::format(" +-{:.{}f}", error, channel.decimals);
+      text += fmt::format("{:>{}}", cell, width);
     }
     if (!beside) continue;
     const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);

@@ -37,6 +37,7 @@ struct LaunchColumn {
   Launch launch;
   Oblique oblique = {};
   std::optional<ShotFlight> flight = {};
+  std::optional<Launch> coarser = {};  ///< the same on coarser numerics: shown as the error of each quantity
 };
 /// Ranges that others measured on such blows: lowest and highest.
 using Range = std::optional<std::pair<double, double>>;

@@ -163,7 +163,7 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   return report;
 }
 
-void GeneralizedAlpha::accept(double h) {
+void GeneralizedAlpha::accept(double h, const NewtonReport& report) {
   const double kinetic = ledger_.kinetic;
   for (Index e : imposed_) imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
   const double inertial_work = 0.5 * (inertia_ + trial_inertia_).dot(increment_);
@@ -178,6 +178,7 @@ void GeneralizedAlpha::accept(double h) {
   ledger_.closure = ledger_.initial + ledger_.external - ledger_.kinetic - ledger_.strain_total() - ledger_.contact -
                     ledger_.friction - ledger_.viscous - ledger_.numerical;
   ++counts_.steps;
+  if (report.scale > 0) counts_.worst_residual = std::max(counts_.worst_residual, report.residual / report.scale);
 }
 
 void GeneralizedAlpha::take_stock() {
@@ -203,7 +204,7 @@ void GeneralizedAlpha::take_stock() {
 
 NewtonReport GeneralizedAlpha::step(double h) {
   NewtonReport report = attempt(h);
-  if (report.converged) accept(h);
+  if (report.converged) accept(h, report);
   else ++counts_.rejected;
   return report;
 }
@@ -221,7 +222,7 @@ double GeneralizedAlpha::advance(double end) {
   for (;;) {
     const NewtonReport report = attempt(h);
     if (report.converged && (!adaptive || error_ <= 1)) {
-      accept(h);
+      accept(h, report);
       if (adaptive) {
         const double grow = std::min(2.0, 0.9 * std::cbrt(1 / std::max(error_, 1e-9)));
         // Small changes are not worth new factors.

@@ -10,6 +10,7 @@
 /// fem::State::a holds vdot; the auxiliary acceleration a is the scheme's own.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,9 +85,10 @@ class GeneralizedAlpha {
 
   struct Counts {
     long steps = 0, rejected = 0, iterations = 0, factorisations = 0;
+    double worst_residual = 0;  ///< that an accepted step left, over the scale of the forces [-]
     friend Counts operator+(const Counts& a, const Counts& b) {
       return {a.steps + b.steps, a.rejected + b.rejected, a.iterations + b.iterations,
-              a.factorisations + b.factorisations};
+              a.factorisations + b.factorisations, std::max(a.worst_residual, b.worst_residual)};
     }
   };
   const Counts& counts() const { return counts_; }
@@ -98,7 +100,7 @@ class GeneralizedAlpha {
   void evaluate(const fem::State& s, Vector& inertia, Vector& force) const;
   void impose(fem::State& s) const;
   NewtonReport attempt(double h);
-  void accept(double h);
+  void accept(double h, const NewtonReport& report);
   void take_stock();  // fills the ledger's state columns
 
   fem::System& system_;

@@ -37,6 +37,19 @@ class ImpactJob final : public Job {
     const models::Options options = read_options(root, names);
     face_ = options.fe.face;
     for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
+    // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
+    if (std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; })) {
+      const auto coarser = options.fe.coarser();
+      if (root.flag("error_estimate", coarser.has_value() && root.has("accuracy"))) {
+        if (!coarser)
+          root.fail("error_estimate",
+                    "the numerics are as coarse as they can be: accuracy = \"default\" has a coarser companion");
+        models::Options companion = options;
+        companion.fe = *coarser;
+        for (Entry& e : models_)
+          if (e.fe()) e.companion = models::find(e.name)->make(companion);
+      }
+    }
     matched_ = root.flag("matched_launch", false);
     if (auto output = root.optional_table("output")) {
       record_.vtk = output->flag("vtk", record_.vtk);
@@ -78,6 +91,14 @@ class ImpactJob final : public Job {
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
         summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
+        if (entry.companion) {
+          columns.back().coarser = models::checked_launch(*entry.companion, blow_);
+          nlohmann::json& error = summary["models"][entry.name]["numerical_error"];
+          error = numerical_error(outcome.launch, *columns.back().coarser);
+          if (error.at("ball_speed_mps") > 0.02 * outcome.launch.ball_speed())
+            out.warn(fmt::format("{}: the ball speed moves by more than 2 % with the numerics: a finer accuracy",
+                                 entry.name));
+        }
       } else {
         columns.push_back({entry.name, models::checked_launch(*entry.model, blow_)});
         summary["models"][entry.name] = post::to_json(columns.back().launch);
@@ -129,6 +150,7 @@ class ImpactJob final : public Job {
   struct Entry {
     std::string name;
     std::unique_ptr<models::ImpactModel> model;
+    std::unique_ptr<models::ImpactModel> companion = nullptr;  ///< the same on coarser numerics
     const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
   };
 
@@ -179,6 +201,14 @@ class ImpactJob final : public Job {
     if (column.oblique.launch_ratio) said["launch_ratio"] = *column.oblique.launch_ratio;
   }
 
+  /// By how much the launch moves against the coarser companion: a bound of what is left where both converge.
+  static nlohmann::json numerical_error(const Launch& launch, const Launch& coarser) {
+    nlohmann::json j;
+    for (const post::Channel& c : post::channels())
+      j[fmt::format("{}_{}", c.name, c.unit)] = std::abs((launch.*c.value)() - (coarser.*c.value)()) / c.si;
+    return j;
+  }
+
   /// What the solution was and how well its energy adds up: for the person and the summary.
   nlohmann::json solution(Output& out, const std::string& name, const models::FeImpactResult& r) const {
     const double closure = r.ledger.closure / r.ledger.initial;
@@ -212,6 +242,7 @@ class ImpactJob final : public Job {
                         {"rejected_steps", r.counts.rejected},
                         {"newton_iterations", r.counts.iterations},
                         {"factorisations", r.counts.factorisations},
+                        {"worst_residual_of_forces", r.counts.worst_residual},
                         {"dissipated_by_layer_J", r.dissipated}};
     if (face_) {
       j["face_travel_mm"] = 1e3 * r.face_travel;

@@ -1,4 +1,5 @@
 // What `hosel run` on an impact leaves on disk, opened as a person would.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <vtkDataArray.h>
@@ -196,6 +197,34 @@ int ended_at_frame(const fs::path& out, int frame, int number) {
   EXPECT_EQ(kill(child, number), 0);
   waitpid(child, &status, 0);
   return status;
+}
+
+TEST(ImpactCase, TheErrorOfEveryNumberIsTheDistanceToACoarserRun) {
+  const auto run = [](const std::string& name, int sector, int harmonics, int antisymmetric, int steps, bool estimate) {
+    const fs::path out = fresh_directory(name) / "out";
+    const Outcome o = command(fmt::format(
+        "run {}/cases/driver-toe --quiet --set 'models=[\"fe-free-body\"]' --set output.vtk=false --set mesh.sector={} "
+        "--set mesh.rings={} --set mesh.harmonics={} --set mesh.antisymmetric={} --set time.steps_per_contact={} --set "
+        "error_estimate={} --out {}",
+        HOSEL_SOURCE_DIR, sector, sector, harmonics, antisymmetric, steps, estimate, out.string()));
+    EXPECT_EQ(o.status, 0) << o.text;
+    return nlohmann::json::parse(content(out / "summary.json")).at("models").at("fe-free-body");
+  };
+  const auto fine = run("fine", 2, 4, 3, 40, true), coarse = run("coarse", 1, 2, 1, 20, false);
+  EXPECT_FALSE(coarse.contains("numerical_error"));
+  for (const char* key : {"ball_speed_mps", "launch_angle_deg", "spin_rate_rpm"}) {
+    const double error = fine.at("numerical_error").at(key);
+    EXPECT_GT(error, 0) << key;
+    // Printed with all digits: round-off of a difference of near numbers.
+    EXPECT_NEAR(error, std::abs(double(fine.at(key)) - double(coarse.at(key))), 1e-9 * double(fine.at(key))) << key;
+  }
+  EXPECT_LT(double(fine.at("solution").at("worst_residual_of_forces")), 1e-5);
+  EXPECT_GT(double(fine.at("solution").at("worst_residual_of_forces")), 0);
+  // There is nothing coarser than the coarsest: said, not left out.
+  const Outcome none =
+      command("check " HOSEL_SOURCE_DIR "/cases/driver-toe --set accuracy=look --set error_estimate=true");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.text.find("error_estimate"), std::string::npos) << none.text;
 }
 
 TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
