@@ -142,8 +142,8 @@ std::string gnuplot_script(const Figure& f, std::string_view png) {
       "set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n"
       "set grid lc rgb '#dddddd'\nset tics nomirror\n",
       columns * f.panel_width, rows * f.panel_height + (f.title.empty() ? 0 : 40), literal(png));
-  head += fmt::format("set multiplot layout {},{}{}\n", rows, columns,
-                      f.title.empty() ? "" : " title " + literal(f.title));
+  head +=
+      fmt::format("set multiplot layout {},{}{}\n", rows, columns, f.title.empty() ? "" : " title " + literal(f.title));
   return s + head + plots + "\nunset multiplot\nunset output\n";
 }
 
