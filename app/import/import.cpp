@@ -13,6 +13,7 @@
 #include "hosel/app/import/cells.hpp"
 #include "hosel/app/import/sheet.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/loop/median.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/file.hpp"
 
@@ -44,12 +45,6 @@ bool decimal_comma(const std::vector<std::string>& cells, const std::string& del
          std::ranges::all_of(cells, [](const std::string& c) { return c.size() < 6; });
 }
 
-double median(std::vector<double> x) {
-  if (x.empty()) return NAN;
-  std::ranges::nth_element(x, x.begin() + long(x.size() / 2));
-  return x[x.size() / 2];
-}
-
 Understood make_quantity(const MonitorQuantity& q, const std::string& header, std::string unit, const Sheet& sheet,
                          std::size_t column, const fs::path& file) {
   Understood out;
@@ -75,7 +70,7 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
   if (convert) out.note = fmt::format("{} made mm", unit), unit = "mm";
   if (comma) out.note += out.note.empty() ? "decimal comma" : ", decimal comma";
   out.name = q.name + "_" + unit;
-  out.median = median(values);
+  out.median = loop::median(values);
   if (!values.empty() && !(out.median >= q.low && out.median <= q.high)) {
     std::string reads;
     for (const Unit& u : units())

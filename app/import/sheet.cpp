@@ -1,6 +1,7 @@
 #include "hosel/app/import/sheet.hpp"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <cctype>
@@ -17,31 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void append_utf8(std::string& out, unsigned c) {
-  if (c < 0x80) {
-    out += char(c);
-  } else if (c < 0x800) {
-    out += char(0xC0 | (c >> 6));
-    out += char(0x80 | (c & 0x3F));
-  } else {
-    out += char(0xE0 | (c >> 12));
-    out += char(0x80 | ((c >> 6) & 0x3F));
-    out += char(0x80 | (c & 0x3F));
-  }
-}
-
-bool valid_utf8(std::string_view s) {
-  for (std::size_t i = 0; i < s.size();) {
-    const auto c = static_cast<unsigned char>(s[i]);
-    const std::size_t n = c < 0x80 ? 1 : c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : c >= 0xC2 ? 2 : 0;
-    if (n == 0 || i + n > s.size()) return false;
-    for (std::size_t k = 1; k < n; ++k)
-      if ((static_cast<unsigned char>(s[i + k]) & 0xC0) != 0x80) return false;
-    i += n;
-  }
-  return true;
-}
-
 /// The file as UTF-8 without a byte-order mark: UTF-8, UTF-16 with a mark, else Latin-1.
 std::string read_text(const fs::path& file) {
   constexpr std::uintmax_t most = 64u << 20;
@@ -54,16 +30,20 @@ std::string read_text(const fs::path& file) {
   const auto byte = [&](std::size_t i) { return unsigned(static_cast<unsigned char>(raw[i])); };
   if (raw.size() >= 2 && ((byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) == 0xFE && byte(1) == 0xFF))) {
     const bool little = byte(0) == 0xFF;
-    std::string out;
+    std::u16string units;
     for (std::size_t i = 2; i + 1 < raw.size(); i += 2)
-      append_utf8(out, little ? byte(i) | byte(i + 1) << 8 : byte(i) << 8 | byte(i + 1));
-    return out;
+      units += char16_t(little ? byte(i) | byte(i + 1) << 8 : byte(i) << 8 | byte(i + 1));
+    try {
+      return utf8::utf16to8(units);
+    } catch (const utf8::exception&) {
+      throw InputError(fmt::format("{}: neither UTF-16, as its first bytes say, nor another text", file.string()));
+    }
   }
   if (raw.starts_with("\xEF\xBB\xBF")) raw.erase(0, 3);
   if (raw.find('\0') != std::string::npos) throw InputError(fmt::format("{}: not a text file", file.string()));
-  if (valid_utf8(raw)) return raw;
+  if (utf8::is_valid(raw)) return raw;
   std::string out;
-  for (std::size_t i = 0; i < raw.size(); ++i) append_utf8(out, byte(i));
+  for (std::size_t i = 0; i < raw.size(); ++i) utf8::append(char32_t(byte(i)), out);
   return out;
 }
 
