@@ -35,6 +35,13 @@ std::vector<std::string> seeds(const std::string& reader) {
     return {test::kEccentricBlow, test::content(fs::path(HOSEL_SOURCE_DIR) / "cases/driver-toe/case.toml")};
   if (reader == "table")
     return {"shot,club,club_speed_mps,dynamic_loft_deg,ball_speed_mps\n1,\"a, b\",45,10.5,66\n2,c,44.1,,65.2\n"};
+  if (reader == "export") {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(fs::path(HOSEL_SOURCE_DIR) / "tests/app/monitors"))
+      if (entry.is_regular_file()) all.push_back(test::content(entry.path()));
+    std::ranges::sort(all);
+    return all;
+  }
   if (reader == "series") return {"time_ms,lead_mm,strain_droop_ustrain\n0,1.5,20\n0.1,1.4,\n0.2,1.3,-3e1\n"};
   nlohmann::json header{{"fingerprint", "case"}};
   header["check"] = post::digest(header.dump());

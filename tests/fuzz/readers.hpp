@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <nlohmann/json.hpp>
+#include "hosel/app/import/sheet.hpp"
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_series.hpp"
 #include "hosel/app/sweep_store.hpp"
@@ -46,6 +47,17 @@ inline void read_table(std::string_view bytes) {
   } catch (const DataError&) {}
 }
 
+inline void read_export(std::string_view bytes) {
+  static const app::Dictionary dictionary = [] {
+    app::Dictionary d;
+    d.read(app::shipped_dictionary());
+    return d;
+  }();
+  try {
+    app::read_sheet(file_of(bytes, "export.csv"), dictionary);
+  } catch (const app::InputError&) {}
+}
+
 inline void read_series(std::string_view bytes) {
   std::vector<std::string> notes;
   try {
@@ -65,8 +77,8 @@ struct Reader {
   const char* name;
   void (*read)(std::string_view bytes);
 };
-inline constexpr std::array kReaders = {Reader{"case", read_case}, Reader{"table", read_table},
-                                        Reader{"series", read_series}, Reader{"points", read_points},
-                                        Reader{"checkpoint", read_checkpoint}};
+inline constexpr std::array kReaders = {Reader{"case", read_case},     Reader{"table", read_table},
+                                        Reader{"export", read_export}, Reader{"series", read_series},
+                                        Reader{"points", read_points}, Reader{"checkpoint", read_checkpoint}};
 
 }  // namespace hosel::fuzz
