@@ -23,7 +23,9 @@ namespace {
 /// The tree's cases first (a build in its checkout), then the installed ones.
 std::vector<fs::path> case_homes() { return {fs::path(HOSEL_SOURCE_DIR) / "cases", fs::path(HOSEL_INSTALLED_CASES)}; }
 
-std::vector<std::pair<std::string, std::string>> shipped() {
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> shipped_cases() {
   std::vector<std::pair<std::string, std::string>> out;
   for (const fs::path& home : case_homes()) {
     if (!fs::is_directory(home)) continue;
@@ -41,14 +43,12 @@ std::vector<std::pair<std::string, std::string>> shipped() {
   return out;
 }
 
-}  // namespace
-
 fs::path find_case(const std::string& named) {
   if (fs::exists(named)) return named;
   for (const fs::path& home : case_homes())
     if (fs::is_regular_file(home / named / "case.toml")) return home / named;
   std::vector<std::string> names;
-  for (const auto& [name, title] : shipped()) names.push_back(name);
+  for (const auto& [name, title] : shipped_cases()) names.push_back(name);
   // `cases/iron7-trackman` is where a shipped case lies in a checkout; its name works everywhere.
   if (const std::string last = fs::path(named).lexically_normal().filename().string();
       std::ranges::find(names, last) != names.end())
@@ -115,7 +115,7 @@ std::vector<ListSection> everything() {
           {"shafts (shaft.name)", entries(shaft_library())},
           {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
           {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},
-          {"cases", shipped()}};
+          {"cases", shipped_cases()}};
 }
 
 }  // namespace hosel::app

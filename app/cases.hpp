@@ -14,6 +14,9 @@ std::filesystem::path find_case(const std::string& named);
 /// A new case directory with the files of another; refuses to touch an existing one.
 void copy_case(const std::string& from, const std::filesystem::path& to);
 
+/// Names and titles of the shipped cases.
+std::vector<std::pair<std::string, std::string>> shipped_cases();
+
 struct ListSection {
   std::string title;
   std::vector<std::pair<std::string, std::string>> entries;

@@ -68,8 +68,8 @@ std::unique_ptr<Job> read_job(CaseFile& file) {
   Table root = file.root();
   std::vector<std::string> names;
   for (const Kind& k : kKinds) names.emplace_back(k.name);
-  root.text("title", "");
-  const std::string wanted = root.choice("kind", names, "impact");
+  root.text({"title", "of tables, pages and figures"}, "");
+  const std::string wanted = root.choice({"kind", "what the case does (`hosel list`)"}, names, "impact");
   for (const Kind& k : kKinds)
     if (k.name == wanted) {
       auto job = k.read(file);

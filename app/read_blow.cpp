@@ -17,26 +17,30 @@ constexpr double kInf = limits::inf;
 Ball read_ball(Table table) {
   const Ball standard;
   Ball ball;
-  ball.mass = table.quantity("mass", "kg", limits::ball_mass, standard.mass);
-  ball.radius = table.quantity("radius", "mm", limits::ball_radius, standard.radius);
-  ball.inertia_factor = table.number(
-      "inertia_factor", Range{0.05, 0.6667}.because("0.4 is a uniform sphere, 2/3 a shell"), standard.inertia_factor);
+  ball.mass = table.quantity({"mass", "of the ball"}, "kg", limits::ball_mass, standard.mass);
+  ball.radius = table.quantity({"radius", "of the ball"}, "mm", limits::ball_radius, standard.radius);
+  ball.inertia_factor = table.number({"inertia_factor", "moment of inertia over mass times radius squared"},
+                                     Range{0.05, 0.6667}.because("0.4 is a uniform sphere, 2/3 a shell"),
+                                     standard.inertia_factor);
   return ball;
 }
 
 Head read_head(Table table, bool whole) {
   Head head;
-  head.mass = table.quantity("mass", "kg", limits::head_mass);
-  head.face.bulge = table.quantity("bulge", "mm", limits::face_radius, kInf);
-  head.face.roll = table.quantity("roll", "mm", limits::face_radius, kInf);
+  head.mass = table.quantity({"mass", "of the clubhead; inf is a head that no blow moves"}, "kg", limits::head_mass);
+  head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
+                                   limits::face_radius, kInf);
+  head.face.roll = table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm",
+                                  limits::face_radius, kInf);
   const bool needed = whole && std::isfinite(head.mass);
   const bool given = table.has_quantity("inertia") || table.has_quantity("cg");
   if (!needed && !given) {
     if (std::isfinite(head.mass)) head.inertia = kInf * Mat3::Identity();
     return head;
   }
-  head.cg = table.vector("cg", "mm", limits::head_place);
-  head.inertia = table.matrix("inertia", "kg_m2");
+  head.cg = table.vector({"cg", "centre of gravity in the face frame (Xc out of the face, Yc to the heel, Zc up)"},
+                         "mm", limits::head_place);
+  head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2");
   auto faults = head.faults();
   if (std::isfinite(head.mass) && faults.empty()) {
     const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
@@ -59,34 +63,50 @@ Head read_head(Table table, bool whole) {
 
 Delivery read_delivery(Table table) {
   Delivery d;
-  d.club_speed = table.quantity("club_speed", "mps", limits::club_speed);
-  d.attack_angle = table.quantity("attack_angle", "deg", limits::angle, 0);
-  d.club_path = table.quantity("club_path", "deg", limits::angle, 0);
-  d.dynamic_loft = table.quantity("dynamic_loft", "deg", limits::angle, 0);
-  d.face_angle = table.quantity("face_angle", "deg", limits::angle, 0);
-  d.impact_toe = table.quantity("impact_toe", "mm", limits::impact_place, 0);
-  d.impact_high = table.quantity("impact_high", "mm", limits::impact_place, 0);
-  d.head_angular_velocity = table.vector("head_angular_velocity", "rad_per_s", limits::spin, Vec3::Zero());
+  d.club_speed = table.quantity({"club_speed", "speed of the head's centre of gravity at first contact"}, "mps",
+                                limits::club_speed);
+  d.attack_angle = table.quantity({"attack_angle", "direction of the head's velocity, up"}, "deg", limits::angle, 0);
+  d.club_path =
+      table.quantity({"club_path", "direction of the head's velocity, right of the target"}, "deg", limits::angle, 0);
+  d.dynamic_loft =
+      table.quantity({"dynamic_loft", "tilt of the face's normal at its centre, up"}, "deg", limits::angle, 0);
+  d.face_angle = table.quantity({"face_angle", "direction of the face's normal at its centre, right of the target"},
+                                "deg", limits::angle, 0);
+  d.impact_toe = table.quantity({"impact_toe", "where the ball meets the face, from its centre towards the toe"}, "mm",
+                                limits::impact_place, 0);
+  d.impact_high = table.quantity({"impact_high", "where the ball meets the face, from its centre up"}, "mm",
+                                 limits::impact_place, 0);
+  d.head_angular_velocity = table.vector({"head_angular_velocity", "of the head at first contact, global frame"},
+                                         "rad_per_s", limits::spin, Vec3::Zero());
   return d;
 }
 
 ContactLaw read_contact_law(Table table) {
   const ContactLaw standard;
   ContactLaw law;
-  law.restitution =
-      table.number("restitution", Range{0, 1}.because("above 1 the blow creates energy"), standard.restitution);
-  law.restitution_slope = table.quantity("restitution_slope", "s_per_m", {-0.1, 0.1}, standard.restitution_slope);
-  law.restitution_falloff = table.number("restitution_falloff_per_m2", {-1e4, 1e4}, standard.restitution_falloff);
-  law.tangential_restitution = table.number("tangential_restitution", {-1, 1}, standard.tangential_restitution);
-  law.friction = table.number("friction", {0, kInf}, standard.friction);
-  law.normal_force_offset = table.number("normal_force_offset", {-0.5, 0.5}, standard.normal_force_offset);
+  law.restitution = table.number({"restitution", "normal coefficient of restitution at 0 m/s approach speed"},
+                                 Range{0, 1}.because("above 1 the blow creates energy"), standard.restitution);
+  law.restitution_slope = table.quantity({"restitution_slope", "change of restitution with approach speed"}, "s_per_m",
+                                         {-0.1, 0.1}, standard.restitution_slope);
+  law.restitution_falloff = table.number(
+      {"restitution_falloff_per_m2", "fall of restitution with the squared distance from the face's centre"},
+      {-1e4, 1e4}, standard.restitution_falloff);
+  law.tangential_restitution =
+      table.number({"tangential_restitution",
+                    "minus the contact point's tangential velocity after over before: 0 rolls, 1 returns everything"},
+                   {-1, 1}, standard.tangential_restitution);
+  law.friction = table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, kInf}, standard.friction);
+  law.normal_force_offset =
+      table.number({"normal_force_offset",
+                    "the normal impulse passes this far above the ball's centre, over its radius; positive adds spin"},
+                   {-0.5, 0.5}, standard.normal_force_offset);
   return law;
 }
 
 std::vector<std::string> read_models(Table root) {
   std::vector<std::string> known;
   for (const auto& m : models::registry()) known.emplace_back(m.name);
-  std::vector<std::string> wanted = root.texts("models");
+  std::vector<std::string> wanted = root.texts({"models", "the models that answer (`hosel list`)"});
   if (wanted.empty()) root.fail("models", "name at least one model");
   for (const std::string& m : wanted)
     if (!models::find(m)) {

@@ -15,7 +15,7 @@ namespace {
 
 /// Columns reynolds, spin_ratio, drag, lift; rows of one Reynolds number follow each other.
 models::TableLaw read_coefficients(Table& table) {
-  const std::filesystem::path file = table.file("coefficients");
+  const std::filesystem::path file = table.file({"coefficients", "CSV with columns reynolds, spin_ratio, drag, lift"});
   models::TableLaw law;
   try {
     const post::Sheet sheet = post::read_csv(file);
@@ -51,55 +51,67 @@ models::FlightLaw published(Table& table, std::string_view key, const std::strin
 
 models::FlightLaw read_law(Table& table) {
   models::FlightLaw law;
-  const std::string name = table.text("law", "ferguson-2022");
+  const std::string name =
+      table.text({"law", "aerodynamic coefficients: a published law (`hosel list`) or table"}, "ferguson-2022");
   if (name == "table") {
     law = {.name = "table",
            .source = "the case",
            .reynolds = {},
            .spin = {},
            .form = read_coefficients(table),
-           .decay = {.rate = table.number("spin_decay_per_s", {0, 2})}};
+           .decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})}};
   } else {
     law = published(table, "law", name);
-    if (table.has("spin_decay_per_s")) law.decay = {.rate = table.number("spin_decay_per_s", {0, 2})};
+    if (table.has("spin_decay_per_s"))
+      law.decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})};
   }
-  law.drag_scale = table.number("drag_scale", {0, 10}, 1.0);
-  law.lift_scale = table.number("lift_scale", {0, 10}, 1.0);
+  law.drag_scale = table.number({"drag_scale", "factor on the drag coefficient"}, {0, 10}, 1.0);
+  law.lift_scale = table.number({"lift_scale", "factor on the lift coefficient"}, {0, 10}, 1.0);
   return law;
 }
 
 models::Air read_air(Table& table) {
   if (table.has_quantity("density"))
-    return {.density = table.quantity("density", "kg_per_m3", {0, 5}), .viscosity = models::Air{}.viscosity};
+    return {.density = table.quantity({"density", "of the air; instead of weather"}, "kg_per_m3", {0, 5}),
+            .viscosity = models::Air{}.viscosity};
   models::Weather w;
-  w.temperature = 273.15 + table.number("temperature_degC", {-40, 60}, 15.0);
-  w.humidity = table.quantity("humidity", "pct", Range::fraction(), 0.5);
-  const double altitude = table.quantity("altitude", "m", {-500, 9000}, 0.0);
-  w.pressure = table.quantity("pressure", "hPa", {2e4, 1.2e5}, models::standard_pressure(altitude));
+  w.temperature = 273.15 + table.number({"temperature_degC", "of the air"}, {-40, 60}, 15.0);
+  w.humidity = table.quantity({"humidity", "relative humidity of the air"}, "pct", Range::fraction(), 0.5);
+  const double altitude =
+      table.quantity({"altitude", "above sea level; gives the standard pressure"}, "m", {-500, 9000}, 0.0);
+  w.pressure = table.quantity({"pressure", "of the air; default: the standard atmosphere's at the altitude"}, "hPa",
+                              {2e4, 1.2e5}, models::standard_pressure(altitude));
   return models::air(w);
 }
 
 models::Wind read_wind(Table table) {
   models::Wind w;
-  w.speed = table.quantity("speed", "mps", {0, 50});
-  w.towards = table.quantity("towards", "deg", {-2 * kPi, 2 * kPi});
-  const std::string profile = table.choice("profile", {"logarithmic", "uniform"}, "logarithmic");
+  w.speed = table.quantity({"speed", "of the wind at the reference height"}, "mps", {0, 50});
+  w.towards =
+      table.quantity({"towards", "where the wind blows to, right of the target; 0 helps, 180 deg is into the face"},
+                     "deg", {-2 * kPi, 2 * kPi});
+  const std::string profile =
+      table.choice({"profile", "of the wind over height"}, {"logarithmic", "uniform"}, "logarithmic");
   w.profile = profile == "uniform" ? models::WindProfile::uniform : models::WindProfile::logarithmic;
   if (w.profile == models::WindProfile::uniform) return w;
-  w.reference = table.quantity("height", "m", {0.1, 200}, w.reference);
-  w.roughness = table.quantity("roughness", "m", {1e-4, 5}, w.roughness);
+  w.reference = table.quantity({"height", "at which the wind's speed is given"}, "m", {0.1, 200}, w.reference);
+  w.roughness = table.quantity({"roughness", "length of the logarithmic wind profile"}, "m", {1e-4, 5}, w.roughness);
   return w;
 }
 
 models::LaunchError read_launch_error(Table table) {
-  models::LaunchError e{.source = table.text("source")};
-  e.ball_speed = table.quantity("ball_speed", "mps", Range::non_negative(), 0);
-  e.launch_angle = table.quantity("launch_angle", "deg", Range::non_negative(), 0);
-  e.azimuth = table.quantity("azimuth", "deg", Range::non_negative(), 0);
-  e.backspin = table.quantity("backspin", "rpm", Range::non_negative(), 0);
-  e.sidespin = table.quantity("sidespin", "rpm", Range::non_negative(), 0);
-  e.spin_rate = table.quantity("spin_rate", "rpm", Range::non_negative(), 0);
-  e.spin_axis = table.quantity("spin_axis", "deg", Range::non_negative(), 0);
+  models::LaunchError e{.source = table.text({"source", "where these standard errors come from"})};
+  e.ball_speed =
+      table.quantity({"ball_speed", "standard error of the measured ball speed"}, "mps", Range::non_negative(), 0);
+  e.launch_angle =
+      table.quantity({"launch_angle", "standard error of the measured launch angle"}, "deg", Range::non_negative(), 0);
+  e.azimuth = table.quantity({"azimuth", "standard error of the measured direction"}, "deg", Range::non_negative(), 0);
+  e.backspin = table.quantity({"backspin", "standard error of the measured backspin"}, "rpm", Range::non_negative(), 0);
+  e.sidespin = table.quantity({"sidespin", "standard error of the measured sidespin"}, "rpm", Range::non_negative(), 0);
+  e.spin_rate =
+      table.quantity({"spin_rate", "standard error of the measured spin rate"}, "rpm", Range::non_negative(), 0);
+  e.spin_axis =
+      table.quantity({"spin_axis", "standard error of the measured spin axis"}, "deg", Range::non_negative(), 0);
   return e;
 }
 
@@ -113,24 +125,31 @@ std::string file_name(std::string name) {
 
 FlightSetup read_flight(Table table) {
   FlightSetup s;
-  s.unit = table.choice("units", {"yards", "metres"}, "yards") == "yards" ? post::DistanceUnit::yards
-                                                                          : post::DistanceUnit::metres;
+  s.unit = table.choice({"units", "of distances in tables and figures"}, {"yards", "metres"}, "yards") == "yards"
+               ? post::DistanceUnit::yards
+               : post::DistanceUnit::metres;
   s.conditions.law = read_law(table);
-  for (const std::string& name : table.texts("beside", std::vector<std::string>{}))
+  for (const std::string& name :
+       table.texts({"beside", "further laws drawn and tabled beside the first"}, std::vector<std::string>{}))
     s.others.push_back(published(table, "beside", name));
   s.conditions.air = read_air(table);
-  s.options.tolerance = table.number("tolerance", {1e-12, 1e-3}, s.options.tolerance);
+  s.options.tolerance =
+      table.number({"tolerance", "relative tolerance of the trajectory"}, {1e-12, 1e-3}, s.options.tolerance);
   if (auto wind = table.optional_table("wind")) s.conditions.wind = read_wind(*wind);
   if (auto ground = table.optional_table("ground")) {
-    s.conditions.ground.height = ground->quantity("height", "m", {-500, 500}, 0);
-    s.conditions.ground.slope = ground->quantity("slope", "deg", {-radians(45), radians(45)}, 0);
+    s.conditions.ground.height = ground->quantity(
+        {"height", "of the ground where the ball lands, above the ball at launch"}, "m", {-500, 500}, 0);
+    s.conditions.ground.slope =
+        ground->quantity({"slope", "of the ground where the ball lands, uphill towards the target"}, "deg",
+                         {-radians(45), radians(45)}, 0);
   }
   if (auto turf = table.optional_table("turf")) {
     models::BounceRoll t;
-    t.friction = turf->number("friction", {0, 2}, t.friction);
-    t.rolling = turf->number("rolling", {0.01, 1}, t.rolling);
-    t.rolling_low = turf->number("rolling_low", {0.01, t.rolling}, t.rolling_low);
-    t.rolling_high = turf->number("rolling_high", {t.rolling, 2}, t.rolling_high);
+    t.friction = turf->number({"friction", "of the ball on the turf while it bounces"}, {0, 2}, t.friction);
+    t.rolling =
+        turf->number({"rolling", "rolling resistance; 5/7 of it in g is the deceleration"}, {0.01, 1}, t.rolling);
+    t.rolling_low = turf->number({"rolling_low", "lower end of what rolling may be"}, {0.01, t.rolling}, t.rolling_low);
+    t.rolling_high = turf->number({"rolling_high", "upper end of what rolling may be"}, {t.rolling, 2}, t.rolling_high);
     s.turf = t;
     if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
   }

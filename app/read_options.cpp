@@ -13,39 +13,63 @@ models::FeImpactOptions read_fe(Table root) {
   models::FeImpactOptions o;
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   if (root.has("accuracy")) {
-    const std::string accuracy = root.choice("accuracy", {"look", "default", "reference"});
+    const std::string accuracy =
+        root.choice({"accuracy", "mesh, harmonics and steps together; keys of [mesh] and [time] override each"},
+                    {"look", "default", "reference"});
     o.resolve(accuracy == "look"      ? models::Accuracy::look
               : accuracy == "default" ? models::Accuracy::standard
                                       : models::Accuracy::reference);
   }
   // Friction is physics: a case with a deformable ball states it.
   Table contact = root.table("contact");
-  o.friction = contact.number("face_friction", {0, 5});
+  o.friction =
+      contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"}, {0, 5});
   if (contact.has_quantity("face_transition_speed"))
-    o.transition_speed = contact.quantity("face_transition_speed", "mps", Range::positive());
-  o.penalty = contact.number("penalty", {1, 1e6}, o.penalty);
-  o.tangential_penalty = contact.number("tangential_penalty", {1e-3, 10}, o.tangential_penalty);
+    o.transition_speed = contact.quantity(
+        {"face_transition_speed",
+         "regularised friction: slip speed at which it is fully developed; absent: sticking on a spring"},
+        "mps", Range::positive());
+  o.penalty = contact.number(
+      {"penalty", "contact stiffness per area, times the ball's radius over its Young's modulus"}, {1, 1e6}, o.penalty);
+  o.tangential_penalty = contact.number({"tangential_penalty", "stiffness of sticking over that of contact"},
+                                        {1e-3, 10}, o.tangential_penalty);
 
   if (auto face = root.optional_table("face")) o.face = read_face(*face);
 
   Table mesh = root.default_table("mesh");
-  o.mesh.sector = int(mesh.integer("sector", 1, 64, o.mesh.sector));
-  o.mesh.rings = int(mesh.integer("rings", 1, 64, o.mesh.rings));
-  o.mesh.pole = mesh.number("pole", {0.01, 1}, o.mesh.pole);
-  if (mesh.has("far")) o.mesh.far = mesh.number("far", {1, 100});
-  o.mesh.skin = mesh.number("skin", {0.01, 1}, o.mesh.skin);
-  o.mesh.core = mesh.number("core", {0.1, 0.7}, o.mesh.core);
-  o.harmonics = int(mesh.integer("harmonics", 0, 16, o.harmonics));
-  o.antisymmetric = int(mesh.integer("antisymmetric", 1, 16, o.antisymmetric));
-  o.angles = int(mesh.integer("angles", 0, 128, o.angles));
-  o.contact_angles = int(mesh.integer("contact_angles", 0, 256, o.contact_angles));
-  o.edge_points = int(mesh.integer("edge_points", 1, 5, o.edge_points));
-  o.tilt = mesh.quantity("tilt", "rad", {-1, 1}, o.tilt);
+  o.mesh.sector =
+      int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
+  o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
+  o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1},
+                            o.mesh.pole);
+  if (mesh.has("far"))
+    o.mesh.far = mesh.number(
+        {"far", "size of surface elements at the other pole over the ungraded ones; absent: graded by half-tangents"},
+        {1, 100});
+  o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
+  o.mesh.core =
+      mesh.number({"core", "half-width of the core block over the first layer's radius"}, {0.1, 0.7}, o.mesh.core);
+  o.harmonics = int(
+      mesh.integer({"harmonics", "highest Fourier harmonic over the angle about the mesh's axis"}, 0, 16, o.harmonics));
+  o.antisymmetric = int(
+      mesh.integer({"antisymmetric", "harmonics across the plane of the slip, where the blow has no plane of symmetry"},
+                   1, 16, o.antisymmetric));
+  o.angles = int(
+      mesh.integer({"angles", "integration angles of the volume over the half circle; 0: 2 N + 4"}, 0, 128, o.angles));
+  o.contact_angles =
+      int(mesh.integer({"contact_angles", "integration angles of the patch over the half circle; 0: 3 N + 8"}, 0, 256,
+                       o.contact_angles));
+  o.edge_points = int(mesh.integer({"edge_points", "Gauss points along each surface edge"}, 1, 5, o.edge_points));
+  o.tilt = mesh.quantity({"tilt", "of the mesh's axis against the expected turn of the ball"}, "rad", {-1, 1}, o.tilt);
   Table time = root.default_table("time");
-  o.rho_inf = time.number("rho_inf", Range::fraction(), o.rho_inf);
-  o.steps_per_contact = int(time.integer("steps_per_contact", 10, 100000, o.steps_per_contact));
-  o.newton_relative = time.number("newton_relative", {1e-14, 1e-2}, o.newton_relative);
-  o.after = time.number("after", {0, 10}, o.after);
+  o.rho_inf = time.number(
+      {"rho_inf", "spectral radius of generalized-alpha at infinite frequency: 1 keeps energy, 0 damps most"},
+      Range::fraction(), o.rho_inf);
+  o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
+                                         100000, o.steps_per_contact));
+  o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
+                                  {1e-14, 1e-2}, o.newton_relative);
+  o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
   if (const auto faults = o.faults(); !faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
   return o;
 }
@@ -54,15 +78,18 @@ models::FeImpactOptions read_fe(Table root) {
 
 void read_grip(Table& t, models::ShaftMount& mount) {
   using models::Grip;
-  const std::string hold = t.choice("hold", {"clamped", "free", "forced", "hands"}, "clamped");
+  const std::string hold =
+      t.choice({"hold", "what happens at the grip during the blow"}, {"clamped", "free", "forced", "hands"}, "clamped");
   mount.grip = hold == "free"     ? Grip::free
                : hold == "forced" ? Grip::forced
                : hold == "hands"  ? Grip::hands
                                   : Grip::clamped;
-  mount.elements = int(t.integer("elements", 2, 1000, mount.elements));
+  mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
   if (mount.grip == Grip::hands) mount.hands = read_springs(t);
   if (t.has_quantity("force") || t.has_quantity("moment"))
-    mount.load = models::GripLoad{.force = t.vector("force", "N"), .moment = t.vector("moment", "N_m")};
+    mount.load = models::GripLoad{
+        .force = t.vector({"force", "that the hands apply at the grip at first contact, grip frame"}, "N"),
+        .moment = t.vector({"moment", "that the hands apply at the grip at first contact, grip frame"}, "N_m")};
 }
 
 models::Options read_options(Table root, const std::vector<std::string>& models) {
@@ -74,35 +101,45 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   };
   if (auto t = table("volumetric", asked("volumetric") || asked("shaft-coupled"))) {
     const Range positive = Range::positive(), some = Range::non_negative();
-    const bool iron = t->choice("published", {"driver", "iron7"}, "driver") == "iron7";
+    const bool iron = t->choice({"published", "which published set of parameters the defaults come from"},
+                                {"driver", "iron7"}, "driver") == "iron7";
     models::VolumetricLaw& law = options.volumetric;
     law = iron ? models::VolumetricLaw::published_iron7() : models::VolumetricLaw::published_driver();
-    law.stiffness = t->quantity("stiffness", "N_per_m3", positive, law.stiffness);
-    law.damping = t->quantity("damping", "s_per_m", some, law.damping);
-    law.friction = t->number("friction", some, law.friction);
-    law.static_friction = t->number("static_friction", some, law.friction);
-    law.transition_speed = t->quantity("transition_speed", "mps", positive, law.transition_speed);
-    law.joint_stiffness = t->quantity("joint_stiffness", "N_m_per_rad", some, law.joint_stiffness);
-    law.joint_damping = t->quantity("joint_damping", "N_m_s_per_rad", some, law.joint_damping);
-    law.cover_thickness = t->quantity("cover_thickness", "mm", positive, law.cover_thickness);
-    law.volume_exponent = t->number("volume_exponent", {0.5, 1.5}, law.volume_exponent);
-    options.volumetric_solution.tolerance = t->number("tolerance", {1e-12, 0.1}, options.volumetric_solution.tolerance);
+    law.stiffness = t->quantity({"stiffness", "volumetric stiffness: normal force per overlapping volume"}, "N_per_m3",
+                                positive, law.stiffness);
+    law.damping = t->quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", some, law.damping);
+    law.friction = t->number({"friction", "sliding friction coefficient"}, some, law.friction);
+    law.static_friction = t->number({"static_friction", "coefficient at vanishing slip"}, some, law.friction);
+    law.transition_speed = t->quantity({"transition_speed", "slip speed at which friction is fully developed"}, "mps",
+                                       positive, law.transition_speed);
+    law.joint_stiffness = t->quantity({"joint_stiffness", "torsional spring between core and cover"}, "N_m_per_rad",
+                                      some, law.joint_stiffness);
+    law.joint_damping = t->quantity({"joint_damping", "torsional damper between core and cover"}, "N_m_s_per_rad", some,
+                                    law.joint_damping);
+    law.cover_thickness = t->quantity({"cover_thickness", "of the cover that turns against the core"}, "mm", positive,
+                                      law.cover_thickness);
+    law.volume_exponent = t->number({"volume_exponent", "power of the overlapping volume in the normal force"},
+                                    {0.5, 1.5}, law.volume_exponent);
+    options.volumetric_solution.tolerance = t->number({"tolerance", "relative tolerance of the time integration"},
+                                                      {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }
   if (auto t = table("hertz_maw", asked("hertz-maw"))) {
     models::HertzMawLaw& law = options.hertz_maw;
-    law.modulus = t->quantity("modulus", "MPa", Range::positive(), law.modulus);
-    law.poisson = t->number("poisson", {0, 0.5}, law.poisson);
-    law.friction = t->number("friction", Range::non_negative(), law.friction);
-    law.damping = t->quantity("damping", "s_per_m", Range::non_negative(), law.damping);
-    options.hertz_maw_solution.springs =
-        static_cast<int>(t->integer("springs", 8, 4000, options.hertz_maw_solution.springs));
-    options.hertz_maw_solution.steps =
-        static_cast<int>(t->integer("steps", 20, 20000, options.hertz_maw_solution.steps));
+    law.modulus = t->quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(), law.modulus);
+    law.poisson = t->number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, law.poisson);
+    law.friction = t->number({"friction", "Coulomb coefficient"}, Range::non_negative(), law.friction);
+    law.damping = t->quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", Range::non_negative(),
+                              law.damping);
+    options.hertz_maw_solution.springs = static_cast<int>(
+        t->integer({"springs", "springs across half the patch"}, 8, 4000, options.hertz_maw_solution.springs));
+    options.hertz_maw_solution.steps = static_cast<int>(t->integer(
+        {"steps", "time steps in a contact of Hertz's duration"}, 20, 20000, options.hertz_maw_solution.steps));
   }
   if (asked("shaft-coupled"))
     if (auto t = table("shaft_coupled", true)) {
-      options.shaft_beam.feels_translation = t->flag("feels_translation", true);
-      options.shaft_beam.feels_rotation = t->flag("feels_rotation", true);
+      options.shaft_beam.feels_translation = t->flag({"feels_translation", "the head's motion bends the shaft"}, true);
+      options.shaft_beam.feels_rotation =
+          t->flag({"feels_rotation", "the head's rotation bends and twists the shaft"}, true);
     }
   if (asked("fe-full-club") || asked("shaft-coupled"))
     if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount);

@@ -6,7 +6,7 @@
 
 namespace hosel::app {
 
-const models::NamedParameter& read_parameter(Table& table, std::string_view key) {
+const models::NamedParameter& read_parameter(Table& table, Key key) {
   std::vector<std::string> names;
   for (const auto& p : models::parameters()) names.emplace_back(p.name);
   return *models::find_parameter(table.choice(key, names));
@@ -30,21 +30,22 @@ std::string column(const models::NamedParameter& p) {
 
 Axis read_axis(Table table) {
   Axis axis;
-  axis.parameter = &read_parameter(table, "name");
+  axis.parameter = &read_parameter(table, {"name", "the parameter that varies"});
   const models::NamedParameter& p = *axis.parameter;
   axis.si = unit_of(p);
   axis.label = label(p);
   const Range range{p.low, p.high};
   const std::string unit(p.unit);
-  const auto one = [&](std::string_view stem) {
-    return unit.empty() ? table.number(stem, range) : table.quantity(stem, unit, range);
-  };
+  const auto one = [&](Key key) { return unit.empty() ? table.number(key, range) : table.quantity(key, unit, range); };
   if (table.has("values") || table.has_quantity("values")) {
-    axis.values = unit.empty() ? table.numbers("values", 0, range) : table.quantities("values", unit, 0, range);
+    axis.values =
+        unit.empty()
+            ? table.numbers({"values", "the values it takes; instead of from, to and count"}, 0, range)
+            : table.quantities({"values", "the values it takes; instead of from, to and count"}, unit, 0, range);
     if (axis.values.empty()) table.fail("values", "name at least one value");
   } else {
-    const double from = one("from"), to = one("to");
-    const long count = table.integer("count", 2, 100000);
+    const double from = one({"from", "first value"}), to = one({"to", "last value"});
+    const long count = table.integer({"count", "how many values, evenly spread"}, 2, 100000);
     for (long i = 0; i < count; ++i)
       axis.values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
   }

@@ -10,7 +10,7 @@
 namespace hosel::app {
 
 /// A parameter by its name at `key`; an unknown one is an error with the nearest spelling.
-const models::NamedParameter& read_parameter(Table& table, std::string_view key);
+const models::NamedParameter& read_parameter(Table& table, Key key);
 
 /// A parameter and the values it takes: `name`, then `values_<unit> = [...]`, or `from_<unit>`, `to_<unit>`
 /// and `count`.

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "hosel/app/read_swing.hpp"
+#include "hosel/app/read_sheet.hpp"
 
 namespace hosel::app {
 namespace {
@@ -119,10 +119,11 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     const bool strain = m->reading == loop::Reading::strain_lead || m->reading == loop::Reading::strain_droop;
     channel.arc_length = strain ? clamp : tip;
     if (sensors && sensors->has(name)) {
-      Table place = sensors->table(name);
-      channel.arc_length = place.quantity("arc_length", "mm", Range::non_negative(), channel.arc_length);
+      Table place = sensors->table({name, "", "<channel>"});
+      channel.arc_length = place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(),
+                                          channel.arc_length);
       if (strain)
-        channel.reading = place.choice("axis", {"lead", "droop"},
+        channel.reading = place.choice({"axis", "bending that the strain gauge feels"}, {"lead", "droop"},
                                        m->reading == loop::Reading::strain_droop ? "droop" : "lead") == "droop"
                               ? loop::Reading::strain_droop
                               : loop::Reading::strain_lead;

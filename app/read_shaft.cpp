@@ -1,9 +1,12 @@
 #include "hosel/app/read_shaft.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_sheet.hpp"
 #include "hosel/golf/shaft_library.hpp"
 
 namespace hosel::app {
@@ -12,22 +15,38 @@ namespace {
 Shaft by_name(Table& table) {
   std::vector<std::string> names;
   for (const NamedShaft& s : shaft_library()) names.emplace_back(s.name);
-  const std::string wanted = table.choice("name", names);
+  const std::string wanted = table.choice({"name", "a shaft of the library (`hosel list`)"}, names);
   for (const NamedShaft& s : shaft_library())
     if (s.name == wanted) return s.make();
   return {};
 }
 
+/// Lists in the case, or columns of the same names in a CSV file.
 Shaft by_stations(Table table) {
-  const auto arc = table.quantities("arc_length", "mm", 0);
+  std::optional<post::Sheet> sheet;
+  if (table.has("file"))
+    sheet = read_sheet(
+        table.file({"file", "CSV whose columns are the keys of this table, each with a unit; instead of them"}));
+  const auto read = [&](Key key, std::string_view unit, Dimension dimension, std::size_t n, Range range) {
+    if (!sheet) return table.quantities(key, unit, n, range);
+    const std::vector<double> x = column(*sheet, key.name, dimension);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!range.contains(x[i]))
+        throw InputError(fmt::format("{}:{}: {} is {}", sheet->file, sheet->lines[i], key.name, range.sentence()));
+    return x;
+  };
+  const auto arc = read({"arc_length", "stations from butt to tip"}, "mm", Dimension::length, 0, Range::finite());
   const std::size_t n = arc.size();
-  if (n < 2) table.fail("arc_length", "a shaft needs at least two stations");
+  const char* at = sheet ? "file" : "arc_length";
+  if (n < 2) table.fail(at, "a shaft needs at least two stations");
   for (std::size_t i = 1; i < n; ++i)
-    if (!(arc[i] > arc[i - 1])) table.fail("arc_length", "stations run from butt to tip with increasing arc length");
-  const auto EI = table.quantities("bending_stiffness", "N_m2", n, Range::positive());
-  const auto GJ = table.quantities("torsional_stiffness", "N_m2", n, Range::positive());
-  const auto mu = table.quantities("mass_per_length", "g_per_m", n, Range::positive());
-  const auto r = table.quantities("mean_radius", "mm", n, Range::positive());
+    if (!(arc[i] > arc[i - 1])) table.fail(at, "stations run from butt to tip with increasing arc length");
+  const Range positive = Range::positive();
+  const auto EI = read({"bending_stiffness", "EI at the stations"}, "N_m2", Dimension::bending_stiffness, n, positive);
+  const auto GJ =
+      read({"torsional_stiffness", "GJ at the stations"}, "N_m2", Dimension::bending_stiffness, n, positive);
+  const auto mu = read({"mass_per_length", "at the stations"}, "g_per_m", Dimension::line_density, n, positive);
+  const auto r = read({"mean_radius", "of the wall at the stations"}, "mm", Dimension::length, n, positive);
   std::vector<CompositeStation> stations;
   for (std::size_t i = 0; i < n; ++i) stations.push_back({arc[i], EI[i], GJ[i], mu[i], r[i]});
   return composite_shaft(stations);
@@ -35,48 +54,56 @@ Shaft by_stations(Table table) {
 
 Shaft by_polynomials(Table table) {
   CompositePolynomials p;
-  p.length = table.quantity("length", "m", Range::positive());
-  p.bending_stiffness = table.quantities("bending_stiffness", "N_m2", 0);
-  p.torsional_stiffness = table.quantities("torsional_stiffness", "N_m2", 0);
-  p.mass_per_length = table.quantities("mass_per_length", "kg_per_m", 0);
-  p.mean_radius = table.quantities("mean_radius", "m", 0);
+  p.length =
+      table.quantity({"length", "of the shaft; the polynomials run over it from the butt"}, "m", Range::positive());
+  p.bending_stiffness = table.quantities(
+      {"bending_stiffness", "EI: coefficients of a polynomial in the arc length [m], constant first"}, "N_m2", 0);
+  p.torsional_stiffness = table.quantities(
+      {"torsional_stiffness", "GJ: coefficients of a polynomial in the arc length [m], constant first"}, "N_m2", 0);
+  p.mass_per_length = table.quantities(
+      {"mass_per_length", "coefficients of a polynomial in the arc length [m], constant first"}, "kg_per_m", 0);
+  p.mean_radius = table.quantities(
+      {"mean_radius", "of the wall: coefficients of a polynomial in the arc length [m], constant first"}, "m", 0);
   return polynomial_shaft(p);
 }
 
 Shaft by_tube(Table table) {
-  const auto arc = table.quantities("arc_length", "mm", 0);
-  const auto radius = table.quantities("outer_radius", "mm", arc.size(), Range::positive());
-  const auto wall = table.quantities("wall", "mm", arc.size(), Range::positive());
+  const auto arc = table.quantities({"arc_length", "stations from butt to tip"}, "mm", 0);
+  const auto radius =
+      table.quantities({"outer_radius", "of the tube at the stations"}, "mm", arc.size(), Range::positive());
+  const auto wall =
+      table.quantities({"wall", "thickness of the tube at the stations"}, "mm", arc.size(), Range::positive());
   std::vector<TubeStation> tube;
   for (std::size_t i = 0; i < arc.size(); ++i) tube.push_back({arc[i], radius[i], wall[i]});
   std::vector<ShaftLayer> layers;
   for (Table layer : table.tables("layer"))
-    layers.push_back({layer.number("share", Range::fraction(), 1.0), layer.quantity("E", "GPa", Range::positive()),
-                      layer.quantity("G", "GPa", Range::positive()),
-                      layer.quantity("density", "kg_per_m3", Range::positive())});
+    layers.push_back({layer.number({"share", "of the wall's thickness that is this layer"}, Range::fraction(), 1.0),
+                      layer.quantity({"E", "Young's modulus of the layer along the shaft"}, "GPa", Range::positive()),
+                      layer.quantity({"G", "shear modulus of the layer"}, "GPa", Range::positive()),
+                      layer.quantity({"density", "of the layer"}, "kg_per_m3", Range::positive())});
   if (layers.empty()) table.fail("layer", "a tube needs at least one [[shaft.tube.layer]]");
-  const double kappa = table.number("shear_factor", {0, 1, true});
+  const double kappa = table.number({"shear_factor", "Timoshenko's shear correction of the tube"}, {0, 1, true});
   return tube_shaft(tube, layers, kappa);
 }
 
 /// Centres off the line, at stations of their own, linear between them and held beyond.
 void read_offsets(Table table, Shaft& shaft) {
-  const auto arc = table.quantities("arc_length", "mm", 0);
+  const auto arc = table.quantities({"arc_length", "stations of the offsets; linear between, held beyond"}, "mm", 0);
   for (std::size_t i = 1; i < arc.size(); ++i)
     if (!(arc[i] > arc[i - 1])) table.fail("arc_length", "stations run from butt to tip with increasing arc length");
   if (arc.empty()) table.fail("arc_length", "offsets need at least one station");
   Shaft offsets;
   for (const double s : arc) offsets.stations.push_back({.arc_length = s});
-  const auto read = [&](const char* key, std::array<double, 2> CentreOffsets::*centre, std::size_t axis) {
+  const auto read = [&](Key key, std::array<double, 2> CentreOffsets::*centre, std::size_t axis) {
     const auto values = table.quantities(key, "mm", arc.size(), Range::finite(), std::vector<double>(arc.size(), 0.0));
     for (std::size_t i = 0; i < arc.size(); ++i) (offsets.stations[i].centres.*centre)[axis] = values[i];
   };
-  read("elastic_centre_y", &CentreOffsets::elastic, 0);
-  read("elastic_centre_z", &CentreOffsets::elastic, 1);
-  read("shear_centre_y", &CentreOffsets::shear, 0);
-  read("shear_centre_z", &CentreOffsets::shear, 1);
-  read("mass_centre_y", &CentreOffsets::mass, 0);
-  read("mass_centre_z", &CentreOffsets::mass, 1);
+  read({"elastic_centre_y", "offset of the axis about which EI acts"}, &CentreOffsets::elastic, 0);
+  read({"elastic_centre_z", "offset of the axis about which EI acts"}, &CentreOffsets::elastic, 1);
+  read({"shear_centre_y", "offset of the axis about which GJ acts"}, &CentreOffsets::shear, 0);
+  read({"shear_centre_z", "offset of the axis about which GJ acts"}, &CentreOffsets::shear, 1);
+  read({"mass_centre_y", "offset of the centre of mass"}, &CentreOffsets::mass, 0);
+  read({"mass_centre_z", "offset of the centre of mass"}, &CentreOffsets::mass, 1);
   for (ShaftStation& s : shaft.stations) s.centres = offsets.at(s.arc_length).centres;
 }
 
@@ -91,9 +118,10 @@ Shaft read_shaft(Table table) {
     else if (auto tube = table.optional_table("tube")) shaft = by_tube(*tube);
     else table.fail("name", "say which shaft: `name`, or a table `table`, `polynomial` or `tube`");
   } catch (const std::invalid_argument& e) { table.fail("", e.what()); }
-  shaft = scaled(std::move(shaft), table.number("bending_scale", Range::positive(), 1.0),
-                 table.number("torsion_scale", Range::positive(), 1.0));
-  const double mass_scale = table.number("mass_scale", Range::positive(), 1.0);
+  shaft = scaled(std::move(shaft), table.number({"bending_scale", "factor on EI everywhere"}, Range::positive(), 1.0),
+                 table.number({"torsion_scale", "factor on GJ everywhere"}, Range::positive(), 1.0));
+  const double mass_scale =
+      table.number({"mass_scale", "factor on mass and rotary inertia everywhere"}, Range::positive(), 1.0);
   for (ShaftStation& s : shaft.stations) {
     s.mass_per_length *= mass_scale;
     s.rotary_inertia_y *= mass_scale;
@@ -101,9 +129,15 @@ Shaft read_shaft(Table table) {
   }
   if (auto offsets = table.optional_table("offsets")) read_offsets(*offsets, shaft);
   // Stiffness-proportional: the damping ratio holds at one frequency and grows in proportion to it.
-  const double ratio = table.number("damping_ratio", {0, 1}, 0.0);
+  const double ratio =
+      table.number({"damping_ratio", "of stiffness-proportional damping at damping_frequency"}, {0, 1}, 0.0);
   if (ratio > 0)
-    shaft.damping_time = 2 * ratio / (2 * kPi * table.quantity("damping_frequency", "Hz", Range::positive()));
+    shaft.damping_time =
+        2 * ratio /
+        (2 * kPi *
+         table.quantity(
+             {"damping_frequency", "where damping_ratio, if above 0, holds; it grows in proportion to frequency"}, "Hz",
+             Range::positive()));
   if (const auto wrong = faults(shaft); !wrong.empty()) table.fail("", wrong.front());
   return shaft;
 }
@@ -111,11 +145,13 @@ Shaft read_shaft(Table table) {
 ClubGeometry read_club_geometry(Table table) {
   const ClubGeometry standard;
   ClubGeometry g;
-  g.hosel = table.vector("position", "mm", limits::head_place, standard.hosel);
+  g.hosel = table.vector({"position", "the hosel (where the shaft's axis enters the head) in the face frame"}, "mm",
+                         limits::head_place, standard.hosel);
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
   const double lie =
-      table.quantity("lie", "deg", {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
-  const double lean = table.quantity("lean", "deg", {-kPi / 4, kPi / 4}, 0);
+      table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
+                     {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
+  const double lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-kPi / 4, kPi / 4}, 0);
   g.shaft_axis = Vec3(std::sin(lean) * std::sin(lie), std::cos(lie), std::cos(lean) * std::sin(lie));
   return g;
 }

@@ -12,14 +12,15 @@ namespace hosel::app {
 namespace {
 
 fem::Lame read_lame(Table& t) {
-  const double young = t.quantity("young", "MPa", Range::positive());
-  return fem::Lame::of(young, t.number("poisson", {-0.9, 0.49999}));
+  const double young = t.quantity({"young", "Young's modulus at small strain"}, "MPa", Range::positive());
+  return fem::Lame::of(young, t.number({"poisson", "Poisson's ratio at small strain"}, {-0.9, 0.49999}));
 }
 
 /// c10 and the bulk modulus, which every polynomial law has.
 fem::Hyperelastic read_polynomial(Table& t) {
-  const double c10 = t.quantity("c10", "MPa", Range::positive());
-  return {.c10 = c10, .bulk = t.quantity("bulk", "MPa", Range::positive())};
+  const double c10 =
+      t.quantity({"c10", "coefficient of I1 - 3; twice c10 + c01 is the shear modulus"}, "MPa", Range::positive());
+  return {.c10 = c10, .bulk = t.quantity({"bulk", "bulk modulus"}, "MPa", Range::positive())};
 }
 
 fem::Elastic neo_hooke(Table& t) {
@@ -28,21 +29,22 @@ fem::Elastic neo_hooke(Table& t) {
 
 fem::Elastic mooney_rivlin(Table& t) {
   fem::Hyperelastic law = read_polynomial(t);
-  law.c01 = t.quantity("c01", "MPa", Range::non_negative());
+  law.c01 = t.quantity({"c01", "coefficient of I2 - 3"}, "MPa", Range::non_negative());
   return law;
 }
 
 fem::Elastic yeoh(Table& t) {
   fem::Hyperelastic law = read_polynomial(t);
-  law.c20 = t.quantity("c20", "MPa");
-  law.c30 = t.quantity("c30", "MPa", Range::finite(), 0.0);
+  law.c20 = t.quantity({"c20", "coefficient of (I1 - 3) squared"}, "MPa");
+  law.c30 = t.quantity({"c30", "coefficient of (I1 - 3) cubed"}, "MPa", Range::finite(), 0.0);
   return law;
 }
 
 fem::Elastic ogden(Table& t) {
-  fem::Ogden law{.bulk = t.quantity("bulk", "MPa", Range::positive())};
-  const auto moduli = t.quantities("moduli", "MPa", 0, Range::finite());
-  const auto exponents = t.numbers("exponents", moduli.size(), Range::finite());
+  fem::Ogden law{.bulk = t.quantity({"bulk", "bulk modulus"}, "MPa", Range::positive())};
+  const auto moduli =
+      t.quantities({"moduli", "one modulus for each power of the principal stretches"}, "MPa", 0, Range::finite());
+  const auto exponents = t.numbers({"exponents", "one exponent for each modulus"}, moduli.size(), Range::finite());
   for (std::size_t i = 0; i < moduli.size(); ++i) law.powers.push_back({moduli[i], exponents[i]});
   return law;
 }
@@ -64,14 +66,17 @@ constexpr std::array kLaws = {
 std::span<const NamedLaw> solid_laws() { return kLaws; }
 
 fem::Solid read_solid(Table table) {
-  const double density = table.quantity("density", "kg_per_m3", Range::positive(), 1129.0);
+  const double density =
+      table.quantity({"density", "of the unstrained material"}, "kg_per_m3", Range::positive(), 1129.0);
   std::vector<std::string> names;
   for (const NamedLaw& l : kLaws) names.emplace_back(l.name);
-  const std::string name = table.choice("law", names, "neo-hooke");
+  const std::string name = table.choice({"law", "stored energy of the long-term response"}, names, "neo-hooke");
   const auto law = std::ranges::find(kLaws, name, &NamedLaw::name);
   fem::Solid solid{.elastic = law->read(table), .branches = {}, .density = density};
-  const auto moduli = table.quantities("branch_moduli", "MPa", 0, Range::non_negative(), std::vector<double>{});
-  const auto times = table.quantities("branch_times", "ms", moduli.size(), Range::positive(), std::vector<double>{});
+  const auto moduli = table.quantities({"branch_moduli", "shear moduli of the Maxwell branches of the Prony series"},
+                                       "MPa", 0, Range::non_negative(), std::vector<double>{});
+  const auto times = table.quantities({"branch_times", "relaxation times of the Maxwell branches"}, "ms", moduli.size(),
+                                      Range::positive(), std::vector<double>{});
   if (moduli.size() != times.size()) table.fail("branch_times_ms", "one relaxation time for each branch modulus");
   for (std::size_t i = 0; i < moduli.size(); ++i) solid.branches.push_back({moduli[i], times[i]});
   if (const auto faults = solid.faults(); !faults.empty()) table.fail("law", faults.front());
@@ -83,15 +88,16 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
   if (layers.empty()) {
     std::vector<std::string> names;
     for (const auto& named : models::ball_library()) names.emplace_back(named.name);
-    const std::string name = table.choice("model", names, standard.name);
+    const std::string name = table.choice({"model", "a ball of the library (`hosel list`)"}, names, standard.name);
     for (const auto& named : models::ball_library())
       if (named.name == name) return named.make();
     return standard;
   }
   models::FeBall ball{"case", {}};
   for (Table& layer : layers) {
-    const double radius = layer.number("radius_fraction", {0.05, 1},
-                                       &layer == &layers.back() ? std::optional<double>(1.0) : std::nullopt);
+    const double radius = layer.number(
+        {"radius_fraction", "outer radius of this layer over the ball's; layers go outwards, the last ends at 1"},
+        {0.05, 1}, &layer == &layers.back() ? std::optional<double>(1.0) : std::nullopt);
     ball.layers.push_back({radius, read_solid(layer)});
   }
   if (const auto faults = ball.faults(); !faults.empty()) table.fail("layers", faults.front());

@@ -7,33 +7,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "hosel/post/csv.hpp"
+#include "hosel/app/read_sheet.hpp"
 
 namespace hosel::app {
 namespace {
-
-/// A numeric column by its stem, with any unit of its name, in SI.
-std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
-  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
-    SplitName split = split_unit(sheet.names[c]);
-    if (!unit_needed && sheet.names[c] == stem) split = {std::string(stem), {}};
-    if (split.stem != stem) continue;
-    if (unit_needed && (!split.unit || split.unit->dimension != dimension))
-      throw InputError(fmt::format("{}: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
-    std::vector<double> out;
-    for (std::size_t r = 0; r < sheet.rows(); ++r) {
-      const std::string& cell = sheet.columns[c][r];
-      double x = 0;
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
-        throw InputError(fmt::format("{}:{}: {} '{}' is no number (a motion may have no empty cells)", sheet.file,
-                                     sheet.lines[r], sheet.names[c], cell));
-      out.push_back(unit_needed ? x * split.unit->si : x);
-    }
-    return out;
-  }
-  throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
-}
 
 bool has(const post::Sheet& sheet, std::string_view stem) {
   return std::ranges::any_of(sheet.names,
@@ -42,24 +19,22 @@ bool has(const post::Sheet& sheet, std::string_view stem) {
 
 }  // namespace
 
-post::Sheet read_sheet(const std::filesystem::path& file) {
-  try {
-    return post::read_csv(file);
-  } catch (const DataError& e) { throw InputError(e.what()); }
-}
-
 MotionInput read_motion(Table table) {
   MotionInput in;
-  in.file = table.data_file("file");
-  in.smoothing = table.quantity("smoothing", "ms", Range::non_negative(), 0);
-  const double gap = table.quantity("longest_gap", "ms", Range::positive(), 0.02);
-  const double turn = table.quantity("turn_about_shaft", "deg", Range::finite(), 0);
-  const double tolerance = table.number("orthonormal_tolerance", {0, 0.1, true}, 1e-3);
+  in.file = table.data_file({"file", "CSV of the grip's motion: time, position, attitude"});
+  in.smoothing = table.quantity({"smoothing", "time constant of the smoothing spline; 0 interpolates"}, "ms",
+                                Range::non_negative(), 0);
+  const double gap =
+      table.quantity({"longest_gap", "longest allowed gap between samples"}, "ms", Range::positive(), 0.02);
+  const double turn =
+      table.quantity({"turn_about_shaft", "turns the recorded grip about the shaft's axis"}, "deg", Range::finite(), 0);
+  const double tolerance =
+      table.number({"orthonormal_tolerance", "allowed error of recorded axes"}, {0, 0.1, true}, 1e-3);
   const bool span = table.has_quantity("begin") || table.has_quantity("end");
   in.present = std::filesystem::exists(in.file);
   if (span) {
-    in.begin = table.quantity("begin", "s");
-    in.end = table.quantity("end", "s");
+    in.begin = table.quantity({"begin", "first instant used; default: the record's"}, "s");
+    in.end = table.quantity({"end", "last instant used (impact); default: the record's"}, "s");
     if (!(in.end > in.begin)) table.fail("end", "the motion ends before it begins");
   }
   if (!in.present) return in;
@@ -110,16 +85,16 @@ MotionInput read_motion(Table table) {
 }
 
 fem::JointStiffness read_springs(Table& t) {
-  const auto three = [&](std::string_view stem, std::string_view unit, bool needed) {
-    if (!needed && !t.has_quantity(stem)) return Vec3(Vec3::Zero());
-    const auto v = t.quantities(stem, unit, 3, Range::non_negative());
+  const auto three = [&](Key key, std::string_view unit, bool needed) {
+    if (!needed && !t.has_quantity(key.name)) return Vec3(Vec3::Zero());
+    const auto v = t.quantities(key, unit, 3, Range::non_negative());
     return Vec3(v[0], v[1], v[2]);
   };
   fem::JointStiffness k;
-  k.translation = three("stiffness", "N_per_m", true);
-  k.rotation = three("rotational_stiffness", "N_m_per_rad", true);
-  k.translation_damping = three("damping", "N_s_per_m", false);
-  k.rotation_damping = three("rotational_damping", "N_m_s_per_rad", false);
+  k.translation = three({"stiffness", "of the hands' springs along the grip's axes"}, "N_per_m", true);
+  k.rotation = three({"rotational_stiffness", "of the hands' springs about the grip's axes"}, "N_m_per_rad", true);
+  k.translation_damping = three({"damping", "of the hands along the grip's axes"}, "N_s_per_m", false);
+  k.rotation_damping = three({"rotational_damping", "of the hands about the grip's axes"}, "N_m_s_per_rad", false);
   return k;
 }
 
@@ -127,11 +102,13 @@ GripInput read_grip_drive(Table root) {
   GripInput in;
   auto t = root.optional_table("grip");
   if (!t) return in;
-  const std::string drive = t->choice("drive", {"prescribed", "hands", "forced"}, "prescribed");
+  const std::string drive =
+      t->choice({"drive", "what moves the grip: the recorded motion, the same through springs, or recorded forces"},
+                {"prescribed", "hands", "forced"}, "prescribed");
   using Kind = models::GripDrive::Kind;
   in.kind = drive == "hands" ? Kind::hands : drive == "forced" ? Kind::forced : Kind::prescribed;
   if (in.kind == Kind::hands) in.hands = read_springs(*t);
-  if (in.kind == Kind::forced) in.wrench = t->data_file("wrench");
+  if (in.kind == Kind::forced) in.wrench = t->data_file({"wrench", "CSV of the recorded force and moment at the grip"});
   return in;
 }
 
@@ -165,23 +142,27 @@ models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem
 models::SwingOptions read_swing_options(Table root) {
   models::SwingOptions o;
   if (auto t = root.optional_table("solution")) {
-    o.elements = static_cast<int>(t->integer("elements", 1, 1000, o.elements));
-    o.growth = t->number("growth", {0.5, 2}, o.growth);
-    o.step = t->quantity("step", "ms", Range::positive(), o.step);
-    o.rho_inf = t->number("rho_inf", Range::fraction(), o.rho_inf);
-    o.shear = t->flag("shear", o.shear);
-    o.modal_damping = t->numbers("modal_damping", 0, {0, 0.999}, std::vector<double>{});
-    o.grip_point = t->quantity("grip_point", "mm", Range::non_negative(), o.grip_point);
+    o.elements = static_cast<int>(t->integer({"elements", "finite elements along the shaft"}, 1, 1000, o.elements));
+    o.growth = t->number({"growth", "of the elements' lengths towards the tip"}, {0.5, 2}, o.growth);
+    o.step = t->quantity({"step", "longest time step"}, "ms", Range::positive(), o.step);
+    o.rho_inf = t->number({"rho_inf", "spectral radius of generalized-alpha at infinite frequency"}, Range::fraction(),
+                          o.rho_inf);
+    o.shear = t->flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, o.shear);
+    o.modal_damping = t->numbers({"modal_damping", "damping ratios of the first modes, besides the shaft's own"}, 0,
+                                 {0, 0.999}, std::vector<double>{});
+    o.grip_point = t->quantity({"grip_point", "distance from the butt of the point whose motion was recorded"}, "mm",
+                               Range::non_negative(), o.grip_point);
   }
   if (auto t = root.optional_table("joint")) {
-    const std::string kind = t->choice("kind", {"rigid", "hinge", "spring", "none"}, "rigid");
+    const std::string kind =
+        t->choice({"kind", "how the head is joined to the shaft"}, {"rigid", "hinge", "spring", "none"}, "rigid");
     using models::HeadJoint;
     o.joint = kind == "hinge"    ? HeadJoint::hinge
               : kind == "spring" ? HeadJoint::spring
               : kind == "none"   ? HeadJoint::none
                                  : HeadJoint::rigid;
     if (o.joint == HeadJoint::hinge) {
-      const auto axis = t->numbers("axis", 3);
+      const auto axis = t->numbers({"axis", "of the hinge, grip frame"}, 3);
       o.hinge_axis = Vec3(axis[0], axis[1], axis[2]);
       if (!(o.hinge_axis.norm() > 0)) t->fail("axis", "the axis of a hinge has a direction");
     }

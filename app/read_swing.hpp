@@ -6,12 +6,8 @@
 #include "hosel/app/reader.hpp"
 #include "hosel/models/grip_motion.hpp"
 #include "hosel/models/swing.hpp"
-#include "hosel/post/csv.hpp"
 
 namespace hosel::app {
-
-/// A CSV whose faults are faults of the input.
-post::Sheet read_sheet(const std::filesystem::path& file);
 
 /// `[motion]`: `file`, smoothing, span. `present` is false where the (large, measured) file is not there.
 struct MotionInput {

@@ -23,6 +23,7 @@ struct Document {
   std::vector<std::string> overrides;
   std::vector<fs::path> named_files;
   std::vector<Declared> declared;
+  std::set<std::string> looked_for;  // keys whose presence decided something, as the reference shows them
   toml::table root, resolved;
   std::map<const toml::node*, std::string> set;  // what `--set` put there: errors name it, not a line of the file
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
@@ -55,19 +56,22 @@ const Unit* find_unit(std::string_view suffix) {
   return it == all.end() ? nullptr : &*it;
 }
 
-std::string describe(const Range& r, double factor, std::string_view unit) {
+}  // namespace
+
+std::string Range::allowed(std::optional<Unit> in) const {
+  const double factor = in ? in->si : 1;
+  const std::string_view unit = in ? in->suffix : "";
   const double lowest = std::numeric_limits<double>::lowest(), highest = std::numeric_limits<double>::max();
-  const bool below = r.min > lowest, above = r.max < highest;
-  const std::string space = unit.empty() ? "" : " ";
-  const std::string more = fmt::format("{}{}{}", r.also_infinite ? ", or inf" : "", r.why.empty() ? "" : "; ", r.why);
+  const bool below = min > lowest, above = max < highest;
+  const std::string space = unit.empty() ? "" : " ", more = also_infinite ? ", or inf" : "";
   if (below && above)
-    return fmt::format("allowed: {}{:g} to {:g}{}{}{}", r.open_min ? "above " : "", r.min / factor, r.max / factor,
-                       space, unit, more);
-  if (below)
-    return fmt::format("allowed: {} {:g}{}{}{}", r.open_min ? "above" : "at least", r.min / factor, space, unit, more);
-  if (above) return fmt::format("allowed: at most {:g}{}{}{}", r.max / factor, space, unit, more);
-  return (r.max == highest ? "allowed: any finite number" : "allowed: any number but nan") + more;
+    return fmt::format("{}{:g} to {:g}{}{}{}", open_min ? "above " : "", min / factor, max / factor, space, unit, more);
+  if (below) return fmt::format("{} {:g}{}{}{}", open_min ? "above" : "at least", min / factor, space, unit, more);
+  if (above) return fmt::format("at most {:g}{}{}{}", max / factor, space, unit, more);
+  return (max == highest ? "any finite number" : "any number but nan") + more;
 }
+
+namespace {
 
 /// "an angle": the name of what a unit measures, with its article.
 std::string with_article(Dimension dimension) {
@@ -90,7 +94,7 @@ bool Range::contains(double x) const {
 }
 
 std::string Range::sentence(std::optional<Unit> unit) const {
-  return fmt::format("out of range ({})", describe(*this, unit ? unit->si : 1, unit ? unit->suffix : ""));
+  return fmt::format("out of range (allowed: {}{}{})", allowed(unit), why.empty() ? "" : "; ", why);
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
@@ -113,6 +117,10 @@ fs::path data_directory() {
 
 namespace {
 
+std::string dotted(const std::string& path, std::string_view key) {
+  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+}
+
 /// Where a key stands: "case.toml:12", or the `--set` that put it there.
 std::string place(const detail::Document& d, const toml::node& node) {
   if (const auto it = d.set.find(&node); it != d.set.end()) return "--set " + it->second;
@@ -121,14 +129,13 @@ std::string place(const detail::Document& d, const toml::node& node) {
 
 }  // namespace
 
-Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string path)
-    : document_(std::move(document)), node_(node), path_(std::move(path)) {}
+Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string path, std::string shown)
+    : document_(std::move(document)), node_(node), path_(std::move(path)), shown_(std::move(shown)) {}
 
 void Table::fail(std::string_view key, std::string_view what) const {
   const toml::table& t = as_table(node_);
   const toml::node* node = key.empty() ? nullptr : t.get(key);
-  std::string name = path_;
-  if (!key.empty()) name += (name.empty() ? "" : ".") + std::string(key);
+  const std::string name = key.empty() ? path_ : dotted(path_, key);
   throw InputError(
       fmt::format("{}: {}{}{}", place(*document_, node ? *node : t), name, name.empty() ? "" : ": ", what));
 }
@@ -149,6 +156,19 @@ struct Access {
   }
 };
 
+/// The default as the reference says it.
+template <class T>
+std::optional<std::string> said(const std::optional<T>& standard, double unit = 1) {
+  if (!standard) return {};
+  if constexpr (std::is_arithmetic_v<T>) return fmt::format("{:g}", *standard / unit);
+  std::string all;
+  if constexpr (std::is_same_v<T, std::vector<double>>)
+    for (const double x : *standard) all += fmt::format("{}{:g}", all.empty() ? "" : ", ", x / unit);
+  return "[" + all + "]";
+}
+
+std::string list_of(std::size_t size) { return size ? fmt::format("list of {}", size) : "list of numbers"; }
+
 double read_number(const Table& t, std::string_view key, const toml::node& node) {
   const auto x = node.value<double>();
   if (!x || node.is_boolean()) t.fail(key, "expected a number");
@@ -158,14 +178,23 @@ double read_number(const Table& t, std::string_view key, const toml::node& node)
 
 }  // namespace
 
-void Table::declare(std::string_view key, Declared what) {
-  what.key = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+void Table::declare(Key key, Declared what) {
+  if (what.key.empty()) what.key = key.name;
+  what.key = dotted(path_, what.key);
+  what.shown = dotted(shown_, key.shown.empty() ? key.name : key.shown);
+  if (!what.unit.empty()) what.shown += fmt::format("_{}", what.unit);
+  what.meaning = key.meaning;
+  what.optional = !what.standard && document_->looked_for.contains(dotted(shown_, key.name));
   document_->declared.push_back(std::move(what));
 }
 
-bool Table::has(std::string_view key) const { return as_table(node_).contains(key); }
+bool Table::has(std::string_view key) const {
+  document_->looked_for.insert(dotted(shown_, key));
+  return as_table(node_).contains(key);
+}
 
 bool Table::has_quantity(std::string_view stem) const {
+  document_->looked_for.insert(dotted(shown_, stem));
   for (auto&& [key, value] : as_table(node_)) {
     const SplitName split = split_unit(key.str());
     if (split.unit && split.stem == stem) return true;
@@ -239,10 +268,15 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
 
 }  // namespace
 
-double Table::quantity(std::string_view stem, std::string_view unit, Range si, std::optional<double> standard) {
+double Table::quantity(Key key, std::string_view unit, Range si, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
-  const Found f = find_quantity(*this, access, stem, unit, !standard);
-  declare(f.key, {.range = si, .si = f.unit->si});
+  const Found f = find_quantity(*this, access, key.name, unit, !standard);
+  declare(key, {.key = f.key,
+                .type = "number",
+                .standard = said(standard, find_unit(unit)->si),
+                .unit = unit,
+                .range = si,
+                .si = f.unit->si});
   if (!f.node) {
     access.echo(f.key, *standard / f.unit->si);
     return *standard;
@@ -253,14 +287,22 @@ double Table::quantity(std::string_view stem, std::string_view unit, Range si, s
   return x * f.unit->si;
 }
 
-std::vector<double> Table::quantities(std::string_view stem, std::string_view unit, std::size_t size, Range si,
+std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_t size, Range si,
                                       std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
-  const Found f = find_quantity(*this, access, stem, unit, !standard);
+  const Found f = find_quantity(*this, access, key.name, unit, !standard);
   std::vector<double> out;
   toml::array echoed;
   const toml::array* list = f.node ? f.node->as_array() : nullptr;
-  declare(f.key, {.range = si, .si = f.unit->si, .size = size ? size : list && !list->empty() ? list->size() : 1});
+  declare(key, {.key = f.key,
+                .type = list_of(size),
+                .standard = said(standard, find_unit(unit)->si),
+                .unit = unit,
+                .range = si,
+                .si = f.unit->si,
+                .size = size                     ? size
+                        : list && !list->empty() ? list->size()
+                                                 : 1});
   if (!f.node) {
     for (double x : *standard) echoed.push_back(x / f.unit->si);
     access.echo(f.key, std::move(echoed));
@@ -278,20 +320,21 @@ std::vector<double> Table::quantities(std::string_view stem, std::string_view un
   return out;
 }
 
-Vec3 Table::vector(std::string_view stem, std::string_view unit, std::optional<Vec3> standard) {
-  return vector(stem, unit, Range::finite(), standard);
+Vec3 Table::vector(Key key, std::string_view unit, std::optional<Vec3> standard) {
+  return vector(key, unit, Range::finite(), standard);
 }
 
-Vec3 Table::vector(std::string_view stem, std::string_view unit, Range si, std::optional<Vec3> standard) {
+Vec3 Table::vector(Key key, std::string_view unit, Range si, std::optional<Vec3> standard) {
   std::optional<std::vector<double>> list;
   if (standard) list = std::vector<double>(standard->data(), standard->data() + 3);
-  const auto x = quantities(stem, unit, 3, si, list);
+  const auto x = quantities(key, unit, 3, si, list);
   return {x[0], x[1], x[2]};
 }
 
-Mat3 Table::matrix(std::string_view stem, std::string_view unit, std::optional<Mat3> standard) {
+Mat3 Table::matrix(Key key, std::string_view unit, std::optional<Mat3> standard) {
   Access access{*document_, as_table(node_)};
-  const Found f = find_quantity(*this, access, stem, unit, !standard);
+  const Found f = find_quantity(*this, access, key.name, unit, !standard);
+  declare(key, {.key = f.key, .type = "3x3 matrix", .unit = unit, .si = f.unit->si});
   Mat3 out;
   if (!f.node) {
     out = *standard;
@@ -315,67 +358,77 @@ Mat3 Table::matrix(std::string_view stem, std::string_view unit, std::optional<M
   return out;
 }
 
-double Table::number(std::string_view key, Range range, std::optional<double> standard) {
+double Table::number(Key key, Range range, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
-  declare(key, {.range = range});
-  if (!node && !standard) fail("", fmt::format("'{}' is missing ({})", key, describe(range, 1, "")));
-  const double x = node ? read_number(*this, key, *node) : *standard;
-  if (node && !range.contains(x)) fail(key, fmt::format("{:g} is {}", x, range.sentence()));
-  access.echo(key, x);
+  const toml::node* node = access.find(key.name);
+  declare(key, {.type = "number", .standard = said(standard), .range = range});
+  if (!node && !standard) fail("", fmt::format("'{}' is missing (allowed: {})", key.name, range.allowed()));
+  const double x = node ? read_number(*this, key.name, *node) : *standard;
+  if (node && !range.contains(x)) fail(key.name, fmt::format("{:g} is {}", x, range.sentence()));
+  access.echo(key.name, x);
   return x;
 }
 
-std::vector<double> Table::numbers(std::string_view key, std::size_t size, Range range,
+std::vector<double> Table::numbers(Key key, std::size_t size, Range range,
                                    std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
+  const toml::node* node = access.find(key.name);
   const toml::array* list = node ? node->as_array() : nullptr;
-  declare(key, {.range = range, .size = size ? size : list && !list->empty() ? list->size() : 1});
-  if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
+  declare(key, {.type = list_of(size),
+                .standard = said(standard),
+                .range = range,
+                .size = size                     ? size
+                        : list && !list->empty() ? list->size()
+                                                 : 1});
+  if (!node && !standard) fail("", fmt::format("'{}' is missing", key.name));
   std::vector<double> out;
   if (!node) {
     out = *standard;
   } else {
     if (!list || (size && list->size() != size))
-      fail(key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
+      fail(key.name,
+           size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
     for (const toml::node& item : *list) {
-      out.push_back(read_number(*this, key, item));
-      if (!range.contains(out.back())) fail(key, fmt::format("{:g} is {}", out.back(), range.sentence()));
+      out.push_back(read_number(*this, key.name, item));
+      if (!range.contains(out.back())) fail(key.name, fmt::format("{:g} is {}", out.back(), range.sentence()));
     }
   }
   toml::array echoed;
   for (double x : out) echoed.push_back(x);
-  access.echo(key, std::move(echoed));
+  access.echo(key.name, std::move(echoed));
   return out;
 }
 
-long Table::integer(std::string_view key, long min, long max, std::optional<long> standard) {
+long Table::integer(Key key, long min, long max, std::optional<long> standard) {
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
-  declare(key, {.range = {double(min), double(max)}, .whole = true});
-  if (!node && !standard) fail("", fmt::format("'{}' is missing (a whole number from {} to {})", key, min, max));
+  const toml::node* node = access.find(key.name);
+  declare(key,
+          {.type = "whole number", .standard = said(standard), .range = {double(min), double(max)}, .whole = true});
+  if (!node && !standard) fail("", fmt::format("'{}' is missing (a whole number from {} to {})", key.name, min, max));
   long x = standard.value_or(0);
   if (node) {
-    if (!node->is_integer()) fail(key, fmt::format("expected a whole number from {} to {}", min, max));
+    if (!node->is_integer()) fail(key.name, fmt::format("expected a whole number from {} to {}", min, max));
     x = long(node->as_integer()->get());
-    if (x < min || x > max) fail(key, fmt::format("{} is out of range (allowed: {} to {})", x, min, max));
+    if (x < min || x > max) fail(key.name, fmt::format("{} is out of range (allowed: {} to {})", x, min, max));
   }
-  access.echo(key, std::int64_t(x));
+  access.echo(key.name, std::int64_t(x));
   return x;
 }
 
-bool Table::flag(std::string_view key, std::optional<bool> standard) {
+bool Table::flag(Key key, std::optional<bool> standard) {
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
-  if (!node && !standard) fail("", fmt::format("'{}' is missing (true or false)", key));
-  if (node && !node->is_boolean()) fail(key, "expected true or false");
+  std::optional<std::string> otherwise;
+  if (standard) otherwise = *standard ? "true" : "false";
+  declare(key, {.type = "true or false", .standard = otherwise});
+  const toml::node* node = access.find(key.name);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing (true or false)", key.name));
+  if (node && !node->is_boolean()) fail(key.name, "expected true or false");
   const bool x = node ? node->as_boolean()->get() : *standard;
-  access.echo(key, x);
+  access.echo(key.name, x);
   return x;
 }
 
-std::string Table::text(std::string_view key, std::optional<std::string> standard) {
+std::string Table::read_text(std::string_view key, const std::optional<std::string>& standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key);
   if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
@@ -385,44 +438,52 @@ std::string Table::text(std::string_view key, std::optional<std::string> standar
   return x;
 }
 
-std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed,
-                          std::optional<std::string> standard) {
-  const std::string x = text(key, standard);
-  if (std::ranges::find(allowed, x) != allowed.end()) return x;
-  std::string all;
-  for (const std::string& a : allowed) all += (all.empty() ? "" : ", ") + a;
-  const std::string near = nearest(x, allowed);
-  fail(key, near.empty() ? fmt::format("no '{}' (allowed: {})", x, all)
-                         : fmt::format("no '{}'; did you mean '{}'? (allowed: {})", x, near, all));
+std::string Table::text(Key key, std::optional<std::string> standard) {
+  declare(key, {.type = "text", .standard = standard});
+  return read_text(key.name, standard);
 }
 
-std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> standard) {
+std::string Table::choice(Key key, const std::vector<std::string>& allowed, std::optional<std::string> standard) {
+  const std::string all = fmt::format("{}", fmt::join(allowed, ", "));
+  declare(key, {.type = "one of " + all, .standard = standard});
+  const std::string x = read_text(key.name, standard);
+  if (std::ranges::find(allowed, x) != allowed.end()) return x;
+  const std::string near = nearest(x, allowed);
+  fail(key.name, near.empty() ? fmt::format("no '{}' (allowed: {})", x, all)
+                              : fmt::format("no '{}'; did you mean '{}'? (allowed: {})", x, near, all));
+}
+
+std::vector<std::string> Table::texts(Key key, std::optional<std::vector<std::string>> standard) {
+  std::optional<std::string> otherwise;
+  if (standard) otherwise = fmt::format("[{}]", fmt::join(*standard, ", "));
+  declare(key, {.type = "list of texts", .standard = otherwise});
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
-  if (!node && !standard) fail("", fmt::format("'{}' is missing", key));
+  const toml::node* node = access.find(key.name);
+  if (!node && !standard) fail("", fmt::format("'{}' is missing", key.name));
   std::vector<std::string> out;
   if (!node) {
     out = *standard;
   } else {
     const toml::array* list = node->as_array();
-    if (!list) fail(key, "expected a list of texts");
+    if (!list) fail(key.name, "expected a list of texts");
     for (const toml::node& item : *list) {
-      if (!item.is_string()) fail(key, "expected a list of texts");
+      if (!item.is_string()) fail(key.name, "expected a list of texts");
       out.push_back(item.as_string()->get());
     }
   }
   toml::array echoed;
   for (const std::string& x : out) echoed.push_back(x);
-  access.echo(key, std::move(echoed));
+  access.echo(key.name, std::move(echoed));
   return out;
 }
 
-std::vector<std::string> Table::scalars(std::string_view key) {
+std::vector<std::string> Table::scalars(Key key) {
+  declare(key, {.type = "list of values"});
   Access access{*document_, as_table(node_)};
-  const toml::node* node = access.find(key);
-  if (!node) fail("", fmt::format("'{}' is missing", key));
+  const toml::node* node = access.find(key.name);
+  if (!node) fail("", fmt::format("'{}' is missing", key.name));
   const toml::array* list = node->as_array();
-  if (!list || list->empty()) fail(key, "expected a list of values");
+  if (!list || list->empty()) fail(key.name, "expected a list of values");
   std::vector<std::string> out;
   for (const toml::node& item : *list) {
     if (const auto* f = item.as_floating_point()) {
@@ -432,21 +493,25 @@ std::vector<std::string> Table::scalars(std::string_view key) {
       text << toml::node_view<const toml::node>(item);
       out.push_back(text.str());
     } else {
-      fail(key, "expected numbers, texts or flags");
+      fail(key.name, "expected numbers, texts or flags");
     }
   }
-  access.echo(key, toml::array(*list));
+  access.echo(key.name, toml::array(*list));
   return out;
 }
 
-fs::path Table::file(std::string_view key) {
-  const fs::path path = document_->directory / text(key);
-  if (!fs::is_regular_file(path)) fail(key, fmt::format("no file '{}'", path.string()));
+fs::path Table::file(Key key) {
+  declare(key, {.type = "file"});
+  const fs::path path = document_->directory / read_text(key.name, {});
+  if (!fs::is_regular_file(path)) fail(key.name, fmt::format("no file '{}'", path.string()));
   document_->named_files.push_back(path);
   return path;
 }
 
-fs::path Table::data_file(std::string_view key) { return data_path(key, text(key)); }
+fs::path Table::data_file(Key key) {
+  declare(key, {.type = "file"});
+  return data_path(key.name, read_text(key.name, {}));
+}
 
 fs::path Table::data_path(std::string_view key, const std::string& name) {
   const fs::path own = document_->directory / name, home = data_directory();
@@ -482,27 +547,29 @@ fs::path Table::data_path(std::string_view key, const std::string& name) {
   return file;
 }
 
-std::vector<fs::path> Table::data_files(std::string_view key) {
+std::vector<fs::path> Table::data_files(Key key) {
   {
     Access access{*document_, as_table(node_)};
-    const toml::node* node = access.find(key);
+    const toml::node* node = access.find(key.name);
     if (!node || !node->is_array()) return {data_file(key)};
   }
   std::vector<fs::path> out;
-  for (const std::string& name : texts(key)) out.push_back(data_path(key, name));
-  if (out.empty()) fail(key, "expected at least one file");
+  for (const std::string& name : texts(key)) out.push_back(data_path(key.name, name));
+  if (out.empty()) fail(key.name, "expected at least one file");
   return out;
 }
 
-Table Table::table(std::string_view key) {
-  auto found = optional_table(key);
-  if (found) return *found;
+Table Table::table(Key key) {
+  if (auto found = optional_table(key.name)) {
+    if (!key.shown.empty()) found->shown_ = dotted(shown_, key.shown);
+    return *found;
+  }
   Access access{*document_, as_table(node_)};
   for (auto&& [other, node] : access.table)
     if (!access.document.known[&access.table].contains(other.str()) && node.is_table() &&
-        edit_distance(other.str(), key) <= 2)
-      fail(other.str(), fmt::format("unknown table; did you mean '[{}]'?", key));
-  fail("", fmt::format("table '[{}]' is missing", path_.empty() ? std::string(key) : path_ + "." + std::string(key)));
+        edit_distance(other.str(), key.name) <= 2)
+      fail(other.str(), fmt::format("unknown table; did you mean '[{}]'?", key.name));
+  fail("", fmt::format("table '[{}]' is missing", dotted(path_, key.name)));
 }
 
 std::optional<Table> Table::optional_table(std::string_view key) {
@@ -518,7 +585,7 @@ std::optional<Table> Table::optional_table(std::string_view key) {
     document_->echo[child] = home.get(key)->as_table();
     document_->known[child];
   }
-  return Table(document_, child, path_.empty() ? std::string(key) : path_ + "." + std::string(key));
+  return Table(document_, child, dotted(path_, key), dotted(shown_, key));
 }
 
 Table Table::default_table(std::string_view key) {
@@ -548,7 +615,8 @@ std::vector<Table> Table::tables(std::string_view key) {
       document_->echo[child] = home.get(key)->as_array()->get(i)->as_table();
       document_->known[child];
     }
-    out.push_back(Table(document_, child, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, i + 1)));
+    out.push_back(
+        Table(document_, child, fmt::format("{}[{}]", dotted(path_, key), i + 1), dotted(shown_, key) + "[]"));
   }
   return out;
 }
@@ -613,7 +681,7 @@ void apply_override(detail::Document& document, const std::string& text) {
 void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table& t, const std::string& path) {
   const auto& known = d->known.at(&t);
   for (auto&& [key, node] : t) {
-    const std::string name = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+    const std::string name = dotted(path, key.str());
     if (!known.contains(key.str())) {
       const std::string near = nearest(key.str(), {known.begin(), known.end()});
       for (const std::string& k :
@@ -673,7 +741,7 @@ void CaseFile::parse() {
   d.known[&d.root];
 }
 
-Table CaseFile::root() { return Table(document_, &document_->root, ""); }
+Table CaseFile::root() { return Table(document_, &document_->root, "", ""); }
 const fs::path& CaseFile::directory() const { return document_->directory; }
 const fs::path& CaseFile::file() const { return document_->file; }
 const std::vector<std::string>& CaseFile::overrides() const { return document_->overrides; }

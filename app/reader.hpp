@@ -2,6 +2,7 @@
 /// nobody asked for is an error with the nearest spelling. Keys carry their unit as a suffix.
 #pragma once
 
+#include <concepts>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -33,7 +34,9 @@ struct Range {
   constexpr Range because(std::string_view reason) const { return {min, max, open_min, reason, also_infinite}; }
   constexpr Range or_infinite() const { return {min, max, open_min, why, true}; }
   bool contains(double x) const;
-  /// "out of range (allowed: 0.01 to 5 kg; why)"; without a unit for a plain number.
+  /// "0.01 to 5 kg"; without a unit for a plain number.
+  std::string allowed(std::optional<Unit> unit = {}) const;
+  /// "out of range (allowed: 0.01 to 5 kg; why)".
   std::string sentence(std::optional<Unit> unit = {}) const;
   static Range positive() { return {0, std::numeric_limits<double>::max(), true}; }
   static Range non_negative() { return {0, std::numeric_limits<double>::max()}; }
@@ -41,13 +44,31 @@ struct Range {
   static Range fraction() { return {0, 1}; }
 };
 
-/// A number that a reader asked for: what the reference lists and the tests of the ranges try.
+/// The name of a key, without its unit where it carries one, and its meaning: one line for the reference.
+struct Key {
+  std::string_view name;
+  std::string_view meaning = {};
+  std::string_view shown = {};  ///< what the reference says instead of a name that is data
+
+  template <class Text>
+  requires std::convertible_to<const Text&, std::string_view> Key(const Text& text) : name(text) {}
+  Key(std::string_view text, std::string_view means, std::string_view shows = {})
+      : name(text), meaning(means), shown(shows) {}
+};
+
+/// A key that a reader asked for: what the reference lists and the tests of the ranges try.
 struct Declared {
-  std::string key;       ///< dotted, as `--set` takes it
-  Range range;           ///< SI
-  double si = 1;         ///< one of the key's unit in SI
-  std::size_t size = 0;  ///< of a list; 0: a single number
-  bool whole = false;    ///< an integer
+  std::string key = {};    ///< dotted, with the unit that the case uses, as `--set` takes it
+  std::string shown = {};  ///< dotted, with the unit in which the default is echoed
+  std::string meaning = {};
+  std::string type = {};                     ///< "number", "list of 3", "text", "one of a, b"
+  std::optional<std::string> standard = {};  ///< the default as TOML text; without one the key is required
+  std::string_view unit = {};                ///< suffix of `shown`
+  Range range = {};                          ///< of a number, SI
+  double si = 1;                             ///< one of the case's unit in SI
+  bool optional = false;                     ///< without a default, but asked for only where it is there
+  std::size_t size = 0;                      ///< of a list; 0: a single number
+  bool whole = false;                        ///< an integer
 };
 
 namespace detail {
@@ -63,42 +84,40 @@ class Table {
   /// `stem` with any unit of the dimension (`club_speed_mps`, `club_speed_mph`).
   bool has_quantity(std::string_view stem) const;
 
-  /// A quantity `stem_unit`; returns SI. Without a default the key is required. `unit` is the suffix
+  /// A quantity `key_unit`; returns SI. Without a default the key is required. `unit` is the suffix
   /// in which the default is echoed and which is offered where the key is missing.
-  double quantity(std::string_view stem, std::string_view unit, Range si = Range::finite(),
-                  std::optional<double> default_si = {});
+  double quantity(Key key, std::string_view unit, Range si = Range::finite(), std::optional<double> default_si = {});
   /// As above for a list of `size` values (any size where 0).
-  std::vector<double> quantities(std::string_view stem, std::string_view unit, std::size_t size,
-                                 Range si = Range::finite(), std::optional<std::vector<double>> default_si = {});
-  Vec3 vector(std::string_view stem, std::string_view unit, std::optional<Vec3> default_si = {});
-  Vec3 vector(std::string_view stem, std::string_view unit, Range si, std::optional<Vec3> default_si = {});
+  std::vector<double> quantities(Key key, std::string_view unit, std::size_t size, Range si = Range::finite(),
+                                 std::optional<std::vector<double>> default_si = {});
+  Vec3 vector(Key key, std::string_view unit, std::optional<Vec3> default_si = {});
+  Vec3 vector(Key key, std::string_view unit, Range si, std::optional<Vec3> default_si = {});
   /// A 3x3 matrix as a list of rows.
-  Mat3 matrix(std::string_view stem, std::string_view unit, std::optional<Mat3> default_si = {});
+  Mat3 matrix(Key key, std::string_view unit, std::optional<Mat3> default_si = {});
 
-  double number(std::string_view key, Range range = Range::finite(), std::optional<double> standard = {});
-  std::vector<double> numbers(std::string_view key, std::size_t size, Range range = Range::finite(),
+  double number(Key key, Range range = Range::finite(), std::optional<double> standard = {});
+  std::vector<double> numbers(Key key, std::size_t size, Range range = Range::finite(),
                               std::optional<std::vector<double>> standard = {});
-  long integer(std::string_view key, long min, long max, std::optional<long> standard = {});
-  bool flag(std::string_view key, std::optional<bool> standard = {});
-  std::string text(std::string_view key, std::optional<std::string> standard = {});
+  long integer(Key key, long min, long max, std::optional<long> standard = {});
+  bool flag(Key key, std::optional<bool> standard = {});
+  std::string text(Key key, std::optional<std::string> standard = {});
   /// One of the words, else an error that names the nearest.
-  std::string choice(std::string_view key, const std::vector<std::string>& allowed,
-                     std::optional<std::string> standard = {});
-  std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> standard = {});
+  std::string choice(Key key, const std::vector<std::string>& allowed, std::optional<std::string> standard = {});
+  std::vector<std::string> texts(Key key, std::optional<std::vector<std::string>> standard = {});
   /// A list of numbers, texts or flags as TOML text, to be handed on to another case.
-  std::vector<std::string> scalars(std::string_view key);
+  std::vector<std::string> scalars(Key key);
   /// A file named relative to the case directory; must exist.
-  std::filesystem::path file(std::string_view key);
+  std::filesystem::path file(Key key);
   /// A measured file: in the case directory, else in the folder that HOSEL_DATA names (default ../shared/data beside
   /// the project or the working directory). Only where a name with a folder is asked for and that folder is not
   /// there, because there are no measured data on this machine, is the missing file returned as it would be
   /// expected, for the caller to say SKIPPED; any other missing file is an error.
-  std::filesystem::path data_file(std::string_view key);
+  std::filesystem::path data_file(Key key);
   /// One such file, or a list of them.
-  std::vector<std::filesystem::path> data_files(std::string_view key);
+  std::vector<std::filesystem::path> data_files(Key key);
 
   /// A sub-table; required unless `optional_table` is used instead.
-  Table table(std::string_view key);
+  Table table(Key key);
   std::optional<Table> optional_table(std::string_view key);
   /// A sub-table that is as good as empty where it is absent: its defaults are echoed all the same.
   Table default_table(std::string_view key);
@@ -112,12 +131,15 @@ class Table {
 
  private:
   friend class CaseFile;
-  Table(std::shared_ptr<detail::Document> document, void* node, std::string path);
-  void declare(std::string_view key, Declared what);
+  Table(std::shared_ptr<detail::Document> document, void* node, std::string path, std::string shown);
+  /// Notes what has been asked for; `unit` is the suffix that the key carries in the reference.
+  void declare(Key key, Declared what);
+  std::string read_text(std::string_view key, const std::optional<std::string>& standard);
   std::filesystem::path data_path(std::string_view key, const std::string& name);
   std::shared_ptr<detail::Document> document_;
-  void* node_;        // toml::table*, kept out of this header for compile time
-  std::string path_;  // dotted, for messages
+  void* node_;         // toml::table*, kept out of this header for compile time
+  std::string path_;   // dotted, for messages
+  std::string shown_;  // dotted, for the reference: lists as `layers[]`
 };
 
 /// One `case.toml`, or a case directory that contains it.
@@ -135,7 +157,7 @@ class CaseFile {
   const std::vector<std::string>& overrides() const;
   /// The files that the case names and that have been asked for, in the order of asking.
   const std::vector<std::filesystem::path>& named_files() const;
-  /// Every number that was read or left to its default, in the order of asking.
+  /// Every key that was read or left to its default, in the order of asking.
   const std::vector<Declared>& declared() const;
   /// Every key that was not read is an error. Call it when reading is complete.
   void finish();

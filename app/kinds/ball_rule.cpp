@@ -47,22 +47,24 @@ class BallRuleJob final : public Job {
     Table root = file.root();
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
-    const std::string model = root.choice("model", names);
+    const std::string model = root.choice({"model", "that answers (`hosel list`)"}, names);
     blow_ = read_blow(root, {model});
     model_ = models::find(model)->make(read_options(root, {model}));
     setup_ = read_flight(root.table("flight"));
     if (!setup_.turf) root.fail("flight", "the rule limits the total distance: a [flight.turf] is needed");
     Table rule = root.table("rule");
-    limit_ = rule.quantity("limit", "yd", {50, 500});
+    limit_ = rule.quantity({"limit", "longest allowed total distance"}, "yd", {50, 500});
     old_ = read_test(rule.table("old"));
     new_ = read_test(rule.table("new"));
     for (Table t : root.tables("player")) {
-      players_.push_back({t.text("name"),
-                          t.quantity("club_speed", "mph", {10, 100}),
-                          t.quantity("dynamic_loft", "deg", {0, kPi / 2}),
+      players_.push_back({t.text({"name", "of the player"}),
+                          t.quantity({"club_speed", "of the player"}, "mph", {10, 100}),
+                          t.quantity({"dynamic_loft", "of the player's club"}, "deg", {0, kPi / 2}),
                           {}});
       if (t.has_quantity("published_loss"))
-        players_.back().published = t.quantities("published_loss", "yd", 2, Range::non_negative());
+        players_.back().published =
+            t.quantities({"published_loss", "what was announced that such players lose, low and high"}, "yd", 2,
+                         Range::non_negative());
     }
     if (players_.empty()) root.fail("player", "name at least one [[player]]");
   }
@@ -141,8 +143,9 @@ class BallRuleJob final : public Job {
   static double yard() { return post::size(post::DistanceUnit::yards); }
 
   static Test read_test(Table t) {
-    return {t.quantity("club_speed", "mph", {10, 100}), t.quantity("launch_angle", "deg", {0, kPi / 2}),
-            t.quantity("spin_rate", "rpm", Range::positive())};
+    return {t.quantity({"club_speed", "of the test"}, "mph", {10, 100}),
+            t.quantity({"launch_angle", "of the test"}, "deg", {0, kPi / 2}),
+            t.quantity({"spin_rate", "of the test"}, "rpm", Range::positive())};
   }
 
   Launch drive(const Player& p, const Change& c) const {

@@ -52,11 +52,12 @@ class BounceJob final : public Job {
  public:
   explicit BounceJob(CaseFile& file) {
     Table root = file.root();
-    title_ = root.text("title", "");
+    title_ = root.text({"title", "of tables and figures"}, "");
     const std::vector<std::string> names = read_models(root);
     ball_ = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     const models::Options options = read_options(root, names);
-    const std::vector<std::string> balls = root.texts("balls", std::vector<std::string>{});
+    const std::vector<std::string> balls = root.texts(
+        {"balls", "balls of the library, each thrown by every finite-element model"}, std::vector<std::string>{});
     for (const std::string& ball : balls)
       if (std::ranges::find(models::ball_library(), ball, &models::NamedFeBall::name) == models::ball_library().end())
         root.fail("balls", fmt::format("no ball '{}'; `hosel list` shows them", ball));
@@ -73,21 +74,22 @@ class BounceJob final : public Job {
       }
     }
     Table throws = root.table("throws");
-    speeds_ = throws.quantities("speeds", "mps", 0, {0, 200, true});
-    angles_ = throws.quantities("angles", "deg", 0, {1e-3, 1.5}, std::vector<double>{});
+    speeds_ = throws.quantities({"speeds", "of the throws"}, "mps", 0, {0, 200, true});
+    angles_ = throws.quantities({"angles", "between path and the plate's normal"}, "deg", 0, {1e-3, 1.5},
+                                std::vector<double>{});
     for (Table t : root.tables("measured")) {
       std::vector<std::string> known;
       for (const Quantity& q : kQuantities) known.emplace_back(q.name);
-      const std::string wanted = t.choice("quantity", known);
+      const std::string wanted = t.choice({"quantity", "what was measured"}, known);
       Measured m{.quantity = &*std::ranges::find(kQuantities, wanted, &Quantity::name)};
-      m.label = t.text("label");
-      m.angles = t.quantities("angles", "deg", 0, {1e-3, 1.5});
-      const auto numbers = [&](const std::string& key, std::optional<std::vector<double>> standard) {
+      m.label = t.text({"label", "who measured"});
+      m.angles = t.quantities({"angles", "at which it was measured"}, "deg", 0, {1e-3, 1.5});
+      const auto numbers = [&](Key key, std::optional<std::vector<double>> standard) {
         return *m.quantity->unit ? t.quantities(key, m.quantity->unit, 0, Range::finite(), standard)
                                  : t.numbers(key, 0, Range::finite(), standard);
       };
-      m.values = numbers("values", {});
-      m.half_ranges = numbers("half_ranges", std::vector<double>{});
+      m.values = numbers({"values", "measured values, one for each angle"}, {});
+      m.half_ranges = numbers({"half_ranges", "of the measured values, one for each angle"}, std::vector<double>{});
       if (m.values.size() != m.angles.size()) t.fail("values", "one value for each angle");
       if (!m.half_ranges.empty() && m.half_ranges.size() != m.angles.size())
         t.fail("half_ranges", "one half range for each angle, or none");

@@ -27,23 +27,34 @@ class CalibrateBallJob final : public Job {
         ball.fail("layers", "calibration fits neo-hooke, mooney-rivlin and yeoh layers");
     options_.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) {
-      options_.mesh.sector = int(mesh->integer("sector", 1, 64, options_.mesh.sector));
-      options_.mesh.rings = int(mesh->integer("rings", 1, 64, options_.mesh.rings));
-      options_.mesh.pole = mesh->number("pole", {0.01, 1}, options_.mesh.pole);
-      options_.mesh.skin = mesh->number("skin", {0.01, 1}, options_.mesh.skin);
+      options_.mesh.sector = int(mesh->integer({"sector", "elements per 45 degrees of the surface before grading"}, 1,
+                                               64, options_.mesh.sector));
+      options_.mesh.rings =
+          int(mesh->integer({"rings", "rings of elements outside the core block"}, 1, 64, options_.mesh.rings));
+      options_.mesh.pole = mesh->number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
+                                        {0.01, 1}, options_.mesh.pole);
+      options_.mesh.skin =
+          mesh->number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, options_.mesh.skin);
     }
     if (auto time = root.optional_table("time"))
-      options_.steps_per_contact = int(time->integer("steps_per_contact", 10, 100000, options_.steps_per_contact));
+      options_.steps_per_contact =
+          int(time->integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000,
+                            options_.steps_per_contact));
     Table target = root.table("target");
-    target_.speeds = target.quantities("speeds", "mps", 0, {1, 100}, target_.speeds);
-    target_.restitution = target.number("restitution", {0, 1}, target_.restitution);
-    target_.restitution_slope = target.quantity("restitution_slope", "s_per_m", {-0.1, 0.1}, target_.restitution_slope);
-    target_.restitution_sigma = target.number("restitution_sigma", {1e-6, 1}, target_.restitution_sigma);
-    target_.contact_speed = target.quantity("contact_speed", "mps", {1, 100}, target_.contact_speed);
-    target_.contact_time = target.quantity("contact_time", "ms", Range::positive(), target_.contact_time);
-    target_.contact_time_sigma =
-        target.quantity("contact_time_sigma", "ms", Range::positive(), target_.contact_time_sigma);
-    if (auto fit = root.optional_table("fit")) hold_times_ = fit->flag("hold_branch_times", hold_times_);
+    target_.speeds =
+        target.quantities({"speeds", "of the normal impacts on a wall"}, "mps", 0, {1, 100}, target_.speeds);
+    target_.restitution = target.number({"restitution", "of the target law at 0 m/s"}, {0, 1}, target_.restitution);
+    target_.restitution_slope =
+        target.quantity({"restitution_slope", "of the target law"}, "s_per_m", {-0.1, 0.1}, target_.restitution_slope);
+    target_.restitution_sigma = target.number({"restitution_sigma", "standard error of the restitution wanted"},
+                                              {1e-6, 1}, target_.restitution_sigma);
+    target_.contact_speed = target.quantity({"contact_speed", "at which the contact time is wanted"}, "mps", {1, 100},
+                                            target_.contact_speed);
+    target_.contact_time = target.quantity({"contact_time", "wanted"}, "ms", Range::positive(), target_.contact_time);
+    target_.contact_time_sigma = target.quantity({"contact_time_sigma", "standard error of the contact time wanted"},
+                                                 "ms", Range::positive(), target_.contact_time_sigma);
+    if (auto fit = root.optional_table("fit"))
+      hold_times_ = fit->flag({"hold_branch_times", "fit the moduli alone"}, hold_times_);
     if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
   }
 

@@ -17,19 +17,23 @@ class CalibrateFaceJob final : public Job {
     Table root = file.root();
     ball_ = read_ball(root.table("ball"));
     head_ = read_head(root.table("head"));
-    radius_ = root.table("sphere").quantity("radius", "mm", {1e-3, 0.1}, 0.011);
+    radius_ = root.table("sphere").quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011);
     for (Table tap : root.tables("tap"))
-      target_.taps.push_back({.toe = tap.quantity("toe", "mm", {-0.1, 0.1}, 0.0),
-                              .high = tap.quantity("high", "mm", {-0.1, 0.1}, 0.0),
-                              .time = tap.quantity("time", "us", {1e-5, 1e-3})});
+      target_.taps.push_back(
+          {.toe = tap.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1}, 0.0),
+           .high = tap.quantity({"high", "of the tap, from the face's centre up"}, "mm", {-0.1, 0.1}, 0.0),
+           .time = tap.quantity({"time", "measured characteristic time there"}, "us", {1e-5, 1e-3})});
     if (target_.taps.empty()) root.fail("tap", "at least one [[tap]] with its characteristic time");
     Table target = root.table("target");
-    target_.tap_sigma = target.quantity("tap_sigma", "us", Range::positive(), target_.tap_sigma);
-    target_.restitution = target.number("restitution", {0.1, 1});
-    target_.restitution_sigma = target.number("restitution_sigma", {1e-5, 1}, target_.restitution_sigma);
-    target_.speed = target.quantity("speed", "mps", {1, 100}, target_.speed);
-    target_.mass = target.quantity("effective_mass", "g", {1e-3, 0.04});
-    target_.mass_sigma = target.quantity("effective_mass_sigma", "g", Range::positive());
+    target_.tap_sigma = target.quantity({"tap_sigma", "standard error of the characteristic times"}, "us",
+                                        Range::positive(), target_.tap_sigma);
+    target_.restitution = target.number({"restitution", "measured restitution of the ball at speed"}, {0.1, 1});
+    target_.restitution_sigma =
+        target.number({"restitution_sigma", "standard error of the restitution"}, {1e-5, 1}, target_.restitution_sigma);
+    target_.speed = target.quantity({"speed", "at which the restitution was measured"}, "mps", {1, 100}, target_.speed);
+    target_.mass = target.quantity({"effective_mass", "of the face, as estimated"}, "g", {1e-3, 0.04});
+    target_.mass_sigma =
+        target.quantity({"effective_mass_sigma", "standard error of the effective mass"}, "g", Range::positive());
   }
 
   void run(Output& out) override {

@@ -25,18 +25,22 @@ class CharacteristicTimeJob final : public Job {
     face_ = read_face(root.table("face"));
     if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
     Table sphere = root.table("sphere");
-    sphere_ = models::steel_sphere(sphere.quantity("radius", "mm", {1e-3, 0.1}, 0.011));
-    speeds_ = sphere.quantities("speeds", "mps", 0, {0.01, 20}, models::pendulum_speeds());
+    sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));
+    speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
     if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
     Table place = root.table("impact");
-    toe_ = place.quantity("toe", "mm", {-0.1, 0.1}, 0.0);
-    high_ = place.quantity("high", "mm", {-0.1, 0.1}, 0.0);
-    restitution_speed_ = place.quantity("restitution_speed", "mps", {1, 100}, 48.77);
+    toe_ = place.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1}, 0.0);
+    high_ = place.quantity({"high", "of the tap, from the face's centre up"}, "mm", {-0.1, 0.1}, 0.0);
+    restitution_speed_ =
+        place.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps", {1, 100}, 48.77);
     Table line = root.table("line");
-    faces_ = int(line.integer("faces", 2, 200, 20));
-    softest_ = line.quantity("softest", "N_per_m", Range::positive(), 4.6e6);
-    stiffest_ = line.quantity("stiffest", "N_per_m", Range::positive(), 8.8e6);
-    masses_ = line.quantities("effective_masses", "g", 0, {1e-4, 0.1}, std::vector{0.005, 0.010, 0.015, 0.020});
+    faces_ = int(
+        line.integer({"faces", "how many faces of rising stiffness are compared with the rules' line"}, 2, 200, 20));
+    softest_ = line.quantity({"softest", "stiffness of the first of these faces"}, "N_per_m", Range::positive(), 4.6e6);
+    stiffest_ =
+        line.quantity({"stiffest", "stiffness of the last of these faces"}, "N_per_m", Range::positive(), 8.8e6);
+    masses_ = line.quantities({"effective_masses", "of these faces"}, "g", 0, {1e-4, 0.1},
+                              std::vector{0.005, 0.010, 0.015, 0.020});
   }
 
   void run(Output& out) override {

@@ -63,8 +63,8 @@ class ClubsJob final : public Job {
     Table root = file.root();
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
-    model_ = root.choice("model", names, "rigid-planar");
-    beside_ = root.texts("beside", std::vector<std::string>{});
+    model_ = root.choice({"model", "that answers (`hosel list`)"}, names, "rigid-planar");
+    beside_ = root.texts({"beside", "further models asked about each club"}, std::vector<std::string>{});
     for (const std::string& name : beside_)
       if (!models::find(name)) root.fail("beside", fmt::format("no model '{}'; `hosel list` shows them", name));
     options_ = read_options(root, beside_);
@@ -74,15 +74,18 @@ class ClubsJob final : public Job {
       blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
     if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
-    calibrated_on_ = root.texts("calibrated_on", std::vector<std::string>{});
+    calibrated_on_ = root.texts({"calibrated_on", "clubs on which the ball was calibrated, marked as such"},
+                                std::vector<std::string>{});
     Table data = root.table("data");
-    shots_file_ = data.data_file("shots");
-    clubs_file_ = data.data_file("clubs");
+    shots_file_ = data.data_file({"shots", "CSV of the shots"});
+    clubs_file_ = data.data_file({"clubs", "CSV of each club's published means"});
     Table theory = root.table("theory");
-    theory_mass_ = theory.quantity("head_mass", "kg", limits::head_mass);
-    theory_speed_ = theory.quantity("club_speed", "mps", limits::club_speed);
-    other_ball_.mass = theory.quantity("other_ball_mass", "kg", limits::ball_mass, blow_.ball.mass);
-    other_ball_.radius = theory.quantity("other_ball_radius", "mm", limits::ball_radius, blow_.ball.radius);
+    theory_mass_ = theory.quantity({"head_mass", "of the theoretical curves"}, "kg", limits::head_mass);
+    theory_speed_ = theory.quantity({"club_speed", "of the theoretical curves"}, "mps", limits::club_speed);
+    other_ball_.mass = theory.quantity({"other_ball_mass", "of a second ball in the theoretical curves"}, "kg",
+                                       limits::ball_mass, blow_.ball.mass);
+    other_ball_.radius = theory.quantity({"other_ball_radius", "of a second ball in the theoretical curves"}, "mm",
+                                         limits::ball_radius, blow_.ball.radius);
   }
 
   void run(Output& out) override {

@@ -59,10 +59,11 @@ class CrossCheckJob final : public Job {
  public:
   explicit CrossCheckJob(CaseFile& file) {
     Table root = file.root();
-    title_ = root.text("title", "");
+    title_ = root.text({"title", "of tables and figures"}, "");
     models_ = read_models(root);
     if (models_.size() < 2) root.fail("models", "name at least two models");
-    const std::string reference = root.choice("reference", models_, models_.front());
+    const std::string reference =
+        root.choice({"reference", "the model that the others are compared with"}, models_, models_.front());
     reference_ = static_cast<std::size_t>(std::ranges::find(models_, reference) - models_.begin());
     blow_ = read_blow(root, models_);
     options_ = read_options(root, models_);

@@ -28,7 +28,7 @@ class CurvesJob final : public Job {
     blow_ = read_blow(root, models_);
     options_ = read_options(root, models_);
     family_ = read_axis(root.table("family"));
-    history_ = root.flag("history", false);
+    history_ = root.flag({"history", "force histories instead of launches over x"}, false);
     if (history_) {
       for (const std::string& m : models_)
         if (m != "volumetric" && m != "hertz-maw")
@@ -37,7 +37,7 @@ class CurvesJob final : public Job {
     }
     x_ = read_axis(root.table("x"));
     const std::optional<FlightSetup> flight = read_optional_flight(root);
-    for (const std::string& name : root.texts("channels")) {
+    for (const std::string& name : root.texts({"channels", "launch quantities drawn over x"})) {
       const auto c = find_shot_channel(name, flight, blow_.ball);
       if (!c)
         root.fail("channels", fmt::format("no launch quantity '{}' (known: {}; with a [flight]: carry, side, apex, "

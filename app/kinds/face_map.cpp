@@ -188,9 +188,9 @@ class FaceMapJob final : public PointJob {
     Settings s;
     for (const std::string& m : read_models(root)) s.variants.push_back({m, m, {}});
     for (Table v : root.tables("variants")) {
-      const std::string name = v.text("name"), model = v.text("model");
+      const std::string name = v.text({"name", "of the map"}), model = v.text({"model", "that answers for this map"});
       if (!models::find(model)) v.fail("model", fmt::format("no model '{}'; `hosel list` shows them", model));
-      s.variants.push_back({name, model, v.texts("set")});
+      s.variants.push_back({name, model, v.texts({"set", "keys that this map changes, table.key=value"})});
     }
     std::vector<std::string> names;
     for (const Variant& v : s.variants) {
@@ -198,20 +198,26 @@ class FaceMapJob final : public PointJob {
         root.fail("models", fmt::format("'{}' is there twice", v.title));
       names.push_back(v.title);
     }
-    const std::string reference = root.choice("reference", names, names.front());
+    const std::string reference =
+        root.choice({"reference", "the map that the others are compared with"}, names, names.front());
     s.reference = std::size_t(std::ranges::find(names, reference) - names.begin());
     if (auto grid = root.optional_table("grid")) {
-      s.grid.width = grid->quantity("width", "mm", {1e-3, 0.2}, s.grid.width);
-      s.grid.height = grid->quantity("height", "mm", {1e-3, 0.2}, s.grid.height);
-      s.grid.columns = int(grid->integer("columns", 3, 1001, s.grid.columns));
-      s.grid.rows = int(grid->integer("rows", 3, 1001, s.grid.rows));
+      s.grid.width = grid->quantity({"width", "of the grid, heel to toe"}, "mm", {1e-3, 0.2}, s.grid.width);
+      s.grid.height = grid->quantity({"height", "of the grid, up the face"}, "mm", {1e-3, 0.2}, s.grid.height);
+      s.grid.columns = int(grid->integer({"columns", "points of the grid, heel to toe"}, 3, 1001, s.grid.columns));
+      s.grid.rows = int(grid->integer({"rows", "points of the grid, up the face"}, 3, 1001, s.grid.rows));
     }
-    if (auto e = root.optional_table("equivalent_mass")) s.extra_mass = e->quantity("extra", "g", {1e-5, 0.1}, 5e-3);
-    if (auto r = root.optional_table("refinement")) s.refinement = r->texts("set");
+    if (auto e = root.optional_table("equivalent_mass"))
+      s.extra_mass =
+          e->quantity({"extra", "head mass added to the reference: what the shaft's effect is compared with"}, "g",
+                      {1e-5, 0.1}, 5e-3);
+    if (auto r = root.optional_table("refinement"))
+      s.refinement = r->texts({"set", "keys that refine the numerics, table.key=value"});
     for (Table t : root.tables("statements")) {
-      post::Claim claim{t.text("text"), {}};
+      post::Claim claim{t.text({"text", "a published statement that the maps may bear out or not"}), {}};
       const std::vector<std::string> figures = figure_names(s.extra_mass > 0);
-      for (const std::string& where : t.texts("where")) {
+      for (const std::string& where :
+           t.texts({"where", "comparisons of the maps' figures that bear the statement out"})) {
         try {
           claim.where.emplace_back(where, figures);
         } catch (const std::invalid_argument& e) { t.fail("where", e.what()); }
@@ -255,8 +261,8 @@ class FaceMapJob final : public PointJob {
     overrides.insert(overrides.end(), variant.set.begin(), variant.set.end());
     CaseFile again(file, overrides);
     Table root = again.root();
-    root.text("kind", "face-map");
-    root.text("title", "");
+    root.text({"kind", "what the case does (`hosel list`)"}, "face-map");
+    root.text({"title", "of tables, pages and figures"}, "");
     const Settings own = read(root);
     Layer layer{variant.title, models::find(variant.model)->make(own.options), own.blow, own.flight, refined};
     again.finish();

@@ -15,22 +15,24 @@ namespace {
 
 /// Ball speed and direction; the spin by its components or by rate and tilt.
 Launch read_launch(Table table) {
-  const double speed = table.quantity("ball_speed", "mps", {0, 120, true});
-  const double up = table.quantity("launch_angle", "deg", {-kPi / 2, kPi / 2});
-  const double right = table.quantity("azimuth", "deg", {-kPi / 2, kPi / 2}, 0);
+  const double speed = table.quantity({"ball_speed", "of the launch"}, "mps", {0, 120, true});
+  const double up = table.quantity({"launch_angle", "of the launch, up"}, "deg", {-kPi / 2, kPi / 2});
+  const double right = table.quantity({"azimuth", "of the launch, right of the target"}, "deg", {-kPi / 2, kPi / 2}, 0);
   Launch l;
   l.velocity = speed * Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
   double back = 0, side = 0;
   if (table.has_quantity("spin_rate")) {
-    const double rate = table.quantity("spin_rate", "rpm", Range::non_negative());
-    const double axis = table.quantity("spin_axis", "deg", {-kPi, kPi}, 0);
+    const double rate =
+        table.quantity({"spin_rate", "of the launch; instead of backspin and sidespin"}, "rpm", Range::non_negative());
+    const double axis = table.quantity({"spin_axis", "tilt of the spin, positive for a fade"}, "deg", {-kPi, kPi}, 0);
     back = rate * std::cos(axis);
     side = rate * std::sin(axis);
   } else {
-    back = table.quantity("backspin", "rpm");
-    side = table.quantity("sidespin", "rpm", Range::finite(), 0);
+    back = table.quantity({"backspin", "of the launch"}, "rpm");
+    side = table.quantity({"sidespin", "of the launch, positive for a fade"}, "rpm", Range::finite(), 0);
   }
-  l.spin = Vec3(table.quantity("riflespin", "rpm", Range::finite(), 0), -back, -side);
+  l.spin = Vec3(table.quantity({"riflespin", "of the launch, about its direction"}, "rpm", Range::finite(), 0), -back,
+                -side);
   return l;
 }
 
@@ -41,13 +43,15 @@ class FlightJob final : public Job {
     setup_ = root.has("flight") ? read_flight(root.table("flight")) : FlightSetup{};
     if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
     for (Table t : root.tables("launch")) {
-      Shot s{t.text("name"), read_launch(t), {}};
+      Shot s{t.text({"name", "of the shot"}), read_launch(t), {}};
       if (std::ranges::find(shots_, s.name, &Shot::name) != shots_.end())
         t.fail("name", fmt::format("'{}' is there twice", s.name));
       if (auto measured = t.optional_table("measured"))
         for (const post::FlightChannel& c : post::flight_channels(setup_.unit))
           if (measured->has_quantity(c.name))
-            s.measured.emplace_back(&c, measured->quantity(c.name, std::string(c.unit)));
+            s.measured.emplace_back(&c,
+                                    measured->quantity({c.name, "what was measured of this shot", "<flight quantity>"},
+                                                       std::string(c.unit)));
       shots_.push_back(std::move(s));
     }
     if (shots_.empty()) root.fail("launch", "name at least one [[launch]]");

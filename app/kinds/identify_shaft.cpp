@@ -9,6 +9,7 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_sheet.hpp"
 #include "hosel/app/read_swing.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/models/marker_swing.hpp"
@@ -54,19 +55,20 @@ class IdentifyJob final : public Job {
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
     options_ = read_swing_options(root);
     if (auto markers = root.optional_table("markers")) {
-      file_ = markers->data_file("file");
-      smoothing_ = markers->quantity("smoothing", "ms", Range::positive());
-      still_ = markers->quantity("still", "s", Range::positive(), 0.1);
-      train_ = markers->quantities("train", "s", 2);
-      test_ = markers->quantities("test", "s", 2);
+      file_ = markers->data_file({"file", "CSV of the markers on grip and head"});
+      smoothing_ = markers->quantity({"smoothing", "time constant of the smoothing spline"}, "ms", Range::positive());
+      still_ = markers->quantity({"still", "how long the club hangs still at the start of the record"}, "s",
+                                 Range::positive(), 0.1);
+      train_ = markers->quantities({"train", "first and last instant that is fitted"}, "s", 2);
+      test_ = markers->quantities({"test", "first and last instant that is predicted"}, "s", 2);
       marker_kind_ = true;
       return;
     }
     for (Table t : root.tables("swing")) {
       Recorded r;
       r.motion = read_motion(t.table("motion"));
-      r.deflection = t.data_file("deflection");
-      r.train = t.flag("train", true);
+      r.deflection = t.data_file({"deflection", "CSV of the measured lead and droop of the hosel"});
+      r.train = t.flag({"train", "fit this swing; otherwise it is predicted"}, true);
       swings_.push_back(std::move(r));
     }
     if (swings_.empty()) root.fail("swing", "give [markers], or at least one [[swing]] with its motion and deflection");

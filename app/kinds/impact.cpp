@@ -40,7 +40,9 @@ class ImpactJob final : public Job {
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
     if (std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; })) {
       const auto coarser = options.fe.coarser();
-      if (root.flag("error_estimate", coarser.has_value() && root.has("accuracy"))) {
+      if (root.flag(
+              {"error_estimate", "run a coarser companion too: every number of a launch gets its numerical error"},
+              coarser.has_value() && root.has("accuracy"))) {
         if (!coarser)
           root.fail("error_estimate",
                     "the numerics are as coarse as they can be: accuracy = \"default\" has a coarser companion");
@@ -50,20 +52,24 @@ class ImpactJob final : public Job {
           if (e.fe()) e.companion = models::find(e.name)->make(companion);
       }
     }
-    matched_ = root.flag("matched_launch", false);
+    matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
     if (auto output = root.optional_table("output")) {
-      record_.vtk = output->flag("vtk", record_.vtk);
-      record_.steps_per_frame = int(output->integer("steps_per_frame", 1, 100000, record_.steps_per_frame));
-      record_.angles = int(output->integer("angles", 8, 256, record_.angles));
-      record_.face_width = output->quantity("face_width", "mm", {0.005, 0.5}, record_.face_width);
-      record_.face_height = output->quantity("face_height", "mm", {0.005, 0.5}, record_.face_height);
+      record_.vtk = output->flag({"vtk", "write series for ParaView"}, record_.vtk);
+      record_.steps_per_frame = int(output->integer({"steps_per_frame", "time steps from one frame to the next"}, 1,
+                                                    100000, record_.steps_per_frame));
+      record_.angles =
+          int(output->integer({"angles", "points around the ball's surface in the files"}, 8, 256, record_.angles));
+      record_.face_width =
+          output->quantity({"face_width", "of the drawn face"}, "mm", {0.005, 0.5}, record_.face_width);
+      record_.face_height =
+          output->quantity({"face_height", "of the drawn face"}, "mm", {0.005, 0.5}, record_.face_height);
     }
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
         if (post::Range* range = key == "tangential_restitution" ? &ranges_.tangential_restitution
                                  : key == "launch_ratio"         ? &ranges_.launch_ratio
                                                                  : nullptr) {
-          const auto ends = measured->numbers(key, 2);
+          const auto ends = measured->numbers({key, "lowest and highest that was measured"}, 2);
           if (ends[0] > ends[1]) measured->fail(key, "give the lowest and the highest that was measured");
           *range = std::pair{ends[0], ends[1]};
           continue;
@@ -72,7 +78,9 @@ class ImpactJob final : public Job {
         const post::Channel* channel = post::find_channel(split.stem);
         if (!channel)
           measured->fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
-        measured_.emplace_back(channel, measured->quantity(split.stem, std::string(channel->unit)));
+        measured_.emplace_back(channel,
+                               measured->quantity({split.stem, "what was measured of this blow", "<launch quantity>"},
+                                                  std::string(channel->unit)));
       }
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
     flight_ = read_optional_flight(root);

@@ -60,8 +60,8 @@ class LoadedClubJob final : public Job {
     mount.grip_point = swing_.grip_point;
     flight_ = read_optional_flight(root);
     Table points = root.table("points");
-    toe_ = points.quantities("impact_toe", "mm", 0);
-    high_ = points.quantities("impact_high", "mm", toe_.size());
+    toe_ = points.quantities({"impact_toe", "where the ball meets the face, towards the toe"}, "mm", 0);
+    high_ = points.quantities({"impact_high", "where the ball meets the face, up"}, "mm", toe_.size());
     if (toe_.empty()) points.fail("impact_toe", "at least one point of the face");
   }
 

@@ -34,7 +34,7 @@ std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, 
       table.fail(key, fmt::format("no {} column of this name{}", what,
                                   near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
     }
-    noise[key] = table.number(key, Range::non_negative());
+    noise[key] = table.number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
   }
   return noise;
 }
@@ -47,14 +47,15 @@ class LoopJob final : public Job {
     Table model = root.table("model");
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
-    model.choice("base", names);
+    model.choice({"base", "the model whose missing effect is sought"}, names);
     model_ = models::find(case_.base)->make(read_options(root, {case_.base}));
     case_.model = model_.get();
     case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
     if (auto surface = model.optional_table("surrogate")) {
       if (case_.direct) surface->fail("", "this base answers in microseconds and needs no surrogate");
-      points_ = int(surface->integer("points", 8, 100000, 80));
-      surface_seed_ = static_cast<unsigned long>(surface->integer("seed", 0, 1L << 53, 1));
+      points_ = int(surface->integer({"points", "blows through which the surrogate goes"}, 8, 100000, 80));
+      surface_seed_ =
+          static_cast<unsigned long>(surface->integer({"seed", "of the surrogate's blows"}, 0, 1L << 53, 1));
     }
     case_.head_turns = case_.base != "rigid-planar";
 
@@ -74,14 +75,14 @@ class LoopJob final : public Job {
     case_.inertia_declared = head.inertia.allFinite();
 
     Table data = root.table("data");
-    const auto path = data.data_file("shots");
+    const auto path = data.data_file({"shots", "CSV of the measured shots"});
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
         case_.shots = loop::read_shots(post::read_csv(path));
         if (auto joined = data.optional_table("join")) {
-          const auto other = joined->data_file("file");
-          const std::string by = joined->text("by");
+          const auto other = joined->data_file({"file", "CSV with further columns"});
+          const std::string by = joined->text({"by", "column that both files have"});
           loop::join(case_.shots, post::read_csv(other), by);
         }
       } catch (const DataError& e) { throw InputError(e.what()); }
@@ -91,17 +92,19 @@ class LoopJob final : public Job {
         case_.input_noise = read_noise(*noise, case_.shots, loop::Role::input, "input");
     } else {
       if (auto joined = data.optional_table("join")) {
-        joined->data_file("file");
-        joined->text("by");
+        joined->data_file({"file", "CSV with further columns"});
+        joined->text({"by", "column that both files have"});
       }
       for (const char* key : {"noise", "input_noise"})
         if (auto noise = data.optional_table(key))
-          for (const std::string& header : noise->keys()) noise->number(header, Range::non_negative());
+          for (const std::string& header : noise->keys())
+            noise->number({header, "standard deviation of the column", "<column>"}, Range::non_negative());
     }
 
     if (auto split = root.optional_table("split")) {
-      case_.split.by = split->text("by", "");
-      case_.split.leave_one_out = split->choice("mode", {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
+      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
+      case_.split.leave_one_out = split->choice({"mode", "a held-out share, or each cluster left out in turn"},
+                                                {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
       if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
       if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
         split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
@@ -123,16 +126,18 @@ class LoopJob final : public Job {
   Head read_loop_head(Table table, bool turns) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     Head head;
-    head.mass = case_.head_mass_declared ? table.quantity("mass", "kg", Range::positive()) : 0.2;
-    head.face.bulge = table.quantity("bulge", "mm", {0.01, inf}, inf);
-    head.face.roll = table.quantity("roll", "mm", {0.01, inf}, inf);
+    head.mass = case_.head_mass_declared ? table.quantity({"mass", "of the clubhead"}, "kg", Range::positive()) : 0.2;
+    head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
+                                     {0.01, inf}, inf);
+    head.face.roll =
+        table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm", {0.01, inf}, inf);
     if (!turns && !table.has_quantity("inertia")) {
-      head.cg = table.vector("cg", "mm", Vec3::Zero());
+      head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm", Vec3::Zero());
       head.inertia = inf * Mat3::Identity();
       return head;
     }
-    head.cg = table.vector("cg", "mm");
-    head.inertia = table.matrix("inertia", "kg_m2");
+    head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm");
+    head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2");
     // A tensor that no body quite can have still gives an answer, and effects may be asked about it: said, not refused.
     const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
     const auto faults = head.faults();
@@ -187,7 +192,8 @@ class LoopJob final : public Job {
 }  // namespace
 
 std::unique_ptr<Job> read_loop(CaseFile& file) {
-  if (file.root().table("model").text("base") == "shaft") return read_loop_history(file);
+  if (file.root().table("model").text({"base", "the model whose missing effect is sought"}) == "shaft")
+    return read_loop_history(file);
   return std::make_unique<LoopJob>(file);
 }
 

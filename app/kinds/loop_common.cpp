@@ -8,10 +8,10 @@
 namespace hosel::app {
 
 void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&)) {
-  into.title = root.text("title", "");
+  into.title = root.text({"title", "of tables, pages and figures"}, "");
   Table model = root.table("model");
-  into.base = model.text("base");
-  into.effects = model.texts("effects", std::vector<std::string>{});
+  into.base = model.text({"base", "the model whose missing effect is sought"});
+  into.effects = model.texts({"effects", "candidates (`hosel list`); empty: all"}, std::vector<std::string>{});
   std::vector<std::string> known;
   for (const auto& e : loop::effects())
     if (acts(e)) known.emplace_back(e.name);
@@ -22,8 +22,9 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
                  fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
     }
   if (auto split = root.optional_table("split")) {
-    into.split.holdout_fraction = split->number("holdout_fraction", {0, 0.9}, 1.0 / 3.0);
-    into.split.seed = static_cast<unsigned long>(split->integer("seed", 0, 1L << 53, 1));
+    into.split.holdout_fraction =
+        split->number({"holdout_fraction", "share of the data that no fit sees"}, {0, 0.9}, 1.0 / 3.0);
+    into.split.seed = static_cast<unsigned long>(split->integer({"seed", "of the split"}, 0, 1L << 53, 1));
   }
 }
 

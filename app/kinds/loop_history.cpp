@@ -31,7 +31,8 @@ class HistoryJob final : public Job {
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
     setting.swing = root.has("motion");
     if (setting.swing && !setting.head) root.fail("head", "a swing needs a head");
-    if (auto grip = root.optional_table("grip"); grip && grip->choice("hold", {"clamped", "free"}, "clamped") == "free")
+    if (auto grip = root.optional_table("grip");
+        grip && grip->choice({"hold", "of the butt"}, {"clamped", "free"}, "clamped") == "free")
       grip->fail("hold", "the records of a free shaft are not modelled: clamp the butt");
     setting.swing ? read_swing_test(root) : read_bench_test(root);
   }
@@ -49,7 +50,7 @@ class HistoryJob final : public Job {
   /// `[data]`: the records, the same channels in each; noise by header.
   std::vector<models::BenchRecord> read_records(Table root, double clamp, std::size_t most) {
     Table data = root.table("data");
-    const std::vector<std::filesystem::path> files = data.data_files("series");
+    const std::vector<std::filesystem::path> files = data.data_files({"series", "CSV of a record, or a list of them"});
     std::optional<Table> sensors = root.optional_table("sensors");
     std::vector<models::BenchRecord> drives;
     std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
@@ -73,13 +74,13 @@ class HistoryJob final : public Job {
     }
     if (sensors && !skipped_.empty())
       for (const std::string& key : sensors->keys()) {
-        Table place = sensors->table(key);
-        place.quantity("arc_length", "mm", Range::non_negative(), 0);
-        if (place.has("axis")) place.choice("axis", {"lead", "droop"});
+        Table place = sensors->table({key, "", "<channel>"});
+        place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(), 0);
+        if (place.has("axis")) place.choice({"axis", "bending that the strain gauge feels"}, {"lead", "droop"});
       }
     if (auto noise = data.optional_table("noise"))
       for (const std::string& key : noise->keys()) {
-        const double sigma = noise->number(key, Range::positive());
+        const double sigma = noise->number({key, "standard deviation of the channel", "<channel>"}, Range::positive());
         const auto it = std::ranges::find(channels, key, &loop::HistoryChannel::name);
         if (it != channels.end()) {
           it->declared = sigma;
@@ -95,35 +96,41 @@ class HistoryJob final : public Job {
     models::BenchStart start;
     std::vector<double> rates{0};
     if (auto t = root.optional_table("bench")) {
-      options.clamped_length = t->quantity("clamped_length", "mm", Range::non_negative(), 0);
+      options.clamped_length =
+          t->quantity({"clamped_length", "of the butt that the clamp holds"}, "mm", Range::non_negative(), 0);
       if (options.clamped_length >= club_.shaft->length())
         t->fail("clamped_length_mm", "the clamp holds the whole shaft");
-      options.elements = int(t->integer("elements", 2, 60, options.elements));
-      options.shear = t->flag("shear", true);
-      const std::string hang = t->choice("shaft", {"horizontal", "hanging", "standing"}, "horizontal");
+      options.elements = int(t->integer({"elements", "finite elements along the free shaft"}, 2, 60, options.elements));
+      options.shear = t->flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, true);
+      const std::string hang =
+          t->choice({"shaft", "how gravity acts along the shaft"}, {"horizontal", "hanging", "standing"}, "horizontal");
       if (hang != "horizontal") options.gravity = Vec3(0, 0, hang == "hanging" ? -kGravity : kGravity);
-      const std::string kind = t->choice("start", {"unknown", "release", "impulse", "rest"}, "unknown");
+      const std::string kind =
+          t->choice({"start", "how the vibration begins"}, {"unknown", "release", "impulse", "rest"}, "unknown");
       using models::Start;
       start.kind = kind == "release"   ? Start::release
                    : kind == "impulse" ? Start::impulse
                    : kind == "rest"    ? Start::rest
                                        : Start::unknown;
       if (start.kind == Start::release) {
-        start.force = t->vector("load", "N", Vec3::Zero());
-        start.moment = t->vector("load_moment", "N_m", Vec3::Zero());
+        start.force = t->vector({"load", "force that held the hosel before its release"}, "N", Vec3::Zero());
+        start.moment = t->vector({"load_moment", "moment that held the hosel before its release"}, "N_m", Vec3::Zero());
         if (start.force.norm() + start.moment.norm() == 0)
           t->fail("load_N", "a release needs the load that held the hosel");
       }
       if (start.kind == Start::impulse) {
-        const auto j = t->numbers("impulse_N_s", 3);
+        const auto j = t->numbers({"impulse_N_s", "given to the hosel"}, 3);
         start.force = Vec3(j[0], j[1], j[2]);
       }
       if (start.kind == Start::release || start.kind == Start::impulse)
-        start.at = t->quantity("at", "s", Range::finite(), 0);
-      rates = t->quantities("rotation_rate", "rpm", 0, Range::finite(), std::vector<double>{0});
+        start.at = t->quantity({"at", "instant of release or impulse in the records"}, "s", Range::finite(), 0);
+      rates = t->quantities({"rotation_rate", "of the bench, one or one for each record"}, "rpm", 0, Range::finite(),
+                            std::vector<double>{0});
       if (t->has("rotation_axis"))
-        options.rotation_axis = t->choice("rotation_axis", {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
-      options.hub = t->quantity("hub", "mm", Range::non_negative(), 0);
+        options.rotation_axis =
+            t->choice({"rotation_axis", "of the bench"}, {"lead", "droop"}) == "lead" ? Vec3::UnitX() : Vec3::UnitY();
+      options.hub =
+          t->quantity({"hub", "distance from the axis of rotation to the clamp"}, "mm", Range::non_negative(), 0);
     }
     std::vector<models::BenchRecord> records = read_records(root, options.clamped_length, kMostSamples);
     if (!skipped_.empty()) return;

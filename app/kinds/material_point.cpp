@@ -18,17 +18,17 @@ class MaterialPointJob final : public Job {
   explicit MaterialPointJob(CaseFile& file) : solid_(read_solid(file.root().table("material"))) {
     Table root = file.root();
     Table path = root.table("path");
-    what_ = path.choice("kind", {"uniaxial", "shear", "relaxation", "hysteresis"});
+    what_ = path.choice({"kind", "strain path"}, {"uniaxial", "shear", "relaxation", "hysteresis"});
     if (what_ == "uniaxial") {
-      low_ = path.number("stretch_from", {0.05, 1}, 0.5);
-      high_ = path.number("stretch_to", {1, 10}, 2.0);
+      low_ = path.number({"stretch_from", "first stretch"}, {0.05, 1}, 0.5);
+      high_ = path.number({"stretch_to", "last stretch"}, {1, 10}, 2.0);
     } else {
-      high_ = path.number("shear", {-5, 5});
+      high_ = path.number({"shear", "amount of shear"}, {-5, 5});
     }
     // Uniaxial and shear run over this time at constant rate; relaxation holds the step for it;
     // hysteresis is a half sine of it.
-    duration_ = path.quantity("duration", "ms", Range::positive());
-    steps_ = path.integer("steps", 2, 1000000, 200);
+    duration_ = path.quantity({"duration", "of the path"}, "ms", Range::positive());
+    steps_ = path.integer({"steps", "of the path"}, 2, 1000000, 200);
   }
 
   void run(Output& out) override {

@@ -22,12 +22,14 @@ class ModesJob final : public Job {
     Table ball = root.table("ball");
     ball_ = read_ball(ball);
     layers_ = read_fe_ball(ball, models::range_ball());
-    for (const double h : root.numbers("harmonics", 0, {0, 12}, std::vector<double>{0, 1, 2, 3}))
+    for (const double h : root.numbers({"harmonics", "Fourier harmonics whose modes are wanted"}, 0, {0, 12},
+                                       std::vector<double>{0, 1, 2, 3}))
       harmonics_.push_back(int(h));
-    count_ = root.integer("count", 1, 200, 6);
+    count_ = root.integer({"count", "modes of each harmonic"}, 1, 200, 6);
     if (auto mesh = root.optional_table("mesh")) {
-      mesh_.sector = int(mesh->integer("sector", 1, 32, mesh_.sector));
-      mesh_.rings = int(mesh->integer("rings", 1, 32, mesh_.rings));
+      mesh_.sector =
+          int(mesh->integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 32, mesh_.sector));
+      mesh_.rings = int(mesh->integer({"rings", "rings of elements outside the core block"}, 1, 32, mesh_.rings));
     }
     mesh_.pole = mesh_.skin = 1;
   }

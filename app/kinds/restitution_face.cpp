@@ -21,9 +21,9 @@ class RestitutionFaceJob final : public Job {
     face_ = read_face(root.table("face"));
     if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
     Table grid = root.table("grid");
-    speed_ = grid.quantity("speed", "mps", {1, 100}, 48.77);
-    toe_ = grid.quantities("toe", "mm", 0, {-0.1, 0.1});
-    high_ = grid.quantities("high", "mm", 0, {-0.1, 0.1});
+    speed_ = grid.quantity({"speed", "of the ball against the head at rest"}, "mps", {1, 100}, 48.77);
+    toe_ = grid.quantities({"toe", "points of the grid, towards the toe"}, "mm", 0, {-0.1, 0.1});
+    high_ = grid.quantities({"high", "points of the grid, up the face"}, "mm", 0, {-0.1, 0.1});
   }
 
   void run(Output& out) override {

@@ -26,13 +26,13 @@ class ShaftModesJob final : public Job {
       with_head_ = true;
     }
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
-    support_ = root.choice("support", {"clamped", "free"}, "clamped");
-    clamped_ = root.quantity("clamped_length", "mm", Range::non_negative(), 0);
+    support_ = root.choice({"support", "of the butt"}, {"clamped", "free"}, "clamped");
+    clamped_ = root.quantity({"clamped_length", "of the butt that the clamp holds"}, "mm", Range::non_negative(), 0);
     if (clamped_ >= club_.shaft->length()) root.fail("clamped_length_mm", "the clamp holds the whole shaft");
-    count_ = static_cast<int>(root.integer("count", 1, 100, 8));
-    elements_ = static_cast<int>(root.integer("elements", 1, 300, 40));
-    shear_ = root.flag("shear", true);
-    vtk_ = root.flag("vtk", true);
+    count_ = static_cast<int>(root.integer({"count", "how many modes"}, 1, 100, 8));
+    elements_ = static_cast<int>(root.integer({"elements", "finite elements along the free shaft"}, 1, 300, 40));
+    shear_ = root.flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, true);
+    vtk_ = root.flag({"vtk", "write mode shapes for ParaView"}, true);
   }
 
   void run(Output& out) override {

@@ -68,29 +68,32 @@ class SweepJob final : public PointJob {
   explicit SweepJob(CaseFile& file) {
     Table root = file.root();
     const Nesting nesting(root, file.file());
-    title_ = root.text("title", "");
-    const std::string named = root.text("case");
+    title_ = root.text({"title", "of tables and figures"}, "");
+    const std::string named = root.text({"case", "the case whose keys are swept: beside this one, or a shipped one"});
     const fs::path beside = file.directory() / named;
     case_ = fs::exists(beside) ? beside : find_case(named);
-    set_ = root.texts("set", std::vector<std::string>{});
-    record_ = root.texts("record", std::vector<std::string>{});
-    keep_outputs_ = root.flag("keep_outputs", false);
+    set_ = root.texts({"set", "keys changed in every point, table.key=value"}, std::vector<std::string>{});
+    record_ = root.texts({"record", "entries of the points' summaries that the table holds; empty: all"},
+                         std::vector<std::string>{});
+    keep_outputs_ = root.flag({"keep_outputs", "keep the directory of every point"}, false);
     auto sample = root.optional_table("sample");
-    const auto points = sample ? std::size_t(sample->integer("points", 1, long(kMostPoints))) : 0;
-    std::mt19937_64 random(sample ? std::uint64_t(sample->integer("seed", 0, 1L << 62)) : 0);
+    const auto points =
+        sample ? std::size_t(sample->integer({"points", "of the Latin hypercube"}, 1, long(kMostPoints))) : 0;
+    std::mt19937_64 random(sample ? std::uint64_t(sample->integer({"seed", "of the Latin hypercube"}, 0, 1L << 62))
+                                  : 0);
     auto tables = root.tables("parameters");
     if (tables.empty()) root.fail("parameters", "name at least one [[parameters]] with its key");
     size_ = sample ? points : 1;
     for (Table t : tables) {
-      Parameter p{t.text("key"), {}};
+      Parameter p{t.text({"key", "of the swept case, with its unit"}), {}};
       for (const Parameter& other : parameters_)
         if (same_quantity(p.key, other.key)) t.fail("key", fmt::format("'{}' is swept already", other.key));
       if (sample) {
-        const auto range = t.numbers("range", 2);
+        const auto range = t.numbers({"range", "lowest and highest value in the hypercube"}, 2);
         for (const double x : solvers::latin_column(range[0], range[1], points, random))
           p.values.push_back(fmt::format("{}", x));
       } else {
-        p.values = t.scalars("values");
+        p.values = t.scalars({"values", "on the grid"});
         if (size_ > kMostPoints / p.values.size())
           t.fail("values", fmt::format("with these values the grid has more than {} points", kMostPoints));
         size_ *= p.values.size();

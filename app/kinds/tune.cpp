@@ -65,17 +65,17 @@ class TuneJob final : public Job {
     Table root = file.root();
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
-    model_ = root.choice("model", names);
+    model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
     options_ = read_options(root, {model_});
 
     Table data = root.table("data");
-    shots_file_ = data.data_file("shots");
+    shots_file_ = data.data_file({"shots", "CSV of the measured shots"});
     if (auto join = data.optional_table("join")) {
-      join_file_ = join->data_file("file");
-      join_by_ = join->text("by");
+      join_file_ = join->data_file({"file", "CSV with further columns"});
+      join_by_ = join->text({"by", "column that both files have"});
     }
     Table noise = data.table("noise");
     for (const std::string& key : noise.keys()) {
@@ -83,38 +83,49 @@ class TuneJob final : public Job {
       const post::Channel* c = post::find_channel(split.stem);
       if (!c || !split.unit)
         noise.fail(key, fmt::format("no launch quantity with a unit (known: {})", post::channel_names()));
-      channels_.push_back({key, c, split.unit->si, noise.number(key, Range::positive())});
+      channels_.push_back(
+          {key, c, split.unit->si,
+           noise.number({key, "standard deviation of the measured channel", "<channel>"}, Range::positive())});
     }
     if (channels_.empty()) data.fail("noise", "name at least one launch quantity and its noise");
     for (Table t : data.tables("keep")) {
-      Keep k{t.text("column"), t.text("equals", ""), t.number("min", {}, -INFINITY), t.number("max", {}, INFINITY)};
+      Keep k{t.text({"column", "a column of the shots"}), t.text({"equals", "text that a kept row has there"}, ""),
+             t.number({"min", "smallest number that a kept row has there"}, {}, -INFINITY),
+             t.number({"max", "largest number that a kept row has there"}, {}, INFINITY)};
       keep_.push_back(k);
     }
-    rows_ = data.integer("rows", 0, 100000000, 0);
+    rows_ = data.integer({"rows", "use so many rows, drawn at random; 0: all"}, 0, 100000000, 0);
 
     std::optional<Table> split = root.optional_table("split");
-    train_fraction_ = split ? split->number("train_fraction", {0.05, 1}, 0.6667) : 0.6667;
-    seed_ = static_cast<unsigned>(split ? split->integer("seed", 0, 1L << 31, 1) : 1);
+    train_fraction_ = split ? split->number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667)
+                            : 0.6667;
+    seed_ = static_cast<unsigned>(split ? split->integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1) : 1);
 
     for (Table t : root.tables("parameters")) {
-      Free f{&read_parameter(t, "name"), 0, {}};
+      Free f{&read_parameter(t, {"name", "the parameter that is tuned"}), 0, {}};
       const Range range{f.parameter->low, f.parameter->high};
       const std::string unit(f.parameter->unit);
       const double standard = f.parameter->get(options_, blow_);
-      const auto read = [&](std::string_view stem, double otherwise) {
-        return unit.empty() ? t.number(stem, range, otherwise) : t.quantity(stem, unit, range, otherwise);
+      const auto read = [&](Key key, double otherwise) {
+        return unit.empty() ? t.number(key, range, otherwise) : t.quantity(key, unit, range, otherwise);
       };
-      f.bounds = {read("min", range.min), read("max", range.max)};
+      f.bounds = {read({"min", "lower bound of the fit"}, range.min),
+                  read({"max", "upper bound of the fit"}, range.max)};
       if (!(f.bounds.low < f.bounds.high)) t.fail("", "min must lie below max");
-      f.start = read("start", std::clamp(standard, f.bounds.low, f.bounds.high));
+      f.start = read({"start", "first guess of the first search"}, std::clamp(standard, f.bounds.low, f.bounds.high));
       free_.push_back(f);
     }
     if (free_.empty()) root.fail("parameters", "name at least one [[parameters]]");
 
     std::optional<Table> search = root.optional_table("search");
-    search_.starts = static_cast<int>(search ? search->integer("starts", 1, 1000, 4) : 4);
-    search_.iterations = static_cast<int>(search ? search->integer("iterations", 1, 10000, 60) : 60);
-    search_.huber = search ? search->number("huber", Range::non_negative(), 0) : 0;
+    search_.starts = static_cast<int>(
+        search ? search->integer({"starts", "of the search, the first at the defaults"}, 1, 1000, 4) : 4);
+    search_.iterations =
+        static_cast<int>(search ? search->integer({"iterations", "of each search at most"}, 1, 10000, 60) : 60);
+    search_.huber =
+        search ? search->number({"huber", "residual beyond which the loss is linear, in noise units; 0: least squares"},
+                                Range::non_negative(), 0)
+               : 0;
     search_.seed = seed_;
   }
 

@@ -52,8 +52,8 @@ class VariantsJob final : public Job {
       overrides.insert(overrides.end(), file.overrides().begin(), file.overrides().end());
       CaseFile own(file, overrides);
       variants_.push_back(read(own.root()).at(i));
-      own.root().text("kind");
-      own.root().text("title", "");
+      own.root().text({"kind", "what the case does (`hosel list`)"});
+      own.root().text({"title", "of tables, pages and figures"}, "");
       own.finish();
     }
   }
@@ -81,14 +81,18 @@ class VariantsJob final : public Job {
     base.blow = read_blow(root, names);
     base.options = read_options(root, names);
     if (auto t = root.optional_table("measured")) base.seen = read_seen(*t);
-    matched_ = root.flag("matched_launch", false);
-    if (root.has_quantity("keep_bounce")) bounce_speed_ = root.quantity("keep_bounce", "mps", {1, 100});
+    matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
+    if (root.has_quantity("keep_bounce"))
+      bounce_speed_ = root.quantity(
+          {"keep_bounce",
+           "turn the inner layers' loss until the ball bounces at this speed as the first variant's does"},
+          "mps", {1, 100});
     std::vector<Variant> out;
     for (Table t : root.tables("variants")) {
       Variant v = base;
-      v.name = t.text("name");
-      v.range = t.text("range", "");
-      v.set = t.texts("set", std::vector<std::string>{});
+      v.name = t.text({"name", "of the variant"});
+      v.range = t.text({"range", "where its figures come from"}, "");
+      v.set = t.texts({"set", "keys that the variant changes, table.key=value"}, std::vector<std::string>{});
       if (auto own = t.optional_table("measured")) v.seen = read_seen(*own);
       if (matched_ && !v.seen.launch_angle) t.fail("", "matched_launch needs a measured launch angle");
       out.push_back(std::move(v));
@@ -99,10 +103,11 @@ class VariantsJob final : public Job {
   }
   static Seen read_seen(Table t) {
     Seen s;
-    if (t.has_quantity("spin_rate")) s.spin_rate = t.quantity("spin_rate", "rpm", Range::positive());
-    if (t.has_quantity("ball_speed")) s.ball_speed = t.quantity("ball_speed", "mps", Range::positive());
-    if (t.has_quantity("launch_angle")) s.launch_angle = t.quantity("launch_angle", "deg", {-1.5, 1.5});
-    s.launch_ratio = t.numbers("launch_ratio", 0, {-1, 2}, std::vector<double>{});
+    if (t.has_quantity("spin_rate")) s.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
+    if (t.has_quantity("ball_speed")) s.ball_speed = t.quantity({"ball_speed", "measured"}, "mps", Range::positive());
+    if (t.has_quantity("launch_angle")) s.launch_angle = t.quantity({"launch_angle", "measured"}, "deg", {-1.5, 1.5});
+    s.launch_ratio =
+        t.numbers({"launch_ratio", "lowest and highest measured launch ratio"}, 0, {-1, 2}, std::vector<double>{});
     return s;
   }
 

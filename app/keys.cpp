@@ -1,0 +1,210 @@
+#include "hosel/app/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "hosel/app/cases.hpp"
+#include "hosel/app/job.hpp"
+#include "hosel/app/reader.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// A shipped case with changes that lead the reader where no shipped case goes. It may end in an error, of a file that
+/// is not there or of a table left over: what has been asked for until then counts. tests/app/keys_test.cpp says which
+/// declaration is still without one.
+struct Variant {
+  const char* name;
+  std::vector<std::string> set;
+};
+
+std::vector<Variant> variants() {
+  const std::string springs =
+      "stiffness_N_per_m=[1,1,1], rotational_stiffness_N_m_per_rad=[1,1,1], damping_N_s_per_m=[1,1,1], "
+      "rotational_damping_N_m_s_per_rad=[1,1,1]";
+  return {
+      {"driver-toe",
+       {"output.vtk=true", "contact.face_transition_speed_mps=0.5", "grip.force_N=[0,0,0]", "grip.moment_N_m=[0,0,0]"}},
+      {"driver-toe", {"grip={hold='hands', " + springs + "}"}},
+      {"driver-toe", {"shaft={table={file='case.toml'}}"}},
+      {"driver-toe",
+       {"shaft={polynomial={length_m=1, bending_stiffness_N_m2=[40], torsional_stiffness_N_m2=[40], "
+        "mass_per_length_kg_per_m=[0.06], mean_radius_m=[0.005]}, offsets={arc_length_mm=[0]}}"}},
+      {"driver-toe",
+       {"shaft={tube={arc_length_mm=[0,1000], outer_radius_mm=[7,4], wall_mm=[1,1], shear_factor=0.5, "
+        "layer=[{E_GPa=100, G_GPa=20, density_kg_per_m3=1600}]}}"}},
+      {"material-point", {"material={law='mooney-rivlin', c10_MPa=1, c01_MPa=1, bulk_MPa=100}", "path.kind=uniaxial"}},
+      {"material-point", {"material={law='yeoh', c10_MPa=1, c20_MPa=1, bulk_MPa=100}"}},
+      {"material-point", {"material={law='ogden', bulk_MPa=100, moduli_MPa=[1], exponents=[2]}"}},
+      {"radar-drive", {"flight.law=table", "flight.coefficients=case.toml"}},
+      {"radar-drive",
+       {"flight.spin_decay_per_s=0.04", "flight.wind={speed_mps=3, towards_deg=0}",
+        "flight.ground={height_m=0, slope_deg=0}"}},
+      {"launch-ratio", {"keep_bounce_mps=40"}},
+      {"shaft-mass-sweep", {"sample={points=2, seed=1}", "parameters=[{key='shaft.mass_scale', range=[0.5,2]}]"}},
+      {"swing-driver", {"joint={kind='hinge', axis=[0,1,0]}", "grip={drive='hands', " + springs + "}"}},
+      {"swing-driver", {"grip={drive='forced', wrench='grip.csv'}"}},
+      {"loop-bench", {"bench={start='impulse', impulse_N_s=[1,0,0], rotation_axis='droop'}", "grip={hold='clamped'}"}},
+      {"loop-bench", {"data.series='not-there/record.csv'", "sensors.lead_mid_mm.axis=lead"}},
+      {"swing-driver", {"kind=identify-shaft", "swing=[{motion={file='grip.csv'}, deflection='grip.csv'}]"}},
+  };
+}
+
+/// What a declaration says of the allowed values beyond its type.
+std::string range_of(const Declared& d) {
+  if (d.type == "3x3 matrix" || !(d.type.starts_with("list of") || d.type.ends_with("number"))) return {};
+  if (d.type == "list of texts" || d.type == "list of values") return {};
+  const Range& r = d.range;
+  if (r.min == Range::finite().min && r.max == Range::finite().max && !r.also_infinite) return {};
+  std::optional<Unit> unit;
+  const auto all = units();
+  if (const auto it = std::ranges::find(all, d.unit, &Unit::suffix); it != all.end()) unit = *it;
+  return r.allowed(unit);
+}
+
+void add(std::vector<AcceptedKey>& keys, const std::string& kind, const std::vector<Declared>& declared) {
+  for (const Declared& d : declared) {
+    const auto dot = d.shown.rfind('.');
+    const std::string table = dot == std::string::npos ? "" : d.shown.substr(0, dot);
+    const std::string name = dot == std::string::npos ? d.shown : d.shown.substr(dot + 1);
+    auto it = std::ranges::find_if(keys, [&](const AcceptedKey& k) {
+      return k.table == table && k.name == name && (k.meaning == d.meaning || d.meaning.empty());
+    });
+    if (it == keys.end()) it = keys.insert(keys.end(), {.table = table, .name = name, .meaning = d.meaning});
+    it->kinds.insert(kind);
+    it->types.insert(d.type);
+    it->ranges.insert(range_of(d));
+    if (d.standard) it->standards.insert(*d.standard);
+    it->optional = it->optional || d.optional;
+  }
+}
+
+std::string heading(const std::string& table) {
+  if (table.empty()) return "top of the file";
+  std::string plain = table;
+  for (std::size_t at; (at = plain.find("[]")) != std::string::npos;) plain.erase(at, 2);
+  return table.ends_with("[]") ? fmt::format("[[{}]]", plain) : fmt::format("[{}]", plain);
+}
+
+/// "number, 0.01 to 5 kg".
+std::string value_of(const AcceptedKey& k) {
+  std::string type = *k.types.begin();
+  if (k.types.size() > 1) {
+    const bool lists = std::ranges::all_of(k.types, [](const std::string& t) { return t.starts_with("list of"); });
+    const auto choice = std::ranges::find_if(k.types, [](const std::string& t) { return t.starts_with("one of"); });
+    // "text" as well: one reader only passes over the key.
+    type = lists                                                 ? "list of numbers"
+           : choice != k.types.end() && k.types.contains("text") ? *choice
+                                                                 : "depends on the case";
+  }
+  if (type.starts_with("one of ") && std::ranges::count(type, ',') > 7) return "a name (`hosel list`)";
+  if (k.ranges.size() > 1) return type + ", range depends on the case";
+  const std::string& range = *k.ranges.begin();
+  return range.empty() ? type : fmt::format("{}, {}", type, range);
+}
+
+std::string default_of(const AcceptedKey& k) {
+  if (k.standards.empty()) return k.optional ? "-" : "required";
+  if (k.standards.size() > 1) return "depends on the case";
+  return k.standards.begin()->empty() ? "empty" : *k.standards.begin();
+}
+
+std::string listed(const std::set<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+/// One table of the case file and its keys, in the order of asking.
+struct Section {
+  std::string table;
+  std::set<std::string> kinds;
+  std::vector<const AcceptedKey*> keys;
+};
+
+std::vector<Section> by_table(const std::vector<AcceptedKey>& keys) {
+  std::vector<Section> out;
+  for (const AcceptedKey& k : keys) {
+    auto it = std::ranges::find(out, k.table, &Section::table);
+    if (it == out.end()) it = out.insert(out.end(), {k.table, {}, {}});
+    it->kinds.insert(k.kinds.begin(), k.kinds.end());
+    it->keys.push_back(&k);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<AcceptedKey> accepted_keys() {
+  std::vector<std::pair<std::string, CaseFile>> read;
+  for (const auto& [name, title] : shipped_cases()) {
+    CaseFile file(find_case(name));
+    read_job(file);
+    read.emplace_back(file.root().text("kind", "impact"), file);
+  }
+  for (const Variant& v : variants()) {
+    CaseFile file(find_case(v.name), v.set);
+    const std::string wanted = file.root().text("kind", "impact");
+    const auto kind = std::ranges::find(kinds(), wanted, &Kind::name);
+    try {
+      kind->read(file);
+    } catch (const std::exception&) {}  // as Variant says
+    read.emplace_back(wanted, file);
+  }
+  std::vector<AcceptedKey> keys;
+  for (const Kind& kind : kinds())
+    for (const auto& [name, file] : read)
+      if (name == kind.name) add(keys, name, file.declared());
+  return keys;
+}
+
+std::string keys_text(const std::vector<AcceptedKey>& keys, std::string_view of) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds()) names.emplace_back(kind.name);
+  const bool kind = std::ranges::find(names, of) != names.end();
+  std::string out;
+  for (const Section& s : by_table(keys)) {
+    names.push_back(s.table);
+    const bool inside = s.table == of ||
+                        (s.table.starts_with(of) && s.table.find_first_of(".[", of.size()) == of.size());
+    if (!of.empty() && !kind && !inside) continue;
+    std::vector<const AcceptedKey*> wanted;
+    for (const AcceptedKey* k : s.keys)
+      if (!kind || k->kinds.contains(std::string(of))) wanted.push_back(k);
+    if (wanted.empty()) continue;
+    std::size_t name = 0, value = 0, standard = 0;
+    for (const AcceptedKey* k : wanted) {
+      name = std::max(name, k->name.size());
+      value = std::max(value, std::min<std::size_t>(40, value_of(*k).size()));
+      standard = std::max(standard, default_of(*k).size());
+    }
+    out += heading(s.table) + "\n";
+    for (const AcceptedKey* k : wanted)
+      out += fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", k->name, name, value_of(*k), value, default_of(*k), standard,
+                         k->meaning);
+  }
+  if (out.empty()) {
+    const std::string near = nearest(of, names);
+    throw InputError(fmt::format("keys: no kind and no table '{}'{}", of,
+                                 near.empty() ? "; `hosel keys` prints all" : "; did you mean '" + near + "'?"));
+  }
+  return out;
+}
+
+std::string keys_markdown(const std::vector<AcceptedKey>& keys) {
+  std::string out = R"(# Reference: every key of a case
+
+Written by `scripts/write-reference` from what the reader declares where it reads (`hosel keys` prints the same,
+`hosel keys KIND` or `hosel keys TABLE` a part of it). A key with a unit at its end may carry any other unit of the same
+dimension: `club_speed_mps`, `club_speed_mph`. What is not listed is an error. A list of tables `[[table]]` may stand
+several times. Default `-`: the key may be left out, and then says nothing.
+)";
+  for (const Section& s : by_table(keys)) {
+    out += fmt::format("\n## {}\n\nKinds: {}.\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+                       s.table.empty() ? "Top of the file" : "`" + heading(s.table) + "`", listed(s.kinds));
+    for (const AcceptedKey* k : s.keys)
+      out += fmt::format("| `{}` | {} | {} | {}{} |\n", k->name, value_of(*k), default_of(*k), k->meaning,
+                         k->kinds == s.kinds ? "" : fmt::format(" ({})", listed(k->kinds)));
+  }
+  return out;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,34 @@
+/// The keys of a case, as the reader declares them: what `hosel keys` prints and docs/reference.md holds.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hosel::app {
+
+/// One key of one table. Where declarations differ from case to case (a default that depends on a model), each of the
+/// sets below has more than one entry.
+struct AcceptedKey {
+  std::string table;  ///< dotted, `[]` behind a list of tables; empty: the top of the file
+  std::string name;   ///< with its unit
+  std::string meaning;
+  std::set<std::string> kinds;      ///< of case that accept it
+  std::set<std::string> types;      ///< "number", "one of a, b"
+  std::set<std::string> ranges;     ///< "0.01 to 5 kg"; empty where a number says nothing more
+  std::set<std::string> standards;  ///< defaults; empty: the key is required
+  bool optional = false;            ///< read in some case without it being there
+};
+
+/// Every key that the reader accepts, in the order in which it asks: what it declares while it reads the shipped cases,
+/// and variants of them that say what none of them says. Throws InputError where one of these cannot be read.
+std::vector<AcceptedKey> accepted_keys();
+
+/// As text for a terminal; of one kind or one table alone where `of` names it. Throws InputError with the nearest name.
+std::string keys_text(const std::vector<AcceptedKey>& keys, std::string_view of);
+/// docs/reference.md.
+std::string keys_markdown(const std::vector<AcceptedKey>& keys);
+
+}  // namespace hosel::app

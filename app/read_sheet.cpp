@@ -1,0 +1,39 @@
+#include "hosel/app/read_sheet.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "hosel/app/reader.hpp"
+
+namespace hosel::app {
+
+post::Sheet read_sheet(const std::filesystem::path& file) {
+  try {
+    return post::read_csv(file);
+  } catch (const DataError& e) { throw InputError(e.what()); }
+}
+
+std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    SplitName split = split_unit(sheet.names[c]);
+    if (!unit_needed && sheet.names[c] == stem) split = {std::string(stem), {}};
+    if (split.stem != stem) continue;
+    if (unit_needed && (!split.unit || split.unit->dimension != dimension))
+      throw InputError(fmt::format("{}: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
+    std::vector<double> out;
+    for (std::size_t r = 0; r < sheet.rows(); ++r) {
+      const std::string& cell = sheet.columns[c][r];
+      double x = 0;
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
+        throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], sheet.names[c], cell));
+      out.push_back(unit_needed ? x * split.unit->si : x);
+    }
+    return out;
+  }
+  throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,21 @@
+/// CSV files that a case names.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "hosel/golf/units.hpp"
+#include "hosel/post/csv.hpp"
+
+namespace hosel::app {
+
+/// A CSV whose faults are faults of the input.
+post::Sheet read_sheet(const std::filesystem::path& file);
+
+/// The numeric column `stem_unit`, with any unit of the dimension, in SI; where no unit is needed, `stem` alone. Throws
+/// InputError with file and line where it is not there, has another unit or a cell that is no finite number.
+std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension,
+                           bool unit_needed = true);
+
+}  // namespace hosel::app

@@ -1,0 +1,70 @@
+// The key reference covers what the reader accepts, and docs/reference.md is what the reader says now.
+#include "hosel/app/keys.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+
+#include "build_info.hpp"
+#include "command.hpp"
+#include "hosel/golf/units.hpp"
+
+namespace hosel::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Keys and meanings as the sources declare them: `read({"key", "meaning"`.
+std::map<std::string, std::string> declared_in_sources() {
+  const std::regex declaration(R"re(\(\s*\{\s*"(\w+)",\s*"([^"]+)"\s*\})re");
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(HOSEL_SOURCE_DIR) / "app")) {
+    const std::string name = entry.path().filename().string();
+    const bool reads = entry.path().parent_path().filename() == "kinds" || name.starts_with("read_") ||
+                       name == "job.cpp";
+    if (!reads || entry.path().extension() != ".cpp") continue;
+    const std::string text = test::content(entry.path());
+    for (std::sregex_iterator it(text.begin(), text.end(), declaration), end; it != end; ++it)
+      out[(*it)[2].str() + " (" + (*it)[1].str() + ")"] = (*it)[1];
+  }
+  return out;
+}
+
+TEST(Keys, EveryDeclarationIsReached) {
+  std::set<std::string> reached;
+  for (const AcceptedKey& k : accepted_keys()) {
+    reached.insert(k.meaning + " (" + k.name + ")");
+    reached.insert(k.meaning + " (" + split_unit(k.name).stem + ")");
+  }
+  const auto declared = declared_in_sources();
+  ASSERT_GT(declared.size(), 250u);  // the pattern has found them
+  for (const auto& [meaning, name] : declared)
+    EXPECT_TRUE(reached.contains(meaning)) << name << ": " << meaning << ": no variant of app/keys.cpp reads it";
+}
+
+TEST(Keys, EveryKeyHasAMeaning) {
+  for (const AcceptedKey& k : accepted_keys())
+    EXPECT_FALSE(k.meaning.empty()) << k.table << "." << k.name << ": say what it means where it is read";
+}
+
+TEST(Keys, ReferenceIsWhatTheReaderSays) {
+  const std::string page = keys_markdown(accepted_keys());
+  EXPECT_NE(page.find("| `club_speed_mps` |"), std::string::npos);
+  EXPECT_EQ(test::content(fs::path(HOSEL_SOURCE_DIR) / "docs" / "reference.md"), page) << "run scripts/write-reference";
+}
+
+TEST(Keys, OneKindOrOneTable) {
+  const std::vector<AcceptedKey> keys = accepted_keys();
+  const std::string ball = keys_text(keys, "ball"), flights = keys_text(keys, "flight");
+  EXPECT_NE(ball.find("radius_mm"), std::string::npos) << ball;
+  EXPECT_EQ(ball.find("club_speed"), std::string::npos) << ball;
+  EXPECT_NE(flights.find("[flight.wind]"), std::string::npos) << flights;
+  EXPECT_EQ(test::command("keys bal").status, 2);
+  EXPECT_NE(test::command("keys bal").text.find("did you mean 'ball'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hosel::app
