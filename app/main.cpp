@@ -9,8 +9,12 @@
 #include <new>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/command_help.hpp"
+#include "hosel/app/diff.hpp"
 #include "hosel/app/import/import.hpp"
 #include "hosel/app/job.hpp"
+#include "hosel/app/keys.hpp"
+#include "hosel/app/paraview.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep.hpp"
 #include "hosel/app/version.hpp"
@@ -21,9 +25,9 @@ namespace {
 using namespace hosel;
 
 struct Arguments {
-  std::string case_dir, out, from, log, shard = "1/1";
+  std::string case_dir, out, from, of, log, shard = "1/1";
   std::vector<std::string> sets;
-  bool force = false, quiet = false, strict = false;
+  bool force = false, quiet = false, strict = false, markdown = false;
 };
 
 void run(const Arguments& a) {
@@ -42,6 +46,11 @@ void check(const Arguments& a) {
   app::CaseFile file(app::find_case(a.case_dir), a.sets);
   app::read_job(file);
   fmt::print("{}", file.resolved());
+}
+
+void keys(const Arguments& a) {
+  const auto all = app::accepted_keys();
+  fmt::print("{}", a.markdown ? app::keys_markdown(all) : app::keys_text(all, a.of));
 }
 
 void list() {
@@ -79,6 +88,10 @@ int main(int argc, char** argv) {
   check_command->callback([&] { check(a); });
   cli.add_subcommand("list", "the kinds, models, materials, balls, shafts, effects and cases there are")
       ->callback(list);
+  CLI::App* keys_command = cli.add_subcommand("keys", "every key of a case: unit, range, default, meaning");
+  keys_command->add_option("OF", a.of, "a kind of case, or a table such as ball or delivery; all where absent");
+  keys_command->add_flag("--markdown", a.markdown, "all of them as a page: docs/reference.md");
+  keys_command->callback([&] { keys(a); });
   CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another");
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
@@ -120,6 +133,20 @@ int main(int argc, char** argv) {
   CLI::App* status = sweep->add_subcommand("status", "how many points are finished");
   add_directory(status);
   status->callback([&] { app::sweep_status(a.out); });
+
+  CLI::App* diff_command = cli.add_subcommand("diff", "two finished runs: inputs and launches that differ");
+  diff_command->add_option("A", a.from, "directory of a run")->required();
+  diff_command->add_option("B", a.out, "directory of another")->required();
+  diff_command->callback([&] { fmt::print("{}", app::difference(a.from, a.out)); });
+  CLI::App* open_command = cli.add_subcommand("open", "a run's series in ParaView");
+  open_command->add_option("OUT", a.out, "directory of a run")->required();
+  open_command->callback([&] { app::open_in_paraview(a.out); });
+  cli.add_subcommand("completion",
+                     "a bash script that completes commands, options and cases: source <(hosel completion)")
+      ->callback([&] { fmt::print("{}", app::bash_completion(cli)); });
+  cli.add_subcommand("man", "the man page, as roff: hosel man | man -l -")->callback([&] {
+    fmt::print("{}", app::man_page(cli));
+  });
 
   // `hosel help` and `hosel help COMMAND` are what people type first.
   CLI::App* help = cli.add_subcommand("help", "this text, or that of a command");

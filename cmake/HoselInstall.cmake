@@ -22,6 +22,16 @@ install(FILES app/import/launch_monitors.toml DESTINATION ${CMAKE_INSTALL_DATADI
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
+# What the command says of itself, where man and bash look for it.
+foreach(page "man|share/man/man1/hosel.1" "completion|share/bash-completion/completions/hosel")
+  string(REPLACE "|" ";" page "${page}")
+  list(GET page 0 command)
+  list(GET page 1 file)
+  install(CODE "set(file \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${file}\")
+    cmake_path(GET file PARENT_PATH folder)
+    file(MAKE_DIRECTORY \"\${folder}\")
+    execute_process(COMMAND \"$<TARGET_FILE:hosel>\" ${command} OUTPUT_FILE \"\${file}\" COMMAND_ERROR_IS_FATAL ANY)")
+endforeach()
 install(EXPORT hosel NAMESPACE hosel:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)
 configure_package_config_file(cmake/hosel-config.cmake.in ${PROJECT_BINARY_DIR}/hosel-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)

@@ -1,0 +1,14 @@
+/// What the command says of itself besides `help`, from its own declarations.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+
+namespace hosel::app {
+
+/// The man page hosel(1), as roff.
+std::string man_page(const CLI::App& command);
+/// A bash script that completes commands, options, shipped cases and files: `source <(hosel completion)`.
+std::string bash_completion(const CLI::App& command);
+
+}  // namespace hosel::app

@@ -1,0 +1,167 @@
+#include "hosel/app/diff.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "hosel/app/reader.hpp"
+#include "hosel/post/file.hpp"
+#include "hosel/post/launch_table.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+using Leaves = std::map<std::string, std::string>;
+
+void leaves(const toml::node& node, const std::string& name, Leaves& out) {
+  if (const auto* table = node.as_table()) {
+    for (auto&& [key, value] : *table)
+      leaves(value, name.empty() ? std::string(key) : name + "." + std::string(key), out);
+    return;
+  }
+  if (const auto* list = node.as_array(); list && !list->empty() && list->get(0)->is_table()) {
+    for (std::size_t i = 0; i < list->size(); ++i) leaves(*list->get(i), fmt::format("{}[{}]", name, i + 1), out);
+    return;
+  }
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node);
+  out[name] = text.str();
+}
+
+struct Run {
+  json summary;
+  Leaves inputs;
+};
+
+Run read(const fs::path& directory) {
+  if (!fs::exists(directory / "summary.json") || !fs::exists(directory / "case.resolved.toml"))
+    throw InputError(fmt::format("{}: no finished run (no summary.json)", directory.string()));
+  Run run;
+  try {
+    run.summary = json::parse(post::read_file(directory / "summary.json"));
+    leaves(toml::parse(post::read_file(directory / "case.resolved.toml")), "", run.inputs);
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}: case.resolved.toml: {}", directory.string(), std::string(e.description())));
+  } catch (const json::exception& e) {
+    throw InputError(fmt::format("{}: summary.json: {}", directory.string(), e.what()));
+  }
+  return run;
+}
+
+/// A model's own error, relative: of ball speed, of the launch angle, of the spin rate. Of finite elements as the
+/// README's table "How exact" has it, at the coarser of the two levels; of models that integrate in time their
+/// tolerance.
+struct NumericalError {
+  double speed, angle, spin;
+};
+
+NumericalError numerical_error(const std::string& model, const Run& run) {
+  if (model.starts_with("fe-")) {
+    const auto at_least = [&](const char* key, double level) {
+      const auto it = run.inputs.find(key);
+      return it != run.inputs.end() && std::stod(it->second) >= level;
+    };
+    const bool fine = at_least("mesh.sector", 3) && at_least("mesh.harmonics", 4) &&
+                      at_least("time.steps_per_contact", 60);
+    return fine ? NumericalError{0.0005, 0.0025, 0.0017} : NumericalError{0.0015, 0.0034, 0.02};
+  }
+  const bool in_time = model == "volumetric" || model == "hertz-maw" || model == "shaft-coupled";
+  return in_time ? NumericalError{1e-3, 1e-3, 1e-3} : NumericalError{1e-9, 1e-9, 1e-9};
+}
+
+/// Of one channel, in its own unit: angles by that of the launch angle, components of the spin by that of its rate.
+double error_of(const post::Channel& c, const json& launch, const NumericalError& e) {
+  const auto size = [&](const char* key) { return std::abs(launch.value(key, 0.0)); };
+  if (c.unit == "mps") return e.speed * size("ball_speed_mps");
+  if (c.unit == "rpm") return e.spin * size("spin_rate_rpm");
+  if (c.name == "spin_axis") return degrees(e.spin);
+  return e.angle * std::max(size("launch_angle_deg"), 1.0);
+}
+
+void flatten(const json& j, const std::string& name, std::map<std::string, double>& out) {
+  if (j.is_number()) out[name] = j.get<double>();
+  if (!j.is_structured()) return;
+  for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
+}
+
+}  // namespace
+
+std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
+  const Run a = read(a_dir), b = read(b_dir);
+  std::string out = "inputs\n";
+  std::string rows;
+  Leaves all = a.inputs;
+  all.insert(b.inputs.begin(), b.inputs.end());
+  const auto said = [](const Run& run, const std::string& key) {
+    const auto it = run.inputs.find(key);
+    return it == run.inputs.end() ? std::string("-") : it->second;
+  };
+  for (const auto& [key, ignored] : all)
+    if (said(a, key) != said(b, key)) rows += fmt::format("  {:<36} {:>20} {:>20}\n", key, said(a, key), said(b, key));
+  out += rows.empty() ? "  the same\n" : fmt::format("  {:<36} {:>20} {:>20}\n", "", "A", "B") + rows;
+
+  std::map<std::string, double> x, y;
+  flatten(a.summary, "", x);
+  flatten(b.summary, "", y);
+  rows.clear();
+  const json none = json::object();
+  const json& left = a.summary.contains("models") ? a.summary["models"] : none;
+  const json& right = b.summary.contains("models") ? b.summary["models"] : none;
+  int launches = 0;
+  for (const auto& [model, launch] : left.items()) {
+    if (!right.contains(model)) {
+      rows += fmt::format("  {}: in A only\n", model);
+      continue;
+    }
+    ++launches;
+    const NumericalError ea = numerical_error(model, a), eb = numerical_error(model, b);
+    const NumericalError e{std::max(ea.speed, eb.speed), std::max(ea.angle, eb.angle), std::max(ea.spin, eb.spin)};
+    for (const post::Channel& c : post::channels()) {
+      const std::string key = fmt::format("{}_{}", c.name, c.unit);
+      if (!launch.contains(key) || !right[model].contains(key)) continue;
+      const double p = launch[key], q = right[model][key];
+      const auto estimated = [&](const json& l) {
+        return l.contains("numerical_error") ? l["numerical_error"].value(key, 0.0) : error_of(c, l, e);
+      };
+      const double error = std::max(estimated(launch), estimated(right[model]));
+      x.erase(fmt::format("models.{}.{}", model, key));
+      if (p == q) continue;
+      rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12.2g}  {}\n", model + " " + key, p, q, q - p,
+                          error, std::abs(q - p) > error ? "beyond" : "within");
+    }
+  }
+  for (const auto& [model, launch] : right.items())
+    if (!left.contains(model)) rows += fmt::format("  {}: in B only\n", model);
+  if (launches > 0)
+    out += "launches\n" +
+           (rows.empty()
+                ? "  the same\n"
+                : fmt::format("  {:<36} {:>12} {:>12} {:>12} {:>12}\n", "", "A", "B", "B - A", "numerical") + rows);
+  // Everything else that both runs say.
+  std::size_t others = 0, moved = 0;
+  std::string largest;
+  double most = 0;
+  for (const auto& [key, p] : x) {
+    const auto it = y.find(key);
+    if (it == y.end()) continue;
+    ++others;
+    const double size = std::max(std::abs(p), std::abs(it->second)),
+                 relative = size > 0 ? std::abs(it->second - p) / size : 0;
+    if (relative <= 1e-9) continue;
+    ++moved;
+    if (relative > most) most = relative, largest = fmt::format("{}: {:.6g} and {:.6g}", key, p, it->second);
+  }
+  out += fmt::format("other numbers of summary.json\n  {} of {} differ{}\n", moved, others,
+                     moved ? "; by most " + largest : std::string());
+  return out;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,59 @@
+#include "hosel/app/paraview.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "build_info.hpp"
+#include "hosel/app/reader.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+bool installed(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::stringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+/// The tree's script first (a build in its checkout), then the installed one.
+fs::path script() {
+  const fs::path own = fs::path(HOSEL_SOURCE_DIR) / "post" / "paraview" / "open.py";
+  return fs::exists(own) ? own : fs::path(HOSEL_INSTALLED_CASES).parent_path() / "paraview" / "open.py";
+}
+
+}  // namespace
+
+void open_in_paraview(const fs::path& out) {
+  if (!fs::is_directory(out)) throw InputError(fmt::format("{}: no such directory", out.string()));
+  std::vector<std::string> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(out))
+    if (entry.path().extension() == ".pvd" &&
+        std::ranges::find(folders, entry.path().parent_path().string()) == folders.end())
+      folders.push_back(entry.path().parent_path().string());
+  std::ranges::sort(folders);
+  if (folders.empty())
+    throw InputError(fmt::format("{}: no series for ParaView (vtk/*.pvd) in this run", out.string()));
+  if (!installed("paraview")) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
+    throw InputError(
+        fmt::format("there is no screen here; without one: scripts/pvbatch post/paraview/impact.py {} impact.png",
+                    folders.front()));
+  fmt::print("{}\n", fmt::join(folders, "\n"));
+  std::fflush(stdout);
+  setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, ":")).c_str(), 1);
+  const std::string argument = "--script=" + script().string();
+  execlp("paraview", "paraview", argument.c_str(), static_cast<char*>(nullptr));
+  throw std::runtime_error("ParaView could not be started");
+}
+
+}  // namespace hosel::app

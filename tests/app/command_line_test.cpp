@@ -1,0 +1,90 @@
+// What the command says of itself, and what it does with finished runs.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "command.hpp"
+
+namespace hosel::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bash(const std::string& script) {
+  const fs::path file = fresh_directory("bash") / "script";
+  write(file, script);
+  FILE* pipe = popen(("bash '" + file.string() + "' 2>&1").c_str(), "r");
+  std::string text;
+  std::array<char, 4096> buffer;
+  while (fgets(buffer.data(), int(buffer.size()), pipe)) text += buffer.data();
+  pclose(pipe);
+  return text;
+}
+
+/// What bash offers behind these words.
+std::string completed(const std::string& words, int at) {
+  return bash("source <(" HOSEL_COMMAND " completion)\nCOMP_WORDS=(" + words + ")\nCOMP_CWORD=" + std::to_string(at) +
+              "\n_hosel\necho \"${COMPREPLY[@]}\"\n");
+}
+
+TEST(CommandLine, CompletesCommandsOptionsAndCases) {
+  EXPECT_EQ(completed("hosel ch", 1), "check\n");
+  EXPECT_EQ(completed("hosel run driver-t", 2), "driver-toe\n");
+  EXPECT_EQ(completed("hosel run driver-toe --fo", 3), "--force\n");
+  EXPECT_EQ(completed("hosel sweep run x --sh", 4), "--shard\n");
+  EXPECT_EQ(completed("hosel keys face-m", 2), "face-map\n");
+}
+
+TEST(CommandLine, ManPageNamesEveryCommand) {
+  const std::string page = command("man").text;
+  EXPECT_TRUE(page.starts_with(".TH HOSEL 1")) << page.substr(0, 200);
+  for (const char* name : {"run CASE", "check CASE", "sweep plan CASE", "import FILE", "diff A B", "keys [OF]"})
+    EXPECT_NE(page.find(std::string(".SS hosel ") + name), std::string::npos) << name;
+  EXPECT_NE(page.find("\\-\\-strict"), std::string::npos);
+}
+
+TEST(CommandLine, DiffNamesInputsAndLaunches) {
+  const fs::path home = fresh_directory("diff"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow);
+  const auto run = [&](const std::string& name, const std::string& more) {
+    const Outcome o = command("run '" + blow.string() + "' --quiet --out '" + (home / name).string() + "' " + more);
+    ASSERT_EQ(o.status, 0) << o.text;
+  };
+  run("a", "");
+  run("b", "--set delivery.club_speed_mps=46");
+  run("c", "");
+  const auto diff = [&](const std::string& one, const std::string& other) {
+    return command("diff '" + (home / one).string() + "' '" + (home / other).string() + "'");
+  };
+  const Outcome moved = diff("a", "b"), same = diff("a", "c");
+  EXPECT_EQ(moved.status, 0) << moved.text;
+  EXPECT_NE(moved.text.find("delivery.club_speed_mps"), std::string::npos) << moved.text;
+  EXPECT_NE(moved.text.find("rigid-eccentric ball_speed_mps"), std::string::npos) << moved.text;
+  EXPECT_NE(moved.text.find("beyond"), std::string::npos) << moved.text;
+  EXPECT_EQ(moved.text.find("dynamic_loft"), std::string::npos) << moved.text;
+  EXPECT_NE(same.text.find("inputs\n  the same\nlaunches\n  the same"), std::string::npos) << same.text;
+  EXPECT_EQ(same.text.find("beyond"), std::string::npos) << same.text;
+  const Outcome none = diff("a", "nothing");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
+}
+
+TEST(CommandLine, OpenSaysWhatIsMissing) {
+  const fs::path home = fresh_directory("open");
+  EXPECT_NE(command("open '" + home.string() + "'").text.find("no series for ParaView"), std::string::npos);
+  write(home / "vtk" / "ball.pvd", "");
+  const std::string open = HOSEL_COMMAND " open '" + home.string() + "'\n";
+  EXPECT_NE(bash("PATH=/nowhere " + open).find("ParaView is not installed"), std::string::npos);
+  // A program of that name, and no screen; then it is started with the script and the folder.
+  write(home / "bin" / "paraview", "#!/bin/sh\necho started \"$@\" $HOSEL_VTK\n");
+  fs::permissions(home / "bin" / "paraview", fs::perms::owner_all);
+  const std::string path = "PATH='" + (home / "bin").string() + ":/bin' ";
+  EXPECT_NE(bash("unset DISPLAY WAYLAND_DISPLAY\nPATH='" + (home / "bin").string() + "' " + open).find("no screen"),
+            std::string::npos);
+  const std::string started = bash("DISPLAY=:0 " + path + open);
+  EXPECT_NE(started.find("open.py"), std::string::npos) << started;
+  EXPECT_NE(started.find((home / "vtk").string()), std::string::npos) << started;
+}
+
+}  // namespace
+}  // namespace hosel::test
