@@ -1,0 +1,20 @@
+"""hosel in Python: cases run, results read into NumPy, models asked about arrays of blows.
+
+    import hosel
+    run = hosel.run("driver-toe", "out/toe", set=["accuracy=look"])
+    run.summary["models"]["fe-free-body"]["ball_speed_mps"]
+
+    model = hosel.Model("driver-toe", "rigid-eccentric")
+    launch = model.launch(club_speed_mph=[95, 105, 115], impact_toe_mm=10)
+    launch["ball_speed_mps"]
+
+Keys carry their unit as in a case: `club_speed_mph`, `impact_toe_mm`. Bad input is a ValueError with the sentence that
+the command would print; a solver that finds no answer is a hosel.NonConvergence.
+"""
+
+from ._hosel import InputError, NonConvergence, __version__
+from .model import Model
+from .results import Run, Table, read, read_table
+from .running import check, run
+
+__all__ = ["InputError", "Model", "NonConvergence", "Run", "Table", "check", "read", "read_table", "run", "__version__"]

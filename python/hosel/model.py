@@ -1,0 +1,39 @@
+"""One model asked about many blows."""
+
+import numpy as np
+
+from . import _hosel
+
+
+class Model:
+    """A model of `hosel list` and the blow of a case: club, ball, contact, and a delivery that the inputs below replace.
+
+    case: a case directory, or the name of a shipped case, of a kind that has one blow (impact, face-map, curves,
+        cross-check).
+    name: the model; default: the first that the case names.
+    set: overrides, "table.key=value".
+    """
+
+    def __init__(self, case, name="", set=()):
+        self._model = _hosel.Model(str(case), name, list(set))
+
+    @property
+    def name(self):
+        return self._model.name
+
+    def launch(self, **inputs):
+        """The launches of blows with these inputs, computed on all cores.
+
+        inputs: numbers or arrays that broadcast together, named as in a case with their unit: club_speed, attack_angle,
+            club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass. What is not given is the case's.
+        Returns a dict of arrays of the broadcast shape: ball_speed_mps, launch_angle_deg, azimuth_deg, backspin_rpm, ...
+        Raises InputError (a ValueError) naming the first blow that has no answer.
+        """
+        arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in inputs.values())) if inputs else [np.zeros(())]
+        shape = arrays[0].shape
+        rows = np.stack([a.ravel() for a in arrays], axis=1) if inputs else np.zeros((1, 0))
+        answers = self._model.launch(list(inputs), np.ascontiguousarray(rows))
+        return {name: answers[:, i].reshape(shape) for i, name in enumerate(self._model.channels())}
+
+    def __repr__(self):
+        return f"hosel.Model({self.name!r})"

@@ -1,0 +1,128 @@
+// The compiled half of `import hosel`: cases read and run by the same code as the command's, and one model asked about
+// many blows at once. Docstrings for people stand in python/hosel.
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <tbb/parallel_for.h>
+
+#include <mutex>
+
+#include "build_info.hpp"
+#include "hosel/app/cases.hpp"
+#include "hosel/app/job.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/golf/quantities.hpp"
+#include "hosel/models/checked_launch.hpp"
+#include "hosel/models/registry.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/solvers/errors.hpp"
+
+namespace py = pybind11;
+using namespace hosel;
+
+namespace {
+
+using Texts = std::vector<std::string>;
+
+void run(const std::string& where, const std::filesystem::path& out, const Texts& set, bool force, bool quiet) {
+  app::CaseFile file(app::find_case(where), set);
+  const auto job = app::read_job(file);
+  app::Output output({.directory = out, .force = force, .quiet = quiet}, file.resolved());
+  job->run(output);
+}
+
+std::string check(const std::string& where, const Texts& set) {
+  app::CaseFile file(app::find_case(where), set);
+  app::read_job(file);
+  return file.resolved();
+}
+
+/// The blow of a case and one model, asked again and again with other inputs.
+class Model {
+ public:
+  Model(const std::string& where, std::string name, const Texts& set) : name_(std::move(name)) {
+    check(where, set);
+    app::CaseFile file(app::find_case(where), set);
+    if (name_.empty()) name_ = app::read_models(file.root()).front();
+    const models::ModelEntry* entry = models::find(name_);
+    if (!entry) throw app::InputError(fmt::format("no model '{}'; `hosel list` shows them", name_));
+    blow_ = app::read_blow(file.root(), {name_});
+    model_ = entry->make(app::read_options(file.root(), {name_}));
+  }
+
+  const std::string& name() const { return name_; }
+
+  /// Columns of `inputs` are named by `names`, each with its unit; rows are blows. Columns of the result: channels().
+  py::array_t<double> launch(const Texts& names, const py::array_t<double, py::array::c_style>& inputs) const {
+    std::vector<std::pair<Input, double>> columns;
+    for (const std::string& name : names) {
+      const SplitName split = split_unit(name);
+      const std::optional<Input> input = input_of(split.stem);
+      if (!input || !split.unit || split.unit->dimension != quantity(*input).dimension)
+        throw app::InputError(unknown(name));
+      columns.emplace_back(*input, split.unit->si);
+    }
+    const auto in = inputs.unchecked<2>();
+    const auto channels = post::channels();
+    py::array_t<double> answers({in.shape(0), py::ssize_t(channels.size())});
+    auto out = answers.mutable_unchecked<2>();
+    std::mutex mutex;
+    py::ssize_t first = in.shape(0);  // of the blows that fail
+    std::string why;
+    {
+      const py::gil_scoped_release released;
+      tbb::parallel_for(py::ssize_t{0}, in.shape(0), [&](py::ssize_t i) {
+        Blow blow = blow_;
+        for (std::size_t c = 0; c < columns.size(); ++c)
+          set(blow, columns[c].first, in(i, py::ssize_t(c)) * columns[c].second);
+        try {
+          const Launch launch = models::checked_launch(*model_, blow);
+          for (std::size_t c = 0; c < channels.size(); ++c)
+            out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
+        } catch (const std::exception& e) {
+          const std::lock_guard lock(mutex);
+          if (i >= first) return;
+          first = i;
+          why = e.what();
+        }
+      });
+    }
+    if (!why.empty()) throw app::InputError(fmt::format("blow {}: {}", first, why));
+    return answers;
+  }
+
+  static Texts channels() {
+    Texts out;
+    for (const post::Channel& c : post::channels()) out.push_back(fmt::format("{}_{}", c.name, c.unit));
+    return out;
+  }
+
+ private:
+  static std::string unknown(const std::string& name) {
+    Texts known;
+    for (int i = 0; i < kInputs; ++i) known.emplace_back(stem(static_cast<Input>(i)));
+    return fmt::format("'{}' is no input of a blow with a unit (known: {})", name, fmt::join(known, ", "));
+  }
+
+  std::string name_;
+  Blow blow_;
+  std::unique_ptr<models::ImpactModel> model_;
+};
+
+}  // namespace
+
+PYBIND11_MODULE(_hosel, m) {
+  py::register_exception<app::InputError>(m, "InputError", PyExc_ValueError);
+  py::register_exception<solvers::NonConvergence>(m, "NonConvergence", PyExc_RuntimeError);
+  m.attr("__version__") = HOSEL_VERSION;
+  m.def("run", run, py::call_guard<py::gil_scoped_release>());
+  m.def("check", check);
+  py::class_<Model>(m, "Model")
+      .def(py::init<const std::string&, std::string, const Texts&>())
+      .def_property_readonly("name", &Model::name)
+      .def("launch", &Model::launch)
+      .def_static("channels", &Model::channels);
+}

@@ -1,0 +1,85 @@
+"""The Python package: what it computes is what the command computes, and bad input is an error with a sentence."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import hosel
+
+FAST = ['models=["rigid-eccentric"]']
+
+
+class Launches(unittest.TestCase):
+    def test_an_array_of_blows_is_each_blow_by_itself(self):
+        model = hosel.Model("driver-toe", "rigid-eccentric")
+        toe = np.array([[-20.0, 0.0], [10.0, 20.0]])
+        all_at_once = model.launch(club_speed_mph=100.0, impact_toe_mm=toe)
+        self.assertEqual(all_at_once["sidespin_rpm"].shape, (2, 2))
+        # Something happened: a toe blow draws, a heel blow fades.
+        self.assertLess(all_at_once["sidespin_rpm"][1, 1], -100)
+        self.assertGreater(all_at_once["sidespin_rpm"][0, 0], 100)
+        for i in np.ndindex(toe.shape):
+            one = model.launch(club_speed_mps=100 * 0.44704, impact_toe_mm=toe[i])
+            for name, values in all_at_once.items():
+                self.assertAlmostEqual(values[i], float(one[name]), delta=1e-9 * (1 + abs(values[i])), msg=name)
+
+    def test_the_model_is_the_commands(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = hosel.run("driver-toe", Path(folder) / "out", set=FAST)
+            said = run.launches()["rigid-eccentric"]
+        asked = hosel.Model("driver-toe", "rigid-eccentric").launch()
+        self.assertGreater(said["ball_speed_mps"], 50)
+        for name in asked:
+            self.assertAlmostEqual(float(asked[name]), said[name], delta=1e-9 * (1 + abs(said[name])), msg=name)
+
+    def test_bad_input_is_named(self):
+        model = hosel.Model("driver-toe", "rigid-eccentric")
+        for inputs, words in [({"club_sped_mph": 1.0}, "club_sped_mph"), ({"club_speed_deg": 1.0}, "club_speed_deg"),
+                              ({"dynamic_loft_deg": [10.0, 179.0]}, "blow 1")]:
+            with self.assertRaisesRegex(ValueError, words):
+                model.launch(**inputs)
+        with self.assertRaisesRegex(ValueError, "did you mean"):
+            hosel.Model("driver-to")
+        with self.assertRaisesRegex(hosel.InputError, "head.mass_kg"):
+            hosel.check("driver-toe", set=["head.mass_kg=200"])
+
+
+class Results(unittest.TestCase):
+    def test_a_run_is_read_back(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "map"
+            hosel.run("face-map-driver-reduced", out, set=["grid.columns=5", "grid.rows=3"])
+            run = hosel.read(out)
+            self.assertEqual(run.case["grid"]["columns"], 5)
+            self.assertIn("face_map.csv", run.tables)
+            table = run["face_map.csv"]
+            models = np.unique(table["model"])
+            xs, ys, speed = table.where(model=models[0]).grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
+            self.assertEqual(speed.shape, (3, 5))
+            self.assertTrue(np.isfinite(speed).all() and speed.min() > 40)
+            with self.assertRaisesRegex(ValueError, "twice"):
+                table.grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
+            with self.assertRaisesRegex(KeyError, "face_map.csv"):
+                run["nothing.csv"]
+            with self.assertRaisesRegex(ValueError, "finished"):  # as the command: not without force
+                hosel.run("face-map-driver-reduced", out)
+
+    def test_an_empty_cell_is_nan_and_a_word_stays_a_word(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "t.csv"
+            file.write_text("x_mm,who\n1.5,a\n,b\n")
+            table = hosel.read_table(file)
+        self.assertEqual(table.x_mm[0], 1.5)
+        self.assertTrue(np.isnan(table.x_mm[1]))
+        self.assertEqual(list(table.who), ["a", "b"])
+
+    def test_a_directory_without_a_run_is_said(self):
+        with self.assertRaisesRegex(FileNotFoundError, "no finished run"):
+            hosel.read("/nowhere")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
