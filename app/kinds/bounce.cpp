@@ -52,7 +52,7 @@ class BounceJob final : public Job {
  public:
   explicit BounceJob(CaseFile& file) {
     Table root = file.root();
-    title_ = root.text({"title", "of tables and figures"}, "");
+    title_ = root.text({"title", "of tables, pages and figures"}, "");
     const std::vector<std::string> names = read_models(root);
     ball_ = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     const models::Options options = read_options(root, names);

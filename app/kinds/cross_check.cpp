@@ -59,7 +59,7 @@ class CrossCheckJob final : public Job {
  public:
   explicit CrossCheckJob(CaseFile& file) {
     Table root = file.root();
-    title_ = root.text({"title", "of tables and figures"}, "");
+    title_ = root.text({"title", "of tables, pages and figures"}, "");
     models_ = read_models(root);
     if (models_.size() < 2) root.fail("models", "name at least two models");
     const std::string reference =

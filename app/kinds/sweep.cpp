@@ -68,7 +68,7 @@ class SweepJob final : public PointJob {
   explicit SweepJob(CaseFile& file) {
     Table root = file.root();
     const Nesting nesting(root, file.file());
-    title_ = root.text({"title", "of tables and figures"}, "");
+    title_ = root.text({"title", "of tables, pages and figures"}, "");
     const std::string named = root.text({"case", "the case whose keys are swept: beside this one, or a shipped one"});
     const fs::path beside = file.directory() / named;
     case_ = fs::exists(beside) ? beside : find_case(named);
