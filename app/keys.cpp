@@ -27,7 +27,7 @@ std::vector<Variant> variants() {
   return {
       {"driver-toe",
        {"output.vtk=true", "contact.face_transition_speed_mps=0.5", "grip.force_N=[0,0,0]", "grip.moment_N_m=[0,0,0]"}},
-      {"driver-toe", {"grip={hold='hands', " + springs + "}"}},
+      {"driver-toe", {"grip={hold='hands', " + springs + "}", "face={effective_mass_g=10, stiffness_N_per_m=5e6}"}},
       {"driver-toe", {"shaft={table={file='case.toml'}}"}},
       {"driver-toe",
        {"shaft={polynomial={length_m=1, bending_stiffness_N_m2=[40], torsional_stiffness_N_m2=[40], "
@@ -78,6 +78,7 @@ void add(std::vector<AcceptedKey>& keys, const std::string& kind, const std::vec
     it->ranges.insert(range_of(d));
     if (d.standard) it->standards.insert(*d.standard);
     it->optional = it->optional || d.optional;
+    it->required = it->required || (!d.standard && !d.optional);
   }
 }
 
@@ -108,7 +109,8 @@ std::string value_of(const AcceptedKey& k) {
 std::string default_of(const AcceptedKey& k) {
   if (k.standards.empty()) return k.optional ? "-" : "required";
   if (k.standards.size() > 1) return "depends on the case";
-  return k.standards.begin()->empty() ? "empty" : *k.standards.begin();
+  const std::string standard = k.standards.begin()->empty() ? "empty" : *k.standards.begin();
+  return k.required ? "required, or " + standard : standard;
 }
 
 std::string listed(const std::set<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
@@ -195,10 +197,11 @@ std::string keys_markdown(const std::vector<AcceptedKey>& keys) {
 Written by `scripts/write-reference` from what the reader declares where it reads (`hosel keys` prints the same,
 `hosel keys KIND` or `hosel keys TABLE` a part of it). A key with a unit at its end may carry any other unit of the same
 dimension: `club_speed_mps`, `club_speed_mph`. What is not listed is an error. A list of tables `[[table]]` may stand
-several times. Default `-`: the key may be left out, and then says nothing.
+several times. Default `-`: the key may be left out, and then says nothing. `Read in`: the kinds of the shipped cases that
+read the table; a case of another kind that asks the same model reads it as well.
 )";
   for (const Section& s : by_table(keys)) {
-    out += fmt::format("\n## {}\n\nKinds: {}.\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+    out += fmt::format("\n## {}\n\nRead in: {}.\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
                        s.table.empty() ? "Top of the file" : "`" + heading(s.table) + "`", listed(s.kinds));
     for (const AcceptedKey* k : s.keys)
       out += fmt::format("| `{}` | {} | {} | {}{} |\n", k->name, value_of(*k), default_of(*k), k->meaning,

@@ -15,11 +15,12 @@ struct AcceptedKey {
   std::string table;  ///< dotted, `[]` behind a list of tables; empty: the top of the file
   std::string name;   ///< with its unit
   std::string meaning;
-  std::set<std::string> kinds;      ///< of case that accept it
+  std::set<std::string> kinds;      ///< of the shipped cases that read it
   std::set<std::string> types;      ///< "number", "one of a, b"
   std::set<std::string> ranges;     ///< "0.01 to 5 kg"; empty where a number says nothing more
   std::set<std::string> standards;  ///< defaults; empty: the key is required
-  bool optional = false;            ///< read in some case without it being there
+  bool required = false;            ///< in some case, without a default
+  bool optional = false;            ///< read in some case only where it is there
 };
 
 /// Every key that the reader accepts, in the order in which it asks: what it declares while it reads the shipped cases,
