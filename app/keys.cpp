@@ -29,6 +29,7 @@ std::vector<Variant> variants() {
        {"output.vtk=true", "contact.face_transition_speed_mps=0.5", "grip.force_N=[0,0,0]", "grip.moment_N_m=[0,0,0]"}},
       {"driver-toe", {"grip={hold='hands', " + springs + "}", "face={effective_mass_g=10, stiffness_N_per_m=5e6}"}},
       {"driver-toe", {"shaft={table={file='case.toml'}}"}},
+      {"driver-toe", {"ball.changes={}"}},
       {"driver-toe",
        {"shaft={polynomial={length_m=1, bending_stiffness_N_m2=[40], torsional_stiffness_N_m2=[40], "
         "mass_per_length_kg_per_m=[0.06], mean_radius_m=[0.005]}, offsets={arc_length_mm=[0]}}"}},

@@ -13,12 +13,9 @@ models::FeImpactOptions read_fe(Table root) {
   models::FeImpactOptions o;
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   if (root.has("accuracy")) {
-    const std::string accuracy =
+    o.resolve(accuracy_named(
         root.choice({"accuracy", "mesh, harmonics and steps together; keys of [mesh] and [time] override each"},
-                    {"look", "default", "reference"});
-    o.resolve(accuracy == "look"      ? models::Accuracy::look
-              : accuracy == "default" ? models::Accuracy::standard
-                                      : models::Accuracy::reference);
+                    {"look", "default", "reference"})));
   }
   // Friction is physics: a case with a deformable ball states it.
   Table contact = root.table("contact");
@@ -75,6 +72,12 @@ models::FeImpactOptions read_fe(Table root) {
 }
 
 }  // namespace
+
+models::Accuracy accuracy_named(std::string_view name) {
+  return name == "look"      ? models::Accuracy::look
+         : name == "default" ? models::Accuracy::standard
+                             : models::Accuracy::reference;
+}
 
 void read_grip(Table& t, models::ShaftMount& mount) {
   using models::Grip;

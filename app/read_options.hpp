@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hosel/app/reader.hpp"
@@ -11,6 +12,9 @@ namespace hosel::app {
 
 /// Reads the tables that the named models look at, and no others.
 models::Options read_options(Table root, const std::vector<std::string>& models);
+
+/// "look", "default" or "reference", as a case has it.
+models::Accuracy accuracy_named(std::string_view name);
 
 /// `[grip]`: what the hands do during the impact, and the wrench (`force`, `moment`, grip axes) with which they load
 /// the shaft before it; without one the shaft is straight and moves with the head.

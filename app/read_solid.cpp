@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "hosel/app/read_blow.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/fem/materials/linear_elastic.hpp"
 #include "hosel/fem/materials/ogden.hpp"
 #include "hosel/fem/materials/st_venant_kirchhoff.hpp"
+#include "hosel/models/changeable_fe.hpp"
 
 namespace hosel::app {
 namespace {
@@ -83,7 +86,9 @@ fem::Solid read_solid(Table table) {
   return solid;
 }
 
-models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
+namespace {
+
+models::FeBall read_declared_ball(Table& table, const models::FeBall& standard) {
   auto layers = table.tables("layers");
   if (layers.empty()) {
     std::vector<std::string> names;
@@ -101,6 +106,28 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
     ball.layers.push_back({radius, read_solid(layer)});
   }
   if (const auto faults = ball.faults(); !faults.empty()) table.fail("layers", faults.front());
+  return ball;
+}
+
+}  // namespace
+
+models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
+  models::FeBall ball = read_declared_ball(table, standard);
+  if (auto t = table.optional_table("changes")) {
+    const Range factor{0.05, 20};
+    models::FeChange c;
+    c.cover_stiffness = std::log(t->number(
+        {"cover_moduli_factor", "on all moduli of the outermost layer; a ball of one piece gets a skin"}, factor, 1.0));
+    c.cover_thickness = t->quantity({"added_cover", "thickness added to the outermost layer"}, "mm", {-5e-3, 5e-3}, 0);
+    c.losses = std::log(t->number({"branch_moduli_factor", "on the branch moduli of every layer"}, factor, 1.0));
+    c.relaxation = std::log(t->number(
+        {"branch_times_factor", "on the branch times, moduli at the frequency of the contact kept"}, factor, 1.0));
+    try {
+      ball = changed(std::move(ball), c,
+                     table.quantity({"radius", "of the ball"}, "mm", limits::ball_radius, Ball{}.radius));
+    } catch (const std::invalid_argument& e) { t->fail("", e.what()); }
+    if (const auto faults = ball.faults(); !faults.empty()) t->fail("", faults.front());
+  }
   return ball;
 }
 

@@ -20,7 +20,8 @@ std::span<const NamedLaw> solid_laws();
 fem::Solid read_solid(Table table);
 
 /// `[ball]`: either `model = "name"` of the library or `[[ball.layers]]` from the inside, each a material
-/// with `radius_fraction`. `standard` where neither stands.
+/// with `radius_fraction`; `standard` where neither stands. `[ball.changes]`: what the loop finds of a ball, see
+/// models::FeChange.
 models::FeBall read_fe_ball(Table table, const models::FeBall& standard);
 
 }  // namespace hosel::app

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hosel/loop/effect.hpp"
 #include "hosel/loop/rules.hpp"
 
 namespace hosel::loop {
@@ -19,6 +20,7 @@ struct Case {
   std::string title;
   std::string base;                  ///< name of the model
   std::vector<std::string> effects;  ///< declared part of the base; their parameters are fitted
+  std::vector<EffectEntry> own;      ///< candidates beside the library's
   Split split;
   Rules rules;
   std::vector<std::string> notes;  ///< about the case itself

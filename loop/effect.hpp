@@ -1,6 +1,6 @@
 /// Candidate effects: named, parameterised changes of what a model declares. Zero parameters give the base model back
 /// bit for bit. A new effect is one file in loop/effects, its declaration there in all.hpp and one line in
-/// loop/effects.cpp.
+/// loop/effects.cpp; or it stands outside the library and comes with the case (examples/own_effect.cpp).
 #pragma once
 
 #include <functional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hosel/golf/quantities.hpp"
+#include "hosel/models/fe_change.hpp"
 
 namespace hosel::loop {
 
@@ -19,7 +20,8 @@ struct HistorySetting;
 /// One shot as an effect sees it.
 struct Shot {
   Blow blow;
-  double order = 0;  ///< place in the session: 0 the first shot, 1 the last
+  models::FeChange change;  ///< of what a finite-element base declares beside the blow
+  double order = 0;         ///< place in the session: 0 the first shot, 1 the last
 };
 
 struct Parameter {
@@ -56,6 +58,9 @@ struct Setting {
   bool head_turns = false;        ///< the base model lets the head rotate
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
   std::vector<Output> outputs;    ///< channels of the data
+  bool deformable = false;        ///< the base computes the ball's deformation: it has no impact law to change
+  bool shaft = false;             ///< the case declares a shaft that such a base can hang on its free head
+  bool full_club = false;         ///< such a base has its shaft already
 };
 
 struct EffectEntry {
@@ -69,7 +74,9 @@ struct EffectEntry {
 
 /// Every effect, in the order in which reports name them.
 std::span<const EffectEntry> effects();
+/// The library's effects, then those of one's own.
+std::vector<EffectEntry> effects_with(std::span<const EffectEntry> own);
 /// nullptr where no effect has this name.
-const EffectEntry* find_effect(std::string_view name);
+const EffectEntry* find_effect(std::string_view name, std::span<const EffectEntry> own = {});
 
 }  // namespace hosel::loop

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 
 #include "hosel/loop/effects/all.hpp"
@@ -39,8 +38,14 @@ constexpr std::array kEffects = {
                 "the monitor's axes against a surveyed line", monitor_misalignment},
     EffectEntry{"session-drift", "something drifts slowly and steadily with the shot number",
                 "a repeated reference shot through the session", session_drift},
+    EffectEntry{"ball-cover-stiffness", "the cover is stiffer or softer against the core than declared",
+                "indentation of cover and core", ball_cover_stiffness},
+    EffectEntry{"ball-relaxation", "the ball's shear losses are not the declared ones, at equal normal restitution",
+                "tangential restitution at several speeds of contact", ball_relaxation},
+    EffectEntry{"hosel-place", "the shaft meets the head elsewhere than declared", "place of the hosel (callipers)",
+                hosel_place},
     EffectEntry{"shaft-stiffness", "the shaft is stiffer or softer than its table",
-                "bending stiffness of the bare shaft (three-point bending)", nullptr, shaft_stiffness},
+                "bending stiffness of the bare shaft (three-point bending)", shaft_stiffness, shaft_stiffness},
     EffectEntry{"shaft-damping", "vibrations die away faster or slower",
                 "decay of a long record after the same release", nullptr, shaft_damping},
     EffectEntry{"clamp-compliance", "the clamp yields",
@@ -62,9 +67,17 @@ constexpr std::array kEffects = {
 
 std::span<const EffectEntry> effects() { return kEffects; }
 
-const EffectEntry* find_effect(std::string_view name) {
-  const auto it = std::ranges::find(kEffects, name, &EffectEntry::name);
-  return it == kEffects.end() ? nullptr : &*it;
+std::vector<EffectEntry> effects_with(std::span<const EffectEntry> own) {
+  std::vector<EffectEntry> all(kEffects.begin(), kEffects.end());
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+const EffectEntry* find_effect(std::string_view name, std::span<const EffectEntry> own) {
+  for (const std::span<const EffectEntry> some : {effects(), own})
+    for (const EffectEntry& e : some)
+      if (e.name == name) return &e;
+  return nullptr;
 }
 
 }  // namespace hosel::loop

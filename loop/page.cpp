@@ -156,6 +156,18 @@ std::string page(const LoopResult& r, const Shots& table) {
                      number(c.after.holdout_bias));
   s += "</table></div><p><small>Residual is model minus measured; 95 % intervals in brackets and as "
        "whiskers.</small></p>";
+  if (r.corrected && !r.corrected->rows.empty()) {
+    const auto& rows = r.corrected->rows;
+    s += fmt::format(
+        "<h2>By the base model itself</h2><p>{}, no surrogate between, asked about {} of the held-out shots as it was "
+        "declared and with the adopted effects in it:</p><table><tr><th>channel<th>RMS before<th>RMS after</tr>",
+        escape_html(r.base), rows.size());
+    for (std::size_t c = 0; c < r.channels.size(); ++c)
+      s += fmt::format("<tr><td>{}<td>{}<td>{}</tr>", escape_html(r.channels[c].name),
+                       number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)));
+    s += "</table><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
+         "measured.</small></p>";
+  }
   if (r.balance_before) {
     const Balance &b = *r.balance_before, &a = *r.balance_after;
     s += "<h2>Contact, or kinematics and inertia?</h2><p>Whatever the contact, one impulse must give the ball both its "

@@ -144,6 +144,17 @@ json to_json(const LoopResult& r) {
     };
     out["balances"] = {{"before", one(*r.balance_before)}, {"after", one(*r.balance_after)}};
   }
+  if (r.corrected) {
+    json channels = json::array();
+    for (std::size_t k = 0; k < r.channels.size(); ++k)
+      channels.push_back({{"name", r.channels[k].name},
+                          {"before_rmse", value(rms(r.corrected->rows, &Corrected::Row::before, k))},
+                          {"after_rmse", value(rms(r.corrected->rows, &Corrected::Row::after, k))},
+                          {"rows", r.corrected->rows.size()}});
+    out["corrected"] = {{"case", r.corrected->shots.empty() ? json(nullptr) : json("corrected/case.toml")},
+                        {"channels", channels},
+                        {"not_in_the_case", r.corrected->instrument}};
+  }
   out["notes"] = r.notes;
   return out;
 }

@@ -71,6 +71,27 @@ struct UsedRow {
   std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
 };
 
+/// A slow base itself, without a surrogate, asked about shots that were held out.
+struct Corrected {
+  struct Row {
+    std::string id;
+    std::vector<double> before,
+        after;  ///< per channel, header's unit: model minus measured; NaN where it has no answer
+  };
+  std::vector<Row> rows;
+  /// Shots with the adopted effects in them, as the base is asked about them, and what was measured.
+  struct Asked {
+    std::string id;
+    Shot shot;
+    std::map<Output, double> measured;  ///< SI
+  };
+  std::vector<Asked> shots;
+  std::vector<std::string> instrument;  ///< adopted effects on what the instrument shows, which no blow holds
+};
+
+/// Root mean square over the rows that have an answer.
+double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Corrected::Row::*of, std::size_t channel);
+
 struct LoopResult {
   LoopResult() = default;
   LoopResult(LoopResult&&) = default;  // the models below point into `forms`: moved, never copied
@@ -98,6 +119,8 @@ struct LoopResult {
   std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
   Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories
+  std::optional<Corrected> corrected;                    ///< of a slow base
+  std::vector<Shot> decisive;                            ///< of a surrogate: shots at the likeliest candidates
   std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
 };
 

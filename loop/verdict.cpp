@@ -97,6 +97,13 @@ Errors errors(const std::vector<UsedRow>& rows, std::vector<double> UsedRow::*of
   return e;
 }
 
+double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Corrected::Row::*of, std::size_t channel) {
+  double square = 0, n = 0;
+  for (const Corrected::Row& r : rows)
+    if (const double x = (r.*of)[channel]; std::isfinite(x)) square += x * x, ++n;
+  return n > 0 ? std::sqrt(square / n) : kNaN;
+}
+
 void conclude(const Study& study, LoopResult& result) {
   const Problem& problem = study.problem;
   const Selection& s = result.selection = study.selection;

@@ -6,17 +6,19 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "hosel/app/kinds/loop_common.hpp"
+#include "hosel/app/kinds/loop_corrected.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/loop/shots/run.hpp"
-#include "hosel/loop/shots/spread.hpp"
+#include "hosel/models/changeable_fe.hpp"
 #include "hosel/models/registry.hpp"
-#include "hosel/models/response_surface.hpp"
 
 namespace hosel::app {
 namespace {
@@ -48,20 +50,26 @@ class LoopJob final : public Job {
     std::vector<std::string> names;
     for (const auto& m : models::registry()) names.emplace_back(m.name);
     model.choice({"base", "the model whose missing effect is sought"}, names);
-    model_ = models::find(case_.base)->make(read_options(root, {case_.base}));
-    case_.model = model_.get();
-    case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
-    if (auto surface = model.optional_table("surrogate")) {
-      if (case_.direct) surface->fail("", "this base answers in microseconds and needs no surrogate");
-      points_ = int(surface->integer({"points", "blows through which the surrogate goes"}, 8, 100000, 80));
-      surface_seed_ =
-          static_cast<unsigned long>(surface->integer({"seed", "of the surrogate's blows"}, 0, 1L << 53, 1));
+    const bool fe = case_.base.starts_with("fe-");
+    std::optional<Shaft> shaft;
+    if (auto table = root.optional_table("shaft")) shaft = read_shaft(*table);
+    // A free head's shaft is what the loop may hang on it.
+    const models::Options options = read_options(root, {fe && shaft ? "fe-full-club" : case_.base});
+    if (fe) {
+      read_fe_base(root, model.default_table("surrogate"), options, std::move(shaft));
+    } else {
+      if (model.has("surrogate"))
+        model.fail("surrogate", "only a finite-element base stands behind one: the others answer at once");
+      model_ = models::find(case_.base)->make(options);
+      case_.model = model_.get();
+      case_.direct = case_.base == "rigid-planar" || case_.base == "rigid-eccentric";
+      case_.blow.club.shaft = std::move(shaft);
     }
     case_.head_turns = case_.base != "rigid-planar";
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
-    if (auto shaft = root.optional_table("shaft")) case_.blow.club.shaft = read_shaft(*shaft);
+    if (fe) case_.blow.contact.friction = options.fe.friction;
     if (auto hosel = root.optional_table("hosel")) case_.blow.club.geometry = read_club_geometry(*hosel);
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
@@ -75,6 +83,12 @@ class LoopJob final : public Job {
     case_.inertia_declared = head.inertia.allFinite();
 
     Table data = root.table("data");
+    const std::vector<std::string> unknown =
+        data.texts({"unknown", "inputs whose record is not used: dynamic_loft, found from each launch angle"},
+                   std::vector<std::string>{});
+    for (const std::string& name : unknown)
+      if (name != "dynamic_loft") data.fail("unknown", "only dynamic_loft can be found from the launch: its angle");
+    case_.loft_unknown = !unknown.empty();
     const auto path = data.data_file({"shots", "CSV of the measured shots"});
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
@@ -114,11 +128,20 @@ class LoopJob final : public Job {
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     loop::LoopResult result;
+    std::unique_ptr<Progress> progress;
+    std::mutex at_work;
+    if (fe_)
+      slow_.told = [&, at = std::string()](std::string_view what, double done) mutable {
+        const std::scoped_lock lock(at_work);
+        if (at != what) progress.reset(new Progress(out.progress(at = what)));  // cannot be moved
+        progress->update(done);
+      };
     try {
-      if (points_ > 0) build_surrogate(out);
       result = loop::run(case_);
     } catch (const DataError& e) { throw InputError(e.what()); }
+    progress.reset();
     report_loop(out, result, case_.shots, "rows");
+    if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
   }
 
  private:
@@ -151,42 +174,40 @@ class LoopJob final : public Job {
     return head;
   }
 
-  /// The base behind a response surface over the recorded inputs, its error beside the channels' names.
-  void build_surrogate(Output& out) {
-    const std::vector<Delivery> deliveries = loop::spread(case_.shots, points_, surface_seed_);
-    std::unique_ptr<models::ResponseSurface> surface;
-    try {
-      surface = std::make_unique<models::ResponseSurface>(*model_, case_.blow, deliveries);
-    } catch (const std::invalid_argument& e) {
-      throw InputError(fmt::format("{}: surrogate of {}: {}", case_.shots.file, case_.base, e.what()));
-    }
-    std::string errors;
-    for (const loop::Column& c : case_.shots.columns) {
-      if (c.role != loop::Role::output) continue;
-      const std::optional<hosel::Output> output = output_of(c.stem);
-      if (!output) continue;
-      double square = 0;
-      for (std::size_t i = 0; i < deliveries.size(); ++i) {
-        const double e = (get(surface->predicted()[i], *output) - get(surface->answers()[i], *output)) / c.si;
-        square += e * e / double(deliveries.size());
-      }
-      errors += fmt::format("{}{} {:.3g}", errors.empty() ? "" : ", ", c.name, std::sqrt(square));
-    }
-    case_.notes.push_back(
-        fmt::format("{} stands behind a response surface of degree {} through {} of its answers; error of each answer "
-                    "predicted from the others: {}",
-                    case_.base, surface->degree(), deliveries.size(), errors));
-    out.say(case_.notes.back());
-    model_ = std::move(surface);
-    case_.model = model_.get();
-    case_.direct = true;
+  /// A finite-element base: asked at the surrogate's accuracy where the effects are sought, at its own in the end.
+  void read_fe_base(Table& root, Table surrogate, const models::Options& options, std::optional<Shaft> shaft) {
+    const bool full = case_.base == "fe-full-club";
+    if (full && !shaft) root.fail("shaft", "a full club needs a table [shaft]");
+    case_.deformable = true;
+    case_.full_club = full;
+    case_.shaft_declared = shaft.has_value();
+    models::FeImpactOptions coarse = options.fe;
+    const std::string accuracy =
+        surrogate.choice({"accuracy", "of the blows that the surrogate learns from; case: the case's own"},
+                         {"look", "default", "reference", "case"}, "look");
+    if (accuracy != "case") coarse.resolve(accuracy_named(accuracy));
+    slow_.runs = int(surrogate.integer({"runs", "such blows; 0: as many as the effects need"}, 0, 100000, 0));
+    slow_.fine_runs = int(surrogate.integer({"fine_runs", "blows at the case's own accuracy that correct it"}, 8,
+                                            100000, slow_.fine_runs));
+    slow_.checked = int(surrogate.integer({"checked", "held-out shots that the base itself is asked about, at most"}, 0,
+                                          100000, slow_.checked));
+    slow_.seed = static_cast<unsigned long>(surrogate.integer({"seed", "of the surrogate's blows"}, 0, 1L << 53, 1));
+    fe_ = std::make_unique<models::ChangeableFe>(options.fe, options.shaft_mount, shaft, full);
+    slow_.coarse = [base = models::ChangeableFe(coarse, options.shaft_mount, std::move(shaft), full)](
+                       const loop::Shot& s) { return base.launch(s.blow, s.change); };
+    const auto same = [](const models::FeImpactOptions& a, const models::FeImpactOptions& b) {
+      return a.mesh.sector == b.mesh.sector && a.mesh.rings == b.mesh.rings && a.harmonics == b.harmonics &&
+             a.antisymmetric == b.antisymmetric && a.steps_per_contact == b.steps_per_contact;
+    };
+    if (!same(coarse, options.fe)) slow_.fine = [this](const loop::Shot& s) { return fe_->launch(s.blow, s.change); };
+    case_.slow = &slow_;
   }
 
   loop::ShotCase case_;
   std::unique_ptr<models::ImpactModel> model_;
+  loop::SlowBase slow_;
+  std::unique_ptr<models::ChangeableFe> fe_;  ///< of a finite-element base
   std::filesystem::path skipped_;
-  int points_ = 0;  ///< of the surrogate; 0: none
-  unsigned long surface_seed_ = 1;
 };
 
 }  // namespace

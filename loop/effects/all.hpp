@@ -20,6 +20,10 @@ std::vector<Parametrisation> normal_force_offset(const Setting&);
 std::vector<Parametrisation> loft_bias(const Setting&);
 std::vector<Parametrisation> monitor_misalignment(const Setting&);
 std::vector<Parametrisation> session_drift(const Setting&);
+std::vector<Parametrisation> ball_cover_stiffness(const Setting&);
+std::vector<Parametrisation> ball_relaxation(const Setting&);
+std::vector<Parametrisation> hosel_place(const Setting&);
+std::vector<Parametrisation> shaft_stiffness(const Setting&);
 
 std::vector<Parametrisation> shaft_stiffness(const HistorySetting&);
 std::vector<Parametrisation> shaft_damping(const HistorySetting&);

@@ -3,7 +3,8 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Parametrisation> ball_inertia(const Setting&) {
+std::vector<Parametrisation> ball_inertia(const Setting& setting) {
+  if (setting.deformable) return {};  // follows from its layers
   Parametrisation f{.effect = "ball-inertia",
                     .what = "inertia factor I / (m r^2)",
                     .parameters = {{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}}};

@@ -3,7 +3,8 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Parametrisation> ball_tangential_compliance(const Setting&) {
+std::vector<Parametrisation> ball_tangential_compliance(const Setting& setting) {
+  if (setting.deformable) return {};  // what its ball does by itself
   const Parameter level{"tangential_restitution", "1", 1, -0.3, 0.8, 0.1};
   const Parameter slope{"tangential_restitution_slope", "s/m", 1, -0.02, 0.02, 0.002};
   Parametrisation constant{

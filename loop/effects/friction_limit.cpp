@@ -6,7 +6,15 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Parametrisation> friction_limit(const Setting&) {
+std::vector<Parametrisation> friction_limit(const Setting& setting) {
+  if (setting.deformable) {  // declares a coefficient, under which its patch creeps and slips
+    Parametrisation f{.effect = "friction-limit",
+                      .what = "a factor on the declared coefficient",
+                      .parameters = {{"log_factor_of_friction", "1", 1, -1.6, 1.0, 0.1}},
+                      .starts = {{-0.8}}};
+    f.before = [](std::span<const double> p, Shot& s) { s.blow.contact.friction *= std::exp(p[0]); };
+    return {f};
+  }
   // 1 / mu, so that zero is the base model; 12 is mu = 0.083, a wet face.
   const Parameter slipperiness{"inverse_friction", "1", 1, 0, 12, 0.5};
   // The limit may reach one shot alone: then only starts a few per cent apart come near it.

@@ -5,7 +5,8 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Parametrisation> restitution_falloff(const Setting&) {
+std::vector<Parametrisation> restitution_falloff(const Setting& setting) {
+  if (setting.deformable) return {};  // has no impact law
   const char* name = "restitution-falloff";
   // 100 / m^2 is a loss of 0.04 at 20 mm.
   const auto square = [](const char* axis) { return Parameter{axis, "1/m^2", 1, -60, 900, 50}; };

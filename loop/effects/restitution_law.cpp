@@ -3,7 +3,14 @@
 
 namespace hosel::loop::forms {
 
-std::vector<Parametrisation> restitution_law(const Setting&) {
+std::vector<Parametrisation> restitution_law(const Setting& setting) {
+  if (setting.deformable) {  // has no such law: its ball loses more or less
+    Parametrisation f{.effect = "restitution-law",
+                      .what = "one factor on the branch moduli of every layer",
+                      .parameters = {{"log_factor_of_losses", "1", 1, -1.2, 0.8, 0.05}}};
+    f.before = [](std::span<const double> p, Shot& s) { s.change.losses += p[0]; };
+    return {f};
+  }
   const Parameter level{"level", "1", 1, -0.2, 0.2, 0.02};
   const Parameter slope{"slope", "s/m", 1, -0.015, 0.015, 0.001};
   Parametrisation constant{.effect = "restitution-law", .what = "level", .parameters = {level}};

@@ -48,24 +48,35 @@ std::vector<Parametrisation> session_drift(const Setting& setting) {
         readings({all[a], all[b]}, fmt::format("of the {} and {} readings", stem(all[a]), stem(all[b])), 4);
     if (all.size() > 2) readings(all, "of all readings", 4);
     // What drifts is the instrument before it is the club or the ball.
-    const auto blow = [&](const char* what, Parameter p, double& (*of)(Blow&), bool relative) {
+    const auto drift = [&](const char* what, Parameter p, double& (*of)(Shot&), bool relative) {
       Parametrisation f{.effect = "session-drift", .what = what + from, .parameters = {std::move(p)}, .complexity = 8};
       f.before = [of, relative, zero](std::span<const double> q, Shot& t) {
-        double& x = of(t.blow);
+        double& x = of(t);
         x += q[0] * (t.order - zero) * (relative ? x : 1);
       };
       forms.push_back(f);
     };
-    blow("of the club speed", {"relative_club_speed_per_session", "1", 1, -0.2, 0.2, 0.01},
-         quantity(Input::club_speed).of, true);
-    blow("of the loft", {"loft_per_session", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)},
-         quantity(Input::dynamic_loft).of, false);
-    blow(
+    drift(
+        "of the club speed", {"relative_club_speed_per_session", "1", 1, -0.2, 0.2, 0.01},
+        [](Shot& s) -> double& { return s.blow.delivery.club_speed; }, true);
+    drift(
+        "of the loft", {"loft_per_session", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)},
+        [](Shot& s) -> double& { return s.blow.delivery.dynamic_loft; }, false);
+    if (setting.deformable) {
+      drift(
+          "of the ball's losses", {"log_factor_of_losses_per_session", "1", 1, -0.8, 0.8, 0.05},
+          [](Shot& s) -> double& { return s.change.losses; }, false);
+      drift(
+          "of the friction", {"relative_friction_per_session", "1", 1, -0.6, 0.6, 0.1},
+          [](Shot& s) -> double& { return s.blow.contact.friction; }, true);
+      continue;
+    }
+    drift(
         "of the restitution", {"restitution_per_session", "1", 1, -0.2, 0.2, 0.02},
-        [](Blow& b) -> double& { return b.contact.restitution; }, false);
-    blow(
+        [](Shot& s) -> double& { return s.blow.contact.restitution; }, false);
+    drift(
         "of the tangential restitution", {"tangential_restitution_per_session", "1", 1, -0.6, 0.6, 0.1},
-        [](Blow& b) -> double& { return b.contact.tangential_restitution; }, false);
+        [](Shot& s) -> double& { return s.blow.contact.tangential_restitution; }, false);
   }
   return forms;
 }

@@ -8,7 +8,7 @@ namespace hosel::loop {
 
 LoopResult run(const HistoryCase& c) {
   if (c.records.empty()) throw DataError("no record to look at");
-  HistoryProblem problem(*c.model, c.setting, c.records, c.split, c.notes);
+  HistoryProblem problem(*c.model, c.setting, c.records, c.split, c.notes, c.own);
   LoopResult result;
   result.title = c.title;
   result.base = c.base;

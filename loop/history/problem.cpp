@@ -35,8 +35,9 @@ double noise_floor(const Channel& c) { return std::max(c.resolution / std::sqrt(
 }  // namespace
 
 HistoryProblem::HistoryProblem(const HistoryModel& model, const HistorySetting& setting,
-                               std::vector<HistoryRecord> records, const Split& how, std::vector<std::string> notes)
-    : model_(model), setting_(setting), records_(std::move(records)), notes_(std::move(notes)) {
+                               std::vector<HistoryRecord> records, const Split& how, std::vector<std::string> notes,
+                               std::vector<EffectEntry> own)
+    : model_(model), setting_(setting), records_(std::move(records)), own_(std::move(own)), notes_(std::move(notes)) {
   Eigen::Index samples = 0;
   for (const HistoryRecord& r : records_) samples += r.measured.rows();
   measured_.resize(samples, width());
@@ -79,7 +80,7 @@ void HistoryProblem::split(const Split& how) {
 
 std::vector<Parametrisation> HistoryProblem::forms() const {
   std::vector<Parametrisation> all;
-  for (const EffectEntry& e : effects())
+  for (const EffectEntry& e : effects_with(own_))
     if (e.on_tests)
       for (Parametrisation& f : e.on_tests(setting_)) all.push_back(std::move(f));
   return all;
@@ -382,7 +383,7 @@ NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
     for (const auto& tie : so_far.ties)
       for (const std::string& e : tie) {
         names.push_back(e);
-        sensors.emplace_back(find_effect(e)->sensor);
+        sensors.emplace_back(find_effect(e, own_)->sensor);
       }
     next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
     next.text = fmt::format(

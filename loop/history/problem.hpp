@@ -18,9 +18,9 @@ struct HistoryRecord {
 class HistoryProblem final : public Problem {
  public:
   /// `model` must outlive the problem. Whole records are held out where there are enough and none needs a start of its
-  /// own, else stretches of time. `notes` about the case.
+  /// own, else stretches of time. `notes` about the case; `own`: effects beside the library's.
   HistoryProblem(const HistoryModel& model, const HistorySetting& setting, std::vector<HistoryRecord> records,
-                 const Split& split, std::vector<std::string> notes = {});
+                 const Split& split, std::vector<std::string> notes = {}, std::vector<EffectEntry> own = {});
 
   /// Every form that can act on this test.
   std::vector<Parametrisation> forms() const;
@@ -72,6 +72,7 @@ class HistoryProblem final : public Problem {
   std::vector<HistoryRecord> records_;
   Eigen::MatrixXd measured_;  ///< of all records, one below the other
   std::vector<Flag> flags_;
+  std::vector<EffectEntry> own_;
   std::vector<std::string> notes_;
 };
 

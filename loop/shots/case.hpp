@@ -1,22 +1,42 @@
 /// A loop on shots: the measured ones, the base model, what is known of club, ball and noise.
 #pragma once
 
+#include <functional>
 #include <map>
 
 #include "hosel/loop/case.hpp"
 #include "hosel/loop/shots/shots.hpp"
+#include "hosel/loop/shots/surrogate.hpp"
 #include "hosel/models/impact_model.hpp"
 
 namespace hosel::loop {
 
+/// A base that takes seconds to answer. It is asked about shots with the effects in them, from many threads.
+struct SlowBase {
+  Surrogate::Answer coarse;  ///< at an accuracy at which hundreds of answers are affordable
+  Surrogate::Answer fine;    ///< at the case's own; empty: the same
+  int runs = 0;              ///< coarse ones before anything is found; 0: as many as the effects need
+  int fine_runs = 24;
+  int checked = 40;  ///< held-out shots that the corrected base itself is asked about, at most
+  unsigned long seed = 1;
+  std::function<void(std::string_view what, double done)> told = {};  ///< progress, `done` of 1; from any thread
+};
+
 struct ShotCase : Case {
+  /// Of the base, one of: a model that answers quickly; one that does not (`run` makes a surrogate); a surrogate.
   const models::ImpactModel* model = nullptr;
-  bool direct = true;      ///< see ShotModel
-  bool head_turns = true;  ///< the base lets the head rotate
-  Blow blow;               ///< ball, head, contact law; the delivery comes from the shots
+  const SlowBase* slow = nullptr;
+  const Surrogate* surrogate = nullptr;
+  Surrogate::Answer closing = {};  ///< of a surrogate: the base itself, to be asked about held-out shots
+  int checked = 0;                 ///< so many, at most
+  bool direct = true;              ///< see ShotModel
+  bool head_turns = true;          ///< the base lets the head rotate
+  bool deformable = false, shaft_declared = false, full_club = false;  ///< see Setting
+  Blow blow;  ///< ball, head, contact law; the delivery comes from the shots
   bool head_mass_declared = false;
   bool inertia_declared = false;
   Shots shots;
+  bool loft_unknown = false;                  ///< every shot's loft is found from its launch angle
   std::map<std::string, double> noise;        ///< by header, header's unit
   std::map<std::string, double> input_noise;  ///< the same for inputs
 };

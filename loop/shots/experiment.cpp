@@ -273,7 +273,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     if (apart.squared() < 0.8 * wanted) {
       std::string sensor;
       for (const std::string& name : {r.one, r.two})
-        if (const EffectEntry* e = find_effect(name)) {
+        if (const EffectEntry* e = find_effect(name, c.own)) {
           const std::string s(e->sensor);
           if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
           if (!std::ranges::count(sensors, s)) sensors.push_back(s);

@@ -8,30 +8,49 @@
 #include <cmath>
 
 #include "hosel/loop/median.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 
+namespace {
+
+/// The loft at which the closed form shows a launch angle; some 0.8 of a change of loft show.
+double loft_of(Blow blow, double launch_angle) {
+  static const models::RigidEccentric model;
+  double& loft = blow.delivery.dynamic_loft;
+  loft = launch_angle;
+  for (int k = 0; k < 8; ++k) loft += (launch_angle - model.launch(blow).launch_angle()) / 0.8;
+  return loft;
+}
+
+}  // namespace
+
 Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
-                   const std::map<std::string, double>& noise) {
+                   const std::map<std::string, double>& noise, bool loft_unknown) {
   Inputs in;
   std::array<const Column*, kInputs> column{};
   for (int k = 0; k < kInputs; ++k) column[std::size_t(k)] = shots.find_stem(stem(Input(k)));
-  for (const Input needed : {Input::club_speed, Input::dynamic_loft})
-    if (!column[std::size_t(needed)]) throw DataError(fmt::format("{}:1: no column {}_*", shots.file, stem(needed)));
+  if (loft_unknown) column[std::size_t(Input::dynamic_loft)] = nullptr;
+  std::vector<std::pair<std::string_view, const Column*>> all_needed{
+      {stem(Input::club_speed), column[std::size_t(Input::club_speed)]}};
+  if (loft_unknown) all_needed.emplace_back(stem(Output::launch_angle), shots.find_stem(stem(Output::launch_angle)));
+  else all_needed.emplace_back(stem(Input::dynamic_loft), column[std::size_t(Input::dynamic_loft)]);
+  for (const auto& [name, needed] : all_needed)
+    if (!needed) throw DataError(fmt::format("{}:1: no column {}_*", shots.file, name));
   const Column* mass = column[std::size_t(Input::head_mass)];
   if (!mass && !head_mass_declared)
     throw DataError(fmt::format("{}:1: no head mass: neither [head] mass_kg nor a column head_mass_*", shots.file));
 
   for (int k = 0; k < kInputs; ++k)
-    if (!column[std::size_t(k)] && k != int(Input::head_mass))
+    if (!column[std::size_t(k)] && k != int(Input::head_mass) && !(loft_unknown && Input(k) == Input::dynamic_loft))
       in.notes.push_back(fmt::format("no column {}: taken as zero", stem(Input(k))));
 
   std::array<int, kInputs> filled{};
   for (std::size_t i = 0; i < shots.rows(); ++i) {
     bool complete = true;
-    for (const Input needed : {Input::club_speed, Input::dynamic_loft})
-      if (complete && std::isnan(column[std::size_t(needed)]->value[i])) {
-        ++in.unused[fmt::format("no {}", column[std::size_t(needed)]->name)];
+    for (const auto& [name, needed] : all_needed)
+      if (complete && std::isnan(needed->value[i])) {
+        ++in.unused[fmt::format("no {}", needed->name)];
         complete = false;
       }
     if (complete && mass && std::isnan(mass->value[i]) && !head_mass_declared) {
@@ -59,6 +78,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     t.blow = blow;
     for (int k = 0; k < kInputs; ++k)
       if (const Column* c = column[std::size_t(k)]; c && std::isfinite(c->value[i])) set(t.blow, Input(k), c->value[i]);
+    if (loft_unknown) t.blow.delivery.dynamic_loft = loft_of(t.blow, all_needed.back().second->value[i]);
     in.trials.push_back(t);
     in.row_of.push_back(int(i));
   }

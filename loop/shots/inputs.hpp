@@ -27,7 +27,8 @@ struct Inputs {
 /// Rows without club speed, dynamic loft or any output are unused. Other missing inputs are filled with the mean
 /// of those recorded, at the variance of those recorded; a missing column is zero. `noise` by header [SI].
 /// Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean), with robust moments.
+/// `loft_unknown`: the recorded loft is not looked at; a first idea is what shows the launch angle in the closed form.
 Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
-                   const std::map<std::string, double>& noise);
+                   const std::map<std::string, double>& noise, bool loft_unknown = false);
 
 }  // namespace hosel::loop

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kImpossible = 100;                 // noise units
 constexpr double kCentral = 1e-3, kForward = 1e-5;  // difference steps, of a parameter's scale
+constexpr double kLaunchPerLoft = 0.8;              // nearly: what a search for the loft begins with
 
 const models::RigidEccentric& companion() {
   static const models::RigidEccentric model;
@@ -33,9 +34,12 @@ bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimu
 }  // namespace
 
 ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials,
-                     std::vector<ShotChannel> channels, Eigen::MatrixXd measured)
+                     std::vector<ShotChannel> channels, Eigen::MatrixXd measured, const Surrogate* surrogate,
+                     std::optional<SeenLaunch> seen)
     : base_(base),
-      direct_(direct),
+      direct_(direct || surrogate),
+      surrogate_(surrogate),
+      seen_(std::move(seen)),
       trials_(std::move(trials)),
       channels_(std::move(channels)),
       measured_(std::move(measured)) {
@@ -48,7 +52,16 @@ ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<S
   }
 }
 
+std::map<Output, double> ShotModel::seen(int shot) const {
+  std::map<Output, double> out;
+  for (int c = 0; c < width(); ++c)
+    if (observed(shot, c)) out[channel(c).output] = measured_(shot, c) * channel(c).si;
+  if (seen_) out[seen_->channel.output] = seen_->value[shot] * seen_->channel.si;
+  return out;
+}
+
 Launch ShotModel::answer(const Shot& trial, int shot) const {
+  if (surrogate_) return surrogate_->launch(trial);
   if (direct_) return base_.launch(trial.blow);
   const Launch l = companion().launch(trial.blow);
   return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
@@ -68,17 +81,22 @@ void ShotModel::change(const Model& model, const double* p, const Shot& trial, L
   }
 }
 
+double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* p,
+                          const Launch& launch) const {
+  double value = get(launch, channel.output);
+  for (const Parametrisation* f : model.forms) {
+    if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
+    p += f->parameters.size();
+  }
+  return value;
+}
+
 bool ShotModel::read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
                      double* out) const {
   bool good = true;
   for (int c = 0; c < width(); ++c) {
     const ShotChannel& channel = channels_[std::size_t(c)];
-    double value = get(launch, channel.output);
-    const double* p = parameters;
-    for (const Parametrisation* f : model.forms) {
-      if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
-      p += f->parameters.size();
-    }
+    double value = reading(channel, trial, model, parameters, launch);
     if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
       value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
     out[c] = value / channel.si;
@@ -87,9 +105,56 @@ bool ShotModel::read(const Shot& trial, int shot, const Model& model, const doub
   return good;
 }
 
+/// Secants: the launch angle rises with the loft, by some 0.8 of it.
+bool ShotModel::find_loft(Shot& trial, int shot, const Model& model, const double* parameters) const {
+  double& loft = trial.blow.delivery.dynamic_loft;
+  double slope = kLaunchPerLoft, before = 0, step = 0;
+  for (int k = 0; k < 30; ++k) {
+    Shot t = trial;
+    change(model, parameters, t);
+    Launch l = answer(t, shot);
+    change(model, parameters, t, l);
+    const double miss = reading(seen_->channel, t, model, parameters, l) - seen_->value[shot] * seen_->channel.si;
+    if (!std::isfinite(miss)) return false;
+    if (std::abs(miss) < 1e-11) return true;
+    if (k > 0 && std::abs(miss - before) > 1e-14) slope = std::clamp((miss - before) / step, 0.2, 2.0);
+    before = miss;
+    step = -miss / slope;
+    loft += step;
+  }
+  return std::abs(before) < 1e-7;
+}
+
+bool ShotModel::asked(int shot, const Model& model, const double* parameters, Shot& out) const {
+  try {
+    out = trial(shot);
+    if (seen_ && !find_loft(out, shot, model, parameters)) return false;
+    change(model, parameters, out);
+    return true;
+  } catch (const std::invalid_argument&) { return false; }
+}
+
+bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model& model, const double* parameters,
+                           double* out) const {
+  Shot there = trial(shot);
+  if (seen_ && !find_loft(there, shot, model, parameters)) return false;
+  for (int k = 0; k < 5; ++k) {
+    Shot t = there;
+    change(model, parameters, t);
+    Launch l = other(t);
+    change(model, parameters, t, l);
+    const double miss =
+        seen_ ? reading(seen_->channel, t, model, parameters, l) - seen_->value[shot] * seen_->channel.si : 0;
+    if (std::abs(miss) < radians(0.02)) return read(t, shot, model, parameters, l, out);
+    there.blow.delivery.dynamic_loft -= miss / kLaunchPerLoft;
+  }
+  return false;
+}
+
 bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const double* parameters, double* out) const {
   try {
     Shot t = trial;
+    if (seen_ && shot >= 0 && !find_loft(t, shot, model, parameters)) return false;
     change(model, parameters, t);
     Launch l = answer(t, shot);
     change(model, parameters, t, l);
@@ -100,7 +165,9 @@ bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const d
 bool ShotModel::differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step,
                             bool central, double* out, double* derivative) const {
   try {
-    Shot t = trial;
+    Shot near = trial;
+    if (seen_ && shot >= 0 && !find_loft(near, shot, model, parameters)) return false;
+    Shot t = near;
     change(model, parameters, t);
     const Launch bare = answer(t, shot);
     Launch l = bare;
@@ -118,8 +185,8 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
         const auto look = [&](double x, double* values) {
           moved[std::size_t(k)] = x;
           bool good = false;
-          if (f->before) {
-            good = predict(trial, shot, model, moved.data(), values);
+          if (f->before || seen_) {
+            good = predict(near, shot, model, moved.data(), values);
           } else if (f->after) {
             Launch other = bare;
             change(model, moved.data(), t, other);
@@ -166,6 +233,44 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
   return J;
 }
 
+Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
+  const int m = width();
+  Shot t;
+  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
+  if (!asked(shot, model, parameters, t)) return cov;
+  // What the channels (and, last, the launch angle) show of an error of the answer.
+  const auto show = [&](const Shot& s, const Vec6& error) {
+    Launch l = Surrogate::shifted(answer(s, shot), s, error);
+    change(model, parameters, s, l);
+    Eigen::VectorXd out(m + 1);
+    read(s, shot, model, parameters, l, out.data());
+    out[m] = seen_ ? reading(seen_->channel, s, model, parameters, l) / seen_->channel.si : 0;
+    return out;
+  };
+  try {
+    Eigen::VectorXd by_launch = Eigen::VectorXd::Zero(m);  // of the channels, per launch angle that the loft follows
+    if (seen_) {
+      const double h = 1e-4;
+      Shot up = t, down = t;
+      up.blow.delivery.dynamic_loft += h;
+      down.blow.delivery.dynamic_loft -= h;
+      const Eigen::VectorXd d = show(up, Vec6::Zero()) - show(down, Vec6::Zero());
+      by_launch = d.head(m) / d[m];
+      cov += std::pow(seen_->channel.noise, 2) * by_launch * by_launch.transpose();
+    }
+    if (surrogate_) {
+      const double h = 1e-5;
+      Eigen::MatrixXd J(m, 6);
+      for (int k = 0; k < 6; ++k) {
+        const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
+        J.col(k) = d.head(m) - by_launch * d[m];
+      }
+      cov += J * surrogate_->error() * J.transpose();
+    }
+  } catch (const std::invalid_argument&) {}
+  return cov;
+}
+
 void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model,
                                const double* parameters) {
   const int m = width();
@@ -186,6 +291,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
         cov += J * sx * J.transpose();
       }
     }
+    if (surrogate_ || seen_) cov += found_covariance(i, model, parameters);
     sigma_.row(i) = cov.diagonal().cwiseSqrt().transpose();
     std::vector<int> seen;
     for (int c = 0; c < m; ++c)

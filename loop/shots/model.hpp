@@ -2,7 +2,10 @@
 /// whitening by the covariance of every shot.
 #pragma once
 
+#include <map>
+
 #include "hosel/loop/problem.hpp"
+#include "hosel/loop/shots/surrogate.hpp"
 #include "hosel/models/impact_model.hpp"
 
 namespace hosel::loop {
@@ -11,13 +14,21 @@ struct ShotChannel : Channel {
   Output output;
 };
 
+/// A launch angle that was seen, from which every shot's loft is found: the recorded loft counts for nothing.
+struct SeenLaunch {
+  ShotChannel channel;
+  Eigen::VectorXd value;  ///< per shot, header's unit
+};
+
 class ShotModel {
  public:
   /// `base` must outlive the model. `direct`: the base answers in microseconds and honours the blow's contact
   /// law; otherwise its answers on the trials are computed once and the effects act through the difference that
   /// they make in the closed-form eccentric impact. `measured`: header's units, NaN where missing, shots x channels.
+  /// With a `surrogate` that answers instead of the base, and its error joins the covariance of every shot. With a
+  /// `seen` launch angle every prediction about a shot is at the loft that shows this angle, which is then no channel.
   ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials, std::vector<ShotChannel> channels,
-            Eigen::MatrixXd measured);
+            Eigen::MatrixXd measured, const Surrogate* surrogate = nullptr, std::optional<SeenLaunch> seen = {});
 
   int shots() const { return int(trials_.size()); }
   int width() const { return int(channels_.size()); }
@@ -25,6 +36,8 @@ class ShotModel {
   ShotChannel& channel(int c) { return channels_[std::size_t(c)]; }
   const Shot& trial(int shot) const { return trials_[std::size_t(shot)]; }
   const Eigen::MatrixXd& measured() const { return measured_; }
+  /// What was measured of a shot [SI], the launch angle that its loft is found from with it.
+  std::map<Output, double> seen(int shot) const;
   bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
 
   /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
@@ -38,6 +51,12 @@ class ShotModel {
   /// neighbour cannot happen.
   bool differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step, bool central,
                    double* out, double* derivative) const;
+  /// The shot as the base is asked about it: at its loft, with the effects in it. False where there is none.
+  bool asked(int shot, const Model& model, const double* parameters, Shot& out) const;
+  /// Channel values where another model answers, asked anew until the launch angle is the seen one within 0.02 deg.
+  /// Throws as it does.
+  bool predict_by(const Surrogate::Answer& other, int shot, const Model& model, const double* parameters,
+                  double* out) const;
   /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
   /// base's own answer).
   bool launch(Shot trial, const Model& model, const double* parameters, Launch& out) const;
@@ -66,6 +85,12 @@ class ShotModel {
 
  private:
   Launch answer(const Shot& trial, int shot) const;
+  /// Puts the trial's loft where the model shows the launch angle that was seen.
+  bool find_loft(Shot& trial, int shot, const Model& model, const double* parameters) const;
+  double reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
+                 const Launch& launch) const;
+  /// Covariance by the surrogate's error and by the noise of the launch angle, header's units.
+  Eigen::MatrixXd found_covariance(int shot, const Model& model, const double* parameters) const;
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
   static void change(const Model& model, const double* parameters, Shot& trial);
   static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);
@@ -79,6 +104,8 @@ class ShotModel {
 
   const models::ImpactModel& base_;
   bool direct_;
+  const Surrogate* surrogate_;
+  std::optional<SeenLaunch> seen_;
   std::vector<Shot> trials_;
   std::vector<ShotChannel> channels_;
   Eigen::MatrixXd measured_;

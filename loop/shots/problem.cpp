@@ -43,7 +43,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   std::map<std::string, double> input_noise;
   for (const auto& [header, value] : case_.input_noise)
     if (const Column* c = shots.find(header)) input_noise[header] = value * c->si;
-  inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise);
+  inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise, case_.loft_unknown);
   notes_ = case_.notes;
   notes_.insert(notes_.end(), inputs_.notes.begin(), inputs_.notes.end());
   if (doubted) distrust(*doubted);
@@ -61,6 +61,8 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
 
   std::vector<ShotChannel> channels;
   std::vector<const Column*> columns;
+  std::optional<SeenLaunch> seen;
+  const Column* seen_in = nullptr;
   bool any = false;
   for (int o = 0; o < kOutputs; ++o) {
     const Column* c = shots.find_stem(stem(Output(o)));
@@ -68,11 +70,17 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     any = true;
     const bool computed =
         std::ranges::any_of(derived, [&](const DerivedColumn& d) { return !d.input && d.column == c->name; });
-    if (computed || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
+    const bool used_up = case_.loft_unknown && Output(o) == Output::launch_angle;
+    if ((computed && !used_up) || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
     ShotChannel ch{{.name = c->name, .si = c->si, .resolution = c->resolution / c->si}, Output(o)};
     if (const auto it = case_.noise.find(c->name); it != case_.noise.end())
       // The record's last digit rounds: that much is added to the noise.
       ch.declared = ch.noise = std::hypot(it->second, ch.resolution / std::sqrt(12.0));
+    if (used_up) {
+      seen = SeenLaunch{std::move(ch), {}};
+      seen_in = c;
+      continue;
+    }
     channels.push_back(std::move(ch));
     columns.push_back(c);
   }
@@ -92,11 +100,19 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   for (Eigen::Index i = 0; i < measured.rows(); ++i)
     for (Eigen::Index k = 0; k < measured.cols(); ++k)
       measured(i, k) = columns[std::size_t(k)]->native(std::size_t(inputs_.row_of[std::size_t(i)]));
+  if (seen) {
+    seen->value.resize(measured.rows());
+    for (Eigen::Index i = 0; i < measured.rows(); ++i)
+      seen->value[i] = seen_in->native(std::size_t(inputs_.row_of[std::size_t(i)]));
+    notes_.push_back(
+        fmt::format("the loft of every shot is found from its {}; the recorded one is not used", seen_in->name));
+  }
   for (int k = 0; k < kInputs; ++k)
-    if (const Column* c = shots.find_stem(stem(Input(k)))) uses_.push_back({c, k, -1});
+    if (const Column* c = shots.find_stem(stem(Input(k))); c && !(seen && Input(k) == Input::dynamic_loft))
+      uses_.push_back({c, k, -1});
   for (std::size_t k = 0; k < columns.size(); ++k) uses_.push_back({columns[k], -1, int(k)});
   model_ = std::make_unique<ShotModel>(*case_.model, case_.direct, std::move(good.trials), std::move(channels),
-                                       std::move(measured));
+                                       std::move(measured), case_.surrogate, std::move(seen));
   std::vector<double> out(static_cast<std::size_t>(width()));
   for (int i = 0; i < model_->shots(); ++i) {
     if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
@@ -118,10 +134,15 @@ void ShotProblem::distrust(Input input) {
 }
 
 std::vector<Parametrisation> ShotProblem::forms() const {
-  Setting setting{.head_turns = case_.head_turns, .inertia_declared = case_.inertia_declared, .outputs = {}};
+  Setting setting{.head_turns = case_.head_turns,
+                  .inertia_declared = case_.inertia_declared,
+                  .outputs = {},
+                  .deformable = case_.deformable,
+                  .shaft = case_.shaft_declared,
+                  .full_club = case_.full_club};
   for (int c = 0; c < width(); ++c) setting.outputs.push_back(model_->channel(c).output);
   std::vector<Parametrisation> all;
-  for (const EffectEntry& e : effects()) {
+  for (const EffectEntry& e : effects_with(case_.own)) {
     if (!e.on_shots) continue;
     for (Parametrisation& f : e.on_shots(setting)) {
       // Rows without a shot number may stand in any order: that it is the session's is an assumption more.

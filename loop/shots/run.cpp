@@ -7,6 +7,7 @@
 #include <set>
 
 #include "hosel/loop/shots/problem.hpp"
+#include "hosel/loop/shots/slow.hpp"
 #include "hosel/loop/verdict.hpp"
 
 namespace hosel::loop {
@@ -32,6 +33,8 @@ LoopResult pass(const ShotCase& c, const std::vector<DerivedColumn>& derived,
     const Fit &before = result.selection.base, &after = shown ? result.selection.chosen : before;
     result.balance_before = balance(problem.model(), problem.training(), before.model, before.p.data());
     result.balance_after = balance(problem.model(), problem.training(), after.model, after.p.data());
+    if (c.surrogate) result.decisive = decisive(problem, result);
+    if (c.closing && !doubted) result.corrected = close(c, problem, before, after);
   }
   return result;
 }
@@ -56,6 +59,8 @@ void leave_one_out(const ShotCase& c, const std::vector<DerivedColumn>& derived,
     const LoopResult fold = pass(c, derived, held);
     for (const UsedRow& u : fold.rows)
       if (u.holdout) pooled.push_back(u);
+    if (fold.corrected && whole.corrected)
+      for (const Corrected::Row& r : fold.corrected->rows) whole.corrected->rows.push_back(r);
     if (fold.holdout > 0)
       whole.notes.push_back(
           fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
@@ -76,6 +81,7 @@ void leave_one_out(const ShotCase& c, const std::vector<DerivedColumn>& derived,
 }  // namespace
 
 LoopResult run(const ShotCase& c) {
+  if (c.slow) return run_slow(c);
   if (c.shots.rows() > kMostShots)
     throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
                                 kMostShots));
@@ -100,6 +106,7 @@ LoopResult run(const ShotCase& c) {
   for (const DerivedColumn& d : derived) {
     if (!d.input) continue;
     for (int k = 0; k < kInputs; ++k) {
+      if (c.loft_unknown && Input(k) == Input::dynamic_loft) continue;
       const Column* column = c.shots.find_stem(stem(Input(k)));
       if (!column || column->name != d.column) continue;
       const LoopResult without = pass(c, derived, held, Input(k));

@@ -1,14 +1,18 @@
-/// Deliveries that fill the range of recorded ones.
+/// Where a slow base is asked: blows that fill the range of recorded ones, with effects at several sizes.
 #pragma once
 
 #include <vector>
 
-#include "hosel/loop/shots/shots.hpp"
+#include "hosel/loop/effect.hpp"
 
 namespace hosel::loop {
 
-/// A Latin hypercube over the box of the recorded inputs (one per cent to spare on either side); inputs without a
-/// column are zero. Throws DataError where the shots have no usable club_speed or dynamic_loft.
-std::vector<Delivery> spread(const Shots& shots, int points, unsigned long seed);
+/// A Latin hypercube over the box of the shots' inputs (two per cent to spare on either side; where an effect changes
+/// an input, half of how far it may), and in each shot some three in ten of the quantities that the parametrisations
+/// change, small changes more often than large ones. Blows that cannot happen are drawn anew.
+std::vector<Shot> spread(const std::vector<Shot>& recorded, const std::vector<Parametrisation>& effects, int points,
+                         unsigned long seed);
+/// How many quantities the parametrisations change.
+int changed_quantities(const std::vector<Shot>& recorded, const std::vector<Parametrisation>& effects);
 
 }  // namespace hosel::loop

@@ -1,0 +1,22 @@
+/// What a slow base is asked about, as coordinates: the blow as the ball meets it, and what effects change.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "hosel/loop/effect.hpp"
+
+namespace hosel::loop {
+
+/// One coordinate of a surrogate. An impact knows no direction but its own: the blow is seen in the face frame.
+struct Feature {
+  std::string_view name;
+  double (*get)(const Shot&);
+  /// Puts a value there, the others kept; nullptr: it follows from the delivery's inputs.
+  void (*set)(Shot&, double) = nullptr;
+};
+
+/// A new quantity that an effect may change inside a slow base is one row here.
+std::span<const Feature> features();
+
+}  // namespace hosel::loop

@@ -1,0 +1,99 @@
+#include "hosel/loop/shots/surrogate.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "hosel/loop/shots/features.hpp"
+#include "hosel/solvers/errors.hpp"
+
+namespace hosel::loop {
+namespace {
+
+Vec6 in_face(const Launch& l, const Shot& s) {
+  const Mat3 R = s.blow.delivery.face_to_global().transpose();
+  Vec6 out;
+  out << R * l.velocity, R * l.spin;
+  return out / s.blow.delivery.club_speed;
+}
+
+}  // namespace
+
+Surrogate::Surrogate(Answer slow, Answer quick, int degree)
+    : slow_(std::move(slow)), quick_(std::move(quick)), degree_(degree) {}
+
+void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(int)>& told) {
+  std::vector<std::optional<Vec6>> found(shots.size());
+  std::atomic<int> done = 0;
+  tbb::parallel_for(std::size_t(0), shots.size(), [&](std::size_t i) {
+    try {
+      const Vec6 beyond = in_face(slow_(shots[i]), shots[i]) - in_face(quick_(shots[i]), shots[i]);
+      if (beyond.allFinite()) found[i] = beyond;
+    } catch (const std::invalid_argument&) {
+    } catch (const solvers::NonConvergence&) {}
+    if (told) told(++done);
+  });
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    if (!found[i]) {
+      ++failed_;
+      continue;
+    }
+    shots_.push_back(shots[i]);
+    beyond_.push_back(*found[i]);
+  }
+  fit();
+}
+
+void Surrogate::fit() {
+  const auto n = Eigen::Index(shots_.size());
+  if (n < 8) throw std::invalid_argument("fewer than eight blows have an answer");
+  const auto all = features();
+  Eigen::MatrixXd value(n, Eigen::Index(all.size()));
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < all.size(); ++k) value(i, Eigen::Index(k)) = all[k].get(shots_[std::size_t(i)]);
+  features_.clear();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto column = value.col(Eigen::Index(k));
+    const double low = column.minCoeff(), high = column.maxCoeff();
+    if (high - low > 1e-9 * (1 + std::abs(low))) features_.push_back(k);  // false for infinite values too
+  }
+  const auto d = Eigen::Index(features_.size());
+  middle_.resize(d);
+  half_.resize(d);
+  Eigen::MatrixXd x(n, d), y(n, 6);
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const auto column = value.col(Eigen::Index(features_[std::size_t(k)]));
+    middle_[k] = 0.5 * (column.minCoeff() + column.maxCoeff());
+    half_[k] = 0.5 * (column.maxCoeff() - column.minCoeff());
+    x.col(k) = (column.array() - middle_[k]) / half_[k];
+  }
+  for (Eigen::Index i = 0; i < n; ++i) y.row(i) = beyond_[std::size_t(i)].transpose();
+  polynomial_ = {x, y, degree_};
+  const Eigen::MatrixXd e = y - polynomial_.left_out();
+  error_ = e.transpose() * e / double(n);
+}
+
+Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
+  Eigen::VectorXd x(Eigen::Index(features_.size()));
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    x[k] = std::clamp((features()[features_[std::size_t(k)]].get(shot) - middle_[k]) / half_[k], -1.0, 1.0);
+  return x;
+}
+
+Launch Surrogate::launch(const Shot& shot) const {
+  const Launch quick = quick_(shot);
+  return shots_.empty() ? quick : shifted(quick, shot, polynomial_(coordinates(shot)));
+}
+
+Launch Surrogate::shifted(Launch l, const Shot& s, const Vec6& error) {
+  const Mat3 R = s.blow.delivery.face_to_global();
+  l.velocity += s.blow.delivery.club_speed * (R * error.head<3>());
+  l.spin += s.blow.delivery.club_speed * (R * error.tail<3>());
+  return l;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,22 @@
+/// What may be changed of a finite-element impact beside the blow itself.
+#pragma once
+
+namespace hosel::models {
+
+/// Changes of what a case declares of ball and shaft; zeros change nothing. (What the blow holds - head, delivery,
+/// hosel, Coulomb's coefficient in `contact.friction` - is changed there.)
+struct FeChange {
+  double cover_stiffness = 0;  ///< logarithm of the factor on all moduli of the outermost layer [-]
+  /// Added to the outermost layer [m]; a ball of one piece has a skin of `kSkin` to start from.
+  double cover_thickness = 0;
+  double losses = 0;      ///< logarithm of the factor on the branch moduli of every layer [-]
+  double relaxation = 0;  ///< logarithm of the factor on the branch times, see `changed` [-]
+  double shaft = 0;       ///< share of the club's shaft (its mass and its stiffness) added to what the model has [-]
+  double shaft_stiffness = 0;  ///< logarithm of the factor on its bending and torsional stiffness [-]
+
+  bool operator==(const FeChange&) const = default;
+};
+
+inline constexpr double kSkin = 1.9e-3;  ///< of a ball of one piece whose skin an effect stiffens [m]
+
+}  // namespace hosel::models

@@ -1,0 +1,88 @@
+// What effects change of a finite-element ball and its shaft.
+#include "hosel/models/changeable_fe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hosel/golf/shaft_library.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/ball_calibration.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr double kRadius = 0.021335, kContact = 0.45e-3;
+
+TEST(ChangeableFe, NoChangeIsTheDeclaredBall) {
+  const FeBall ball = two_piece_ball(), same = changed(ball, {}, kRadius);
+  ASSERT_EQ(same.layers.size(), ball.layers.size());
+  for (std::size_t k = 0; k < ball.layers.size(); ++k) {
+    EXPECT_EQ(same.layers[k].radius, ball.layers[k].radius);
+    EXPECT_EQ(same.layers[k].material.instant_shear(), ball.layers[k].material.instant_shear());
+  }
+}
+
+TEST(ChangeableFe, AOnePieceBallGetsTheSkinThatItsCoverEffectStiffens) {
+  const FeBall ball = changed(range_ball(), {.cover_stiffness = std::log(2.2), .cover_thickness = 0.3e-3}, kRadius);
+  ASSERT_EQ(ball.layers.size(), 2U);
+  EXPECT_NEAR((1 - ball.layers[0].radius) * kRadius, kSkin + 0.3e-3, 1e-12);
+  EXPECT_NEAR(ball.layers[1].material.instant_shear() / ball.layers[0].material.instant_shear(), 2.2, 1e-12);
+  EXPECT_THROW(changed(range_ball(), {.cover_thickness = -2e-3}, kRadius), std::invalid_argument);
+}
+
+/// Storage and loss modulus of small shear at an angular frequency.
+std::pair<double, double> dynamic(const fem::Solid& m, double frequency) {
+  double storage = m.shear(), loss = 0;
+  for (const auto& b : m.branches) {
+    const double x = frequency * b.time;
+    storage += b.modulus * x * x / (1 + x * x);
+    loss += b.modulus * x / (1 + x * x);
+  }
+  return {storage, loss};
+}
+
+TEST(ChangeableFe, SlowerBranchesKeepTheModuliAtTheContactsFrequencyAndTheBounce) {
+  const FeBall ball = range_ball(), slower = changed(ball, {.relaxation = 1.5}, kRadius, kContact);
+  const auto [storage, loss] = dynamic(ball.layers[0].material, kPi / kContact);
+  const auto [storage_after, loss_after] = dynamic(slower.layers[0].material, kPi / kContact);
+  EXPECT_NEAR(storage_after / storage, 1, 1e-12);
+  EXPECT_NEAR(loss_after / loss, 1, 1e-12);
+  EXPECT_LT(dynamic(slower.layers[0].material, 4 * kPi / kContact).second,
+            0.95 * dynamic(ball.layers[0].material, 4 * kPi / kContact).second);  // quicker shear loses less
+
+  FeImpactOptions options;
+  options.harmonics = 0;
+  options.resolve(Accuracy::look);
+  options.harmonics = 0;
+  const auto bounce = [&](const FeChange& change) {
+    FeImpactOptions o = options;
+    o.ball = changed(o.ball, change, kRadius);
+    return normal_impact(o, {}, 40).restitution;
+  };
+  const double declared = bounce({}), more_loss = bounce({.losses = 0.3});
+  ASSERT_GT(declared - more_loss, 0.03);
+  // The contact is no sine of one frequency: a quarter of what the same change of the loss alone would do is allowed.
+  EXPECT_NEAR(bounce({.relaxation = 1.5}), declared, 0.25 * 4 * (declared - more_loss));
+}
+
+TEST(ChangeableFe, ASmallShareOfTheShaftIsNearTheFreeHead) {
+  FeImpactOptions options;
+  options.resolve(Accuracy::look);
+  Blow blow;
+  blow.club.head = {.mass = 0.2, .cg = Vec3(-0.03, 0, 0), .inertia = Vec3(3e-4, 3e-4, 4e-4).asDiagonal(), .face = {}};
+  blow.delivery = {.club_speed = 40, .dynamic_loft = radians(15), .impact_toe = 0.01};
+  const ChangeableFe base(options, {}, shaft_library().front().make(), false);
+  const double free = base.launch(blow, {}).ball_speed(), tenth = base.launch(blow, {.shaft = 0.1}).ball_speed(),
+               whole = base.launch(blow, {.shaft = 1}).ball_speed();
+  ASSERT_GT(std::abs(whole - free), 0.02);  // a shaft is felt
+  EXPECT_LT(std::abs(tenth - free), 0.3 * std::abs(whole - free));
+  blow.contact.friction = 0.05;
+  EXPECT_LT(base.launch(blow, {}).backspin(),
+            0.7 * FeFreeBody(options)
+                      .launch({.delivery = blow.delivery, .club = blow.club, .ball = {}, .contact = {}})
+                      .backspin());
+}
+
+}  // namespace
+}  // namespace hosel::models
