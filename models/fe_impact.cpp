@@ -71,18 +71,9 @@ std::vector<std::string> FeImpactOptions::faults() const {
 Encounter encounter(const Blow& blow) {
   const Delivery& d = blow.delivery;
   const Head& head = blow.club.head;
-  Encounter e;
-  e.face_axes = d.face_to_global();
-  const double yc = -d.impact_toe, zc = d.impact_high;
-  e.normal = e.face_axes * head.face.normal(yc, zc);
-  e.point = -blow.ball.radius * e.normal;
-  e.face_centre = e.point - e.face_axes * head.face.point(yc, zc);
-  const Vec3 arm = e.point - (e.face_centre + e.face_axes * head.cg);
-  e.approach = d.velocity() + d.head_angular_velocity.cross(arm);
-  e.normal_speed = e.approach.dot(e.normal);
-  if (!(e.normal_speed > 0)) throw std::invalid_argument("the head moves away from the ball");
-
-  const Vec3 slip = e.approach - e.normal_speed * e.normal;
+  Encounter e{first_contact(blow)};
+  e.normal_speed = e.closing_speed();
+  const Vec3 slip = e.slip(), &arm = e.head_arm;
   const bool sliding = slip.norm() > 1e-12 * e.approach.norm();
   const bool wall = std::isinf(head.mass);
   Vec3 across = arm - arm.dot(e.normal) * e.normal;  // of the head's centre: the other direction that matters
@@ -98,7 +89,7 @@ Encounter encounter(const Blow& blow) {
   const Vec3 m = e.ball_axes.col(2);
 
   // Symmetric about the plane of normal and slip: velocities, arm, inertia and curved face all are.
-  const Mat3 inertia = wall ? Mat3(Mat3::Identity()) : Mat3(e.face_axes * head.inertia * e.face_axes.transpose());
+  const Mat3 inertia = wall ? Mat3(Mat3::Identity()) : e.head_inertia;
   const Vec3 coupling = inertia * m - m.dot(inertia * m) * m;
   const Vec3& w = d.head_angular_velocity;
   e.planar = (wall || std::abs(arm.dot(m)) <= tolerance) && (w - w.dot(m) * m).norm() <= tolerance &&

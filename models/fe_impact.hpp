@@ -10,7 +10,7 @@
 #include "hosel/fem/contact.hpp"
 #include "hosel/fem/face_spring.hpp"
 #include "hosel/fem/rigid_body.hpp"
-#include "hosel/golf/blow.hpp"
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/mesh/meridian.hpp"
 #include "hosel/models/fe_ball.hpp"
 #include "hosel/models/impact_model.hpp"
@@ -65,18 +65,15 @@ struct BallOnFace {
   const fem::Beam* shaft = nullptr;       ///< of a full club, for observers
 };
 
-/// What a blow looks like at first contact, ball centre at the global origin.
-struct Encounter {
-  Mat3 face_axes;           ///< columns: face frame in the global one
-  Vec3 face_centre;         ///< global [m]
-  Vec3 point, normal;       ///< of first contact; out of the face
-  Vec3 approach;            ///< velocity of the face there [m/s]
+/// First contact, and what of it is symmetric.
+struct Encounter : FirstContact {
   double normal_speed = 0;  ///< approach along the normal [m/s]
   bool axial = false;       ///< nothing but a normal blow through the centres
   bool planar = false;      ///< a plane of symmetry exists
   bool principal = false;   ///< the plane of normal and slip is one of the face's own about its centre
   Mat3 ball_axes;           ///< contact pole, direction of slip, across both
 };
+/// Throws std::invalid_argument where the head moves away from the ball.
 Encounter encounter(const Blow& blow);
 
 /// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a

@@ -102,11 +102,11 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
   const double potential = 8.0 / 15.0 * modulus * std::sqrt(radius);  // times depth^2.5
 
   // Axes of the contact: n, t1, t2. Velocity w of the face past the ball, w' = -K F.
-  const Vec3 n = p.geometry.normal, t1 = n.unitOrthogonal(), t2 = n.cross(t1);
+  const Vec3 n = p.contact.normal, t1 = n.unitOrthogonal(), t2 = n.cross(t1);
   Mat3 axes;
   axes << n, t1, t2;
   const Mat3 K = axes.transpose() * p.mobility * axes;
-  Vec3 w = axes.transpose() * p.approach;
+  Vec3 w = axes.transpose() * p.contact.approach;
   const double approach = w[0];
 
   // All the energy of the relative motion in the normal spring bounds the depth.
@@ -196,7 +196,7 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
   out.launch.peak_compression = largest_depth;
   out.stored = patch.stored() + stored_normal(depth);
   // Kinetic energy given up by the bodies: impulse times mean relative velocity at the contact.
-  const Vec3 w0 = axes.transpose() * p.approach;
+  const Vec3 w0 = axes.transpose() * p.contact.approach;
   const double given = (w0 + w).dot(impulse) / 2;
   out.gap = (given - out.stored - out.lost_normal - out.lost_friction) / available;
   return out;

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "hosel/models/impact_model.hpp"
 #include "hosel/models/impulse.hpp"
 
 namespace hosel::models {

@@ -1,6 +1,7 @@
 /// The hinged club of Cochran and Stobbs (1968), The Search for the Perfect Swing.
 #pragma once
 
+#include "hosel/models/impact_model.hpp"
 #include "hosel/models/impulse.hpp"
 
 namespace hosel::models {

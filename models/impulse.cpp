@@ -6,28 +6,26 @@
 
 namespace hosel::models {
 
-Mat6 free_head_mobility(const Blow& blow, const ContactGeometry& g) {
+Mat6 free_head_mobility(const Blow& blow, const FirstContact& contact) {
   Mat6 y = Mat6::Zero();
   if (std::isinf(blow.club.head.mass)) return y;  // a wall gives way to nothing
   y.topLeftCorner<3, 3>() = Mat3::Identity() / blow.club.head.mass;
-  y.bottomRightCorner<3, 3>() = g.head_inertia.inverse();
+  y.bottomRightCorner<3, 3>() = contact.head_inertia.inverse();
   return y;
 }
 
 ImpulseProblem impulse_problem(const Blow& blow) {
-  return impulse_problem(blow, free_head_mobility(blow, contact_geometry(blow)));
+  return impulse_problem(blow, free_head_mobility(blow, first_contact(blow)));
 }
 
 ImpulseProblem impulse_problem(const Blow& blow, const Mat6& head_mobility) {
   ImpulseProblem p;
-  p.geometry = contact_geometry(blow);
-  p.arm = -blow.ball.radius * p.geometry.normal;
-  p.approach = p.geometry.approach;
+  p.contact = first_contact(blow);
   p.head_mobility = head_mobility;
-  if (!(p.normal_approach() > 0)) throw std::invalid_argument("the head moves away from the ball");
+  p.contact.closing_speed();  // a head that moves away strikes nothing
   Eigen::Matrix<double, 3, 6> at_contact;
-  at_contact << Mat3::Identity(), -skew(p.geometry.head_arm);
-  p.mobility = Mat3::Identity() / blow.ball.mass - skew(p.arm) * skew(p.arm) / blow.ball.inertia() +
+  at_contact << Mat3::Identity(), -skew(p.contact.head_arm);
+  p.mobility = Mat3::Identity() / blow.ball.mass - skew(p.contact.point) * skew(p.contact.point) / blow.ball.inertia() +
                at_contact * head_mobility * at_contact.transpose();
   if (!p.mobility.allFinite()) throw std::invalid_argument("the head's mass and inertia must be positive");
   return p;
@@ -36,9 +34,9 @@ ImpulseProblem impulse_problem(const Blow& blow, const Mat6& head_mobility) {
 Launch launch_after(const Blow& blow, const ImpulseProblem& p, const Vec3& J) {
   Launch out;
   out.velocity = J / blow.ball.mass;
-  out.spin = p.arm.cross(J) / blow.ball.inertia();
+  out.spin = p.contact.point.cross(J) / blow.ball.inertia();
   Vec6 wrench;
-  wrench << -J, -p.geometry.head_arm.cross(J);
+  wrench << -J, -p.contact.head_arm.cross(J);
   const Vec6 change = p.head_mobility * wrench;
   out.head_velocity = blow.delivery.velocity() + change.head<3>();
   out.head_spin = blow.delivery.head_angular_velocity + change.tail<3>();

@@ -2,24 +2,20 @@
 /// models without finite motion (stick-slip, hertz-maw, pendulum-club, hinged-head) have in common.
 #pragma once
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/golf/first_contact.hpp"
+#include "hosel/golf/launch.hpp"
 #include "hosel/models/shaft_impedance.hpp"
 
 namespace hosel::models {
 
 /// Change of the head's twist (velocity of its cg, angular velocity; global axes) by a wrench impulse
 /// (force, moment about the cg): symmetric, positive.
-Mat6 free_head_mobility(const Blow& blow, const ContactGeometry& g);
+Mat6 free_head_mobility(const Blow& blow, const FirstContact& contact);
 
 struct ImpulseProblem {
-  ContactGeometry geometry;
-  Vec3 arm;       ///< from the ball's centre to P [m]
-  Vec3 approach;  ///< velocity of the face past the ball at P [m/s]
+  FirstContact contact;
   Mat3 mobility;  ///< change of -approach by an impulse on the ball [1/kg]
   Mat6 head_mobility;
-
-  double normal_approach() const { return approach.dot(geometry.normal); }
-  Vec3 slip() const { return approach - normal_approach() * geometry.normal; }
 };
 
 /// Throws std::invalid_argument where the head moves away from the ball.

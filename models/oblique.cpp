@@ -2,22 +2,22 @@
 
 #include <cmath>
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/golf/first_contact.hpp"
 
 namespace hosel::models {
 
 std::optional<double> tangential_restitution(const Blow& blow, const Launch& launch) {
-  const ContactGeometry g = contact_geometry(blow);
-  const Vec3 slip = g.approach - g.approach.dot(g.normal) * g.normal;
+  const FirstContact g = first_contact(blow);
+  const Vec3 slip = g.slip();
   if (slip.norm() < 1e-9 * g.approach.norm()) return std::nullopt;
   const bool wall = std::isinf(blow.club.head.mass);
   const Vec3 face = wall ? g.approach : Vec3(launch.head_velocity + launch.head_spin.cross(g.head_arm));
-  const Vec3 ball = launch.velocity + launch.spin.cross(-blow.ball.radius * g.normal);
+  const Vec3 ball = launch.velocity + launch.spin.cross(g.point);
   return (ball - face).dot(slip) / slip.squaredNorm();
 }
 
 std::optional<double> launch_ratio(const Blow& blow, const Launch& launch) {
-  const Vec3 normal = contact_geometry(blow).normal;
+  const Vec3 normal = first_contact(blow).normal;
   const double path = blow.delivery.attack_angle, face = std::atan2(normal.z(), normal.x());
   if (std::abs(face - path) < 1e-9) return std::nullopt;
   return (launch.launch_angle() - path) / (face - path);
@@ -30,7 +30,7 @@ Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double a
   blow.delivery.club_speed = speed;  // the plate moves, the ball rests: the same thing
   blow.delivery.club_path = angle;
   const Launch launch = model.launch(blow);
-  const Vec3 n = contact_geometry(blow).normal, before = -blow.delivery.velocity();
+  const Vec3 n = first_contact(blow).normal, before = -blow.delivery.velocity();
   const Vec3 after = launch.velocity + before;
   const double v_n = -before.dot(n);
   const Vec3 across = before + v_n * n;

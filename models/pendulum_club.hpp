@@ -1,6 +1,7 @@
 /// The club as a rigid pendulum.
 #pragma once
 
+#include "hosel/models/impact_model.hpp"
 #include "hosel/models/impulse.hpp"
 
 namespace hosel::models {

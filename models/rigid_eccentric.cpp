@@ -4,32 +4,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/models/restitution.hpp"
 
 namespace hosel::models {
 
-ContactGeometry contact_geometry(const Blow& blow) {
-  const Delivery& d = blow.delivery;
-  const Head& head = blow.club.head;
-  const Mat3 R = d.face_to_global();
-  const double yc = -d.impact_toe, zc = d.impact_high;
-  ContactGeometry g;
-  g.normal = R * head.face.normal(yc, zc);
-  g.point = -blow.ball.radius * g.normal;
-  g.head_arm = R * (head.face.point(yc, zc) - head.cg);
-  g.head_inertia = R * head.inertia * R.transpose();
-  g.approach = d.velocity() + d.head_angular_velocity.cross(g.head_arm);
-  return g;
-}
-
 Launch RigidEccentric::launch(const Blow& blow) const {
-  const ContactGeometry g = contact_geometry(blow);
+  const FirstContact g = first_contact(blow);
   const Ball& ball = blow.ball;
   const Head& head = blow.club.head;
-  const double approach = g.approach.dot(g.normal);
-  if (!(approach > 0)) throw std::invalid_argument("the head moves away from the ball");
-
-  const Vec3 slip = g.approach - approach * g.normal;
+  const double approach = g.closing_speed();
+  const Vec3 slip = g.slip();
   const double slip_speed = slip.norm();
   // The normal force passes offset * r from the ball's centre, on the side that adds spin.
   const Vec3 along = slip_speed > 0 ? Vec3(slip / slip_speed) : Vec3::Zero();

@@ -12,13 +12,13 @@ namespace {
 
 /// Work done against the approach w = w0 - K J by an impulse that grows from J0 to J1 on a straight line.
 double work(const ImpulseProblem& p, const Vec3& from, const Vec3& to, const Vec3& part) {
-  return (p.approach - p.mobility * (from + to) / 2).dot(part);
+  return (p.contact.approach - p.mobility * (from + to) / 2).dot(part);
 }
 
 }  // namespace
 
 StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
-  const Vec3 n = p.geometry.normal, slip = p.slip();
+  const Vec3 n = p.contact.normal, slip = p.contact.slip();
   const Vec3 t1 = n.unitOrthogonal(), t2 = n.cross(t1);
   Eigen::Matrix<double, 3, 2> T;
   T << t1, t2;
@@ -30,7 +30,7 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
   const Vec2 stop = to_stop * w;      // tangential impulse that stops the slip at once
   const Vec2 hold = -to_stop * K_tn;  // per normal impulse, while sticking
   const double K_nn = n.dot(p.mobility * n);
-  const double approach = p.normal_approach();
+  const double approach = p.contact.closing_speed();
 
   // Sliding ends at p_s where stop / p_s + hold = mu d with |d| = 1: a quadratic in q = 1 / p_s.
   double p_slide = 0;

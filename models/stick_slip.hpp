@@ -1,6 +1,7 @@
 /// Sliding, then rolling: the impulse followed along its path, in closed form.
 #pragma once
 
+#include "hosel/models/impact_model.hpp"
 #include "hosel/models/impulse.hpp"
 
 namespace hosel::models {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/models/volume.hpp"
 #include "hosel/solvers/cvode.hpp"
 #include "hosel/solvers/rosenbrock_w.hpp"
@@ -44,9 +44,9 @@ class Contact {
       : law_(law), ball_(blow.ball), head_(blow.club.head), shaft_(shaft) {
     const double r = ball_.radius;
     const Delivery& d = blow.delivery;
-    to_global = d.face_to_global();
-    const double yc = -d.impact_toe, zc = d.impact_high;
-    cg_start_ = -r * head_.face.normal(yc, zc) - head_.face.point(yc, zc) + head_.cg;
+    const FirstContact first = first_contact(blow);
+    to_global = first.face_axes;
+    cg_start_ = to_global.transpose() * (first.point - first.head_arm);
     by_ = 1 / head_.face.bulge;
     bz_ = 1 / head_.face.roll;
     curvature_ = (by_ + bz_) / 2;
@@ -94,10 +94,6 @@ class Contact {
   double gap(const double* y) {
     evaluate(y);
     return depth_;
-  }
-  double approach(const double* y) {
-    evaluate(y);
-    return approach_;
   }
 
   void rate(const double* y, double* dy) {
@@ -376,7 +372,7 @@ VolumetricResult volumetric_impact(const Blow& blow, const VolumetricLaw& law, c
                                    const std::function<void(const ContactSample&)>& watch) {
   Contact contact(blow, law, shaft);
   std::vector<double> y = contact.start();
-  if (!(contact.approach(y.data()) > 0)) throw std::invalid_argument("the head moves away from the ball");
+  first_contact(blow).closing_speed();  // a head that moves away strikes nothing
   VolumetricResult out;
   Peak force, depth;
   const auto record = [&](double t, const double* state) {

@@ -13,9 +13,9 @@
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/launch_table.hpp"
 
@@ -46,7 +46,7 @@ Prediction answer(const models::ImpactModel& model, const Blow& blow) {
   Prediction a;
   try {
     a.launch = models::checked_launch(model, blow);
-    const Vec3 n = models::contact_geometry(blow).normal, J = blow.ball.mass * a.launch.velocity;
+    const Vec3 n = first_contact(blow).normal, J = blow.ball.mass * a.launch.velocity;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     a.quantity = {a.launch.contact_time.value_or(nan), a.launch.peak_force.value_or(nan), J.dot(n),
                   (J - J.dot(n) * n).norm(), (a.launch.head_spin - blow.delivery.head_angular_velocity).norm()};

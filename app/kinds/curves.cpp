@@ -114,7 +114,7 @@ class CurvesJob final : public Job {
         models::Options options = options_;
         Blow blow = blow_;
         family_.parameter->set(options, blow, f);
-        const Vec3 along = models::impulse_problem(blow).slip().normalized();
+        const Vec3 along = models::impulse_problem(blow).contact.slip().normalized();
         post::Series line{.label = member(f)}, share = line;
         double least = 0, most = 0;
         const auto add = [&](double t, double normal, const Vec3& force) {

@@ -1,6 +1,6 @@
 // The resultant normal force does not pass through the ball's centre (the patch wanders while it slides).
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/loop/effects/all.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::loop::forms {
 
@@ -14,7 +14,7 @@ std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
                          .complexity = 3};
   couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
-    const models::ContactGeometry g = models::contact_geometry(t.blow);
+    const FirstContact g = first_contact(t.blow);
     const Vec3 slip = g.approach - g.approach.dot(g.normal) * g.normal;
     if (!(slip.norm() > 0)) return;
     const double impulse = t.blow.ball.mass * launch.velocity.dot(g.normal);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/golf/first_contact.hpp"
 
 namespace hosel::loop {
 
@@ -22,7 +22,7 @@ Balance balance(const ShotModel& shots, const std::vector<int>& rows, const Mode
     const Ball& ball = trial.blow.ball;
     Launch l;
     if (!shots.launch(trial, model, parameters, l)) continue;
-    const Vec3 n = models::contact_geometry(trial.blow).normal;
+    const Vec3 n = first_contact(trial.blow).normal;
     // Channels by the three components of the impulse, a thousandth of the ball's momentum each way.
     Eigen::MatrixXd B = Eigen::MatrixXd::Zero(m, 3);
     Eigen::VectorXd z = Eigen::VectorXd::Zero(m);

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/solvers/random.hpp"
 
 namespace hosel::loop {
@@ -20,7 +20,7 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
     Blow blow = model.trial(i).blow;
     if (!c.head_turns)
       blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
-    const models::ContactGeometry g = models::contact_geometry(blow);
+    const FirstContact g = first_contact(blow);
     const double approach = g.approach.dot(g.normal);
     oblique.push_back((g.approach - approach * g.normal).norm() / approach);
   }

@@ -44,8 +44,7 @@ Vec3 butt(const Blow& b) {  // global, from the head's cg
 
 TEST(HistoricalClubs, ConstraintsOnlyTakeMobilityAway) {
   const Blow b = blow();
-  const Mat6 free = free_head_mobility(b, contact_geometry(b)), hinged = hinged_mobility(b),
-             rigid = pendulum_mobility(b);
+  const Mat6 free = free_head_mobility(b, first_contact(b)), hinged = hinged_mobility(b), rigid = pendulum_mobility(b);
   const auto least = [](const Mat6& m) { return Eigen::SelfAdjointEigenSolver<Mat6>(m).eigenvalues().minCoeff(); };
   EXPECT_GT(least(free - hinged), -1e-9 * free.norm());
   EXPECT_GT(least(hinged - rigid), -1e-9 * free.norm());
@@ -64,7 +63,7 @@ TEST(HistoricalClubs, PendulumKeepsItsAngularMomentumAboutTheButt) {
   const Mat3 R = b.delivery.face_to_global(), I = R * b.club.head.inertia * R.transpose();
   const Vec3 axis = R * b.club.geometry.shaft_axis.normalized();
   const Mat3 rod = 0.06 / 3 * (Mat3::Identity() - axis * axis.transpose());
-  const Vec3 ball_from_pivot = -pivot + contact_geometry(b).head_arm + b.ball.radius * contact_geometry(b).normal;
+  const Vec3 ball_from_pivot = -pivot + first_contact(b).head_arm + b.ball.radius * first_contact(b).normal;
   const Vec3 total = (-pivot).cross(b.club.head.mass * dv) + I * dw + rod * dw +
                      ball_from_pivot.cross(b.ball.mass * l.velocity) + b.ball.inertia() * l.spin;
   EXPECT_LT(total.norm(), 1e-9 * ball_from_pivot.cross(b.ball.mass * l.velocity).norm());
@@ -76,8 +75,8 @@ TEST(HistoricalClubs, EnergyBalance) {
     const ImpulseProblem p = impulse_problem(b, mobility);
     const StickSlipPath path = stick_slip_path(b, p);
     // Work of the impulse on both bodies: J . mean relative velocity.
-    const Vec3 after = p.approach - p.mobility * path.impulse;
-    const double given = path.impulse.dot(p.approach + after) / 2;
+    const Vec3 after = p.contact.approach - p.mobility * path.impulse;
+    const double given = path.impulse.dot(p.contact.approach + after) / 2;
     const double kinetic = b.club.head.mass * 48 * 48 / 2;
     EXPECT_NEAR(given, path.lost_normal + path.lost_friction + path.lost_tangential, 1e-9 * kinetic);
   }

@@ -40,7 +40,7 @@ Blow eccentric(double loft) {
 
 /// Kinetic energy given up, and the two momenta about the contact point.
 double lost_energy(const Blow& b, const Launch& l) {
-  const Mat3 I = contact_geometry(b).head_inertia;
+  const Mat3 I = first_contact(b).head_inertia;
   const auto head = [&](const Vec3& v, const Vec3& w) {
     return (b.club.head.mass * v.squaredNorm() + w.dot(I * w)) / 2;
   };
@@ -49,7 +49,7 @@ double lost_energy(const Blow& b, const Launch& l) {
 }
 
 void expect_momenta(const Blow& b, const Launch& l) {
-  const ContactGeometry g = contact_geometry(b);
+  const FirstContact g = first_contact(b);
   const double M = b.club.head.mass;
   const Vec3 change = M * (l.head_velocity - b.delivery.velocity()) + b.ball.mass * l.velocity;
   EXPECT_LT(change.norm(), 1e-9 * M * b.delivery.club_speed);
@@ -93,9 +93,9 @@ TEST(StickSlip, SlipEndsAtZeroAndReturnsByTheRestitution) {
     ASSERT_GT(path.rolling_from, 0.05);
     ASSERT_LT(path.rolling_from, 0.95);
     EXPECT_EQ(path.tangential_restitution, et);
-    const Vec3 after = p.approach - p.mobility * path.impulse;
-    const Vec3 slip = after - after.dot(p.geometry.normal) * p.geometry.normal;
-    EXPECT_LT((slip + et * p.slip()).norm(), 1e-12 * p.slip().norm());
+    const Vec3 after = p.contact.approach - p.mobility * path.impulse;
+    const Vec3 slip = after - after.dot(p.contact.normal) * p.contact.normal;
+    EXPECT_LT((slip + et * p.contact.slip()).norm(), 1e-12 * p.contact.slip().norm());
   }
 }
 
@@ -115,7 +115,7 @@ TEST(StickSlip, MomentaAndEnergyBalance) {
       EXPECT_NEAR(lost_energy(b, l), lost, 1e-9 * before);
       EXPECT_GT(path.lost_friction, 0);
       // Coulomb's limit holds for the whole impulse.
-      const Vec3 Jt = path.impulse - path.normal_impulse * p.geometry.normal;
+      const Vec3 Jt = path.impulse - path.normal_impulse * p.contact.normal;
       EXPECT_LE(Jt.norm(), mu * path.normal_impulse * (1 + 1e-12));
     }
 }
@@ -195,7 +195,7 @@ TEST(HertzMaw, MomentaAndEnergyBalance) {
 TEST(HertzMaw, TangentialForceReverses) {
   double most = 0, least = 0;
   const Blow b = eccentric(20);
-  const Vec3 slip = impulse_problem(b).slip().normalized();
+  const Vec3 slip = impulse_problem(b).contact.slip().normalized();
   hertz_maw_impact(b, {}, {}, [&](const HertzMawSample& s) {
     most = std::max(most, s.tangential_force.dot(slip));
     least = std::min(least, s.tangential_force.dot(slip));

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/models/rigid_planar.hpp"
@@ -132,7 +133,7 @@ TEST(RigidEccentric, FrictionLimitSlides) {
   Blow b = blow(head_a(), 45, 0, 0, 0, 60, 0, 0);
   b.contact.friction = 0.1;
   const Launch l = RigidEccentric().launch(b);
-  const Vec3 n = contact_geometry(b).normal;
+  const Vec3 n = first_contact(b).normal;
   const Vec3 J = b.ball.mass * l.velocity;
   const double Jn = J.dot(n);
   EXPECT_NEAR((J - Jn * n).norm(), 0.1 * Jn, 1e-12 * Jn);

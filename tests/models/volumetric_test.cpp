@@ -1,5 +1,6 @@
 // The volumetric model against its published parameter sets, balances and limits.
 #include "hosel/models/volumetric.hpp"
+#include "hosel/golf/first_contact.hpp"
 
 #include <gtest/gtest.h>
 
@@ -156,7 +157,7 @@ TEST(Volumetric, TendsToTheEccentricRigidImpact) {
     Blow b = eccentric();
     const Launch soft = volumetric_impact(b, law, {Integrator::cvode, 1e-8}).launch;
     ASSERT_GT(*soft.peak_force, 1e4);
-    const ContactGeometry g = contact_geometry(b);
+    const FirstContact g = first_contact(b);
     const Vec3 arm = -b.ball.radius * g.normal;
     const Vec3 w = soft.head_velocity + soft.head_spin.cross(g.head_arm) - soft.velocity - soft.spin.cross(arm);
     b.contact.restitution = -w.dot(g.normal) / g.approach.dot(g.normal);
