@@ -123,6 +123,11 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
                                       law.cover_thickness);
     law.volume_exponent = t->number({"volume_exponent", "power of the overlapping volume in the normal force"},
                                     {0.5, 1.5}, law.volume_exponent);
+    options.volumetric_solution.integrator =
+        t->choice({"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
+                  {"rosenbrock", "cvode"}, "rosenbrock") == "cvode"
+            ? models::Integrator::cvode
+            : models::Integrator::rosenbrock;
     options.volumetric_solution.tolerance = t->number({"tolerance", "relative tolerance of the time integration"},
                                                       {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }

@@ -150,6 +150,12 @@ models::SwingOptions read_swing_options(Table root) {
     o.shear = t->flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, o.shear);
     o.modal_damping = t->numbers({"modal_damping", "damping ratios of the first modes, besides the shaft's own"}, 0,
                                  {0, 0.999}, std::vector<double>{});
+    o.integrator = t->choice({"integrator", "own scheme with an energy ledger, or SUNDIALS IDA"},
+                             {"generalized-alpha", "ida"}, "generalized-alpha") == "ida"
+                       ? models::SwingIntegrator::ida
+                       : models::SwingIntegrator::generalized_alpha;
+    o.kinsol = t->choice({"equilibrium", "how the hanging club is found: Newton, or SUNDIALS KINSOL"},
+                         {"newton", "kinsol"}, "newton") == "kinsol";
     o.grip_point = t->quantity({"grip_point", "distance from the butt of the point whose motion was recorded"}, "mm",
                                Range::non_negative(), o.grip_point);
   }

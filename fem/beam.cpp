@@ -441,6 +441,23 @@ std::vector<Beam::Strain> Beam::strains(const State& s) const {
   return out;
 }
 
+std::vector<Beam::Resultant> Beam::resultants(const State& s) const {
+  std::vector<Resultant> out;
+  for (const Element& e : elements_) {
+    const Kinematics k = kinematics(s, e);
+    Vec12 rate = Vec12::Zero();
+    if (options_.damping_time > 0) rate = k.jacobian() * velocities(s, e.dofs);
+    for (const Point& g : e.points) {
+      const PointStrain p = point_strain(k, g);
+      Vec6 strain = p.strain;
+      if (options_.damping_time > 0) strain += options_.damping_time * strain_matrix(p, g) * rate;
+      const Vec6 stress = g.stiffness * strain;
+      out.push_back({g.arc_length, g.frame.transpose() * stress.head<3>(), g.frame.transpose() * stress.tail<3>()});
+    }
+  }
+  return out;
+}
+
 double Beam::mass() const {
   double sum = 0;
   for (double w : weight_) sum += w;

@@ -66,6 +66,14 @@ class Beam final : public Term {
     Vec3 gamma, kappa;
   };
   std::vector<Strain> strains(const State& s) const;
+  /// What the section carries there, damping included, in its axes: the part towards the line's end pulls and turns the
+  /// part towards its beginning by this much.
+  struct Resultant {
+    double arc_length;
+    Vec3 force;   ///< axial, shear along y and z [N]
+    Vec3 moment;  ///< torque, bending about y and z; about the line [N m]
+  };
+  std::vector<Resultant> resultants(const State& s) const;
   double mass() const;
 
  private:

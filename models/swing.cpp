@@ -5,6 +5,7 @@
 
 #include "hosel/fem/modal_damping.hpp"
 #include "hosel/golf/shaft_library.hpp"
+#include "hosel/solvers/ida.hpp"
 #include "hosel/solvers/modes.hpp"
 #include "hosel/solvers/statics.hpp"
 
@@ -180,7 +181,7 @@ solvers::NewtonOptions Swing::newton() const {
   return {.residual_relative = t, .residual_absolute = t, .increment_vector = 0.1 * t, .increment_rotation = 0.1 * t};
 }
 
-fem::State Swing::equilibrium(double time, bool kinsol) {
+fem::State Swing::equilibrium(double time) {
   if (drive_.kind != GripDrive::Kind::prescribed && drive_.kind != GripDrive::Kind::hands)
     throw std::invalid_argument("a club that nothing holds has no equilibrium");
   held_ = time;
@@ -193,8 +194,8 @@ fem::State Swing::equilibrium(double time, bool kinsol) {
     return straight;
   }());
   s.v.setZero();
-  s = kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6).state
-             : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1}).state;
+  s = options_.kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6).state
+                      : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1}).state;
   held_.reset();
   return s;
 }
@@ -233,17 +234,10 @@ fem::State Swing::hold(double time, double seconds) {
     s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
   s = start(time, s);
   s.time = time - seconds;
-  solvers::GeneralizedAlpha scheme(system_,
-                                   {.rho_inf = options_.rho_inf,
-                                    .newton = newton(),
-                                    .step_max = options_.step,
-                                    .step_min = options_.step / 1024,
-                                    .error_vector = kInf,
-                                    .error_rotation = kInf},
-                                   s);
-  while (scheme.time() < time - 1e-9 * seconds) scheme.advance(time);
+  solvers::GeneralizedAlpha run = scheme(s);
+  while (run.time() < time - 1e-9 * seconds) run.advance(time);
   held_.reset();
-  s = scheme.state();
+  s = run.state();
   s.time = time;
   return s;
 }
@@ -288,23 +282,52 @@ SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) con
   return out;
 }
 
+solvers::GeneralizedAlpha Swing::scheme(const fem::State& from) {
+  return {system_,
+          {.rho_inf = options_.rho_inf,
+           .newton = newton(),
+           .step_max = options_.step,
+           .step_min = options_.step / 1024,
+           .error_vector = kInf,
+           .error_rotation = kInf},
+          from};
+}
+
 fem::State Swing::run(const fem::State& from, double end, const Observer& observer) {
-  solvers::GeneralizedAlpha scheme(system_,
-                                   {.rho_inf = options_.rho_inf,
-                                    .newton = newton(),
-                                    .step_max = options_.step,
-                                    .step_min = options_.step / 1024,
-                                    .error_vector = kInf,
-                                    .error_rotation = kInf},
-                                   from);
-  if (observer) observer(sample(scheme.state(), scheme.reactions()));
-  while (scheme.time() < end - 1e-9 * options_.step) {
-    scheme.advance(end);
-    if (observer) observer(sample(scheme.state(), scheme.reactions()));
+  return watch(from, end, [&](const SwingSample& sample, const fem::State&) {
+    if (observer) observer(sample);
+  });
+}
+
+fem::State Swing::watch(const fem::State& from, double end, const StateObserver& observer) {
+  solvers::GeneralizedAlpha run = scheme(from);
+  observer(sample(run.state(), run.reactions()), run.state());
+  if (options_.integrator == SwingIntegrator::ida) return by_ida(run.state(), end, observer);
+  while (run.time() < end - 1e-9 * options_.step) {
+    run.advance(end);
+    observer(sample(run.state(), run.reactions()), run.state());
   }
-  ledger_ = scheme.ledger();
-  counts_ = scheme.counts();
-  return scheme.state();
+  ledger_ = run.ledger();
+  counts_ = run.counts();
+  return run.state();
+}
+
+fem::State Swing::by_ida(const fem::State& consistent, double end, const StateObserver& observer) {
+  std::vector<double> times;
+  const auto count = static_cast<long>(std::ceil((end - consistent.time) / options_.step - 1e-9));
+  for (long i = 1; i <= count; ++i)
+    times.push_back(consistent.time + (end - consistent.time) * static_cast<double>(i) / static_cast<double>(count));
+  fem::State last = consistent;
+  ledger_ = {};
+  counts_ = {};
+  solvers::integrate_ida(system_, consistent, times, {}, [&](const fem::State& s) {
+    fem::Vector inertia = fem::Vector::Zero(system_.dof_map.size()), force = inertia;
+    for (const auto& term : system_.terms) term->residual(s, inertia, force);
+    observer(sample(s, inertia + force), s);
+    last = s;
+    ++counts_.steps;
+  });
+  return last;
 }
 
 }  // namespace hosel::models

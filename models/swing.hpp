@@ -26,7 +26,15 @@ enum class HeadJoint {
   none,    ///< no head
 };
 
+/// What integrates the swing.
+enum class SwingIntegrator {
+  generalized_alpha,  ///< own Lie-group scheme (solvers/generalized_alpha.hpp), fixed step
+  ida,                ///< SUNDIALS IDA (solvers/ida.hpp), variable order and step; no energy ledger
+};
+
 struct SwingOptions {
+  SwingIntegrator integrator = SwingIntegrator::generalized_alpha;
+  bool kinsol = false;  ///< equilibria by SUNDIALS KINSOL instead of Newton
   int elements = 20;
   double growth = 1;        ///< of the elements' lengths towards the tip
   double step = 1e-3;       ///< [s]
@@ -82,16 +90,18 @@ class Swing {
   /// Throws std::invalid_argument on a club without shaft, or bad options.
   Swing(const Club& club, const SwingOptions& options, GripDrive drive);
 
-  /// Static equilibrium under gravity with the grip held as it is at `time`; Newton, or SUNDIALS KINSOL.
-  fem::State equilibrium(double time, bool kinsol = false);
+  /// Static equilibrium under gravity with the grip held as it is at `time`.
+  fem::State equilibrium(double time);
   /// The grip held for `seconds` up to `time`, from the straight shaft: what an experiment does.
   fem::State hold(double time, double seconds);
   /// `equilibrium`, moving as a rigid body with the grip.
   fem::State start(double time, const fem::State& deflected) const;
 
   using Observer = std::function<void(const SwingSample&)>;
+  using StateObserver = std::function<void(const SwingSample&, const fem::State&)>;
   /// Integrates from `from` to `end`; the observer sees the start and every step. Returns the last state.
   fem::State run(const fem::State& from, double end, const Observer& observer);
+  fem::State watch(const fem::State& from, double end, const StateObserver& observer);
 
   SwingSample sample(const fem::State& s, const fem::Vector& reactions) const;
   const fem::System& system() const { return system_; }
@@ -101,11 +111,13 @@ class Swing {
   const Mat3& face_to_grip() const { return face_to_grip_; }
   const Vec3& gravity() const { return options_.gravity; }
   double mass() const;
-  const solvers::Ledger& ledger() const { return ledger_; }  ///< of the last run
+  const solvers::Ledger& ledger() const { return ledger_; }  ///< of the last run by generalized-alpha
   const solvers::GeneralizedAlpha::Counts& counts() const { return counts_; }
 
  private:
   solvers::NewtonOptions newton() const;
+  solvers::GeneralizedAlpha scheme(const fem::State& from);
+  fem::State by_ida(const fem::State& consistent, double end, const StateObserver& observer);
   std::unique_ptr<fem::Term> modal_damping();
 
   Club club_;

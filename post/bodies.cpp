@@ -64,6 +64,20 @@ VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& vel
   return mesh;
 }
 
+std::vector<SectionLoad> section_loads(const fem::Beam& beam, const fem::State& state) {
+  const std::vector<fem::Beam::Resultant> at = beam.resultants(state);
+  std::vector<SectionLoad> out;
+  std::size_t k = 0;
+  for (const mesh::LineNode& node : beam.line()) {
+    while (k + 2 < at.size() && at[k + 1].arc_length < node.arc_length) ++k;
+    const double w = (node.arc_length - at[k].arc_length) / (at[k + 1].arc_length - at[k].arc_length);
+    const Vec3 force = (1 - w) * at[k].force + w * at[k + 1].force;
+    const Vec3 moment = (1 - w) * at[k].moment + w * at[k + 1].moment;
+    out.push_back({force.x(), moment.x(), moment.tail<2>().norm()});
+  }
+  return out;
+}
+
 VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& state) {
   VtkMesh m;
   std::vector<Vec3> displacement, velocity;
@@ -76,7 +90,18 @@ VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& 
     radius.values.push_back(shaft.at(beam.line()[i].arc_length).outer_radius);
     if (i > 0) m.cells.push_back({CellShape::line, {std::int64_t(i) - 1, std::int64_t(i)}});
   }
-  m.point_fields = {vector_field("displacement", "m", displacement), vector_field("velocity", "m/s", velocity), radius};
+  VtkField axial{"axial_force", "N", 1, {}}, torque{"torque", "N m", 1, {}}, bending{"bending_moment", "N m", 1, {}};
+  for (const SectionLoad& load : section_loads(beam, state)) {
+    axial.values.push_back(load.axial);
+    torque.values.push_back(load.torque);
+    bending.values.push_back(load.bending);
+  }
+  m.point_fields = {vector_field("displacement", "m", displacement),
+                    vector_field("velocity", "m/s", velocity),
+                    radius,
+                    axial,
+                    torque,
+                    bending};
   return m;
 }
 

@@ -8,6 +8,7 @@
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/swing_recorder.hpp"
 
 namespace hosel::app {
 namespace {
@@ -22,6 +23,11 @@ class SwingJob final : public Job {
     motion_ = read_motion(root.table("motion"));
     options_ = read_swing_options(root);
     grip_ = read_grip_drive(root);
+    if (auto output = root.optional_table("output")) {
+      record_.vtk = output->flag({"vtk", "write series for ParaView"}, record_.vtk);
+      record_.steps_per_frame = int(output->integer({"steps_per_frame", "time steps from one frame to the next"}, 1,
+                                                    100000, record_.steps_per_frame));
+    }
   }
 
   void run(Output& out) override {
@@ -35,10 +41,12 @@ class SwingJob final : public Job {
                        {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
     const fem::State from = swing.start(motion_.begin, held.equilibrium(motion_.begin));
     std::vector<models::SwingSample> samples;
+    post::SwingRecorder recorder(out.directory(), club_, swing, record_);
     {
       Progress progress = out.progress("swing");
-      swing.run(from, motion_.end, [&](const models::SwingSample& s) {
+      swing.watch(from, motion_.end, [&](const models::SwingSample& s, const fem::State& state) {
         samples.push_back(s);
+        recorder(s, state);
         progress.update((s.time - motion_.begin) / (motion_.end - motion_.begin), fmt::format("t = {:.3f} s", s.time));
       });
     }
@@ -73,6 +81,8 @@ class SwingJob final : public Job {
         {.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
     if (const std::string why = post::draw(figure, out.path("swing")); !why.empty()) out.say(why);
 
+    if (const std::string why = post::draw(recorder.figure(0.4), out.path("shaft")); !why.empty()) out.say(why);
+
     const models::SwingSample& last = samples.back();
     const Delivery d = models::delivery_of(last.head);
     summary["at_end"] = {{"time_s", last.time},
@@ -88,16 +98,19 @@ class SwingJob final : public Job {
                            {"dynamic_lie_deg", degrees(models::dynamic_lie(last.head))},
                            {"head_angular_velocity_rad_per_s",
                             {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
-    const solvers::Ledger& l = swing.ledger();
-    summary["energy_J"] = {{"kinetic", l.kinetic},     {"strain", l.strain_total()}, {"viscous", l.viscous},
-                           {"numerical", l.numerical}, {"external", l.external},     {"initial", l.initial},
-                           {"closure", l.closure}};
+    // IDA keeps no ledger.
+    if (const solvers::Ledger& l = swing.ledger(); options_.integrator == models::SwingIntegrator::generalized_alpha)
+      summary["energy_J"] = {{"kinetic", l.kinetic},     {"strain", l.strain_total()}, {"viscous", l.viscous},
+                             {"numerical", l.numerical}, {"external", l.external},     {"initial", l.initial},
+                             {"closure", l.closure}};
     summary["steps"] = swing.counts().steps;
     out.say(
         fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} "
                     "deg, loft {:.2f} deg, face {:.2f} deg",
                     last.time, 1e3 * last.lead, 1e3 * last.droop, d.club_speed, degrees(d.attack_angle),
                     degrees(d.club_path), degrees(d.dynamic_loft), degrees(d.face_angle)));
+    for (const auto& file : post::SwingRecorder::files(out.directory()))
+      out.say(fmt::format("ParaView: {}", file.string()));
     out.write_summary(summary);
   }
 
@@ -106,6 +119,7 @@ class SwingJob final : public Job {
   MotionInput motion_;
   models::SwingOptions options_;
   GripInput grip_;
+  post::SwingRecorderOptions record_;
 };
 
 }  // namespace

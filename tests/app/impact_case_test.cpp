@@ -113,7 +113,13 @@ TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
         {"contact_pressure", 1, "Pa"}}},
       {"face", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
       {"head", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}}},
-      {"shaft", {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"radius", 1, "m"}}}};
+      {"shaft",
+       {{"displacement", 3, "m"},
+        {"velocity", 3, "m/s"},
+        {"radius", 1, "m"},
+        {"axial_force", 1, "N"},
+        {"torque", 1, "N m"},
+        {"bending_moment", 1, "N m"}}}};
   for (const auto& [body, arrays] : expected) {
     const std::vector<Frame> series = frames(out / "vtk" / (body + ".pvd"));
     ASSERT_GT(series.size(), 10u) << body;

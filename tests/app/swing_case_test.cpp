@@ -94,10 +94,19 @@ TEST(SwingCase, RunsAndWritesItsHistory) {
   const auto dir = fresh_directory("swing_good");
   std::ofstream(dir / "case.toml") << kCase;
   std::ofstream(dir / "grip.csv") << euler_motion();
-  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  const Outcome o = command("run " + dir.string() + " --set output.steps_per_frame=4 --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 0) << o.text;
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "swing.csv"));
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "summary.json"));
+  // 0.2 s at 5 ms, every fourth step: 11 frames of each body, and in each a row for the 9 nodes of the shaft.
+  for (const char* body : {"shaft", "head", "hands", "trail"}) {
+    const std::string pvd = content(dir / "out/vtk" / (std::string(body) + ".pvd"));
+    std::size_t sets = 0;
+    for (std::size_t at = 0; (at = pvd.find("<DataSet ", at)) != std::string::npos; ++at) ++sets;
+    EXPECT_EQ(sets, 11u) << body;
+  }
+  const std::string table = content(dir / "out/shaft.csv");
+  EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 11 * 9);
 }
 
 TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {

@@ -1,0 +1,56 @@
+/// Watches a swing: VTK series of shaft, head and hands, and what the shaft's sections carry.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "hosel/models/swing.hpp"
+#include "hosel/post/bodies.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/vtk_series.hpp"
+
+namespace hosel::post {
+
+struct SwingRecorderOptions {
+  bool vtk = true;
+  int steps_per_frame = 10;  ///< accepted steps between frames
+};
+
+class SwingRecorder {
+ public:
+  /// Writes DIRECTORY/vtk/{shaft,head,hands,trail}.pvd and DIRECTORY/shaft.csv: a row for every node of the shaft in
+  /// every frame. Without `vtk` the table alone. `club` and `swing` must outlive this.
+  SwingRecorder(std::filesystem::path directory, const Club& club, const models::Swing& swing,
+                SwingRecorderOptions options);
+  /// At every step. The table is whole when the recorder goes.
+  void operator()(const models::SwingSample& sample, const fem::State& state);
+  ~SwingRecorder();
+  SwingRecorder(const SwingRecorder&) = delete;
+  SwingRecorder& operator=(const SwingRecorder&) = delete;
+
+  /// What the shaft's sections carry along it, at five instants of the last `span` [s].
+  Figure figure(double span) const;
+  /// The series in a run's directory, for a person to open.
+  static std::vector<std::filesystem::path> files(const std::filesystem::path& directory);
+
+ private:
+  void write(const char* body, double time, const VtkMesh& mesh);
+
+  std::filesystem::path directory_;
+  const Club& club_;
+  const models::Swing& swing_;
+  SwingRecorderOptions options_;
+  VtkMesh head_;  // face frame
+  std::map<std::string, VtkSeries> series_;
+  struct Frame {
+    double time;
+    std::vector<SectionLoad> loads;  // by node
+  };
+  std::vector<Frame> frames_;
+  std::vector<Vec3> trail_;  // of the head's centre of gravity, by frame
+  std::string table_;
+  long steps_ = 0;
+};
+
+}  // namespace hosel::post
