@@ -56,6 +56,7 @@ struct Setting {
   bool head_turns = false;        ///< the base model lets the head rotate
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
   std::vector<Output> outputs;    ///< channels of the data
+  bool thin_face = false;         ///< the head is a driver's: models::wants_yielding_face
 };
 
 struct EffectEntry {
