@@ -93,6 +93,21 @@ struct Array {
   const char* unit;
 };
 
+TEST(ImpactCase, ADriversRigidFaceIsSaidInOneLine) {
+  const std::string warning = "the face of this driver-like head is rigid";
+  const auto said = [&](const std::string& name, const std::string& set) {
+    const Outcome run = command("run " HOSEL_SOURCE_DIR "/cases/" + name +
+                                " --set 'models=[\"fe-free-body\"]' --set accuracy=look --set output.vtk=false " + set +
+                                " --out " + (fresh_directory("rigid_face_" + name) / "out").string());
+    EXPECT_EQ(run.status, 0) << run.text;
+    const auto at = run.text.find(warning);
+    return at != std::string::npos && run.text.find(warning, at + 1) == std::string::npos;
+  };
+  EXPECT_TRUE(said("driver-toe", ""));
+  EXPECT_FALSE(said("driver-toe", "--set 'face.name=\"modern-driver\"'"));
+  EXPECT_FALSE(said("iron7-trackman", ""));
+}
+
 TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
   const fs::path out = fresh_directory("read_back") / "out";
   const Outcome run = command(coarse_full_club() + out.string());

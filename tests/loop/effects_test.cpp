@@ -29,8 +29,10 @@ Shot blow_of(int k) {
 class OnModel : public testing::TestWithParam<const char*> {
  protected:
   OnModel() : model(models::find(GetParam())->make({})), turns(std::string(GetParam()) != "rigid-planar") {
-    setting = {
-        turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
+    setting = {turns,
+               true,
+               {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin},
+               true};
     for (const EffectEntry& e : effects())
       if (e.on_shots)
         for (Parametrisation& f : e.on_shots(setting)) forms.push_back(f);
