@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "hosel/fem/materials/linear_elastic.hpp"
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/models/oblique.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
 
 namespace hosel::models {
 namespace {
@@ -68,8 +68,8 @@ Launch ElasticPlate::launch(const Blow& blow) const {
   Launch out = solve_free_body(blow, stand_in_).launch;
   const std::optional<double> e_t = tangential_restitution(blow, out);
   if (!e_t) return out;
-  const Vec3 normal = contact_geometry(blow).normal, approach = blow.delivery.velocity();
-  const Vec3 slip = approach - approach.dot(normal) * normal;
+  const FirstContact contact = first_contact(blow);
+  const Vec3 &normal = contact.normal, slip = contact.slip();
   const double i = blow.ball.inertia_factor;
   const Vec3 push = (1 + *e_t) * i / (1 + i) * slip;
   out.velocity = out.velocity.dot(normal) * normal + push;

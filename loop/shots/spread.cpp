@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "hosel/golf/first_contact.hpp"
 #include "hosel/golf/quantities.hpp"
 #include "hosel/loop/shots/features.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/solvers/random.hpp"
 
 namespace hosel::loop {
@@ -48,7 +48,7 @@ struct Reaches {
 
 bool can_happen(const Blow& b) {
   if (!b.club.head.faults().empty()) return false;
-  const models::ContactGeometry g = models::contact_geometry(b);
+  const FirstContact g = first_contact(b);
   return g.approach.dot(g.normal) > 0.2 * b.delivery.club_speed;
 }
 
