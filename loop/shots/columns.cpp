@@ -17,10 +17,10 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kMostRows = 240;
-constexpr double kSure = 30;       // least fall of the deviance,
-constexpr double kShare = 0.15;    // and share of it,
-constexpr double kOverRival = 8;   // and lead over the library's best
-constexpr double kClean = 1.7;     // deviance per value that a slip of free size may leave
+constexpr double kSure = 30;      // least fall of the deviance,
+constexpr double kShare = 0.15;   // and share of it,
+constexpr double kOverRival = 8;  // and lead over the library's best
+constexpr double kClean = 1.7;    // deviance per value that a slip of free size may leave
 
 bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 
@@ -100,7 +100,7 @@ void Columns::read() {
       inputs_.push_back(Input(k));
     }
   for (int o = 0; o < kOutputs; ++o)
-    if (const Column* c = shots.find_stem(stem(Output(o))); c && c->role == Role::output) {
+    if (const Column* c = shots.find_stem(stem(Output(o))); c && c->role == Role::output && !of_flight(Output(o))) {
       columns_.push_back(c);
       outputs_.push_back(Output(o));
     }
