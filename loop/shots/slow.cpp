@@ -121,15 +121,14 @@ LoopResult run_slow(const ShotCase& c) {
 
   // What was found is asked of the base itself; where that moves it, once more.
   const std::string spread_error = errors(*quick.surrogate, shots, c.shots);
+  const int spread_points = exact.points();
   LoopResult result = run(quick);
   for (int round = 0; round < kRounds && !result.decisive.empty(); ++round) {
     const std::vector<std::string> adopted = result.adopted;
     const auto ties = result.ties;
-    const Eigen::VectorXd p = result.selection.chosen.p;
     exact.learn(result.decisive, told("where the decision hangs", result.decisive.size()));
     result = run(quick);
-    const bool same = result.adopted == adopted && result.ties == ties;
-    if (same && round > 0) break;
+    if (result.adopted == adopted && result.ties == ties) break;
   }
 
   ShotCase last = c;
@@ -140,11 +139,10 @@ LoopResult run_slow(const ShotCase& c) {
   last.checked = slow.checked;
   last.notes.push_back(fmt::format(
       "{} stands behind a sparse polynomial of {} of its answers over {} quantities of blow and effects ({} had "
-      "none){}; "
-      "error of each predicted from the others: {}; where the decision hangs, {} more, after which {}",
+      "none){}; error of each predicted from the others: {}; where the decision hangs, {} more, after which {}",
       c.base, coarse.points(), coarse.inputs(), coarse.failed(),
       slow.fine ? fmt::format(", corrected by {} at the case's own accuracy", fine.points()) : "", spread_error,
-      exact.points() - (slow.fine ? slow.fine_runs : runs), errors(*quick.surrogate, shots, c.shots)));
+      exact.points() - spread_points, errors(*quick.surrogate, shots, c.shots)));
   return run(last);
 }
 

@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <mutex>
 #include <random>
@@ -18,14 +17,18 @@
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/run.hpp"
 #include "hosel/models/changeable_fe.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/random.hpp"
 
 namespace {
 
 using namespace hosel;
 using loop::Shot;
 
-double uniform(std::mt19937_64& random) { return double(random() >> 11) * 0x1.0p-53; }
+/// Standard normal, by Box and Muller.
+double gauss(std::mt19937_64& random) {
+  const double r = std::sqrt(-2 * std::log(1 - solvers::uniform(random)));
+  return r * std::cos(2 * kPi * solvers::uniform(random));
+}
 
 /// What is hidden: the name under which the loop should find it, and its size from a number in [-1, -0.5] or [0.5, 1].
 struct Truth {
@@ -62,19 +65,16 @@ Blow club() {
 std::vector<Shot> blows(int shots, unsigned long seed) {
   std::mt19937_64 random(seed);
   std::vector<Shot> out;
-  const auto gauss = [&] {
-    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * kPi * uniform(random));
-  };
   for (int i = 0; i < shots; ++i) {
     Shot s;
     s.blow = club();
-    s.blow.delivery = {.club_speed = 45 + 2.5 * gauss(),
-                       .attack_angle = radians(1 + 2 * gauss()),
-                       .club_path = radians(2 * gauss()),
-                       .dynamic_loft = radians(14 + 3 * gauss()),
-                       .face_angle = radians(2 * gauss()),
-                       .impact_toe = 8e-3 * gauss(),
-                       .impact_high = 6e-3 * gauss()};
+    s.blow.delivery = {.club_speed = 45 + 2.5 * gauss(random),
+                       .attack_angle = radians(1 + 2 * gauss(random)),
+                       .club_path = radians(2 * gauss(random)),
+                       .dynamic_loft = radians(14 + 3 * gauss(random)),
+                       .face_angle = radians(2 * gauss(random)),
+                       .impact_toe = 8e-3 * gauss(random),
+                       .impact_high = 6e-3 * gauss(random)};
     out.push_back(s);
   }
   return out;
@@ -150,9 +150,7 @@ loop::Shots table(const std::vector<Shot>& shots, const std::vector<Launch>& lau
         degrees(d.dynamic_loft), degrees(d.face_angle), 1e3 * d.impact_toe,      1e3 * d.impact_high};
     const double truth[] = {l.ball_speed(), degrees(l.launch_angle()), degrees(l.azimuth()), rpm(l.backspin()),
                             rpm(l.sidespin())};
-    for (std::size_t k = 0; k < kNoise.size(); ++k)
-      row.push_back(truth[k] + kNoise[k].second * std::sqrt(-2 * std::log(1 - uniform(random))) *
-                                   std::cos(2 * kPi * uniform(random)));
+    for (std::size_t k = 0; k < kNoise.size(); ++k) row.push_back(truth[k] + kNoise[k].second * gauss(random));
     for (std::size_t k = 0; k < row.size(); ++k)
       sheet.columns[k].push_back(k ? fmt::format("{:.10g}", row[k]) : std::to_string(i + 1));
     sheet.lines.push_back(i + 2);
@@ -198,7 +196,7 @@ int main(int argc, char** argv) {
   int total = 0, alone = 0, tied = 0, wrong = 0, false_alarms = 0;
   const auto examine = [&](const Truth* truth, unsigned long number) {
     std::mt19937_64 random(1000 * seed + number);
-    const double size = (random() % 2 ? 1 : -1) * (0.5 + 0.5 * uniform(random));
+    const double size = (random() % 2 ? 1 : -1) * (0.5 + 0.5 * solvers::uniform(random));
     std::vector<Shot> hidden = plain;
     if (truth)
       for (Shot& s : hidden) truth->hide(size, s);
