@@ -9,8 +9,9 @@
 namespace hosel::app {
 namespace {
 
-models::FeImpactOptions read_fe(Table root) {
+models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>& face) {
   models::FeImpactOptions o;
+  o.face = face;
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   if (root.has("accuracy")) {
     o.resolve(accuracy_named(
@@ -30,8 +31,6 @@ models::FeImpactOptions read_fe(Table root) {
       {"penalty", "contact stiffness per area, times the ball's radius over its Young's modulus"}, {1, 1e6}, o.penalty);
   o.tangential_penalty = contact.number({"tangential_penalty", "stiffness of sticking over that of contact"},
                                         {1e-3, 10}, o.tangential_penalty);
-
-  if (auto face = root.optional_table("face")) o.face = read_face(*face);
 
   Table mesh = root.default_table("mesh");
   o.mesh.sector =
@@ -102,7 +101,14 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   const auto table = [&](std::string_view key, bool used) {
     return used ? std::optional(root.default_table(key)) : root.optional_table(key);
   };
-  if (auto t = table("volumetric", asked("volumetric") || asked("shaft-coupled"))) {
+  const bool overlap = asked("volumetric") || asked("shaft-coupled");
+  // A case with finite-element tables keeps them where only its other models are asked.
+  const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
+  const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));
+  std::optional<FaceCompliance> face;
+  if (overlap || fe || there)
+    if (auto t = root.optional_table("face")) face = read_face(*t);
+  if (auto t = table("volumetric", overlap)) {
     const Range positive = Range::positive(), some = Range::non_negative();
     const bool iron = t->choice({"published", "which published set of parameters the defaults come from"},
                                 {"driver", "iron7"}, "driver") == "iron7";
@@ -146,10 +152,8 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
     }
   if (asked("fe-full-club") || asked("shaft-coupled"))
     if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount);
-  // A case with finite-element tables keeps them where only its other models are asked.
-  const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
-  const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));
-  if (fe || there) options.fe = read_fe(root);
+  options.volumetric.face = face;
+  if (fe || there) options.fe = read_fe(root, face);
   return options;
 }
 

@@ -47,6 +47,15 @@ void Volumetric(benchmark::State& state) {
 }
 BENCHMARK(Volumetric)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
 
+/// With a face that yields, and what that costs.
+void VolumetricOnAFace(benchmark::State& state) {
+  const Blow b = blow(0.014);
+  models::VolumetricLaw law;
+  law.face = find_face("modern-driver")->face;
+  for (auto _ : state) benchmark::DoNotOptimize(models::volumetric_impact(b, law).launch);
+}
+BENCHMARK(VolumetricOnAFace)->Unit(benchmark::kMicrosecond);
+
 void VolumetricCvode(benchmark::State& state) {
   const Blow b = blow(0.014);
   const models::Volumetric model({}, {models::Integrator::cvode, 1e-6});

@@ -61,6 +61,7 @@ struct Setting {
   bool deformable = false;        ///< the base computes the ball's deformation: it has no impact law to change
   bool shaft = false;             ///< the case declares a shaft that such a base can hang on its free head
   bool full_club = false;         ///< such a base has its shaft already
+  bool thin_face = false;         ///< the head is a driver's: models::wants_yielding_face
 };
 
 struct EffectEntry {

@@ -107,6 +107,8 @@ class Problem {
     double values = 0, log_whitening = 0;
   };
   virtual Density density(Part part) const = 0;
+  /// Subsets of the judged blocks of a part in which a true effect has one size; none: not looked at.
+  virtual std::vector<std::vector<bool>> subsets(Part /*part*/) const { return {}; }
   virtual std::vector<Stage> stages() const = 0;  ///< of a fit; the loss of the last is the one that counts
   virtual Effort effort() const { return {}; }
 

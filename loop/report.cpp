@@ -179,20 +179,25 @@ std::string residuals_csv(const LoopResult& r, const Shots& table) {
 
 std::string sentence(const LoopResult& r) {
   const auto list = [](const std::vector<std::string>& v) { return fmt::format("{}", fmt::join(v, ", ")); };
+  std::vector<std::string> alternatives;
+  for (const auto& tie : r.ties) alternatives.push_back(fmt::format("{}", fmt::join(tie, " or ")));
+  const std::string ties = fmt::format("{}", fmt::join(alternatives, "; and "));
   switch (r.verdict) {
     case Verdict::no_residual: return "Nothing beyond the noise: the base model explains these shots.";
     case Verdict::explained:
       return fmt::format("The model lacked: {}. With it the residual is the noise again.", list(r.adopted));
-    case Verdict::ambiguous: {
-      std::string t;
-      for (const auto& tie : r.ties) t += (t.empty() ? "" : "; and ") + fmt::format("{}", fmt::join(tie, " or "));
+    case Verdict::ambiguous:
       return fmt::format("{}The data cannot separate {}.",
-                         r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), t);
+                         r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), ties);
+    case Verdict::unexplained: {
+      std::string s = r.unexplained.empty()
+                          ? std::string("Structure remains that no candidate explains.")
+                          : fmt::format("Structure remains that no candidate explains: {} against {}.",
+                                        r.unexplained.front().channel, r.unexplained.front().regressor);
+      if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
+      if (!r.ties.empty()) s += fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
+      return s;
     }
-    case Verdict::unexplained:
-      return r.unexplained.empty() ? std::string("Structure remains that no candidate explains.")
-                                   : fmt::format("Structure remains that no candidate explains: {} against {}.",
-                                                 r.unexplained.front().channel, r.unexplained.front().regressor);
     case Verdict::insufficient:
       return "Too little to name anything: minimum_detectable says what these shots could have shown.";
     case Verdict::noise_contradicted: {

@@ -16,10 +16,14 @@ struct Rules {
   double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + complexity of the forms
   double tie = 7;                 ///< candidates within this of the best criterion tie with it
   double holdout_loss = 4;        ///< the held-out deviance must not rise by more
-  double noise_change = 0.03;     ///< relative; more, and effects are selected anew
-  double scatter_error = 4.2;     ///< declared noise is refuted beyond so many standard errors of its logarithm
-  double scatter_ratio = 1.25;    ///< and beyond this factor either way
-  int flips = 999;                ///< of signs in the tests that are calibrated so
+  double steady = 0.5;          ///< of its size an effect may differ between parts of the rows where structure is left,
+  double present = 4;           ///< and be there in each by so many standard errors
+  double worse = 0.02;          ///< of its held-out error a channel may lose by what is kept there
+  double stand_in = 0.97;       ///< of the fall of the deviance makes another effect a rival there
+  double noise_change = 0.03;   ///< relative; more, and effects are selected anew
+  double scatter_error = 4.2;   ///< declared noise is refuted beyond so many standard errors of its logarithm
+  double scatter_ratio = 1.25;  ///< and beyond this factor either way
+  int flips = 999;              ///< of signs in the tests that are calibrated so
   unsigned long seed = 1;
 
   /// Time histories: the tests for structure have closed-form levels, adjusted for their number.

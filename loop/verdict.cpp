@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "hosel/loop/beyond_doubt.hpp"
 #include "hosel/loop/detectable.hpp"
 
 namespace hosel::loop {
@@ -141,7 +142,15 @@ void conclude(const Study& study, LoopResult& result) {
     result.ties.clear();
     shown = false;
   }
-  const Fit& after = shown ? chosen : s.base;
+  // Structure remains: what is beyond doubt is kept all the same.
+  BeyondDoubt kept;
+  if (result.verdict == Verdict::unexplained && s.level > 0 && !s.clean) kept = beyond_doubt(study);
+  const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();
+  if (some_kept) {
+    result.adopted = kept.adopted;
+    result.ties = kept.ties;
+  }
+  const Fit& after = shown ? chosen : some_kept ? kept.fit : s.base;
   tell_errors(problem, s.base, after, result);
   for (const ChannelResult& c : result.channels)
     if (c.refuted) result.notes.push_back(c.refutation());
@@ -157,7 +166,7 @@ void conclude(const Study& study, LoopResult& result) {
   result.minimum_detectable = minimum_detectable(problem, s.base, study.candidates, study.rules);
   result.likeness = likeness(problem, after, study.candidates);
   result.next = problem.next_experiment(result);
-  result.selection.chosen = chosen;
+  result.selection.chosen = some_kept ? kept.fit : chosen;
 }
 
 }  // namespace hosel::loop

@@ -12,6 +12,8 @@
 namespace hosel::models {
 namespace {
 
+constexpr double kBallStiffness = 1.68e6;  // secant, of golf_ball() [N/m]
+
 enum : int { kStriker, kStrikerVelocity, kTravel, kTravelRate, kHead, kHeadVelocity, kSize };
 
 /// The equations of strike() for solvers::RosenbrockW; with A = 0 its steps are explicit.
@@ -115,6 +117,13 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
                  0.5 * face->stiffness * y[kTravel] * y[kTravel];
   return out;
 }
+
+double loss_on_face(double compliance) {
+  const double share = 1 / (1 + kBallStiffness * compliance);
+  return share * share;
+}
+
+double contact_on_face(double compliance) { return std::sqrt(1 + kBallStiffness * compliance); }
 
 CharacteristicTime characteristic_time(const Striker& sphere, double head_mass,
                                        const std::optional<FaceCompliance>& face, double shape,

@@ -44,6 +44,14 @@ struct FaceStrike {
 FaceStrike strike(const Striker& striker, double head_mass, const std::optional<FaceCompliance>& face, double shape,
                   double speed);
 
+/// Share of a golf ball's loss 1 - e that is left on a face of so much compliance under it [m/N]: (1 + k_b C)^-2,
+/// k_b = 1.68 MN/m. Ball and face share the compression like springs in series, and what a ball of this damping loses
+/// goes with the square of its own rate. strike() in closed form up to the rules' limit; beyond it the face's own
+/// period counts.
+double loss_on_face(double compliance);
+/// Factor by which the contact lasts longer there: (1 + k_b C)^1/2.
+double contact_on_face(double compliance);
+
 /// The rules' pendulum test: contact times of an elastic sphere at several speeds, and the straight line through them
 /// against speed^-0.329, whose intercept is the characteristic time (USGA-TPX3004, as summarised in cases/
 /// characteristic-time).

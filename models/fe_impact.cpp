@@ -12,6 +12,7 @@
 #include "hosel/fem/friction/coulomb.hpp"
 #include "hosel/fem/friction/regularised.hpp"
 #include "hosel/fem/yielding_face.hpp"
+#include "hosel/models/face_strike.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
@@ -176,6 +177,8 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
     surface = std::make_unique<fem::YieldingFace>(face, *o.face, travel);
     spring = std::make_unique<fem::FaceSpring>(*o.face, carrier, travel);
     parts.face = spring.get();
+    const double shape = o.face->shape(-blow.delivery.impact_toe, blow.delivery.impact_high).value;
+    parts.compliance = shape * shape / o.face->stiffness;
   } else {
     surface = std::make_unique<fem::FaceSurface>(face);
   }
@@ -192,7 +195,8 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
                           double approach_speed, const ImpactObserver& observer, const ImpactCheckpoint* from) {
   parts.contact->start(initial);
   const double mass = parts.ball->mass(), radius = parts.ball->mesh().radius;
-  const double expected = hertz_time(mass, radius, o.ball.instant_young(), approach_speed);
+  const double expected = hertz_time(mass, radius, o.ball.instant_young(), approach_speed) *
+                          contact_on_face(parts.compliance);
   const double step = expected / o.steps_per_contact;
 
   solvers::GeneralizedAlphaOptions options;

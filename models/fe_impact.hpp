@@ -62,6 +62,7 @@ struct BallOnFace {
   fem::HarmonicSolid* ball = nullptr;
   fem::Contact* contact = nullptr;
   const fem::FaceSpring* face = nullptr;  ///< of a face that yields
+  double compliance = 0;                  ///< of it where it is struck [m/N]
   const fem::Beam* shaft = nullptr;       ///< of a full club, for observers
 };
 

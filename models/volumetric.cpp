@@ -32,7 +32,8 @@ enum : int {
   kCarrier = 31,
   kLostShaft = 32,
   kTime = 33,  // since first contact
-  kFree = 34,  // size without a shaft; with one: head's departure u from the carrier, q, q'
+  kFree = 34,  // size of head and ball; then a yielding face: travel, its rate, energy lost; then a shaft:
+               // head's departure u from the carrier, q, q'
 };
 
 using ConstVec = Eigen::Map<const Vec3>;
@@ -41,7 +42,7 @@ using MutVec = Eigen::Map<Vec3>;
 class Contact {
  public:
   Contact(const Blow& blow, const VolumetricLaw& law, const ShaftImpedance* shaft)
-      : law_(law), ball_(blow.ball), head_(blow.club.head), shaft_(shaft) {
+      : law_(law), ball_(blow.ball), head_(blow.club.head), shaft_(shaft), shaft_at_(kFree + (law.face ? 3 : 0)) {
     const double r = ball_.radius;
     const Delivery& d = blow.delivery;
     to_global = d.face_to_global();
@@ -54,6 +55,8 @@ class Contact {
     core_inertia_ = ball_.inertia() * core_share;
     cover_inertia_ = ball_.inertia() - core_inertia_;
     wall_ = std::isinf(head_.mass);
+    if (law.face && !(law.face->mass < head_.mass))
+      throw std::invalid_argument("volumetric: the face's effective mass is part of the head's");
     inverse_mass_ = 1 / head_.mass;
     inverse_inertia_ = wall_ ? Mat3(Mat3::Zero()) : Mat3(head_.inertia.inverse());
     start_velocity_ = to_global.transpose() * d.velocity();
@@ -70,7 +73,7 @@ class Contact {
     speed_ = d.velocity().norm();
   }
 
-  int size() const { return kFree + (shaft_ ? 6 + 2 * modes_ : 0); }
+  int size() const { return shaft_at_ + (shaft_ ? 6 + 2 * modes_ : 0); }
 
   std::vector<double> start() const {
     std::vector<double> y(size(), 0.0);
@@ -88,6 +91,8 @@ class Contact {
     if (i < kHead) return 0.2;
     if (i < kHeadVelocity) return 1;
     if (i < kLostNormal) return speed_ / ball_.radius;
+    if (law_.face && i == kFree) return 0.2 * ball_.radius;
+    if (law_.face && i == kFree + 1) return speed_;
     return 0;
   }
 
@@ -122,12 +127,24 @@ class Contact {
     const Vec3 spin_body = R_.transpose() * wh;
     const Vec3 gyro = R_ * spin_body.cross(head_.inertia * spin_body);
     const Vec3 torque = wall_ ? Vec3(Vec3::Zero()) : Vec3(-head_arm_.cross(force_) - gyro);
-    if (!shaft_) {
-      MutVec(dy + kHeadVelocity) = -inverse_mass_ * force_;
-      MutVec(dy + kHeadSpin) = R_ * (inverse_inertia_ * (R_.transpose() * torque));
-      dy[kCarrier] = dy[kLostShaft] = 0;
-    } else {
+    if (law_.face) hang_face(y);
+    if (shaft_) {
       shaft_rate(y, dy, torque);
+    } else {
+      if (law_.face && !wall_) {
+        Vec6 wrench;
+        wrench << -force_, torque;
+        Eigen::Map<Vec6>(dy + kHeadVelocity) = (rigid_head() + face_.mass).ldlt().solve(wrench + face_.wrench);
+      } else {
+        MutVec(dy + kHeadVelocity) = -inverse_mass_ * force_;
+        MutVec(dy + kHeadSpin) = R_ * (inverse_inertia_ * (R_.transpose() * torque));
+      }
+      dy[kCarrier] = dy[kLostShaft] = 0;
+    }
+    if (law_.face) {
+      dy[kFree] = y[kFree + 1];
+      dy[kFree + 1] = face_.own + face_.arm.dot(Eigen::Map<const Vec6>(dy + kHeadVelocity));
+      dy[kFree + 2] = law_.face->damping * y[kFree + 1] * y[kFree + 1];
     }
     dy[kTime] = 1;
     dy[kLostNormal] = elastic_ * law_.damping * approach_ * approach_;
@@ -200,6 +217,15 @@ class Contact {
     const auto head_energy = [&](const Vec3& v, const Vec3& w_body) {
       return wall_ ? 0.0 : (head_.mass * v.squaredNorm() + w_body.dot(head_.inertia * w_body)) / 2;
     };
+    if (law_.face) {
+      const FaceCompliance& f = *law_.face;
+      const Vec3 moved = face_velocity(y, y[kFree], y[kFree + 1]), carried = face_velocity(y, 0, 0),
+                 gained = moved - carried, twice_mean = wall_ ? gained : Vec3(moved + carried);
+      out.face_travel = y[kFree];
+      out.face_rate = y[kFree + 1];
+      e.stored_face = (f.stiffness * y[kFree] * y[kFree] + f.mass * gained.dot(twice_mean)) / 2;
+      e.lost_face = y[kFree + 2];
+    }
     e.kinetic_before = wall_ ? ball_.mass * blow.delivery.velocity().squaredNorm() / 2
                              : head_energy(start_velocity_, start_spin_);
     e.kinetic_after =
@@ -214,9 +240,9 @@ class Contact {
     e.lost_shaft = y[kLostShaft];
     e.work_of_carrier = y[kCarrier];
     if (shaft_) {
-      const Eigen::Map<const Vec6> u(y + kFree);
+      const Eigen::Map<const Vec6> u(y + shaft_at_);
       const Vec6 v = velocity(y);
-      const Eigen::Map<const Eigen::VectorXd> p(y + kFree + 6, modes_), dp(y + kFree + 6 + modes_, modes_);
+      const Eigen::Map<const Eigen::VectorXd> p(y + shaft_at_ + 6, modes_), dp(y + shaft_at_ + 6 + modes_, modes_);
       e.stored_shaft = (v.dot(shaft_->mass * v) + u.dot(shaft_->stiffness * u) + dp.squaredNorm() +
                         p.dot(shaft_->frequency2.cwiseProduct(p))) /
                            2 +
@@ -247,21 +273,40 @@ class Contact {
       pz -= kz * ((D * bz_ + 1) * pz - s.z());
     }
     D = s.x() + 0.5 * (by_ * py * py + bz_ * pz * pz);
-    const double length = std::sqrt(1 + by_ * by_ * py * py + bz_ * bz_ * pz * pz);
-    normal_ = R_ * Vec3(1 / length, by_ * py / length, bz_ * pz / length);
+    double ty = by_ * py, tz = bz_ * pz;  // slopes of the face there
+    if (law_.face) {
+      // Stationary on the face as it has moved: (y, z) = (s_y, s_z) - D (t_y, t_z). Chord again: the shape's curvature
+      // times travel and radius is a tenth at most.
+      const double w = y[kFree];
+      for (int i = 0; i <= 8; ++i) {
+        const FaceCompliance::Shape moved = law_.face->shape(py, pz);
+        shape_ = moved.value;
+        D = s.x() + 0.5 * (by_ * py * py + bz_ * pz * pz) + w * moved.value;
+        ty = by_ * py + w * moved.slope.x();
+        tz = bz_ * pz + w * moved.slope.y();
+        if (i == 8) break;
+        py -= ky * (py + D * ty - s.y());
+        pz -= kz * (pz + D * tz - s.z());
+      }
+    }
+    const double length = std::sqrt(1 + ty * ty + tz * tz);
+    normal_ = R_ * Vec3(1 / length, ty / length, tz / length);
     depth_ = ball_.radius - D * length;
     from_cg_ = from_cg;
   }
 
   void evaluate(const double* y) {
-    if (std::equal(y, y + kLostNormal, seen_.begin())) return;  // the same instant again
+    const bool same_face = !law_.face || std::equal(y + kFree, y + kFree + 2, seen_face_.begin());
+    if (same_face && std::equal(y, y + kLostNormal, seen_.begin())) return;  // the same instant again
     std::copy(y, y + kLostNormal, seen_.begin());
+    if (law_.face) std::copy(y + kFree, y + kFree + 2, seen_face_.begin());
     geometry(y);
     const ConstVec vb(y + kBallVelocity), cover(y + kCover), vh(y + kHeadVelocity), wh(y + kHeadSpin);
     overlap_ = overlap(depth_, ball_.radius, curvature_);
     arm_ = -overlap_.centroid * normal_;
     head_arm_ = from_cg_ + arm_;
-    const Vec3 w = vh + wh.cross(head_arm_) - vb - cover.cross(arm_);
+    Vec3 w = vh + wh.cross(head_arm_) - vb - cover.cross(arm_);
+    if (law_.face) w -= shape_ * y[kFree + 1] * R_.col(0);
     approach_ = w.dot(normal_);
     slip_ = w - approach_ * normal_;
     elastic_ = law_.stiffness * powered(overlap_.volume, law_.volume_exponent);
@@ -285,11 +330,36 @@ class Contact {
     return (law_.friction * 4 * (1 - t * t) + peak) / law_.transition_speed;
   }
 
-  Mat6 head_mass() const {
-    Mat6 m = added_;
-    m.topLeftCorner<3, 3>() += head_.mass * Mat3::Identity();
-    m.bottomRightCorner<3, 3>() += R_ * head_.inertia * R_.transpose();
+  Mat6 rigid_head() const {
+    Mat6 m = Mat6::Zero();
+    m.topLeftCorner<3, 3>() = head_.mass * Mat3::Identity();
+    m.bottomRightCorner<3, 3>() = R_ * head_.inertia * R_.transpose();
     return m;
+  }
+  Mat6 head_mass() const { return added_ + rigid_head(); }
+
+  /// The face's particle at travel w: r = R (-cg) - w e from the head's cg, e = R Xc; held at r_0 it is part of the
+  /// head. With G = (1, -[r]x), p'' = G a + b - w'' e and w'' = own + e . G a, the travel leaves the head's equations,
+  /// which gain a mass and a wrench.
+  void hang_face(const double* y) {
+    const FaceCompliance& f = *law_.face;
+    const ConstVec wh(y + kHeadSpin);
+    const double w = y[kFree], rate = y[kFree + 1];
+    const Vec3 e = R_.col(0), r0 = -(R_ * head_.cg), r = r0 - w * e;
+    const Vec3 b0 = wh.cross(wh.cross(r0)), b = wh.cross(wh.cross(r)) - 2 * rate * wh.cross(e);
+    Eigen::Matrix<double, 3, 6> G0, G;
+    G0 << Mat3::Identity(), -skew(r0);
+    G << Mat3::Identity(), -skew(r);
+    face_.arm = G.transpose() * e;
+    face_.own = (shape_ * force_.dot(e) - f.stiffness * w - f.damping * rate) / f.mass + e.dot(b);
+    face_.mass = f.mass * (G.transpose() * G - G0.transpose() * G0 - face_.arm * face_.arm.transpose());
+    face_.wrench = f.mass * (face_.own * face_.arm - G.transpose() * b + G0.transpose() * b0);
+  }
+  /// Velocity of that particle.
+  Vec3 face_velocity(const double* y, double w, double rate) const {
+    const ConstVec vh(y + kHeadVelocity), wh(y + kHeadSpin);
+    const Vec3 e = R_.col(0);
+    return vh + wh.cross(-(R_ * head_.cg) - w * e) - rate * e;
   }
   Vec6 velocity(const double* y) const {
     Vec6 v;
@@ -298,21 +368,23 @@ class Contact {
   }
 
   void shaft_rate(const double* y, double* dy, const Vec3& torque) {
-    const Eigen::Map<const Vec6> u(y + kFree);
+    const Eigen::Map<const Vec6> u(y + shaft_at_);
     const Vec6 v = velocity(y);
-    const Eigen::Map<const Eigen::VectorXd> p(y + kFree + 6, modes_), dp(y + kFree + 6 + modes_, modes_);
-    Eigen::Map<Eigen::VectorXd> p_rate(dy + kFree + 6, modes_), dp_rate(dy + kFree + 6 + modes_, modes_);
+    const Eigen::Map<const Eigen::VectorXd> p(y + shaft_at_ + 6, modes_), dp(y + shaft_at_ + 6 + modes_, modes_);
+    Eigen::Map<Eigen::VectorXd> p_rate(dy + shaft_at_ + 6, modes_), dp_rate(dy + shaft_at_ + 6 + modes_, modes_);
     const double damping = shaft_->damping_time;
-    Eigen::Map<Vec6>(dy + kFree) = v;
+    Eigen::Map<Vec6>(dy + shaft_at_) = v;
     p_rate = dp;
     dp_rate = -shaft_->frequency2.cwiseProduct(p + damping * dp);
     const Vec6 pull = shaft_->stiffness * (u + damping * v);
     Vec6 wrench;
     wrench << -force_, torque;
     // From the carrier's motion, in which the loaded shaft holds the head with `held_`.
-    Mat6 head = Mat6::Zero();
-    head.topLeftCorner<3, 3>() = head_.mass * Mat3::Identity();
-    head.bottomRightCorner<3, 3>() = R_ * head_.inertia * R_.transpose();
+    Mat6 head = rigid_head();
+    if (law_.face) {
+      head += face_.mass;
+      wrench += face_.wrench;
+    }
     const Vec6 a = (head + added_).ldlt().solve(wrench + held_ - head * carried_ - shaft_->coupling * dp_rate - pull);
     dp_rate -= shaft_->coupling.transpose() * a;
     Eigen::Map<Vec6>(dy + kHeadVelocity) = a + carried_;
@@ -328,6 +400,7 @@ class Contact {
   Ball ball_;
   Head head_;
   const ShaftImpedance* shaft_;
+  int shaft_at_;  // where its unknowns begin
   Vec3 cg_start_, start_velocity_, start_spin_;
   double by_, bz_, curvature_, core_inertia_, cover_inertia_, inverse_mass_, speed_;
   Mat3 inverse_inertia_;
@@ -338,10 +411,17 @@ class Contact {
 
   // The instant, as evaluate() left it.
   std::array<double, kLostNormal> seen_ = {};
+  std::array<double, 2> seen_face_ = {};
   Mat3 R_;
   Vec3 normal_, arm_, head_arm_, from_cg_, slip_, friction_, force_;
   Overlap overlap_;
   double depth_ = 0, approach_ = 0, elastic_ = 0, normal_force_ = 0;
+  double shape_ = 0;  // of a yielding face under the ball
+  struct {
+    Mat6 mass;
+    Vec6 wrench, arm;
+    double own;
+  } face_;
 
   // The stiff block, as linearise() left it.
   double ball_rate_ = 0, step_ = 0;

@@ -8,6 +8,7 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_face.hpp"
 #include "hosel/golf/face_library.hpp"
+#include "hosel/golf/units.hpp"
 #include "hosel/models/face_strike.hpp"
 #include "hosel/post/figure.hpp"
 
@@ -77,7 +78,9 @@ class CharacteristicTimeJob final : public Job {
         .title = "faces from stiff to soft", .x_label = "characteristic time [us]", .y_label = "restitution"};
     rules.key = "bottom right";
     post::Series wanted{.label = "0.718 + 0.000436 CT / us"};
-    csv = "effective_mass_g,stiffness_N_per_m,characteristic_time_us,restitution,rules_line\n";
+    csv =
+        "effective_mass_g,stiffness_N_per_m,characteristic_time_us,restitution,rules_line,contact_in_face_periods,"
+        "face_energy_J\n";
     for (const double face_mass : masses_) {
       post::Series series{.label = fmt::format("face of {:g} g", 1e3 * face_mass), .style = "linespoints"};
       double worst = 0;
@@ -86,11 +89,13 @@ class CharacteristicTimeJob final : public Job {
         f.mass = face_mass;
         f.stiffness = softest_ * std::pow(stiffest_ / softest_, i / double(faces_ - 1));
         const double time = 1e6 * models::characteristic_time(sphere_, mass, f, shape, speeds_).time;
-        const double e = models::strike(ball, mass, f, shape, restitution_speed_).restitution;
+        const models::FaceStrike drive = models::strike(ball, mass, f, shape, restitution_speed_);
+        const double e = drive.restitution, periods = drive.contact_time * std::sqrt(f.stiffness / f.mass) / (2 * kPi);
         worst = std::max(worst, std::abs(e - rules_line(time)));
         series.x.push_back(time);
         series.y.push_back(e);
-        csv += fmt::format("{},{:.5g},{:.3f},{:.5f},{:.5f}\n", 1e3 * face_mass, f.stiffness, time, e, rules_line(time));
+        csv += fmt::format("{},{:.5g},{:.3f},{:.5f},{:.5f},{:.3f},{:.3f}\n", 1e3 * face_mass, f.stiffness, time, e,
+                           rules_line(time), periods, drive.energy);
       }
       out.say(fmt::format("faces of {:4.1f} g, {:.0f} to {:.0f} us: within {:.4f} of the rules' line", 1e3 * face_mass,
                           series.x.back(), series.x.front(), worst));

@@ -75,6 +75,12 @@ struct Layer {
 struct Variant {
   std::string title, model;
   std::vector<std::string> set;
+  std::string against = {};  ///< the map that it is the counterpart of, where that is not the reference
+};
+
+/// What one map is minus another, and the same pair under other circumstances.
+struct Pair {
+  std::size_t map, against, first;  ///< first: a map of the same model, whose counterpart is the reference
 };
 
 class FaceMapJob final : public PointJob {
@@ -88,6 +94,7 @@ class FaceMapJob final : public PointJob {
     // The maps themselves, then the reference with a heavier head, then each again with finer numerics.
     for (const Variant& v : s.variants) add(file, v, false);
     maps_ = layers_.size();
+    pairs_ = s.pairs;
     if (extra_ > 0) {
       add(file, s.variants[reference_], false);
       layers_.back().title += fmt::format(", head {:+.6g} g", 1e3 * extra_);
@@ -167,6 +174,7 @@ class FaceMapJob final : public PointJob {
       if (whole && std::ranges::all_of(reference.launches, [](const auto& l) { return l.has_value(); }))
         summary["effect"][map.title] = effect(out, all, std::size_t(&map - maps.data()));
     }
+    for (const Pair& pair : pairs_) summary["kept"][maps[pair.map].title] = kept(out, maps, pair);
     out.write_summary(summary);
   }
 
@@ -177,6 +185,7 @@ class FaceMapJob final : public PointJob {
     post::FaceGrid grid;
     std::vector<Variant> variants;
     std::size_t reference = 0;
+    std::vector<Pair> pairs;
     double extra_mass = 0;
     std::vector<std::string> refinement;
     std::optional<FlightSetup> flight;
@@ -190,7 +199,9 @@ class FaceMapJob final : public PointJob {
     for (Table v : root.tables("variants")) {
       const std::string name = v.text({"name", "of the map"}), model = v.text({"model", "that answers for this map"});
       if (!models::find(model)) v.fail("model", fmt::format("no model '{}'; `hosel list` shows them", model));
-      s.variants.push_back({name, model, v.texts({"set", "keys that this map changes, table.key=value"})});
+      s.variants.push_back(
+          {name, model, v.texts({"set", "keys that this map changes, table.key=value"}),
+           v.text({"against", "the map that this one is the counterpart of, if not the reference"}, "")});
     }
     std::vector<std::string> names;
     for (const Variant& v : s.variants) {
@@ -201,6 +212,14 @@ class FaceMapJob final : public PointJob {
     const std::string reference =
         root.choice({"reference", "the map that the others are compared with"}, names, names.front());
     s.reference = std::size_t(std::ranges::find(names, reference) - names.begin());
+    for (std::size_t m = 0; m < s.variants.size(); ++m) {
+      const Variant& v = s.variants[m];
+      if (v.against.empty()) continue;
+      const auto against = std::ranges::find(names, v.against);
+      if (against == names.end()) root.fail("variants", fmt::format("no map is called '{}'", v.against));
+      const auto first = std::ranges::find(s.variants, v.model, &Variant::model);
+      s.pairs.push_back({m, std::size_t(against - names.begin()), std::size_t(first - s.variants.begin())});
+    }
     if (auto grid = root.optional_table("grid")) {
       s.grid.width = grid->quantity({"width", "of the grid, heel to toe"}, "mm", {1e-3, 0.2}, s.grid.width);
       s.grid.height = grid->quantity({"height", "of the grid, up the face"}, "mm", {1e-3, 0.2}, s.grid.height);
@@ -419,6 +438,42 @@ class FaceMapJob final : public PointJob {
     return j;
   }
 
+  /// How much of what the first map is minus the reference is left in this pair: least squares through the origin over
+  /// the face, and one picture.
+  json kept(Output& out, const std::vector<post::FaceMap>& maps, const Pair& pair) const {
+    const post::FaceMap &map = maps[pair.map], &against = maps[pair.against], &first = maps[pair.first],
+                        &reference = maps[reference_];
+    post::Figure figure{.title = fmt::format("left: {} minus {}; right: {}", first.title, reference.title, map.title),
+                        .columns = 2,
+                        .panel_width = 640,
+                        .panel_height = 330};
+    static constexpr std::array<std::string_view, 4> kShown = {"ball_speed", "launch_angle", "backspin", "sidespin"};
+    json j = json::object();
+    out.say(fmt::format("\n{} minus {}, as a share of {} minus {}", map.title, against.title, first.title,
+                        reference.title));
+    for (const post::MapQuantity& q : post::map_quantities(map)) {
+      const auto before = post::differences(first, reference, q), now = post::differences(map, against, q);
+      if (before.empty() || now.empty()) continue;
+      double product = 0, square = 0;
+      for (std::size_t k = 0; k < before.size(); ++k)
+        if (std::isfinite(before[k]) && std::isfinite(now[k]))
+          product += before[k] * now[k], square += before[k] * before[k];
+      if (!(square > 0)) continue;
+      const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
+      j[q.name + "_share"] = product / square;
+      out.say(fmt::format("  {:<48} {:>12.3f}", q.name, product / square));
+      if (std::ranges::find(kShown, q.name) == kShown.end()) continue;
+      for (const auto* v : {&before, &now})
+        figure.panels.push_back(post::face_panel(grid_, *v,
+                                                 v == &before
+                                                     ? fmt::format("{} [{}]", q.name, unit)
+                                                     : fmt::format("{:.0f} % are left", 100 * product / square),
+                                                 fmt::format("[{}]", unit), true));
+    }
+    picture(out, figure, "figures/kept-" + file_name(map.title));
+    return j;
+  }
+
   struct Work {
     std::size_t layer, place;
   };
@@ -427,6 +482,7 @@ class FaceMapJob final : public PointJob {
   double extra_ = 0;
   std::vector<post::Claim> claims_;
   std::vector<Layer> layers_;
+  std::vector<Pair> pairs_;
   std::vector<Work> work_;
   std::string identity_;
 };

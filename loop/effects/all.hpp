@@ -9,6 +9,7 @@ std::vector<Parametrisation> ball_tangential_compliance(const Setting&);
 std::vector<Parametrisation> friction_limit(const Setting&);
 std::vector<Parametrisation> restitution_law(const Setting&);
 std::vector<Parametrisation> restitution_falloff(const Setting&);
+std::vector<Parametrisation> face_compliance(const Setting&);
 std::vector<Parametrisation> head_rotation(const Setting&);
 std::vector<Parametrisation> head_mass(const Setting&);
 std::vector<Parametrisation> head_inertia(const Setting&);

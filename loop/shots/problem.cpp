@@ -8,6 +8,7 @@
 
 #include "hosel/loop/shots/experiment.hpp"
 #include "hosel/loop/shots/scatter.hpp"
+#include "hosel/models/face_strike.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -139,7 +140,8 @@ std::vector<Parametrisation> ShotProblem::forms() const {
                   .outputs = {},
                   .deformable = case_.deformable,
                   .shaft = case_.shaft_declared,
-                  .full_club = case_.full_club};
+                  .full_club = case_.full_club,
+                  .thin_face = models::wants_yielding_face(case_.blow.club.head)};
   for (int c = 0; c < width(); ++c) setting.outputs.push_back(model_->channel(c).output);
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own)) {
@@ -244,6 +246,34 @@ Problem::Density ShotProblem::density(Part part) const {
       }
   }
   return d;
+}
+
+/// Both halves by every input that varies; the session in quarters, where a ramp, a jump and a swing part.
+std::vector<std::vector<bool>> ShotProblem::subsets(Part part) const {
+  const std::vector<int>& rows = shots(part);
+  std::vector<std::vector<bool>> all;
+  const auto divide = [&](const auto& value, int pieces) {
+    std::vector<double> x, sorted;
+    for (const int i : rows) x.push_back(value(model_->trial(i)));
+    sorted = x;
+    std::ranges::sort(sorted);
+    for (int k = 0; k < pieces; ++k) {
+      const std::size_t from = sorted.size() * std::size_t(k) / std::size_t(pieces),
+                        to = sorted.size() * std::size_t(k + 1) / std::size_t(pieces);
+      std::vector<bool> in;
+      for (const double v : x) in.push_back((k == 0 || v >= sorted[from]) && (k == pieces - 1 || v < sorted[to]));
+      // Where many values are the same there may be no such piece.
+      if (2 * std::size_t(pieces) * std::size_t(std::ranges::count(in, true)) >= rows.size())
+        all.push_back(std::move(in));
+    }
+  };
+  for (int k = 0; k < kInputs; ++k) {
+    const auto input = [&](const Shot& s) { return get(s.blow, Input(k)); };
+    const auto [low, high] = std::ranges::minmax(rows, {}, [&](int i) { return input(model_->trial(i)); });
+    if (input(model_->trial(high)) > input(model_->trial(low))) divide(input, 2);
+  }
+  divide([](const Shot& s) { return s.order; }, 4);
+  return all;
 }
 
 /// The whole shot is judged: quadratic up to the 99.9 % quantile of its squared distance, then logarithmic, constant

@@ -43,6 +43,7 @@ class ShotProblem final : public Problem {
   Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override;
   Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override;
   Density density(Part part) const override;
+  std::vector<std::vector<bool>> subsets(Part part) const override;
   std::vector<Stage> stages() const override;
 
   bool screen(const Selection& selection) override;

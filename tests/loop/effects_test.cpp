@@ -30,7 +30,10 @@ class OnModel : public testing::TestWithParam<const char*> {
  protected:
   OnModel() : model(models::find(GetParam())->make({})), turns(std::string(GetParam()) != "rigid-planar") {
     setting = {
-        turns, true, {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin}};
+        .head_turns = turns,
+        .inertia_declared = true,
+        .outputs = {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin},
+        .thin_face = true};
     for (const EffectEntry& e : effects())
       if (e.on_shots)
         for (Parametrisation& f : e.on_shots(setting)) forms.push_back(f);

@@ -10,8 +10,10 @@
 #include <set>
 #include <sstream>
 
+#include "hosel/golf/face_library.hpp"
 #include "hosel/loop/report.hpp"
 #include "hosel/loop/shots/run.hpp"
+#include "hosel/models/face_strike.hpp"
 #include "hosel/models/registry.hpp"
 
 namespace hosel::loop {
@@ -23,6 +25,8 @@ struct World {
   int shots = 90;
   double tangential = 0;  ///< hidden tangential restitution
   double humidity = 0;    ///< hidden: ball speed per per cent [m/s]
+  double level = 0;       ///< hidden: of the normal restitution
+  bool face = false;      ///< hidden: a driver's face at the rules' limit
   int swapped = -1;       ///< row whose ball speed is written in mph
   bool rate = false;      ///< a column spin_rate computed from the other two
   unsigned seed = 1;
@@ -52,6 +56,17 @@ std::string csv(const World& w) {
          .impact_toe = 0.009 * gauss(random),
          .impact_high = 0.006 * gauss(random)};
     b.contact.tangential_restitution = w.tangential;
+    b.contact.restitution += w.level;
+    if (w.face) {
+      // Struck as equations of motion, not by the closed form that the effect has.
+      const FaceCompliance face = find_face("modern-driver")->face;
+      const auto loss = [&](const std::optional<FaceCompliance>& f, double shape) {
+        return 1 - models::strike(models::golf_ball(b.ball), 0.2, f, shape, d.club_speed).restitution;
+      };
+      const double kept = loss(face, face.shape(-d.impact_toe, d.impact_high).value) / loss({}, 0);
+      b.contact.restitution = 1 - kept * (1 - b.contact.restitution);
+      b.contact.restitution_slope *= kept;
+    }
     const double humidity = 55 + 12 * gauss(random);
     const Launch l = model->launch(b);
     double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
@@ -129,6 +144,32 @@ TEST_F(Loop, AnUnknownColumnIsUnexplainedAndLocated) {
   ASSERT_FALSE(r.unexplained.empty());
   EXPECT_EQ(r.unexplained[0].channel, "ball_speed_mps");
   EXPECT_EQ(r.unexplained[0].regressor, "humidity_pct");
+}
+
+/// The compliance of the face that struck them, alone; a mere rise of the restitution is not taken for one.
+TEST_F(Loop, AYieldingFaceIsNamedAndMeasured) {
+  const LoopResult r = run(case_of(csv({.face = true})));
+  EXPECT_EQ(r.verdict, Verdict::explained) << sentence(r);
+  ASSERT_EQ(r.adopted, std::vector<std::string>{"face-compliance"});
+  EXPECT_TRUE(r.ties.empty());
+  // Closed form and equations of motion agree to 0.02 of the loss: a tenth of the compliance.
+  EXPECT_NEAR(r.selection.chosen.p[0] * find_face("modern-driver")->face.stiffness, 1, 0.1);
+  EXPECT_LT(r.channels[0].after.holdout_rmse, 0.2 * r.channels[0].before.holdout_rmse);
+  const LoopResult law = run(case_of(csv({.level = 0.1})));
+  EXPECT_EQ(law.adopted, std::vector<std::string>{"restitution-law"}) << sentence(law);
+}
+
+/// What no candidate explains is told, and the face kept beside it; alone it leaves nothing beyond doubt.
+TEST_F(Loop, WhatIsBeyondDoubtIsKeptBesideWhatIsUnexplained) {
+  const LoopResult both = run(case_of(csv({.shots = 240, .humidity = 0.05, .face = true})));
+  EXPECT_EQ(both.verdict, Verdict::unexplained);
+  EXPECT_EQ(both.adopted, std::vector<std::string>{"face-compliance"}) << sentence(both);
+  ASSERT_FALSE(both.unexplained.empty());
+  EXPECT_EQ(both.unexplained.front().regressor, "humidity_pct");
+  EXPECT_LT(both.channels[0].after.holdout_rmse, 0.5 * both.channels[0].before.holdout_rmse);
+  const LoopResult alone = run(case_of(csv({.shots = 240, .humidity = 0.05})));
+  EXPECT_EQ(alone.verdict, Verdict::unexplained);
+  EXPECT_TRUE(alone.adopted.empty() && alone.ties.empty()) << sentence(alone);
 }
 
 TEST_F(Loop, AUnitSlipIsFlaggedWithItsReason) {

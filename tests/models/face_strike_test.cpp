@@ -69,6 +69,22 @@ TEST(FaceStrike, FacesLieOnTheRulesLine) {
   EXPECT_EQ(inside, 20);
 }
 
+/// What a face leaves of the ball's loss, in closed form: to 0.02 of it, and to 0.04 at the rules' limit
+/// (186 nm/N), where the face's own period begins to tell, at any speed.
+TEST(FaceStrike, LossOnAFaceInClosedForm) {
+  for (const double speed : {35.0, 45.0, 55.0}) {
+    const double bare = 1 - strike(golf_ball({}), 0.2, {}, 0, speed).restitution;
+    for (const double stiffness : {5.4e6, 7e6, 10e6, 20e6, 40e6}) {
+      const FaceCompliance face{.mass = 0.01, .stiffness = stiffness, .damping = 15};
+      const double loss = 1 - strike(golf_ball({}), 0.2, face, 1, speed).restitution;
+      ASSERT_LT(loss, 0.95 * bare);
+      EXPECT_NEAR(loss_on_face(1 / stiffness), loss / bare, stiffness < 6e6 ? 0.04 : 0.02)
+          << speed << " m/s, " << stiffness << " N/m";
+    }
+  }
+  EXPECT_EQ(loss_on_face(0), 1);
+}
+
 /// The library's driver is at the rules' limit.
 TEST(FaceStrike, ModernDriverIsAtTheLimit) {
   const FaceCompliance face = find_face("modern-driver")->face;

@@ -5,9 +5,11 @@
 
 #include <cmath>
 
+#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/post/figure.hpp"
+#include "tests/support/two_masses.hpp"
 
 namespace hosel::models {
 namespace {
@@ -103,21 +105,27 @@ TEST(Volumetric, BothIntegratorsAgree) {
   }
 }
 
-void expect_balances(const Blow& b, const VolumetricResult& r) {
+void expect_balances(const Blow& b, const VolumetricResult& r, double face_mass = 0) {
   ASSERT_GT(*r.launch.peak_force, 1e3);
   EXPECT_LT(std::abs(r.energy.gap()), 1e-9);
   for (const double lost : {r.energy.lost_normal, r.energy.lost_friction, r.energy.lost_joint}) EXPECT_GT(lost, 0);
   const Head& h = b.club.head;
   const Launch& l = r.launch;
   const Vec3 v = b.delivery.velocity(), before = h.mass * v;
-  EXPECT_LT((before - h.mass * l.head_velocity - b.ball.mass * l.velocity).norm(), 1e-9 * before.norm());
   // Angular momentum about the ball's centre at first contact.
   const Mat3 R = b.delivery.face_to_global();
   const double yc = -b.delivery.impact_toe, zc = b.delivery.impact_high;
   const Vec3 cg = R * (-b.ball.radius * h.face.normal(yc, zc) - h.face.point(yc, zc) + h.cg);
   const Mat3 inertia = R * h.inertia * R.transpose();
   const Vec3 turning = cg.cross(before) + inertia * b.delivery.head_angular_velocity;
-  const Vec3 after = (cg + r.head_displacement).cross(h.mass * l.head_velocity) +
+  // A yielding face: its particle where it is, for the one that the head's own inertia counts.
+  const Vec3 held = -(r.head_rotation * R * h.cg), moved = held - r.face_travel * (r.head_rotation * R.col(0));
+  const Vec3 slow = l.head_velocity + l.head_spin.cross(held),
+             fast = l.head_velocity + l.head_spin.cross(moved) - r.face_rate * (r.head_rotation * R.col(0));
+  const Vec3 linear = face_mass * (fast - slow), angular = face_mass * ((cg + r.head_displacement + moved).cross(fast) -
+                                                                        (cg + r.head_displacement + held).cross(slow));
+  EXPECT_LT((before - h.mass * l.head_velocity - b.ball.mass * l.velocity - linear).norm(), 1e-9 * before.norm());
+  const Vec3 after = angular + (cg + r.head_displacement).cross(h.mass * l.head_velocity) +
                      r.head_rotation * inertia * r.head_rotation.transpose() * l.head_spin +
                      r.ball_displacement.cross(b.ball.mass * l.velocity) + b.ball.inertia() * l.spin;
   EXPECT_LT((turning - after).norm(), 1e-9 * turning.norm());
@@ -133,6 +141,55 @@ TEST(Volumetric, MomentaAndEnergyBalance) {
       expect_balances(b, volumetric_impact(b, law, {Integrator::cvode, 1e-12}));
       expect_balances(b, volumetric_impact(b, law, {Integrator::rosenbrock, 1e-10}));
     }
+}
+
+/// Off centre, with friction and a curved face that yields: exact momenta, closed ledger, and a faster ball.
+TEST(Volumetric, BalancesOnAYieldingFace) {
+  const Blow b = eccentric();
+  VolumetricLaw law{.volume_exponent = 0.6};
+  const double rigid = volumetric_impact(b, law).launch.ball_speed();
+  law.face = find_face("modern-driver")->face;
+  for (const VolumetricResult& r : {volumetric_impact(b, law, {Integrator::cvode, 1e-12}),
+                                    volumetric_impact(b, law, {Integrator::rosenbrock, 1e-10})}) {
+    ASSERT_GT(r.energy.lost_face, 0.1);
+    ASSERT_GT(std::abs(r.face_rate), 0.1);
+    EXPECT_GT(r.launch.ball_speed(), 1.01 * rigid);
+    expect_balances(b, r, law.face->mass);
+  }
+}
+
+/// A slow blow on the middle by a ball that pushes in proportion to the depth (V^1/2): the closed two-mass solution,
+/// to depth / radius, 1/300.
+TEST(Volumetric, YieldingFaceAgreesWithTheClosedTwoMassSolution) {
+  constexpr double kSpeed = 0.5, kSpring = 2e6;
+  Blow b = central(0.2, kSpeed, kInf);
+  for (const auto& [mass, stiffness] : {std::pair{0.005, 1e7}, {0.015, 1e7}, {0.02, 7e6}}) {
+    VolumetricLaw law{
+        .stiffness = kSpring / std::sqrt(1e-6 * kPi * b.ball.radius), .damping = 0, .volume_exponent = 0.5};
+    law.face = FaceCompliance{.mass = mass, .stiffness = stiffness};
+    const test::TwoMasses exact = test::two_masses(b.ball.mass, kSpring, 0.2, *law.face, kSpeed);
+    const VolumetricResult found = volumetric_impact(b, law, {Integrator::rosenbrock, 1e-8});
+    const double head = kSpeed - b.ball.mass / 0.2 * found.launch.velocity.x();
+    ASSERT_GT(exact.face_energy, 1e-5);
+    EXPECT_NEAR((found.launch.velocity.x() - head) / kSpeed, exact.restitution, 1e-3);
+    EXPECT_NEAR(*found.launch.contact_time, exact.contact_time, 3e-3 * exact.contact_time);
+  }
+}
+
+/// The rigid face is the limit: the launch departs from it like 1 / stiffness.
+TEST(Volumetric, RigidIsTheLimitOfAStiffFace) {
+  const Blow b = eccentric();
+  VolumetricLaw law;
+  const Launch rigid = volumetric_impact(b, law, {Integrator::cvode, 1e-10}).launch;
+  law.face = find_face("modern-driver")->face;
+  for (const double stiffness : {1e9, 1e10}) {
+    law.face->stiffness = stiffness;
+    law.face->damping = 2 * std::sqrt(stiffness * law.face->mass);  // it would ring for ever
+    const Launch stiff = volumetric_impact(b, law, {Integrator::cvode, 1e-10}).launch;
+    const double gap = (stiff.velocity - rigid.velocity).norm() / rigid.ball_speed();
+    EXPECT_GT(gap, 1e5 / stiffness);
+    EXPECT_LT(gap, 1e7 / stiffness);
+  }
 }
 
 TEST(Volumetric, HeadThatMovesAwayIsRefused) {

@@ -1,0 +1,25 @@
+// A driver's thin face yields: the ball loses less on it, most at the face centre.
+#include "hosel/golf/face_library.hpp"
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/face_strike.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Parametrisation> face_compliance(const Setting& s) {
+  if (!s.thin_face || s.deformable) return {};  // a deformable base has no impact law: it takes [face] itself
+  // Up to faces a third softer than the rules' limit (186 nm/N), with the fall-off of that one.
+  Parametrisation f{.effect = "face-compliance",
+                    .what = "compliance at the face centre, falling to the edge like a clamped plate's",
+                    .parameters = {{"compliance", "nm/N", 1e-9, 0, 250e-9, 20e-9}}};
+  f.before = [face = find_face("modern-driver")->face](std::span<const double> p, Shot& t) {
+    const double shape = face.shape(-t.blow.delivery.impact_toe, t.blow.delivery.impact_high).value;
+    const double left = models::loss_on_face(p[0] * shape * shape);
+    ContactLaw& law = t.blow.contact;
+    law.restitution += (1 - left) * (1 - law.restitution);
+    law.restitution_slope *= left;
+    law.restitution_falloff *= left;
+  };
+  return {f};
+}
+
+}  // namespace hosel::loop::forms
