@@ -6,7 +6,7 @@
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> face_compliance(const Setting& s) {
-  if (!s.thin_face) return {};
+  if (!s.thin_face || s.deformable) return {};  // a deformable base has no impact law: it takes [face] itself
   // Up to faces a third softer than the rules' limit (186 nm/N), with the fall-off of that one.
   Parametrisation f{.effect = "face-compliance",
                     .what = "compliance at the face centre, falling to the edge like a clamped plate's",
