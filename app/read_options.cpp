@@ -57,7 +57,10 @@ models::FeImpactOptions read_fe(Table root) {
       int(mesh.integer({"contact_angles", "integration angles of the patch over the half circle; 0: 3 N + 8"}, 0, 256,
                        o.contact_angles));
   o.edge_points = int(mesh.integer({"edge_points", "Gauss points along each surface edge"}, 1, 5, o.edge_points));
-  o.tilt = mesh.quantity({"tilt", "of the mesh's axis against the expected turn of the ball"}, "rad", {-1, 1}, o.tilt);
+  if (mesh.has_quantity("tilt"))
+    o.tilt = mesh.quantity(
+        {"tilt", "of the mesh's axis against the turn of the ball; absent: half of the turn that is expected"}, "rad",
+        {-1, 1});
   Table time = root.default_table("time");
   o.rho_inf = time.number(
       {"rho_inf", "spectral radius of generalized-alpha at infinite frequency: 1 keeps energy, 0 damps most"},

@@ -391,6 +391,7 @@ ContactReport Contact::report(const State& s) const {
   double weight = 0;
   Vec3 centre = Vec3::Zero();
   visit(s, [&](const Moved& m, const Kinematics& k) {
+    out.nearest = std::min(out.nearest, k.gap);
     if (k.gap >= 0) return;
     const Local local = evaluate(k, false);
     const double area = k.station->area;

@@ -1,6 +1,7 @@
 /// Contact and friction between a harmonic solid and a surface.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -37,14 +38,15 @@ struct ContactPoint {
 
 /// What the patch does at the last accepted state, and its largest errors so far.
 struct ContactReport {
-  Vec3 force = Vec3::Zero();  ///< on the solid, global [N]
-  Vec3 point = Vec3::Zero();  ///< centre of pressure, global [m]
-  double normal_force = 0;    ///< [N]
-  double pressure = 0;        ///< largest [Pa]
-  double area = 0;            ///< of the patch [m^2]
-  double penetration = 0;     ///< largest so far [m]
-  double elastic_slip = 0;    ///< largest of a sticking point so far [m]
-  int points = 0;             ///< in contact
+  Vec3 force = Vec3::Zero();                                 ///< on the solid, global [N]
+  Vec3 point = Vec3::Zero();                                 ///< centre of pressure, global [m]
+  double normal_force = 0;                                   ///< [N]
+  double pressure = 0;                                       ///< largest [Pa]
+  double area = 0;                                           ///< of the patch [m^2]
+  double penetration = 0;                                    ///< largest so far [m]
+  double elastic_slip = 0;                                   ///< largest of a sticking point so far [m]
+  int points = 0;                                            ///< in contact
+  double nearest = std::numeric_limits<double>::infinity();  ///< smallest gap of any point, negative in contact [m]
 };
 
 /// Points are Gauss points of the solid's surface edges times equidistant angles. Forces act at the solid's point on

@@ -113,6 +113,16 @@ Encounter encounter(const Blow& blow) {
   return e;
 }
 
+double expected_turn(const Blow& blow, const FeImpactOptions& o) {
+  const Encounter e = encounter(blow);
+  const Ball& ball = blow.ball;
+  const double slip = (e.approach - e.normal_speed * e.normal).norm();
+  const double gripping = 1.3 * slip / (1 + 1 / ball.inertia_factor + ball.mass / blow.club.head.mass),
+               sliding = 1.8 * o.friction * e.normal_speed;
+  const double spin = std::min(gripping, sliding) / (ball.inertia_factor * ball.radius);
+  return 0.8 * spin * hertz_time(ball.mass, ball.radius, o.ball.instant_young(), e.normal_speed);
+}
+
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& o, const fem::SurfaceCarrier& carrier,
                     bool free) {
   if (const auto faults = o.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
@@ -148,7 +158,8 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
     return axial ? fem::single_angle() : planar ? fem::half_circle(half) : fem::full_circle(2 * half);
   };
   fem::Placement placement{Vec3::Zero(), e.ball_axes};
-  placement.axes = Eigen::AngleAxisd(o.tilt, e.ball_axes.col(2)).toRotationMatrix() * e.ball_axes;
+  const double tilt = o.tilt.value_or(axial ? 0 : expected_turn(blow, o) / 2);
+  placement.axes = Eigen::AngleAxisd(-tilt, e.ball_axes.col(2)).toRotationMatrix() * e.ball_axes;
 
   // The mesh weighs what the ball weighs, layer by layer in proportion to the densities given.
   const auto mass_of = [&](const std::vector<fem::Solid>& m) {
@@ -247,7 +258,11 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
         out.peak_force = report.normal_force;
         out.peak_time = now;
       }
+    } else if (at.last_nearest < 0) {
+      // The last point let go within this step: its gap grows in proportion to time there.
+      at.last_touch += (now - at.last_touch) * at.last_nearest / (at.last_nearest - report.nearest);
     }
+    at.last_nearest = report.nearest;
     const double gap = parts.contact->centre_gap(solver.state());
     const bool leaving = gap > at.last_gap;  // a stiff skin may bounce while the ball still comes nearer
     at.last_gap = gap;

@@ -35,7 +35,9 @@ struct FeImpactOptions {
   int angles = 0;          ///< of the volume over the half circle; 0: 2 N + 4
   int contact_angles = 0;  ///< of the patch over the half circle; 0: 3 N + 8
   int edge_points = 4;     ///< Gauss points of the patch along an edge
-  double tilt = 0;         ///< of the mesh's axis against the expected turn of the ball [rad]
+  /// Of the mesh's axis, against the turn of the ball [rad]; where not set, half of the turn that a gripping ball is
+  /// expected to make in contact, so that the patch wanders to both sides of the pole.
+  std::optional<double> tilt;
 
   double penalty = 1000;            ///< contact pressure stiffness times radius over Young's modulus [-]
   double tangential_penalty = 0.5;  ///< tangential stiffness over normal stiffness [-]
@@ -79,6 +81,10 @@ struct Encounter {
 };
 Encounter encounter(const Blow& blow);
 
+/// The angle by which the ball will turn while it touches [rad], to a fifth or so: a spin 1.3 times that of rolling, or
+/// what friction allows, that grows over a contact a good third longer than Hertz's with the instant modulus.
+double expected_turn(const Blow& blow, const FeImpactOptions& options);
+
 /// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a
 /// shaft. `free` says that the carrier may move out of the blow's plane of symmetry.
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,
@@ -109,8 +115,9 @@ struct ImpactCheckpoint {
   solvers::Checkpoint solver;
   FeImpactResult so_far;  ///< what grows with the steps: peak, compression
   bool touched = false, over = false;
-  double last_touch = 0;  ///< [s]
-  double last_gap = 0;    ///< between ball centre and face [m]
+  double last_touch = 0;    ///< between the steps, where the last point let go [s]
+  double last_nearest = 0;  ///< smallest gap of the patch after the last step [m]
+  double last_gap = 0;      ///< between ball centre and face [m]
 };
 
 /// What an observer sees after every accepted step, and once at the start.

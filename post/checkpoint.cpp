@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 2";
+constexpr std::string_view kFormat = "hosel impact checkpoint 3";
 
 template <class Dense>
 json numbers(const Dense& x) {
@@ -90,6 +90,7 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
             {"touched", i.touched},
             {"over", i.over},
             {"last_touch", i.last_touch},
+            {"last_nearest", i.last_nearest},
             {"last_gap", i.last_gap},
             {"face_centre", numbers(saved.face_centre)},
             {"face_axes", numbers(saved.face_axes)},
@@ -132,6 +133,7 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.touched = j.at("touched");
   i.over = j.at("over");
   i.last_touch = j.at("last_touch");
+  i.last_nearest = j.at("last_nearest");
   i.last_gap = j.at("last_gap");
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
