@@ -11,6 +11,7 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/models/elastic_plate.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
@@ -56,6 +57,11 @@ class BounceJob final : public Job {
     const std::vector<std::string> names = read_models(root);
     ball_ = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     const models::Options options = read_options(root, names);
+    std::optional<models::ElasticSolid> plate;
+    if (auto t = root.optional_table("plate"))
+      plate = {
+          t->quantity({"young", "Young's modulus of a thick elastic plate; absent: rigid"}, "GPa", Range::positive()),
+          t->number({"poisson", "Poisson's ratio of the plate"}, {0, 0.49})};
     const std::vector<std::string> balls = root.texts(
         {"balls", "balls of the library, each thrown by every finite-element model"}, std::vector<std::string>{});
     for (const std::string& ball : balls)
@@ -63,8 +69,9 @@ class BounceJob final : public Job {
         root.fail("balls", fmt::format("no ball '{}'; `hosel list` shows them", ball));
     for (const std::string& name : names) {
       const models::ModelEntry& entry = *models::find(name);
-      if (balls.empty() || !name.starts_with("fe-")) {
-        thrown_.push_back({name, entry.make(options)});
+      const bool deformable = name.starts_with("fe-");
+      if (balls.empty() || !deformable) {
+        thrown_.push_back({name, plate && deformable ? on_plate(root, options.fe, *plate) : entry.make(options)});
         continue;
       }
       for (const std::string& ball : balls) {
@@ -134,6 +141,12 @@ class BounceJob final : public Job {
   }
 
  private:
+  std::unique_ptr<models::ImpactModel> on_plate(Table& root, const models::FeImpactOptions& sphere,
+                                                const models::ElasticSolid& plate) const {
+    try {
+      return std::make_unique<models::ElasticPlate>(sphere, plate, ball_);
+    } catch (const std::invalid_argument& e) { root.fail("plate", e.what()); }
+  }
   const models::Bounce& at(const std::vector<models::Bounce>& all, std::size_t thrown, std::size_t speed,
                            double angle) const {
     const std::size_t a = std::size_t(std::ranges::find(angles_, angle) - angles_.begin());

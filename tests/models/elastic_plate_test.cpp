@@ -1,0 +1,77 @@
+// Pairs of elastic bodies, and one sphere on a rigid plate in their place.
+#include "hosel/models/elastic_plate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hosel/fem/materials/linear_elastic.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/models/oblique.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr ElasticSolid kAlumina{380e9, .23}, kGlass{70e9, .25}, kRigid{INFINITY, 0};
+
+FeImpactOptions sphere(const ElasticSolid& s) {
+  FeImpactOptions o;
+  o.ball = elastic_ball("sphere", {.elastic = fem::LinearElastic{fem::Lame::of(s.young, s.poisson)}, .density = 4000});
+  o.mesh = {.sector = 3, .rings = 5, .pole = 0.13, .far = 6, .skin = 0.06, .core = 0.4};
+  o.harmonics = 2;
+  o.friction = 0.092;
+  o.penalty = 1600;
+  o.tangential_penalty = 1;
+  o.steps_per_contact = 40;
+  o.newton_relative = 1e-5;
+  return o;
+}
+constexpr Ball kBall{.mass = 0.2618e-3, .radius = 2.5e-3};
+
+TEST(ElasticPlate, StandInKeepsStiffnessCouplingAndPeriod) {
+  const ContactPair pair = ContactPair::of(kAlumina, kGlass);
+  EXPECT_NEAR(pair.modulus, 62.95e9, 0.01e9);
+  EXPECT_NEAR(pair.tangential, 0.8591, 1e-4);
+  EXPECT_NEAR(pair.dundurs, 0.2260, 1e-4);
+  const ContactPair swapped = ContactPair::of(kGlass, kAlumina);
+  EXPECT_DOUBLE_EQ(swapped.dundurs, pair.dundurs);
+  const RigidPlateStandIn instead = RigidPlateStandIn::of(pair, 0.4);
+  const ContactPair own = ContactPair::of(instead.sphere, kRigid);
+  EXPECT_NEAR(own.modulus, pair.modulus, 1e-9 * pair.modulus);
+  EXPECT_NEAR(own.dundurs, pair.dundurs, 1e-12);
+  // The tangential spring's frequency: kappa over the mass that the contact point feels.
+  EXPECT_NEAR(own.tangential * (1 + 1 / instead.inertia_factor), pair.tangential * 3.5, 1e-9);
+  EXPECT_NEAR(instead.friction, own.tangential / pair.tangential, 1e-12);
+}
+
+TEST(ElasticPlate, OnARigidPlateTheStandInIsTheSphere) {
+  const Bounce plain = bounce(FeFreeBody(sphere(kAlumina)), kBall, 3.9, radians(11));
+  const Bounce pair = bounce(ElasticPlate(sphere(kAlumina), kRigid, kBall), kBall, 3.9, radians(11));
+  ASSERT_GT(plain.spin, 200);
+  // The stand-in has a layer more, and so another mesh inside.
+  EXPECT_NEAR(pair.tangential_restitution, plain.tangential_restitution, 0.005);
+  EXPECT_NEAR(pair.spin, plain.spin, 0.005 * plain.spin);
+  EXPECT_NEAR(pair.rebound_angle, plain.rebound_angle, 0.01 * plain.rebound_angle);
+}
+
+/// An alumina sphere on glass is coupled less than one of the same stiffness on a rigid plate and gives back less where
+/// it sticks. Where it slides throughout, coupling does not matter.
+TEST(ElasticPlate, GlassUnderTheSphereTakesTangentialReturn) {
+  const ElasticPlate pair(sphere(kAlumina), kGlass, kBall);
+  const FeFreeBody alone(sphere({59.1e9, .247}));
+  const Bounce sticks = bounce(pair, kBall, 3.9, radians(3.7)), before = bounce(alone, kBall, 3.9, radians(3.7));
+  EXPECT_GT(before.tangential_restitution, 0.48);
+  EXPECT_LT(sticks.tangential_restitution, 0.40);
+  const Bounce slides = bounce(pair, kBall, 3.9, radians(50));
+  EXPECT_NEAR(slides.tangential_ratio, 1 - 0.092 * (1 + slides.normal_restitution) / std::tan(radians(50)), 2e-3);
+}
+
+TEST(ElasticPlate, RefusesWhatHasNoStandIn) {
+  EXPECT_THROW(ElasticPlate(sphere(kGlass), kGlass, kBall), std::invalid_argument);
+  FeImpactOptions layered = sphere(kAlumina);
+  layered.ball = range_ball();
+  EXPECT_THROW(ElasticPlate(layered, kGlass, kBall), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hosel::models
