@@ -5,25 +5,55 @@
 #include <optional>
 #include <stdexcept>
 
+#include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/matched_launch.hpp"
+#include "hosel/models/oblique.hpp"
 #include "hosel/solvers/errors.hpp"
 #include "hosel/solvers/least_squares.hpp"
 
 namespace hosel::models {
 namespace {
 
-/// `logs` of the factors on long-term moduli, branch moduli and, the third if there is one, branch times.
-FeBall scaled(FeBall ball, const Eigen::VectorXd& logs) {
-  const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]), time = logs.size() > 2 ? std::exp(logs[2]) : 1;
-  for (BallLayer& layer : ball.layers) {
+constexpr double kLaunchTolerance = 2e-4;  // [rad]; 0.05 % of an iron's spin, small against a step of the Jacobian
+
+int count(const Fitted& f) { return 2 + f.branch_times + f.cover + f.friction; }
+
+/// The options with the factors in place whose `logs` are given: on long-term moduli, branch moduli, then what `fitted`
+/// says, in its order.
+FeImpactOptions scaled(FeImpactOptions o, const Fitted& fitted, const Eigen::VectorXd& logs) {
+  Eigen::Index next = 2;
+  const double elastic = std::exp(logs[0]), viscous = std::exp(logs[1]);
+  const double time = fitted.branch_times ? std::exp(logs[next++]) : 1;
+  const double cover = fitted.cover ? std::exp(logs[next++]) : 1;
+  if (fitted.friction) o.friction *= std::exp(logs[next++]);
+  for (BallLayer& layer : o.ball.layers) {
     if (layer.material.branches.empty())
       throw std::invalid_argument("calibration needs layers with relaxation branches");
-    layer.material.elastic = layer.material.elastic.stiffened(elastic);
+    const double own = &layer == &o.ball.layers.back() ? cover : 1;
+    layer.material.elastic = layer.material.elastic.stiffened(elastic * own);
     for (auto& b : layer.material.branches) {
-      b.modulus *= viscous;
+      b.modulus *= viscous * own;
       b.time *= time;
     }
   }
-  return ball;
+  return o;
+}
+
+/// The shot at its measured launch angle; `loft` is where the search begins, and what it finds.
+ObliquePoint struck(const FeImpactOptions& options, const ObliqueTarget& shot, double& loft) {
+  Blow blow = shot.blow;
+  blow.delivery.dynamic_loft = loft;
+  const FeFreeBody head(options);
+  const FeFullClub club({options, {}});
+  const ImpactModel& model = blow.club.shaft ? static_cast<const ImpactModel&>(club) : head;
+  const MatchedLaunch found = match_launch_angle(model, blow, shot.launch_angle, kLaunchTolerance);
+  loft = found.blow.delivery.dynamic_loft;
+  return {shot.name,
+          loft,
+          shot.spin_rate,
+          found.launch.spin_rate(),
+          found.launch.ball_speed(),
+          tangential_restitution(found.blow, found.launch).value_or(NAN)};
 }
 
 }  // namespace
@@ -38,17 +68,28 @@ NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball
 }
 
 BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
-                               bool hold_times, const std::function<void(int, double)>& progress) {
+                               const std::vector<ObliqueTarget>& shots, const Fitted& fitted,
+                               const std::function<void(int, double)>& progress) {
   if (std::find(target.speeds.begin(), target.speeds.end(), target.contact_speed) == target.speeds.end())
     throw std::invalid_argument("calibration: the speed of the contact time must be one of the speeds");
+  if (shots.empty() && (fitted.cover || fitted.friction))
+    throw std::invalid_argument("calibration: a bounce sees neither the cover apart nor friction: give oblique shots");
   const auto points = [&](const Eigen::VectorXd& logs) {
-    FeImpactOptions o = options;
-    o.ball = scaled(options.ball, logs);
+    FeImpactOptions o = scaled(options, fitted, logs);
+    o.harmonics = 0;
     std::vector<NormalImpactPoint> all;
     for (const double v : target.speeds) {
       all.push_back(normal_impact(o, ball, v));
       all.back().target = target.restitution + target.restitution_slope * v;
     }
+    return all;
+  };
+  std::vector<double> lofts;  // the last ones found are the best guess
+  for (const ObliqueTarget& shot : shots) lofts.push_back(shot.blow.delivery.dynamic_loft);
+  const auto struck_all = [&](const Eigen::VectorXd& logs) {
+    const FeImpactOptions o = scaled(options, fitted, logs);
+    std::vector<ObliquePoint> all;
+    for (std::size_t k = 0; k < shots.size(); ++k) all.push_back(struck(o, shots[k], lofts[k]));
     return all;
   };
   int evaluations = 0;
@@ -58,8 +99,11 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
       for (const NormalImpactPoint& p : points(logs)) {
         r[i++] = (p.restitution - p.target) / target.restitution_sigma;
         if (p.speed == target.contact_speed)
-          r[r.size() - 1] = (p.contact_time - target.contact_time) / target.contact_time_sigma;
+          r[Eigen::Index(target.speeds.size())] = (p.contact_time - target.contact_time) / target.contact_time_sigma;
       }
+      const std::vector<ObliquePoint> found = struck_all(logs);
+      for (std::size_t k = 0; k < shots.size(); ++k)
+        r[++i] = (found[k].spin_rate / found[k].target - 1) / shots[k].spin_sigma;
     } catch (const solvers::NonConvergence&) {
       return false;  // the search takes a shorter step
     }
@@ -79,9 +123,9 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
     }
     return true;
   };
-  const Eigen::Index parameters = hold_times ? 2 : 3, count = Eigen::Index(target.speeds.size()) + 1;
+  const Eigen::Index parameters = count(fitted), rows = Eigen::Index(target.speeds.size() + 1 + shots.size());
   const std::optional<solvers::Minimum> best =
-      solvers::minimise({.residuals = int(count),
+      solvers::minimise({.residuals = int(rows),
                          .bounds = std::vector<solvers::Bounds>(std::size_t(parameters), {-3, 3, 1}),
                          .value = residuals,
                          .linearised = linearised},
@@ -91,16 +135,23 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
 
   BallCalibration out;
   const Eigen::VectorXd& logs = best->parameters;
-  out.ball = scaled(options.ball, logs);
+  const FeImpactOptions fit = scaled(options, fitted, logs);
+  out.ball = fit.ball;
+  out.friction = fit.friction;
   const fem::Solid& first = options.ball.layers.front().material;
-  const fem::MaxwellBranch& branch0 = first.branches.front();
-  out.names = {"long-term shear modulus [Pa]", "branch shear modulus [Pa]", "branch time [s]"};
-  out.start = {first.shear(), branch0.modulus, branch0.time};
-  out.names.resize(std::size_t(parameters));
-  out.start.resize(std::size_t(parameters));
-  for (Eigen::Index p = 0; p < parameters; ++p) out.values.push_back(out.start[std::size_t(p)] * std::exp(logs[p]));
+  const auto say = [&](const char* name, double start) {
+    out.names.emplace_back(name);
+    out.start.push_back(start);
+    out.values.push_back(start * std::exp(logs[Eigen::Index(out.values.size())]));
+  };
+  say("long-term shear modulus [Pa]", first.shear());
+  say("branch shear modulus [Pa]", first.branches.front().modulus);
+  if (fitted.branch_times) say("branch time [s]", first.branches.front().time);
+  if (fitted.cover) say("cover over core [-]", options.ball.layers.back().material.shear() / first.shear());
+  if (fitted.friction) say("friction [-]", options.friction);
   out.points = points(logs);
-  Eigen::VectorXd r(count);
+  out.shots = struck_all(logs);
+  Eigen::VectorXd r(rows);
   Eigen::MatrixXd J;
   if (!linearised(logs, r, J))
     throw solvers::NonConvergence("calibration: the impact does not converge at the fitted parameters");

@@ -1,4 +1,4 @@
-/// Calibration of a ball's material to its normal impacts on a rigid wall.
+/// Calibration of a ball's material to its normal impacts on a rigid wall, and to oblique blows where there are some.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace hosel::models {
 
-/// What the ball shall do: restitution level + slope v at the speeds, contact time at one of them. Spin and
-/// tangential data have no place here: what the ball says about them is a prediction.
+/// What the ball shall do at the wall: restitution level + slope v at the speeds, contact time at one of them. Where no
+/// oblique blow is given, spin and tangential data have no part: what the ball says about them is a prediction.
 struct NormalImpactTarget {
   std::vector<double> speeds{20, 30, 40, 50};  ///< [m/s]
   double restitution = 0.86;                   ///< level [-]
@@ -19,6 +19,31 @@ struct NormalImpactTarget {
   double contact_speed = 40;                   ///< one of the speeds [m/s]
   double contact_time = 0.45e-3;               ///< [s]
   double contact_time_sigma = 0.01e-3;         ///< [s]
+};
+
+/// A measured shot. Its loft is an unknown of its own, found from the launch angle: a recorded one may have been
+/// computed from the ball.
+struct ObliqueTarget {
+  std::string name;
+  Blow blow;                ///< with a shaft: the full club; its loft is where the search begins
+  double launch_angle = 0;  ///< [rad]
+  double spin_rate = 0;     ///< [rad/s]
+  double spin_sigma = 0;    ///< relative [-]
+};
+
+/// Beside the factors on long-term and branch moduli of all layers.
+struct Fitted {
+  bool branch_times = true;  ///< one factor for all
+  bool cover = false;        ///< a factor on the moduli of the outermost layer alone
+  bool friction = false;
+};
+
+struct ObliquePoint {
+  std::string name;
+  double loft = 0;                    ///< found [rad]
+  double target = 0, spin_rate = 0;   ///< [rad/s]
+  double ball_speed = 0;              ///< no target [m/s]
+  double tangential_restitution = 0;  ///< no target
 };
 
 struct NormalImpactPoint {
@@ -32,9 +57,11 @@ struct NormalImpactPoint {
 struct BallCalibration {
   FeBall ball;
   std::vector<std::string> names;     ///< of the parameters that were fitted
-  std::vector<double> start, values;  ///< of the first layer, in the units of the names
+  std::vector<double> start, values;  ///< of the first layer, in the units of the names; then cover and friction
   Eigen::MatrixXd covariance;         ///< of log values, at the residuals' declared sigmas
   std::vector<NormalImpactPoint> points;
+  std::vector<ObliquePoint> shots;
+  double friction = 0;
   double cost = 0;  ///< half the sum of squared residuals over sigmas
   int evaluations = 0;
   bool converged = false;
@@ -44,10 +71,12 @@ struct BallCalibration {
 /// One normal impact on a wall.
 NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball, double speed);
 
-/// Fits, by Ceres in logarithms, factors on the long-term moduli, the branch moduli and, unless `hold_times`, the
-/// branch times of all layers. `options.ball` is the start; options are those of the axisymmetric ball
-/// (harmonics = 0). `progress` hears of every evaluation.
+/// Fits, by Ceres in logarithms, factors on the long-term moduli, the branch moduli and what `fitted` names besides.
+/// `options.ball` and `options.friction` are the start; the wall is met by the axisymmetric ball, the shots by
+/// `options.harmonics`. `progress` hears of every evaluation. Throws std::invalid_argument where cover or friction are
+/// to be fitted without shots: a bounce does not see them.
 BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
-                               bool hold_times, const std::function<void(int evaluations, double cost)>& progress = {});
+                               const std::vector<ObliqueTarget>& shots, const Fitted& fitted,
+                               const std::function<void(int evaluations, double cost)>& progress = {});
 
 }  // namespace hosel::models

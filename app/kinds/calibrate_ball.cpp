@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/models/ball_calibration.hpp"
@@ -25,6 +26,7 @@ class CalibrateBallJob final : public Job {
     for (const models::BallLayer& layer : options_.ball.layers)
       if (!layer.material.elastic.as<fem::Hyperelastic>())
         ball.fail("layers", "calibration fits neo-hooke, mooney-rivlin and yeoh layers");
+    read_shots(root);
     options_.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) {
       options_.mesh.sector = int(mesh->integer({"sector", "elements per 45 degrees of the surface before grading"}, 1,
@@ -35,6 +37,13 @@ class CalibrateBallJob final : public Job {
                                         {0.01, 1}, options_.mesh.pole);
       options_.mesh.skin =
           mesh->number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, options_.mesh.skin);
+      if (!shots_.empty()) {
+        options_.harmonics =
+            int(mesh->integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
+        options_.antisymmetric = int(mesh->integer(
+            {"antisymmetric", "harmonics across the plane of the slip in shots without a plane of symmetry"}, 1, 16,
+            options_.harmonics));
+      }
     }
     if (auto time = root.optional_table("time"))
       options_.steps_per_contact =
@@ -53,15 +62,20 @@ class CalibrateBallJob final : public Job {
     target_.contact_time = target.quantity({"contact_time", "wanted"}, "ms", Range::positive(), target_.contact_time);
     target_.contact_time_sigma = target.quantity({"contact_time_sigma", "standard error of the contact time wanted"},
                                                  "ms", Range::positive(), target_.contact_time_sigma);
-    if (auto fit = root.optional_table("fit"))
-      hold_times_ = fit->flag({"hold_branch_times", "fit the moduli alone"}, hold_times_);
+    if (auto fit = root.optional_table("fit")) {
+      fitted_.branch_times = !fit->flag({"hold_branch_times", "leave the branch times as they are"}, false);
+      if (!shots_.empty()) {
+        fitted_.cover = fit->flag({"cover", "fit a factor on the moduli of the outermost layer"}, false);
+        fitted_.friction = fit->flag({"friction", "fit the friction of the shots"}, false);
+      }
+    }
     if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
   }
 
   void run(Output& out) override {
     Progress progress = out.progress("calibrating");
     const models::BallCalibration fit =
-        models::calibrate_ball(options_, ball_, target_, hold_times_, [&](int n, double cost) {
+        models::calibrate_ball(options_, ball_, target_, shots_, fitted_, [&](int n, double cost) {
           progress.update(std::min(0.99, n / 40.0), fmt::format("{} evaluations, cost {:.3f}", n, cost));
         });
     progress.finish();
@@ -110,6 +124,18 @@ class CalibrateBallJob final : public Job {
     time_wanted.y = {1e3 * target_.contact_time};
     time_wanted.error = {1e3 * target_.contact_time_sigma};
     out.write("fit.csv", csv);
+    if (!fit.shots.empty())
+      out.say("shot       loft found [deg]   target spin [rpm]   spin [rpm]   speed [m/s]     e_t");
+    for (const auto& s : fit.shots) {
+      out.say(fmt::format("{:<10} {:16.2f} {:19.0f} {:12.0f} {:13.2f} {:7.3f}", s.name, degrees(s.loft), rpm(s.target),
+                          rpm(s.spin_rate), s.ball_speed, s.tangential_restitution));
+      summary["shots"].push_back({{"name", s.name},
+                                  {"dynamic_loft_deg", degrees(s.loft)},
+                                  {"target_spin_rate_rpm", rpm(s.target)},
+                                  {"spin_rate_rpm", rpm(s.spin_rate)},
+                                  {"ball_speed_mps", s.ball_speed},
+                                  {"tangential_restitution", s.tangential_restitution}});
+    }
     out.write("ball.toml", ball_file(fit));
     post::Figure figure;
     figure.title = "the calibrated ball on a rigid wall";
@@ -128,20 +154,47 @@ class CalibrateBallJob final : public Job {
   }
 
  private:
+  /// Measured shots beside the bounce; each with its own head and delivery, all with the case's shaft where it has one.
+  void read_shots(Table root) {
+    const auto tables = root.tables("shots");
+    if (tables.empty()) return;
+    options_.friction =
+        root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
+    std::optional<Shaft> shaft;
+    if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
+    ClubGeometry geometry;
+    if (auto t = root.optional_table("hosel")) geometry = read_club_geometry(*t);
+    for (Table t : tables) {
+      models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
+      shot.blow.ball = ball_;
+      shot.blow.delivery = read_delivery(t.table("delivery"));
+      shot.blow.club.head = read_head(t.table("head"), true);
+      shot.blow.club.shaft = shaft;
+      shot.blow.club.geometry = geometry;
+      shot.launch_angle =
+          t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg", {-1.5, 1.5});
+      shot.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
+      shot.spin_sigma = t.number({"spin_sigma", "standard error of the spin, relative"}, {1e-4, 1});
+      shots_.push_back(std::move(shot));
+    }
+  }
+
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
+    std::string saw = "no spin data";
+    for (const auto& shot : fit.shots) saw = (&shot == &fit.shots.front() ? "the spin of " : saw + ", ") + shot.name;
     std::string text = fmt::format(
-        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; no spin "
-        "data.\n# {}\n",
+        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; {}.\n# "
+        "{}\n",
         target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
-        target_.contact_speed, fit.report);
+        target_.contact_speed, saw, fit.report);
     for (std::size_t p = 0; p < fit.names.size(); ++p)
       text += fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p],
                           100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));
     text += "# covariance of their logarithms:";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
     text += fmt::format("\n{}\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n",
-                        hold_times_ ? "# branch times were held" : "# branch times were fitted", ball_.mass,
+                        fitted_.branch_times ? "# branch times were fitted" : "# branch times were held", ball_.mass,
                         1e3 * ball_.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
       const auto& law = *layer.material.elastic.as<fem::Hyperelastic>();
@@ -163,7 +216,8 @@ class CalibrateBallJob final : public Job {
   Ball ball_;
   models::FeImpactOptions options_;
   models::NormalImpactTarget target_;
-  bool hold_times_ = false;
+  std::vector<models::ObliqueTarget> shots_;
+  models::Fitted fitted_;
 };
 
 }  // namespace
