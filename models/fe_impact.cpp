@@ -115,6 +115,12 @@ double expected_turn(const Blow& blow, const FeImpactOptions& o) {
   return 0.8 * spin * hertz_time(ball.mass, ball.radius, o.ball.instant_young(), e.normal_speed);
 }
 
+Mat3 mesh_axes(const Blow& blow, const FeImpactOptions& o) {
+  const Mat3 axes = encounter(blow).ball_axes;
+  const double tilt = o.tilt.value_or(o.harmonics == 0 ? 0 : expected_turn(blow, o) / 2);
+  return Eigen::AngleAxisd(-tilt, axes.col(2)).toRotationMatrix() * axes;
+}
+
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& o, const fem::SurfaceCarrier& carrier,
                     bool free) {
   if (const auto faults = o.faults(); !faults.empty()) throw std::invalid_argument("fe impact: " + faults.front());
@@ -150,8 +156,7 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
     return axial ? fem::single_angle() : planar ? fem::half_circle(half) : fem::full_circle(2 * half);
   };
   fem::Placement placement{Vec3::Zero(), e.ball_axes};
-  const double tilt = o.tilt.value_or(axial ? 0 : expected_turn(blow, o) / 2);
-  placement.axes = Eigen::AngleAxisd(-tilt, e.ball_axes.col(2)).toRotationMatrix() * e.ball_axes;
+  placement.axes = mesh_axes(blow, o);
 
   // The mesh weighs what the ball weighs, layer by layer in proportion to the densities given.
   const auto mass_of = [&](const std::vector<fem::Solid>& m) {

@@ -83,6 +83,9 @@ Encounter encounter(const Blow& blow);
 /// what friction allows, that grows over a contact a good third longer than Hertz's with the instant modulus.
 double expected_turn(const Blow& blow, const FeImpactOptions& options);
 
+/// Axes of the ball's mesh: those of the encounter, turned about the third by the tilt.
+Mat3 mesh_axes(const Blow& blow, const FeImpactOptions& options);
+
 /// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a
 /// shaft. `free` says that the carrier may move out of the blow's plane of symmetry.
 BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,

@@ -16,7 +16,7 @@
 namespace hosel::post {
 namespace fs = std::filesystem;
 
-PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
+PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes, const Mat3& mesh_axes) {
   std::vector<fs::path> frames;
   for (const auto& entry : fs::directory_iterator(vtk / "patch"))
     if (entry.path().extension() == ".vtp") frames.push_back(entry.path());
@@ -43,14 +43,17 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes) {
     points = data->GetNumberOfPoints();
     if (line.empty()) {
       // The angles nearest the plane of slip: the same ones in every ring.
-      std::vector<Vec3> local;
-      for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
-        local.push_back(ball_axes.transpose() * Eigen::Map<const Vec3>(data->GetPoint(i)));
+      std::vector<Vec3> local, ring;  // from the point of first contact, and about the mesh's axis
+      for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+        const Eigen::Map<const Vec3> x(data->GetPoint(i));
+        local.push_back(ball_axes.transpose() * x);
+        ring.push_back(mesh_axes.transpose() * x);
+      }
       const auto off = [&](const Vec3& x) { return std::abs(x.z()) / std::hypot(x.y(), x.z()); };
       double least = 1;
-      for (const Vec3& x : local) least = std::min(least, off(x));
+      for (const Vec3& x : ring) least = std::min(least, off(x));
       for (std::size_t i = 0; i < local.size(); ++i)
-        if (off(local[i]) <= least + 1e-6) line.push_back(vtkIdType(i));
+        if (off(ring[i]) <= least + 1e-6) line.push_back(vtkIdType(i));
       const auto arc = [&](vtkIdType i) {
         const Vec3& x = local[std::size_t(i)];
         return x.norm() * std::copysign(std::atan2(std::hypot(x.y(), x.z()), x.x()), x.y());

@@ -36,6 +36,7 @@ class ImpactJob final : public Job {
     blow_ = read_blow(root, names);
     const models::Options options = read_options(root, names);
     face_ = options.fe.face;
+    fe_ = options.fe;
     for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
     if (std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; })) {
@@ -191,7 +192,8 @@ class ImpactJob final : public Job {
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
     if (record_.vtk) {
-      const post::PatchHistory patch = post::read_patch(home / "vtk", models::encounter(blow_).ball_axes);
+      const post::PatchHistory patch =
+          post::read_patch(home / "vtk", models::encounter(blow_).ball_axes, models::mesh_axes(blow_, fe_));
       if (const std::string why = post::draw_patch(patch, home / "patch"); !why.empty()) out.say(why);
     }
     return outcome;
@@ -265,6 +267,7 @@ class ImpactJob final : public Job {
 
   std::vector<Entry> models_;
   Blow blow_;
+  models::FeImpactOptions fe_;
   std::optional<FaceCompliance> face_;
   post::RecorderOptions record_;
   post::Measured measured_;

@@ -60,6 +60,12 @@ Errors errors(const std::vector<double>& values) {
   return e;
 }
 
+nlohmann::json to_json(const Errors& e) {
+  nlohmann::json j = {{"mean", e.mean}, {"mae", e.absolute}};
+  if (e.count > 1) j["sd"] = e.sd;  // one row has no scatter
+  return j;
+}
+
 class TuneJob final : public Job {
  public:
   explicit TuneJob(CaseFile& file) {
@@ -359,8 +365,8 @@ class TuneJob final : public Job {
         summary["errors"].push_back({{"set", set},
                                      {"channel", channels_[c].name},
                                      {"rows", a.count},
-                                     {"before", {{"mean", b.mean}, {"sd", b.sd}, {"mae", b.absolute}}},
-                                     {"after", {{"mean", a.mean}, {"sd", a.sd}, {"mae", a.absolute}}}});
+                                     {"before", to_json(b)},
+                                     {"after", to_json(a)}});
         post::Series cloud{.label = fmt::format("{} {:.3g} +- {:.3g}", set, a.mean, a.sd), .style = "points"};
         for (std::size_t i = 0; i < rows->size(); ++i) {
           cloud.x.push_back(measured_[(*rows)[i]][c] / channels_[c].si);

@@ -32,7 +32,7 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
                                           seen[view.state.time] = view.contact.points(view.state);
                                         }).result;
   ASSERT_GT(result.peak_force, 1e3);
-  const PatchHistory patch = read_patch(dir / "vtk", axes);
+  const PatchHistory patch = read_patch(dir / "vtk", axes, models::mesh_axes(blow, options));
   ASSERT_GT(patch.time.size(), 20u);
   ASSERT_GT(patch.position.size(), 6u);
   EXPECT_TRUE(std::ranges::is_sorted(patch.position));
