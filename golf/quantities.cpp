@@ -27,6 +27,11 @@ constexpr std::array<OutputQuantity, kOutputs> kOutputTable = {{
     {"sidespin", angular_velocity, &Launch::sidespin},
     {"spin_rate", angular_velocity, &Launch::spin_rate},
     {"spin_axis", angle, &Launch::spin_axis},
+    {"carry", length, nullptr},
+    {"side", length, nullptr},
+    {"apex", length, nullptr},
+    {"flight_time", time, nullptr},
+    {"landing_angle", angle, nullptr},
 }};
 
 template <class Which>

@@ -27,18 +27,33 @@ std::optional<Input> input_of(std::string_view name);
 double get(const Blow& blow, Input input);        ///< SI
 void set(Blow& blow, Input input, double value);  ///< SI
 
-/// What a launch monitor reports.
-enum class Output { ball_speed, launch_angle, azimuth, backspin, sidespin, spin_rate, spin_axis };
-inline constexpr int kOutputs = 7;
+/// What a launch monitor reports: of the launch, then of the flight.
+enum class Output {
+  ball_speed,
+  launch_angle,
+  azimuth,
+  backspin,
+  sidespin,
+  spin_rate,
+  spin_axis,
+  carry,
+  side,
+  apex,
+  flight_time,
+  landing_angle
+};
+inline constexpr int kLaunchOutputs = 7, kOutputs = 12;
+inline bool of_flight(Output output) { return int(output) >= kLaunchOutputs; }
 
 struct OutputQuantity {
   std::string_view name;  ///< without unit
   Dimension dimension;
-  double (Launch::*of)() const;
+  double (Launch::*of)() const;  ///< null for those of the flight
 };
 const OutputQuantity& quantity(Output output);
 inline std::string_view stem(Output output) { return quantity(output).name; }
 std::optional<Output> output_of(std::string_view name);
-inline double get(const Launch& launch, Output output) { return (launch.*quantity(output).of)(); }  ///< SI
+/// SI; not for those of the flight.
+inline double get(const Launch& launch, Output output) { return (launch.*quantity(output).of)(); }
 
 }  // namespace hosel

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,10 @@
 
 #include "hosel/golf/quantities.hpp"
 #include "hosel/models/fe_change.hpp"
+
+namespace hosel::models {
+struct FlightConditions;  // flight.hpp
+}
 
 namespace hosel::loop {
 
@@ -20,8 +25,9 @@ struct HistorySetting;
 /// One shot as an effect sees it.
 struct Shot {
   Blow blow;
-  models::FeChange change;  ///< of what a finite-element base declares beside the blow
-  double order = 0;         ///< place in the session: 0 the first shot, 1 the last
+  models::FeChange change;          ///< of what a finite-element base declares beside the blow
+  double order = 0;                 ///< place in the session: 0 the first shot, 1 the last
+  std::optional<Launch> seen = {};  ///< what the monitor saw of the launch: there the flight starts
 };
 
 struct Parameter {
@@ -49,6 +55,8 @@ struct Parametrisation {
   std::function<void(std::span<const double>, const Shot&, Launch&)> after;
   /// Shot: changes what the instrument shows of one output [SI].
   std::function<double(std::span<const double>, const Shot&, Output, double)> reading;
+  /// Shot: changes law, air or wind of the flight.
+  std::function<void(std::span<const double>, models::FlightConditions&)> flight;
   /// Club test: changes club, clamp or sensors.
   std::function<void(std::span<const double>, TestSetup&)> setup;
 };
@@ -57,7 +65,8 @@ struct Parametrisation {
 struct Setting {
   bool head_turns = false;        ///< the base model lets the head rotate
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
-  std::vector<Output> outputs;    ///< channels of the data
+  std::vector<Output> outputs;    ///< channels of the data, of the launch
+  bool flies = false;             ///< and some of the flight
   bool deformable = false;        ///< the base computes the ball's deformation: it has no impact law to change
   bool shaft = false;             ///< the case declares a shaft that such a base can hang on its free head
   bool full_club = false;         ///< such a base has its shaft already

@@ -47,12 +47,27 @@ class Motion {
     pressure_ = 0.5 * c.air.density * area / ball.mass;
     reynolds_ = 2 * ball.radius * c.air.density / c.air.viscosity;
     torque_ = c.air.density * area * ball.radius * ball.radius / ball.inertia();
+    slope_ = std::tan(c.ground.slope);
+    per_log_ = 1 / std::log1p(c.wind.reference / c.wind.roughness);
     wind_ = c.wind.speed * Vec3(std::cos(c.wind.towards), -std::sin(c.wind.towards), 0);
     using std::sqrt;
     if (const T square = spin_.squaredNorm(); value(square) > 0) {
       spin_rate_ = sqrt(square);
       axis_ = spin_ / spin_rate_;
     }
+  }
+
+  /// The air past the ball.
+  struct Stream {
+    Vector<T> velocity;
+    T speed, reynolds, spin_ratio;
+  };
+  Stream through_air(const T* y) const {
+    const Vector<T> v(y[kVelocity], y[kVelocity + 1], y[kVelocity + 2]);
+    const Vector<T> u = v - wind_share(y) * wind_.template cast<T>();
+    using std::sqrt;
+    const T speed = sqrt(u.squaredNorm());
+    return {u, speed, reynolds_ * speed, spin_rate_ * y[kSpinLeft] * ball_.radius / speed};
   }
 
   void rate(const T* y, T* dy) const {
@@ -69,9 +84,7 @@ class Motion {
   }
 
   /// Height of the ball over the ground on which it lands.
-  T clearance(const T* y) const {
-    return y[kPosition + 2] - c_.ground.height - std::tan(c_.ground.slope) * y[kPosition];
-  }
+  T clearance(const T* y) const { return y[kPosition + 2] - c_.ground.height - slope_ * y[kPosition]; }
 
   FlightPoint point(double time, const T* y) const {
     const Stream u = through_air(y);
@@ -86,19 +99,6 @@ class Motion {
   }
 
  private:
-  struct Stream {
-    Vector<T> velocity;
-    T speed, reynolds, spin_ratio;
-  };
-
-  Stream through_air(const T* y) const {
-    const Vector<T> v(y[kVelocity], y[kVelocity + 1], y[kVelocity + 2]);
-    const Vector<T> u = v - wind_share(y) * wind_.template cast<T>();
-    using std::sqrt;
-    const T speed = sqrt(u.squaredNorm());
-    return {u, speed, reynolds_ * speed, spin_rate_ * y[kSpinLeft] * ball_.radius / speed};
-  }
-
   /// Of the wind's speed, where the ball is. Heights count from the lower of the launch and the landing ground.
   T wind_share(const T* y) const {
     const Wind& w = c_.wind;
@@ -106,8 +106,7 @@ class Motion {
     const T z = y[kPosition + 2], over = clearance(y), height = over > z ? over : z;
     // Steps try the other side of the ground: smooth across it.
     using std::log;
-    const T share = log(1.0 + (height < 0.0 ? T(-height) : height) / w.roughness) /
-                    std::log1p(w.reference / w.roughness);
+    const T share = per_log_ * log(1.0 + (height < 0.0 ? T(-height) : height) / w.roughness);
     return height < 0.0 ? T(-share) : share;
   }
 
@@ -116,7 +115,7 @@ class Motion {
   Vector<T> spin_;
   T spin_rate_;
   Vector<T> axis_;
-  double pressure_, reynolds_, torque_;
+  double pressure_, reynolds_, torque_, slope_, per_log_;
   Vec3 wind_;
 };
 
@@ -143,10 +142,14 @@ std::array<T, kSize> state_of(const Start<T>& start) {
   return {T(0), T(0), T(0), start.velocity[0], start.velocity[1], start.velocity[2], T(1)};
 }
 
-solvers::CvodeOptions solution(const FlightOptions& options) {
-  return {.method = solvers::CvodeMethod::adams,
-          .relative_tolerance = options.tolerance,
-          .absolute_tolerance = 0.1 * options.tolerance};
+/// Of the state, and of its derivatives behind it where there are any. Where a component is small its error counts
+/// against 10 m, 10 m/s and the whole spin: the first metres of height need not be known to a micrometre.
+solvers::CvodeOptions solution(const FlightOptions& options, int size) {
+  std::vector<double> absolute(std::size_t(size), 0.1 * options.tolerance);
+  std::fill_n(absolute.begin(), kSpinLeft, 10 * options.tolerance);
+  absolute[kSpinLeft] = options.tolerance;
+  return {
+      .method = solvers::CvodeMethod::adams, .relative_tolerance = options.tolerance, .absolute = std::move(absolute)};
 }
 
 enum Event { kLanding, kTop };
@@ -186,13 +189,13 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
         g[kLanding] = motion.clearance(y);
         g[kTop] = y[kVelocity + 2];
       },
-      solution(options));
+      solution(options, kSize));
   double before = 0, unknown = 0;
   const auto watch = [&](double t, const double* y) {
-    const FlightPoint p = motion.point(t, y);
-    out.reynolds = {std::min(out.reynolds.low, p.reynolds), std::max(out.reynolds.high, p.reynolds)};
-    out.spin = {std::min(out.spin.low, p.spin_ratio), std::max(out.spin.high, p.spin_ratio)};
-    if (!conditions.law.holds(p.reynolds, p.spin_ratio)) unknown += t - before;
+    const auto u = motion.through_air(y);
+    out.reynolds = {std::min(out.reynolds.low, u.reynolds), std::max(out.reynolds.high, u.reynolds)};
+    out.spin = {std::min(out.spin.low, u.spin_ratio), std::max(out.spin.high, u.spin_ratio)};
+    if (!conditions.law.holds(u.reynolds, u.spin_ratio)) unknown += t - before;
     before = t;
     if (!(options.sample > 0)) return;
     for (double next; (next = options.sample * double(out.path.size())) < t;) {
@@ -263,7 +266,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
         g[kLanding] = value(motion.clearance(unpack(flat).data()));
         g[kTop] = flat[kVelocity + 2];
       },
-      solution(options));
+      solution(options, kDual));
   std::array<double, kDual> flat0;
   pack(first, flat0.data());
   solver.start(0, flat0);

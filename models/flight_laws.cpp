@@ -21,20 +21,16 @@ FlightLaw ferguson_2022() {
 
 /// [@smits-smith-1994]
 FlightLaw smits_smith_1994() {
-  return {.name = "smits-smith-1994",
-          .source =
-              "Smits and Smith (1994), Science and Golf II, as quoted in US patent 11230375; wind tunnel, "
-              "for driver shots",
-          .reynolds = {7e4, 2.1e5},
-          .spin = {0.08, 0.2},
-          .form = SineLaw{.drag = 0.24,
-                          .drag_spin = 0.18,
-                          .drag_wave = 0.06,
-                          .start = 9e4,
-                          .span = 2e5,
-                          .lift = 0.54,
-                          .power = 0.4},
-          .decay = {.travel = 2e-5}};
+  return {
+      .name = "smits-smith-1994",
+      .source =
+          "Smits and Smith (1994), Science and Golf II, as quoted in US patent 11230375; wind tunnel, "
+          "for driver shots",
+      .reynolds = {7e4, 2.1e5},
+      .spin = {0.08, 0.2},
+      .form =
+          SineLaw{.drag = 0.24, .drag_spin = 0.18, .drag_wave = 0.06, .start = 9e4, .span = 2e5, .lift = {0.54, 0.4}},
+      .decay = {.travel = 2e-5}};
 }
 
 /// [@lyu-2018]
@@ -101,11 +97,62 @@ FlightLaw bearman_harvey_1976() {
           .decay = {.travel = 2e-5}};  // [@penner-2001] flies with this table
 }
 
+/// [@nathan-golf], the sheet before 2023. Its lift beyond S = 0.3 is printed as 0.305.
+FlightLaw nathan_earlier() {
+  return {.name = "nathan-earlier",
+          .source =
+              "A. M. Nathan's trajectory calculator for golf, before 2023: coefficients after Lyu et al. (2018), whose "
+              "range this is",
+          .reynolds = {7.5e4, 2e5},
+          .spin = {0.04, 0.32},
+          .form = RampLaw{.slow = 0.5,
+                          .fast = 0.2,
+                          .from = 5e4,
+                          .to = 1e5,
+                          .drag_spin = 0.18,
+                          .lift = QuadraticLift{1.99, -3.25, 0.3}},
+          .decay = {.travel = 2e-5}};
+}
+
+/// [@nathan-golf], the sheet of 2023
+FlightLaw nathan_2023() {
+  return {.name = "nathan-2023",
+          .source =
+              "A. M. Nathan's trajectory calculator for golf, beta of 2023: fitted to seven clubs, driver to 5-iron; "
+              "its range is not stated, this is what such flights go through",
+          .reynolds = {7e4, 2.4e5},
+          .spin = {0.07, 0.45},
+          .form = RampLaw{.slow = 1.9451114,
+                          .fast = 0.13248,
+                          .from = 5e4,
+                          .to = 1e5,
+                          .drag_spin = 0.2087217,
+                          .lift = PowerLift{0.2294096, 0.4}},
+          .decay = {.travel = 2e-5}};
+}
+
+/// [@libgolf]. Its further lifts below Re = 70,000 and beyond S = 0.35 are left out.
+FlightLaw libgolf() {
+  return {
+      .name = "libgolf",
+      .source = "libgolf, G. DiFiore's open-source library: set by hand to a tour's mean shots; no measured range",
+      .reynolds = {7e4, 2.4e5},
+      .spin = {0.05, 0.35},
+      .form =
+          RampLaw{
+              .slow = 0.5, .fast = 0.2, .from = 5e4, .to = 1e5, .drag_spin = 0.18, .lift = SaturatingLift{0.268, 16}},
+      .decay = {.travel = 2e-5}};
+}
+
 constexpr std::array kLaws = {
     FlightLawEntry{"ferguson-2022", "polynomials in the spin ratio, from tracked shots of all clubs", ferguson_2022},
     FlightLawEntry{"smits-smith-1994", "driver shots in a wind tunnel", smits_smith_1994},
     FlightLawEntry{"lyu-2018", "one modern ball in still air: drag over Re, lift over the spin ratio", lyu_2018},
     FlightLawEntry{"bearman-harvey-1976", "table of a ball with hexagonal dimples, wind tunnel", bearman_harvey_1976},
+    FlightLawEntry{"nathan-earlier", "the lift of lyu-2018 with a plainer drag, as a spreadsheet flew it",
+                   nathan_earlier},
+    FlightLawEntry{"nathan-2023", "the same spreadsheet fitted to seven clubs, driver to 5-iron", nathan_2023},
+    FlightLawEntry{"libgolf", "an open-source library, set to a tour's mean shots", libgolf},
 };
 
 /// The spin ratio at one end of the measured rows, at any Reynolds number.

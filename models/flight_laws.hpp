@@ -31,15 +31,61 @@ struct PolynomialLaw {
   }
 };
 
-/// C_D = d0 + d1 S + d2 sin(pi (Re - start) / span) and C_L = l S^power.
+/// C_L = (linear + quadratic S) S up to `level_from`, level beyond.
+struct QuadraticLift {
+  double linear, quadratic, level_from;
+
+  template <class T>
+  T at(const T& spin) const {
+    return spin > level_from ? T((linear + quadratic * level_from) * level_from)
+                             : T((linear + quadratic * spin) * spin);
+  }
+};
+
+/// C_L = factor S^power.
+struct PowerLift {
+  double factor, power;
+
+  template <class T>
+  T at(const T& spin) const {
+    using std::pow;
+    return factor * pow(spin, power);
+  }
+};
+
+/// C_L = most gain S / (1 + gain S).
+struct SaturatingLift {
+  double most, gain;
+
+  template <class T>
+  T at(const T& spin) const {
+    return most * gain * spin / (1.0 + gain * spin);
+  }
+};
+
+/// C_D = d0 + d1 S + d2 sin(pi (Re - start) / span).
 struct SineLaw {
-  double drag, drag_spin, drag_wave, start, span, lift, power;
+  double drag, drag_spin, drag_wave, start, span;
+  PowerLift lift;
 
   template <class T>
   Coefficients<T> at(const T& reynolds, const T& spin) const {
-    using std::pow, std::sin;
+    using std::sin;
     return {drag + drag_spin * spin + drag_wave * sin(3.14159265358979323846 * (reynolds - start) / span),
-            lift * pow(spin, power)};
+            lift.at(spin)};
+  }
+};
+
+/// C_D = slow + (fast - slow) (Re - from) / (to - from) + drag_spin S, level in Re outside `from` and `to`.
+struct RampLaw {
+  double slow, fast, from, to, drag_spin;
+  std::variant<QuadraticLift, PowerLift, SaturatingLift> lift;
+
+  template <class T>
+  Coefficients<T> at(const T& reynolds, const T& spin) const {
+    const T share = reynolds <= from ? T(0.0) : reynolds >= to ? T(1.0) : T((reynolds - from) / (to - from));
+    return {slow + (fast - slow) * share + drag_spin * spin,
+            std::visit([&](const auto& law) { return law.at(spin); }, lift)};
   }
 };
 
@@ -90,7 +136,7 @@ struct FlightLaw {
     double low, high;
   };
   Range reynolds, spin;  ///< where the source has it measured
-  std::variant<PolynomialLaw, SineLaw, TableLaw> form;
+  std::variant<PolynomialLaw, SineLaw, RampLaw, TableLaw> form;
   SpinDecay decay;
   double drag_scale = 1, lift_scale = 1;
 

@@ -127,6 +127,8 @@ std::string gnuplot_script(const Figure& f, std::string_view png) {
       plot += "$" + name +
               (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
       plot += fmt::format(" lt {} lw 1.6 ", i + 1);
+      // The colours come round: the next eight curves are dashed.
+      if (i >= 8 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
       if (!c.error.empty() || c.style.find("points") != std::string::npos)
         plot += fmt::format("pt {} ps 0.9 ", 6 + static_cast<int>(i) % 8);
       plot += title;

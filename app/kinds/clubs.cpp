@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/golf/units.hpp"
@@ -68,6 +69,7 @@ class ClubsJob final : public Job {
     for (const std::string& name : beside_)
       if (!models::find(name)) root.fail("beside", fmt::format("no model '{}'; `hosel list` shows them", name));
     options_ = read_options(root, beside_);
+    flight_ = read_optional_flight(root);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
     if (auto head = root.optional_table("head"))
@@ -141,8 +143,9 @@ class ClubsJob final : public Job {
     double ratio = 0;
     std::array<post::Series, 3> measured, predicted;
     std::array<std::vector<double>, 4> means, prints, singles;
+    std::vector<Launch> launches;
     for (ClubRow& c : clubs) {
-      const Launch l = models::checked_launch(*model, c.blow);
+      const Launch& l = launches.emplace_back(models::checked_launch(*model, c.blow));
       c.spin = rpm(l.spin_rate());
       c.launch = degrees(l.launch_angle());
       c.speed = l.ball_speed() / kMpsPerMph;
@@ -184,6 +187,7 @@ class ClubsJob final : public Job {
                              {"rms", {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2])}},
                              {"inside_error_bars", inside}};
 
+    if (flight_) follow(clubs, launches, out, summary["flights"][model_]);
     for (const std::string& name : beside_) compare(name, clubs, out, summary);
 
     out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope",
@@ -238,6 +242,34 @@ class ClubsJob final : public Job {
   }
 
  private:
+  /// Where the model's balls go, and where the measured means would by the same law.
+  void follow(const std::vector<ClubRow>& clubs, const std::vector<Launch>& launches, Output& out,
+              nlohmann::json& said) const {
+    const auto channels = post::flight_channels(flight_->unit);
+    std::string text = fmt::format("flights by {}: model, (minus that of the measured launch)\n{:<5}",
+                                   flight_->conditions.law.name, "club");
+    for (const post::FlightChannel& c : channels)
+      if (c.name != "total" && c.name != "side") text += fmt::format("{:>22}", fmt::format("{} [{}]", c.name, c.unit));
+    for (std::size_t i = 0; i < clubs.size(); ++i) {
+      const ClubRow& club = clubs[i];
+      const double up = radians(club.mean[2]);
+      Launch seen;
+      seen.velocity = club.mean[3] * kMpsPerMph * Vec3(std::cos(up), 0, std::sin(up));
+      seen.spin = Vec3(0, -club.mean[1] * kRadPerSecPerRpm, 0);
+      const post::ShotFlight own = flight_->follow(launches[i], blow_.ball),
+                             measured = flight_->follow(seen, blow_.ball);
+      text += fmt::format("\n{:<5}", club.name);
+      for (const post::FlightChannel& c : channels)
+        if (c.name != "total" && c.name != "side") {
+          const double value = *c.value(own) / c.si;
+          text += fmt::format("{:>22}", fmt::format("{:.{}f} ({:+.{}f})", value, c.decimals,
+                                                    value - *c.value(measured) / c.si, c.decimals));
+        }
+      said[club.name] = {{"model", post::to_json(own)}, {"measured_launch", post::to_json(measured)}};
+    }
+    out.say(text);
+  }
+
   /// Another model club by club, without the theory's curves: it may be expensive. At the recorded loft, which a launch
   /// monitor may have computed from the ball, and at the measured launch angle with the loft unknown.
   void compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out, nlohmann::json& summary) const {
@@ -290,6 +322,9 @@ class ClubsJob final : public Job {
       const auto percent = [](double sum, std::size_t n) { return 100 * std::sqrt(sum / double(n)); };
       out.say(fmt::format("rms error: spin {:.2f} %, ball speed {:.2f} %", percent(square[0], clubs.size()),
                           percent(square[1], clubs.size())));
+      std::vector<Launch> launches;
+      for (const Prediction& p : *answers) launches.push_back(p.launch);
+      if (flight_) follow(clubs, launches, out, rows["flights"]);
       rows["rms_pct"] = {{"spin", percent(square[0], clubs.size())}, {"speed", percent(square[1], clubs.size())}};
       if (calibrated_on_.empty() || left == 0) continue;
       out.say(fmt::format("on the {} clubs that the calibration did not see: spin {:.2f} %, ball speed {:.2f} %", left,
@@ -391,6 +426,7 @@ class ClubsJob final : public Job {
     } catch (const DataError& e) { throw InputError(e.what()); }
   }
 
+  std::optional<FlightSetup> flight_;
   std::vector<std::string> beside_, calibrated_on_;
   models::Options options_;
   std::string model_;

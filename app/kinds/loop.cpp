@@ -14,6 +14,7 @@
 #include "hosel/app/kinds/loop_corrected.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/loop/shots/run.hpp"
@@ -81,6 +82,7 @@ class LoopJob final : public Job {
       head.inertia = std::numeric_limits<double>::infinity() * Mat3::Identity();
     }
     case_.inertia_declared = head.inertia.allFinite();
+    if (const auto flight = read_optional_flight(root)) case_.flight = flight->conditions;
 
     Table data = root.table("data");
     const std::vector<std::string> unknown =
@@ -93,7 +95,7 @@ class LoopJob final : public Job {
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
-        case_.shots = loop::read_shots(post::read_csv(path));
+        case_.shots = loop::read_shots(post::read_csv(path), case_.flight.has_value());
         if (auto joined = data.optional_table("join")) {
           const auto other = joined->data_file({"file", "CSV with further columns"});
           const std::string by = joined->text({"by", "column that both files have"});

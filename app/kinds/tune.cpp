@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/loop/shots/shots.hpp"
@@ -23,10 +24,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A fitted launch quantity: its column, or made of spin rate and axis where the file has those.
+/// A fitted quantity of launch or flight: its column, or made of spin rate and axis where the file has those.
 struct TuneChannel {
   std::string name;  ///< with unit
-  const post::Channel* channel;
+  ShotChannel channel;
   double si, noise;  ///< noise in the unit of the name
 };
 
@@ -70,6 +71,8 @@ class TuneJob final : public Job {
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
     options_ = read_options(root, {model_});
+    const std::optional<FlightSetup> flight = read_optional_flight(root);
+    flies_ = flight.has_value();
 
     Table data = root.table("data");
     shots_file_ = data.data_file({"shots", "CSV of the measured shots"});
@@ -80,11 +83,12 @@ class TuneJob final : public Job {
     Table noise = data.table("noise");
     for (const std::string& key : noise.keys()) {
       const SplitName split = split_unit(key);
-      const post::Channel* c = post::find_channel(split.stem);
+      std::optional<ShotChannel> c = find_shot_channel(split.stem, flight, blow_.ball);
       if (!c || !split.unit)
-        noise.fail(key, fmt::format("no launch quantity with a unit (known: {})", post::channel_names()));
+        noise.fail(key, fmt::format("no launch quantity with a unit (known: {}; with a [flight] carry and the like)",
+                                    post::channel_names()));
       channels_.push_back(
-          {key, c, split.unit->si,
+          {key, std::move(*c), split.unit->si,
            noise.number({key, "standard deviation of the measured channel", "<channel>"}, Range::positive())});
     }
     if (channels_.empty()) data.fail("noise", "name at least one launch quantity and its noise");
@@ -155,7 +159,7 @@ class TuneJob final : public Job {
   void read_data(Output& out) {
     loop::Shots shots;
     try {
-      shots = loop::read_shots(post::read_csv(shots_file_));
+      shots = loop::read_shots(post::read_csv(shots_file_), flies_);
       if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
     } catch (const DataError& e) { throw InputError(e.what()); }
     std::vector<std::pair<Input, const loop::Column*>> inputs;
@@ -165,10 +169,10 @@ class TuneJob final : public Job {
         if (input != Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
     }
     const auto measured = [&](const TuneChannel& c, std::size_t row) {
-      if (const loop::Column* column = shots.find_stem(c.channel->name)) return column->value[row];
+      if (const loop::Column* column = shots.find_stem(c.channel.name)) return column->value[row];
       const loop::Column *rate = shots.find_stem("spin_rate"), *axis = shots.find_stem("spin_axis");
-      if (rate && axis && c.channel->name == "backspin") return rate->value[row] * std::cos(axis->value[row]);
-      if (rate && axis && c.channel->name == "sidespin") return rate->value[row] * std::sin(axis->value[row]);
+      if (rate && axis && c.channel.name == "backspin") return rate->value[row] * std::cos(axis->value[row]);
+      if (rate && axis && c.channel.name == "sidespin") return rate->value[row] * std::sin(axis->value[row]);
       throw InputError(fmt::format("{}: no column for {}", shots_file_.string(), c.name));
     };
     std::map<std::string, int> left_out;
@@ -225,7 +229,7 @@ class TuneJob final : public Job {
     if (!blow.club.head.faults().empty() && model_ != "rigid-planar") return out;
     try {
       const Launch l = models::find(model_)->make(options)->launch(blow);
-      for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = (l.*channels_[c].channel->value)();
+      for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = channels_[c].channel.value(l);
     } catch (const std::exception&) {}
     return out;
   }
@@ -378,6 +382,7 @@ class TuneJob final : public Job {
   Blow blow_;
   models::Options options_;
   std::filesystem::path shots_file_, join_file_;
+  bool flies_ = false;
   std::vector<TuneChannel> channels_;
   std::vector<Keep> keep_;
   std::vector<Free> free_;

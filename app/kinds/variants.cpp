@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/models/ball_calibration.hpp"
 #include "hosel/models/checked_launch.hpp"
@@ -15,6 +16,7 @@
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/csv.hpp"
+#include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -31,6 +33,7 @@ struct Variant {
   std::string model;
   Blow blow;
   models::Options options;
+  std::optional<FlightSetup> flight;
   Seen seen;
 };
 
@@ -41,6 +44,7 @@ struct Prediction {
   double loft = NAN;
   Launch launch;
   double e_t = NAN, ratio = NAN;
+  std::optional<post::ShotFlight> flight;
 };
 
 class VariantsJob final : public Job {
@@ -80,6 +84,7 @@ class VariantsJob final : public Job {
     if (names.size() > 1) root.fail("models", "variants of one model are compared");
     base.blow = read_blow(root, names);
     base.options = read_options(root, names);
+    base.flight = read_optional_flight(root);
     if (auto t = root.optional_table("measured")) base.seen = read_seen(*t);
     matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
     if (root.has_quantity("keep_bounce"))
@@ -128,6 +133,7 @@ class VariantsJob final : public Job {
       a.loft = blow.delivery.dynamic_loft;
       a.e_t = models::tangential_restitution(blow, a.launch).value_or(NAN);
       a.ratio = models::launch_ratio(blow, a.launch).value_or(NAN);
+      if (v.flight) a.flight = v.flight->follow(a.launch, blow.ball);
     } catch (const std::exception& e) { a.error = e.what(); }
     return a;
   }
@@ -168,6 +174,7 @@ class VariantsJob final : public Job {
         "variant,dynamic_loft_deg,launch_angle_deg,ball_speed_mps,spin_rate_rpm,tangential_restitution,"
         "launch_ratio,normal_restitution,contact_time_ms,elastic_factor,viscous_factor,range,error\n";
     nlohmann::json summary;
+    std::vector<post::LaunchColumn> flights;
     for (std::size_t i = 0; i < variants_.size(); ++i) {
       const Variant& v = variants_[i];
       const Prediction& a = answers[i];
@@ -196,7 +203,12 @@ class VariantsJob final : public Job {
                                      {"spin_rate_rpm", rpm(spin)},
                                      {"tangential_restitution", a.e_t},
                                      {"launch_ratio", a.ratio}};
+      if (a.flight) {
+        flights.push_back({.title = v.name, .launch = a.launch, .flight = a.flight});
+        summary["variants"][v.name]["flight"] = post::to_json(*a.flight);
+      }
     }
+    if (!flights.empty()) out.say("\n" + post::launch_table(flights));
     out.write("variants.csv", csv);
     out.write_summary(summary);
   }

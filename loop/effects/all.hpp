@@ -25,6 +25,12 @@ std::vector<Parametrisation> ball_relaxation(const Setting&);
 std::vector<Parametrisation> hosel_place(const Setting&);
 std::vector<Parametrisation> shaft_stiffness(const Setting&);
 
+std::vector<Parametrisation> drag_level(const Setting&);
+std::vector<Parametrisation> lift_law(const Setting&);
+std::vector<Parametrisation> spin_decay(const Setting&);
+std::vector<Parametrisation> air_density(const Setting&);
+std::vector<Parametrisation> wind(const Setting&);
+
 std::vector<Parametrisation> shaft_stiffness(const HistorySetting&);
 std::vector<Parametrisation> shaft_damping(const HistorySetting&);
 std::vector<Parametrisation> clamp_compliance(const HistorySetting&);

@@ -16,9 +16,7 @@ Parameter size_of(Output output) {
     case Output::launch_angle:
     case Output::azimuth: return degrees(8, 0.4);
     case Output::spin_axis: return degrees(20, 2);
-    case Output::backspin:
-    case Output::sidespin:
-    case Output::spin_rate: break;
+    default: break;  // a spin; readings of the flight are not among the setting's outputs
   }
   return {name, "rpm", kRadPerSecPerRpm, -2500 * kRadPerSecPerRpm, 2500 * kRadPerSecPerRpm, 100 * kRadPerSecPerRpm};
 }

@@ -29,10 +29,10 @@ Balance balance(const ShotModel& shots, const std::vector<int>& rows, const Mode
     int observed = 0;
     const double step = 1e-3 * ball.mass * l.velocity.norm();
     for (int c = 0; c < m; ++c) {
-      if (!shots.observed(row, c)) continue;
+      const ShotChannel& channel = shots.channel(c);
+      if (!shots.observed(row, c) || of_flight(channel.output)) continue;
       ++observed;
       z[c] = residuals(row, c);
-      const ShotChannel& channel = shots.channel(c);
       for (int k = 0; k < 3; ++k) {
         const auto moved = [&](double sign) {
           Launch x = l;
@@ -45,8 +45,14 @@ Balance balance(const ShotModel& shots, const std::vector<int>& rows, const Mode
       }
     }
     const auto W = shots.whitening(row);
-    const Eigen::VectorXd e = W * z;
-    const Eigen::MatrixXd WB = W * B;
+    Eigen::VectorXd e = W * z;
+    Eigen::MatrixXd WB = W * B;
+    // No impulse mends a flight, which starts from the launch that was seen; those channels stand last.
+    for (int c = 0; c < m; ++c)
+      if (of_flight(shots.channel(c).output)) {
+        e[c] = 0;
+        WB.row(c).setZero();
+      }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(WB);
     const Eigen::VectorXd u = qr.solve(e);
     const double left = (e - WB * u).squaredNorm();

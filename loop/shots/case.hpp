@@ -7,6 +7,7 @@
 #include "hosel/loop/case.hpp"
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/loop/shots/surrogate.hpp"
+#include "hosel/models/flight.hpp"
 #include "hosel/models/impact_model.hpp"
 
 namespace hosel::loop {
@@ -35,6 +36,7 @@ struct ShotCase : Case {
   Blow blow;  ///< ball, head, contact law; the delivery comes from the shots
   bool head_mass_declared = false;
   bool inertia_declared = false;
+  std::optional<models::FlightConditions> flight;  ///< absent: readings of the flight are not looked at
   Shots shots;
   bool loft_unknown = false;                  ///< every shot's loft is found from its launch angle
   std::map<std::string, double> noise;        ///< by header, header's unit

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "hosel/models/rigid_eccentric.hpp"
+#include "hosel/solvers/errors.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -14,6 +15,9 @@ namespace {
 constexpr double kImpossible = 100;                 // noise units
 constexpr double kCentral = 1e-3, kForward = 1e-5;  // difference steps, of a parameter's scale
 constexpr double kLaunchPerLoft = 0.8;              // nearly: what a search for the loft begins with
+// Flights step where their error tells them to, so that neighbours differ by their tolerance: closer, and wider apart.
+constexpr double kFlightStep = 1e-2;
+constexpr models::FlightOptions kFlight = {.tolerance = 1e-6};
 
 const models::RigidEccentric& companion() {
   static const models::RigidEccentric model;
@@ -31,18 +35,31 @@ Launch plus(Launch a, const Launch& b, double sign) {
 /// Angles are compared on the circle.
 bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 
+/// Row of models::FlightAnswers.
+int answer_of(Output o) { return int(o) - kLaunchOutputs; }
+static_assert(models::kFlightAnswers == kOutputs - kLaunchOutputs &&
+              int(Output::carry) - kLaunchOutputs == models::kCarry &&
+              int(Output::side) - kLaunchOutputs == models::kSide &&
+              int(Output::apex) - kLaunchOutputs == models::kApex &&
+              int(Output::flight_time) - kLaunchOutputs == models::kTime &&
+              int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle);
+
 }  // namespace
 
 ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials,
                      std::vector<ShotChannel> channels, Eigen::MatrixXd measured, const Surrogate* surrogate,
-                     std::optional<SeenLaunch> seen)
+                     std::optional<SeenLaunch> seen, std::optional<models::FlightConditions> flight)
     : base_(base),
       direct_(direct || surrogate),
       surrogate_(surrogate),
       seen_(std::move(seen)),
       trials_(std::move(trials)),
       channels_(std::move(channels)),
-      measured_(std::move(measured)) {
+      measured_(std::move(measured)),
+      flight_(std::move(flight)),
+      flies_(std::ranges::any_of(channels_, [](const ShotChannel& c) { return of_flight(c.output); })) {
+  if (flies_)
+    for (int i = 0; i < shots(); ++i) follow_seen(i);
   if (!direct_) {
     offset_.reserve(trials_.size());
     for (Shot& t : trials_) {
@@ -82,8 +99,7 @@ void ShotModel::change(const Model& model, const double* p, const Shot& trial, L
 }
 
 double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* p,
-                          const Launch& launch) const {
-  double value = get(launch, channel.output);
+                          double value) const {
   for (const Parametrisation* f : model.forms) {
     if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
     p += f->parameters.size();
@@ -91,12 +107,47 @@ double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const M
   return value;
 }
 
+void ShotModel::follow_seen(int shot) {
+  std::optional<Launch>& seen = trials_[std::size_t(shot)].seen;
+  models::FlightAnswers& flight = flights_.emplace_back(models::FlightAnswers::Zero());
+  try {
+    if (seen) flight = models::answers(models::fly(*seen, trials_[std::size_t(shot)].blow.ball, *flight_, kFlight));
+  } catch (const std::invalid_argument&) { seen.reset(); } catch (const solvers::NonConvergence&) {
+    seen.reset();
+  }
+  if (seen) return;
+  for (int c = 0; c < width(); ++c)
+    if (of_flight(channels_[std::size_t(c)].output)) measured_(shot, c) = std::numeric_limits<double>::quiet_NaN();
+}
+
+models::FlightConditions ShotModel::conditions(const Model& model, const double* p) const {
+  models::FlightConditions changed = *flight_;
+  for (const Parametrisation* f : model.forms) {
+    if (f->flight) f->flight({p, f->parameters.size()}, changed);
+    p += f->parameters.size();
+  }
+  return changed;
+}
+
+models::FlightAnswers ShotModel::follow(const Shot& trial, int shot, const Model& model, const double* p,
+                                        const Launch& launch) const {
+  const bool changed = std::ranges::any_of(model.forms, [](const Parametrisation* f) { return bool(f->flight); });
+  // Not seen: no reading is compared with what stands here.
+  if (shot >= 0 && (!changed || !trial.seen)) return flights_[std::size_t(shot)];
+  try {
+    return models::answers(models::fly(trial.seen.value_or(launch), trial.blow.ball, conditions(model, p), kFlight));
+  } catch (const solvers::NonConvergence& e) { throw std::invalid_argument(e.what()); }
+}
+
 bool ShotModel::read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
                      double* out) const {
   bool good = true;
+  models::FlightAnswers flight;
+  if (flies_) flight = follow(trial, shot, model, parameters, launch);
   for (int c = 0; c < width(); ++c) {
     const ShotChannel& channel = channels_[std::size_t(c)];
-    double value = reading(channel, trial, model, parameters, launch);
+    const double base = of_flight(channel.output) ? flight[answer_of(channel.output)] : get(launch, channel.output);
+    double value = reading(channel, trial, model, parameters, base);
     if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
       value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
     out[c] = value / channel.si;
@@ -114,7 +165,8 @@ bool ShotModel::find_loft(Shot& trial, int shot, const Model& model, const doubl
     change(model, parameters, t);
     Launch l = answer(t, shot);
     change(model, parameters, t, l);
-    const double miss = reading(seen_->channel, t, model, parameters, l) - seen_->value[shot] * seen_->channel.si;
+    const double miss = reading(seen_->channel, t, model, parameters, get(l, seen_->channel.output)) -
+                        seen_->value[shot] * seen_->channel.si;
     if (!std::isfinite(miss)) return false;
     if (std::abs(miss) < 1e-11) return true;
     if (k > 0 && std::abs(miss - before) > 1e-14) slope = std::clamp((miss - before) / step, 0.2, 2.0);
@@ -143,8 +195,9 @@ bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model
     change(model, parameters, t);
     Launch l = other(t);
     change(model, parameters, t, l);
-    const double miss =
-        seen_ ? reading(seen_->channel, t, model, parameters, l) - seen_->value[shot] * seen_->channel.si : 0;
+    const double miss = seen_ ? reading(seen_->channel, t, model, parameters, get(l, seen_->channel.output)) -
+                                    seen_->value[shot] * seen_->channel.si
+                              : 0;
     if (std::abs(miss) < radians(0.02)) return read(t, shot, model, parameters, l, out);
     there.blow.delivery.dynamic_loft -= miss / kLaunchPerLoft;
   }
@@ -181,7 +234,8 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
     int k = 0;
     for (const Parametrisation* f : model.forms)
       for (const Parameter& q : f->parameters) {
-        const double h = step * q.scale, at = moved[std::size_t(k)];
+        const double share = f->flight ? std::max(step, kFlightStep) : step;
+        const double h = share * q.scale, at = moved[std::size_t(k)];
         const auto look = [&](double x, double* values) {
           moved[std::size_t(k)] = x;
           bool good = false;
@@ -200,8 +254,8 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
         if (!look(at + h, there.data())) return false;
         if (central && !look(at - h, here.data())) return false;
         for (int c = 0; c < m; ++c)
-          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * step)
-                                          : (there[std::size_t(c)] - out[c]) / step;
+          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * share)
+                                          : (there[std::size_t(c)] - out[c]) / share;
         ++k;
       }
     return true;
@@ -244,7 +298,8 @@ Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const 
     change(model, parameters, s, l);
     Eigen::VectorXd out(m + 1);
     read(s, shot, model, parameters, l, out.data());
-    out[m] = seen_ ? reading(seen_->channel, s, model, parameters, l) / seen_->channel.si : 0;
+    out[m] = seen_ ? reading(seen_->channel, s, model, parameters, get(l, seen_->channel.output)) / seen_->channel.si
+                   : 0;
     return out;
   };
   try {
@@ -271,6 +326,42 @@ Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const 
   return cov;
 }
 
+void ShotModel::add_launch_noise(int shot, const models::FlightConditions& conditions,
+                                 Eigen::MatrixXd& covariance) const {
+  const std::optional<Launch>& seen = trial(shot).seen;
+  if (!seen || !(seen->spin_rate() > 0)) return;  // without spin a flight has no derivative
+  const models::FlightJacobian by = models::flight_jacobian(*seen, trial(shot).blow.ball, conditions);
+  const double tilt = seen->spin_axis(), rate = seen->spin_rate();
+  for (int c = 0; c < width(); ++c) {
+    const ShotChannel& launch = channels_[std::size_t(c)];
+    if (of_flight(launch.output) || !observed(shot, c)) continue;
+    models::FlightAnswers slope;
+    switch (launch.output) {
+      case Output::ball_speed: slope = by.col(models::kBallSpeed); break;
+      case Output::launch_angle: slope = by.col(models::kLaunchAngle); break;
+      case Output::azimuth: slope = by.col(models::kAzimuth); break;
+      case Output::backspin: slope = by.col(models::kBackspin); break;
+      case Output::sidespin: slope = by.col(models::kSidespin); break;
+      case Output::spin_rate:
+        slope = std::cos(tilt) * by.col(models::kBackspin) + std::sin(tilt) * by.col(models::kSidespin);
+        break;
+      default:  // spin_axis
+        slope = rate * (std::cos(tilt) * by.col(models::kSidespin) - std::sin(tilt) * by.col(models::kBackspin));
+    }
+    const double sd = launch.noise * launch.si;
+    const auto moved = [&](int a) {
+      const ShotChannel& f = channels_[std::size_t(a)];
+      return of_flight(f.output) ? sd * slope[answer_of(f.output)] / f.si : 0.0;
+    };
+    for (int a = 0; a < width(); ++a) {
+      for (int b = 0; b < width(); ++b) covariance(a, b) += moved(a) * moved(b);
+      // A launch read too high lowers its own residual and raises the flight's.
+      covariance(a, c) -= moved(a) * launch.noise;
+      covariance(c, a) -= moved(a) * launch.noise;
+    }
+  }
+}
+
 void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model,
                                const double* parameters) {
   const int m = width();
@@ -282,6 +373,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
       const ShotChannel& ch = channels_[std::size_t(c)];
       cov(c, c) = ch.noise * ch.noise;
     }
+    if (flies_) add_launch_noise(i, conditions(model, parameters), cov);
     if (!inputs.empty()) {
       const Eigen::MatrixXd& sx = inputs[std::size_t(i)];
       unsigned mask = 0;

@@ -6,6 +6,7 @@
 
 #include "hosel/loop/problem.hpp"
 #include "hosel/loop/shots/surrogate.hpp"
+#include "hosel/models/flight_budget.hpp"
 #include "hosel/models/impact_model.hpp"
 
 namespace hosel::loop {
@@ -27,8 +28,10 @@ class ShotModel {
   /// they make in the closed-form eccentric impact. `measured`: header's units, NaN where missing, shots x channels.
   /// With a `surrogate` that answers instead of the base, and its error joins the covariance of every shot. With a
   /// `seen` launch angle every prediction about a shot is at the loft that shows this angle, which is then no channel.
+  /// `flight`: needed where a channel is of the flight, which starts from what the monitor saw of the launch.
   ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials, std::vector<ShotChannel> channels,
-            Eigen::MatrixXd measured, const Surrogate* surrogate = nullptr, std::optional<SeenLaunch> seen = {});
+            Eigen::MatrixXd measured, const Surrogate* surrogate = nullptr, std::optional<SeenLaunch> seen = {},
+            std::optional<models::FlightConditions> flight = {});
 
   int shots() const { return int(trials_.size()); }
   int width() const { return int(channels_.size()); }
@@ -87,8 +90,9 @@ class ShotModel {
   Launch answer(const Shot& trial, int shot) const;
   /// Puts the trial's loft where the model shows the launch angle that was seen.
   bool find_loft(Shot& trial, int shot, const Model& model, const double* parameters) const;
+  /// What the instrument shows of `value` [SI].
   double reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
-                 const Launch& launch) const;
+                 double value) const;
   /// Covariance by the surrogate's error and by the noise of the launch angle, header's units.
   Eigen::MatrixXd found_covariance(int shot, const Model& model, const double* parameters) const;
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
@@ -96,6 +100,16 @@ class ShotModel {
   static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);
   bool read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,
             double* out) const;
+  /// The flight of a shot whose launch was seen, without effects; where it was not, or has no flight, the shot has no
+  /// readings of it.
+  void follow_seen(int shot);
+  /// The flight of a trial under the effects, from the launch that was seen, else from the model's.
+  models::FlightAnswers follow(const Shot& trial, int shot, const Model& model, const double* parameters,
+                               const Launch& launch) const;
+  /// Law, air and wind as the effects change them.
+  models::FlightConditions conditions(const Model& model, const double* parameters) const;
+  /// What the noise of the seen launch does to the flight's readings and to their agreement with the launch's.
+  void add_launch_noise(int shot, const models::FlightConditions& conditions, Eigen::MatrixXd& covariance) const;
   void whiten(int shot, const Model& model, const double* p, double* scratch, double* z) const;
   void linearise(int shot, const Model& model, const double* p, double step, bool central,
                  Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) const;
@@ -111,7 +125,10 @@ class ShotModel {
   Eigen::MatrixXd measured_;
   std::vector<double> whiten_;
   Eigen::MatrixXd sigma_;
-  std::vector<Launch> offset_;  ///< base minus companion at the trials, for bases that are not direct
+  std::optional<models::FlightConditions> flight_;
+  bool flies_ = false;
+  std::vector<models::FlightAnswers> flights_;  ///< of the shots whose launch was seen, without effects
+  std::vector<Launch> offset_;                  ///< base minus companion at the trials, for bases that are not direct
 };
 
 }  // namespace hosel::loop

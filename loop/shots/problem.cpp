@@ -97,9 +97,11 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   inputs_.row_of = std::move(good.row_of);
   inputs_.covariance = std::move(good.covariance);
   Eigen::MatrixXd measured(std::ptrdiff_t(good.trials.size()), std::ptrdiff_t(channels.size()));
-  for (Eigen::Index i = 0; i < measured.rows(); ++i)
-    for (Eigen::Index k = 0; k < measured.cols(); ++k)
-      measured(i, k) = columns[std::size_t(k)]->native(std::size_t(inputs_.row_of[std::size_t(i)]));
+  for (Eigen::Index i = 0; i < measured.rows(); ++i) {
+    const std::size_t row = std::size_t(inputs_.row_of[std::size_t(i)]);
+    if (case_.flight) good.trials[std::size_t(i)].seen = seen_launch(shots, row);
+    for (Eigen::Index k = 0; k < measured.cols(); ++k) measured(i, k) = columns[std::size_t(k)]->native(row);
+  }
   if (seen) {
     seen->value.resize(measured.rows());
     for (Eigen::Index i = 0; i < measured.rows(); ++i)
@@ -112,7 +114,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
       uses_.push_back({c, k, -1});
   for (std::size_t k = 0; k < columns.size(); ++k) uses_.push_back({columns[k], -1, int(k)});
   model_ = std::make_unique<ShotModel>(*case_.model, case_.direct, std::move(good.trials), std::move(channels),
-                                       std::move(measured), case_.surrogate, std::move(seen));
+                                       std::move(measured), case_.surrogate, std::move(seen), case_.flight);
   std::vector<double> out(static_cast<std::size_t>(width()));
   for (int i = 0; i < model_->shots(); ++i) {
     if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
@@ -140,7 +142,10 @@ std::vector<Parametrisation> ShotProblem::forms() const {
                   .deformable = case_.deformable,
                   .shaft = case_.shaft_declared,
                   .full_club = case_.full_club};
-  for (int c = 0; c < width(); ++c) setting.outputs.push_back(model_->channel(c).output);
+  for (int c = 0; c < width(); ++c) {
+    if (of_flight(model_->channel(c).output)) setting.flies = true;
+    else setting.outputs.push_back(model_->channel(c).output);
+  }
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own)) {
     if (!e.on_shots) continue;
@@ -288,8 +293,8 @@ double ShotProblem::update_noise(const Fit& selected, const Fit&) {
   for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
   model_->set_covariance(inputs_.covariance, selected.model, selected.p.data());
   regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
-  // Noisy inputs weigh otherwise once they are carried through the effects.
-  const bool anew = !updated_ && !inputs_.covariance.empty() && !selected.model.forms.empty();
+  // Noisy inputs and launches weigh otherwise once they are carried through the effects.
+  const bool anew = !updated_ && (!inputs_.covariance.empty() || case_.flight) && !selected.model.forms.empty();
   updated_ = true;
   return anew ? std::numeric_limits<double>::infinity() : change;
 }
@@ -308,8 +313,8 @@ void ShotProblem::estimate_noise(const Fit* at) {
       for (const int i : rows_.train) variance += model_->sigma(i, c) * model_->sigma(i, c);
       const double whole = scatter(c, r, at->size()).ratio * std::sqrt(variance / rows);
       sd = ch.refuted || smooth <= 0 ? whole : std::min(whole, 1.3 * smooth);
-      // What noisy inputs contribute is counted separately.
-      if (!inputs_.covariance.empty())
+      // What noisy inputs and launches contribute is counted separately.
+      if (!inputs_.covariance.empty() || case_.flight)
         for (const int i : rows_.train)
           from_inputs += std::max(0.0, model_->sigma(i, c) * model_->sigma(i, c) - ch.noise * ch.noise) / rows;
     }

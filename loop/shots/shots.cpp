@@ -53,7 +53,8 @@ double resolution(const std::vector<std::string>& cells, const std::vector<doubl
   return step;
 }
 
-Column make_column(const std::string& header, const std::vector<std::string>& cells, const post::Sheet& sheet) {
+Column make_column(const std::string& header, const std::vector<std::string>& cells, const post::Sheet& sheet,
+                   int outputs) {
   Column c;
   c.name = header;
   const SplitName split = split_unit(header);
@@ -67,7 +68,7 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   } else if (const auto i = input_of(c.stem)) {
     c.role = Role::input;
     wanted = quantity(*i).dimension;
-  } else if (const auto o = output_of(c.stem)) {
+  } else if (const auto o = output_of(c.stem); o && int(*o) < outputs) {
     c.role = Role::output;
     wanted = quantity(*o).dimension;
   }
@@ -75,7 +76,7 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   if (c.role == Role::other) {
     std::vector<std::string_view> known;
     for (int i = 0; i < kInputs; ++i) known.push_back(stem(Input(i)));
-    for (int o = 0; o < kOutputs; ++o) known.push_back(stem(Output(o)));
+    for (int o = 0; o < outputs; ++o) known.push_back(stem(Output(o)));
     for (const std::string_view meant : known)
       if (misspelt(c.stem, meant))
         throw DataError(fmt::format(
@@ -127,12 +128,12 @@ const Column* Shots::find_stem(std::string_view wanted) const {
   return it == columns.end() ? nullptr : &*it;
 }
 
-Shots read_shots(const post::Sheet& sheet) {
+Shots read_shots(const post::Sheet& sheet, bool flights) {
   Shots shots;
   shots.file = sheet.file;
   shots.line = sheet.lines;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
-    Column column = make_column(sheet.names[c], sheet.columns[c], sheet);
+    Column column = make_column(sheet.names[c], sheet.columns[c], sheet, flights ? kOutputs : kLaunchOutputs);
     if (column.role == Role::input || column.role == Role::output)
       if (const Column* other = shots.find_stem(column.stem))
         throw DataError(
@@ -166,7 +167,7 @@ void join(Shots& shots, const post::Sheet& sheet, const std::string& by) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const std::string& header = sheet.names[c];
     if (header == by || header.starts_with("mean_") || header.starts_with("half_range_")) continue;
-    const Column source = make_column(header, sheet.columns[c], sheet);
+    const Column source = make_column(header, sheet.columns[c], sheet, kLaunchOutputs);
     if (source.role != Role::input) continue;
     const auto existing = std::ranges::find(shots.columns, source.stem, &Column::stem);
     Column* target = existing == shots.columns.end() ? nullptr : &*existing;
@@ -200,6 +201,26 @@ Groups groups(const Column& column) {
     g.of_row[i] = it->second;
   }
   return g;
+}
+
+std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
+  const auto read = [&](Output o) -> std::optional<double> {
+    const Column* c = shots.find_stem(stem(o));
+    return c && c->numeric && std::isfinite(c->value[row]) ? std::optional(c->value[row]) : std::nullopt;
+  };
+  const auto speed = read(Output::ball_speed), up = read(Output::launch_angle);
+  auto back = read(Output::backspin), side = read(Output::sidespin);
+  if (const auto rate = read(Output::spin_rate); !(back && side) && rate) {
+    const double tilt = read(Output::spin_axis).value_or(0);
+    back = *rate * std::cos(tilt);
+    side = *rate * std::sin(tilt);
+  }
+  if (!speed || !(*speed > 0) || !up || !back) return {};
+  const double right = read(Output::azimuth).value_or(0);
+  Launch l;
+  l.velocity = *speed * Vec3(std::cos(*up) * std::cos(right), -std::cos(*up) * std::sin(right), std::sin(*up));
+  l.spin = Vec3(0, -*back, -side.value_or(0));
+  return l;
 }
 
 }  // namespace hosel::loop

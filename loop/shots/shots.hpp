@@ -38,8 +38,13 @@ struct Shots {
 };
 
 /// Roles, units, SI values and recording resolution of a sheet. Throws DataError: an output or input column
-/// with a wrong unit, text in it, the same quantity twice.
-Shots read_shots(const post::Sheet& sheet);
+/// with a wrong unit, text in it, the same quantity twice. `flights`: carry and the like are outputs, too; otherwise
+/// columns like any other.
+Shots read_shots(const post::Sheet& sheet, bool flights = false);
+
+/// The launch that a row records: ball speed, launch angle and spin (by components, or by rate and tilt), straight
+/// where no azimuth is there. Absent where one of them is missing.
+std::optional<Launch> seen_launch(const Shots& shots, std::size_t row);
 
 /// Fills inputs that the shots lack from a file with one row per value of `by`. Summaries (`mean_`,
 /// `half_range_`) are left out. Throws DataError where a cluster is missing or stands twice.

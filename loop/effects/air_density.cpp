@@ -1,0 +1,16 @@
+// The air is denser or thinner than declared.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/flight.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Parametrisation> air_density(const Setting& setting) {
+  if (!setting.flies) return {};
+  Parametrisation f{.effect = "air-density",
+                    .what = "factor on the density",
+                    .parameters = {{"relative_density", "1", 1, -0.35, 0.2, 0.02}}};
+  f.flight = [](std::span<const double> p, models::FlightConditions& c) { c.air.density *= 1 + p[0]; };
+  return {f};
+}
+
+}  // namespace hosel::loop::forms

@@ -1,0 +1,16 @@
+// The ball's drag is not the flight law's.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/flight.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Parametrisation> drag_level(const Setting& setting) {
+  if (!setting.flies) return {};
+  Parametrisation f{.effect = "drag-level",
+                    .what = "factor on the drag coefficient",
+                    .parameters = {{"relative_drag", "1", 1, -0.4, 0.4, 0.02}}};
+  f.flight = [](std::span<const double> p, models::FlightConditions& c) { c.law.drag_scale *= 1 + p[0]; };
+  return {f};
+}
+
+}  // namespace hosel::loop::forms

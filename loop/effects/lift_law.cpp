@@ -1,0 +1,16 @@
+// The ball's lift is not the flight law's.
+#include "hosel/loop/effects/all.hpp"
+#include "hosel/models/flight.hpp"
+
+namespace hosel::loop::forms {
+
+std::vector<Parametrisation> lift_law(const Setting& setting) {
+  if (!setting.flies) return {};
+  Parametrisation f{.effect = "lift-law",
+                    .what = "factor on the lift coefficient",
+                    .parameters = {{"relative_lift", "1", 1, -0.6, 0.6, 0.03}}};
+  f.flight = [](std::span<const double> p, models::FlightConditions& c) { c.law.lift_scale *= 1 + p[0]; };
+  return {f};
+}
+
+}  // namespace hosel::loop::forms
