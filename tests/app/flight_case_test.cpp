@@ -57,6 +57,45 @@ TEST(FlightCase, WeatherWindAndHeightActAsTheyDo) {
   EXPECT_GT(carry("flight_drop", "[flight.ground]\nheight_m = -10.0\n"), calm + 3);
 }
 
+TEST(FlightCase, FollowsEveryVariant) {
+  std::string text = kEccentricBlow + "[flight]\n";
+  text.replace(text.find("impact"), 6, "variants");
+  Outcome o;
+  const auto s = run("flight_variants", text + R"([[variants]]
+name = "as it is"
+[[variants]]
+name = "faster"
+set = ["delivery.club_speed_mps=47.0"]
+)",
+                     &o)["variants"];
+  EXPECT_GT(s["faster"]["flight"]["carry_yd"], s["as it is"]["flight"]["carry_yd"].get<double>() + 3);
+  EXPECT_NE(o.text.find("carry [yd]"), std::string::npos);
+}
+
+/// Carries of a ball whose restitution is known: tuning on nothing but them finds it.
+TEST(FlightCase, TunesOnCarry) {
+  const std::string head = kEccentricBlow.substr(kEccentricBlow.find("[head]"));
+  std::string shots = "shot,club_speed_mps,dynamic_loft_deg,carry_m\n";
+  int shot = 0;
+  for (const double speed : {40.0, 48.0})
+    for (const double loft : {12.0, 20.0}) {
+      const std::string blow = "kind = \"impact\"\nmodels = [\"rigid-eccentric\"]\n[delivery]\nclub_speed_mps = " +
+                               std::to_string(speed) + "\ndynamic_loft_deg = " + std::to_string(loft) + "\n" + head;
+      const auto s = run("flight_tune_shot", blow + "[contact]\nrestitution = 0.81\n[flight]\nunits = \"metres\"\n");
+      shots += std::to_string(++shot) + "," + std::to_string(speed) + "," + std::to_string(loft) + "," +
+               std::to_string(s["flights"]["rigid-eccentric"]["carry_m"].get<double>()) + "\n";
+    }
+  const fs::path dir = fresh_directory("flight_tune");
+  write(dir / "case" / "shots.csv", shots);
+  write(dir / "case" / "case.toml", "kind = \"tune\"\nmodel = \"rigid-eccentric\"\n" + head +
+                                        "[flight]\n[data]\nshots = \"shots.csv\"\n[data.noise]\ncarry_m = 0.5\n"
+                                        "[[parameters]]\nname = \"restitution\"\nstart = 0.75\n");
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto found = nlohmann::json::parse(content(dir / "out" / "summary.json"))["parameters"][0];
+  EXPECT_NEAR(found["value"].get<double>(), 0.81, 1e-3);
+}
+
 const std::string kLaunches = R"(kind = "flight"
 [[launch]]
 name = "drive"
