@@ -66,7 +66,7 @@ std::string errors(const Surrogate& surrogate, const std::vector<Shot>& shots, c
   std::string text;
   for (const Column& c : data.columns) {
     const std::optional<Output> output = c.role == Role::output ? output_of(c.stem) : std::nullopt;
-    if (!output) continue;
+    if (!output || of_flight(*output)) continue;
     double variance = 0;
     for (const Shot& s : shots) {
       const Launch l = surrogate.launch(s);
