@@ -264,8 +264,11 @@ std::string page(const LoopResult& r, const Shots& table) {
   if (!r.unexplained.empty()) {
     s += "<h2>Unexplained</h2><ul>";
     for (const Location& l : r.unexplained)
-      s += fmt::format("<li>{} against {} <small>({})</small>", escape_html(l.channel), escape_html(l.regressor),
-                       escape_html(l.detail));
+      if (l.channel.empty() || l.regressor.empty())
+        s += fmt::format("<li>{}{}", escape_html(l.channel.empty() ? "" : l.channel + ": "), escape_html(l.detail));
+      else
+        s += fmt::format("<li>{} against {} <small>({})</small>", escape_html(l.channel), escape_html(l.regressor),
+                         escape_html(l.detail));
     s += "</ul>";
   }
   if (!r.derived.empty()) {

@@ -50,7 +50,11 @@ json to_json(const LoopResult& r) {
                                       {"formula", d.formula},
                                       {"residual_sd", value(d.residual_sd)},
                                       {"recording_resolution", value(d.recording_resolution)},
-                                      {"rows", d.rows}});
+                                      {"rows", d.rows},
+                                      {"share", value(d.share)}});
+  out["columns"] = json::array();
+  for (const WrongColumn& c : r.columns)
+    out["columns"].push_back({{"column", c.column}, {"finding", c.finding}, {"text", c.text}});
   out["channels"] = json::array();
   for (const ChannelResult& c : r.channels)
     out["channels"].push_back({{"name", c.name},
@@ -190,6 +194,11 @@ std::string sentence(const LoopResult& r) {
                          r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), t);
     }
     case Verdict::unexplained:
+      if (!r.columns.empty())
+        return fmt::format("A whole column contradicts its header: {}. Mend the file or its header, then run again.",
+                           r.columns.front().text);
+      if (!r.unexplained.empty() && r.unexplained.front().regressor.empty())
+        return "Something remains that no candidate explains: " + r.unexplained.front().detail + ".";
       return r.unexplained.empty() ? std::string("Structure remains that no candidate explains.")
                                    : fmt::format("Structure remains that no candidate explains: {} against {}.",
                                                  r.unexplained.front().channel, r.unexplained.front().regressor);

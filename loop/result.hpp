@@ -11,6 +11,7 @@
 #include "hosel/loop/select.hpp"
 #include "hosel/loop/shots/audit.hpp"
 #include "hosel/loop/shots/balances.hpp"
+#include "hosel/loop/shots/columns.hpp"
 
 namespace hosel::loop {
 
@@ -104,6 +105,7 @@ struct LoopResult {
   std::vector<Flag> flagged;
   std::map<std::string, int> unused;  ///< reason, rows that could not be used
   std::vector<DerivedColumn> derived;
+  std::vector<WrongColumn> columns;  ///< whole columns that contradict their header
   std::vector<ChannelResult> channels;
   Selection selection;
   std::vector<std::string> channel_names;  ///< of the fit: the findings' numbering

@@ -22,20 +22,29 @@ double score(const Problem& problem, const Fit& f) {
 }
 
 /// The first that applies, in the contract's order.
-Verdict judge(const Study& study, std::vector<Location>& unexplained) {
+Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
+  if (!columns.empty()) {
+    for (const WrongColumn& c : columns) unexplained.push_back({"", c.column, c.text});
+    return Verdict::unexplained;
+  }
   if (problem.too_few()) return Verdict::insufficient;
   if (!s.clean) {
     unexplained = problem.places(s);
     return Verdict::unexplained;
   }
-  if (s.structured && s.level == 0) return Verdict::insufficient;
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
+  if (s.structured && s.level == 0) return Verdict::insufficient;
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
   if (s.nameless) return Verdict::insufficient;
   if (!s.ties.empty()) return Verdict::ambiguous;
+  unexplained = problem.doubts(s);
+  if (s.level > 0 && s.chosen.at_bound)
+    unexplained.push_back(
+        {"", "", fmt::format("{} only at the edge of what is plausible", fmt::join(s.adopted, " and "))});
+  if (!unexplained.empty()) return Verdict::unexplained;
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
@@ -111,7 +120,7 @@ void conclude(const Study& study, LoopResult& result) {
   for (int c = 0; c < problem.width(); ++c) result.channel_names.push_back(problem.channel(c).name);
   for (const Problem::Row& row : problem.rows()) ++(row.holdout ? result.holdout : result.train);
   result.used = result.train + result.holdout;
-  result.verdict = judge(study, result.unexplained);
+  result.verdict = judge(study, result.columns, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);

@@ -6,14 +6,15 @@
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
-  const auto angle = [](const char* name) {
-    return Parameter{name, "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)};
+  // A monitor is levelled by its own sensors and aimed by eye: beyond this its angles are wrong, not its axes.
+  const auto angle = [](const char* name, double most) {
+    return Parameter{name, "deg", kRadPerDeg, radians(-most), radians(most), radians(0.5)};
   };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](std::vector<int> axes, const char* what) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};
     Parametrisation f{.effect = "monitor-misalignment", .what = what};
-    for (const int a : axes) f.parameters.push_back(angle(names[a]));
+    for (const int a : axes) f.parameters.push_back(angle(names[a], a == 2 ? 5 : 3));
     f.after = [axes](std::span<const double> p, const Shot&, Launch& launch) {
       Mat3 turn = Mat3::Identity();
       bool turned = false;

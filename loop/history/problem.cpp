@@ -369,6 +369,9 @@ std::vector<Location> HistoryProblem::places(const Selection& s) const {
   return all;
 }
 
+/// Readings that stand alone are few, and a record that is missed has structure.
+std::vector<Location> HistoryProblem::doubts(const Selection&) const { return {}; }
+
 NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
   NextExperiment next;
   if (too_few()) {

@@ -53,6 +53,7 @@ class HistoryProblem final : public Problem {
                          const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection&) const override { return {}; }
+  std::vector<Location> doubts(const Selection&) const override;
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
  private:

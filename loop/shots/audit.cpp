@@ -12,6 +12,7 @@
 #include <set>
 
 #include "hosel/loop/median.hpp"
+#include "hosel/loop/shots/relations.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -476,8 +477,10 @@ class Audit {
 }  // namespace
 
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball) {
-  Audit a(shots, ball);
-  return a.run();
+  std::vector<DerivedColumn> found = Audit(shots, ball).run();
+  const std::vector<DerivedColumn> partly = partly_derived(shots, found);
+  found.insert(found.end(), partly.begin(), partly.end());
+  return found;
 }
 
 }  // namespace hosel::loop

@@ -14,10 +14,12 @@ struct DerivedColumn {
   std::string formula;
   double residual_sd = 0;           ///< column's unit
   double recording_resolution = 0;  ///< column's unit
-  int rows = 0;
-  bool input = false;  ///< the column is an input of the models
+  int rows = 0;                     ///< on which it holds
+  double share = 1;                 ///< of those that could show it
+  bool input = false;               ///< the column is an input of the models
 };
 
+/// Formulas that hold on all rows, then (relations) those that hold on many.
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball);
 
 }  // namespace hosel::loop

@@ -25,6 +25,19 @@ double loft_of(Blow blow, double launch_angle) {
 
 }  // namespace
 
+std::vector<double> session_order(const Shots& shots, const std::vector<int>& rows) {
+  const Column* shot = shots.find("shot");
+  const bool numbered = shot && shot->numeric && std::ranges::all_of(rows, [&](int row) {
+                          return std::isfinite(shot->value[std::size_t(row)]);
+                        });
+  std::vector<double> place;
+  for (const int row : rows) place.push_back(numbered ? shot->value[std::size_t(row)] : double(row));
+  if (place.empty()) return place;
+  const auto [first, last] = std::ranges::minmax(place);
+  for (double& x : place) x = last > first ? (x - first) / (last - first) : 0.0;
+  return place;
+}
+
 Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
                    const std::map<std::string, double>& noise, bool loft_unknown) {
   Inputs in;
@@ -85,15 +98,8 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const std::size_t n = in.trials.size();
   if (!n) return in;
 
-  // Session order: by the shot number where it is one, else by the row.
-  const Column* shot = shots.find("shot");
-  std::vector<double> place(n);
-  bool numbered = shot && shot->numeric;
-  for (std::size_t i = 0; i < n && numbered; ++i) numbered = std::isfinite(shot->value[std::size_t(in.row_of[i])]);
-  for (std::size_t i = 0; i < n; ++i)
-    place[i] = numbered ? shot->value[std::size_t(in.row_of[i])] : double(in.row_of[i]);
-  const auto [first, last] = std::ranges::minmax(place);
-  for (std::size_t i = 0; i < n; ++i) in.trials[i].order = last > first ? (place[i] - first) / (last - first) : 0.0;
+  const std::vector<double> order = session_order(shots, in.row_of);
+  for (std::size_t i = 0; i < n; ++i) in.trials[i].order = order[i];
 
   // Robust centre and spread of every input.
   std::array<double, kInputs> centre{}, spread{}, sigma{};

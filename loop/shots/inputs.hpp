@@ -24,6 +24,9 @@ struct Inputs {
   std::vector<std::string> notes;
 };
 
+/// Place of some rows in the session, 0 the first, 1 the last: by the shot number where it is one, else by the row.
+std::vector<double> session_order(const Shots& shots, const std::vector<int>& rows);
+
 /// Rows without club speed, dynamic loft or any output are unused. Other missing inputs are filled with the mean
 /// of those recorded, at the variance of those recorded; a missing column is zero. `noise` by header [SI].
 /// Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean), with robust moments.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <stdexcept>
 
@@ -32,6 +33,11 @@ Launch plus(Launch a, const Launch& b, double sign) {
 bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 
 }  // namespace
+
+solvers::Loss loss_of_shot(int channels) {
+  const double knee = quantile(boost::math::chi_squared(channels), 0.999);
+  return {solvers::Loss::Tail::logarithmic, knee, 12 * knee, channels};
+}
 
 ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials,
                      std::vector<ShotChannel> channels, Eigen::MatrixXd measured, const Surrogate* surrogate,

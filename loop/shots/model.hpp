@@ -19,6 +19,9 @@ struct SeenLaunch {
   ShotChannel channel;
   Eigen::VectorXd value;  ///< per shot, header's unit
 };
+/// Of a whole shot: quadratic up to the 99.9 % quantile of its squared distance, then logarithmic, constant beyond
+/// twelve times that.
+solvers::Loss loss_of_shot(int channels);
 
 class ShotModel {
  public:

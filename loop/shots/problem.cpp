@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "hosel/loop/median.hpp"
 #include "hosel/loop/shots/experiment.hpp"
+#include "hosel/loop/shots/mixture.hpp"
 #include "hosel/loop/shots/scatter.hpp"
 
 namespace hosel::loop {
@@ -14,17 +15,8 @@ namespace {
 
 constexpr std::size_t kFewest = 4;  // training rows that can test anything
 
-/// Kurtosis of n values in its standard deviations from that of a normal sample (Anscombe & Glynn 1983).
-double kurtosis_deviation(double kurtosis, double n) {
-  const double mean = 3 * (n - 1) / (n + 1),
-               variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
-  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) *
-                          std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
-  const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
-  const double stretch = 1 + (kurtosis - mean) / std::sqrt(variance) * std::sqrt(2 / (a - 4));
-  if (stretch <= 0) return -std::numeric_limits<double>::infinity();
-  return (1 - 2 / (9 * a) - std::cbrt((1 - 2 / a) / stretch)) / std::sqrt(2 / (9 * a));
-}
+constexpr double kMixture = 20;       // least gain of two populations over one
+constexpr double kKnownMixture = 11;  // the same where their scatter is the declared noise
 
 }  // namespace
 
@@ -68,8 +60,8 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     const Column* c = shots.find_stem(stem(Output(o)));
     if (!c || c->role != Role::output) continue;
     any = true;
-    const bool computed =
-        std::ranges::any_of(derived, [&](const DerivedColumn& d) { return !d.input && d.column == c->name; });
+    const bool computed = std::ranges::any_of(
+        derived, [&](const DerivedColumn& d) { return !d.input && d.share == 1 && d.column == c->name; });
     const bool used_up = case_.loft_unknown && Output(o) == Output::launch_angle;
     if ((computed && !used_up) || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
     ShotChannel ch{{.name = c->name, .si = c->si, .resolution = c->resolution / c->si}, Output(o)};
@@ -246,11 +238,9 @@ Problem::Density ShotProblem::density(Part part) const {
   return d;
 }
 
-/// The whole shot is judged: quadratic up to the 99.9 % quantile of its squared distance, then logarithmic, constant
-/// beyond twelve times that. The loss without its cap sees farther.
+/// The loss without its cap sees farther.
 std::vector<Stage> ShotProblem::stages() const {
-  const double knee = quantile(boost::math::chi_squared(width()), 0.999);
-  const solvers::Loss loss{solvers::Loss::Tail::logarithmic, knee, 12 * knee, width()};
+  const solvers::Loss loss = loss_of_shot(width());
   return {{.loss = loss.uncapped()}, {.loss = loss}};
 }
 
@@ -355,33 +345,66 @@ std::vector<Location> ShotProblem::places(const Selection& s) const {
       if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
           f.p_adjusted < 0.05)
         add(&f);
+  if (const auto two = two_populations(s)) told.push_back(*two);
   return told;
 }
 
-/// Where a channel's scatter refutes its declared noise or many shots are far off: it follows a regressor at a level
-/// that would not count alone, its distribution is bimodal, or it strikes a share of the shots that is no exception.
+/// Two populations in the residuals of the chosen model or of the base, on all shots that could be used: nothing is
+/// fitted to them here. A regressor that is known and explains as much is the plainer reason.
+std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
+  bool declared = true;
+  for (int c = 0; c < width(); ++c) declared = declared && channel(c).declared.has_value();
+  std::set<int> clusters;
+  for (const RowFlag& f : flags_)
+    if (f.cluster) clusters.insert(f.shot);
+  std::vector<int> rows;
+  for (const int i : usable_)
+    if (!clusters.contains(i)) rows.push_back(i);
+  rows = thinned(rows);
+  std::optional<Mixture> best;
+  Eigen::MatrixXd of;
+  for (const Fit* fit : {&s.chosen, &s.base}) {
+    const Eigen::VectorXd whitened = model_->whitened(rows, fit->model, fit->p);
+    const Eigen::MatrixXd z = whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
+    auto two = mixture(z);
+    if (!two || (best && two->gain < best->gain)) continue;
+    best = std::move(two);
+    of = z;
+  }
+  if (!best) return {};
+  // Noise that was refuted has grown: the declared one is what either population should show.
+  double grown = 1;
+  for (int c = 0; c < width(); ++c)
+    if (channel(c).refuted) grown = std::max(grown, channel(c).noise / *channel(c).declared);
+  const double deviation = best->deviation * grown;
+  if (best->gain < (declared && deviation > 0.7 && deviation < 1.4 ? kKnownMixture : kMixture)) return {};
+  Eigen::VectorXd difference = Eigen::VectorXd::Zero(width());
+  double count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) count += best->second[i];
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    difference += of.row(std::ptrdiff_t(i)).transpose() *
+                  (best->second[i] ? 1 / count : -1 / (double(rows.size()) - count));
+  Eigen::Index most = 0;
+  difference.cwiseAbs().maxCoeff(&most);
+  return Location{
+      channel(int(most)).name, "",
+      fmt::format("a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others: "
+                  "two balls, players or settings that no column tells apart",
+                  100 * best->share, best->apart)};
+}
+
+/// Where the residual is no structure in any regressor and yet no noise: two populations; a channel whose scatter
+/// refutes its declared noise follows a regressor at a level that would not count alone, or strikes a share of the
+/// shots that is no exception.
 std::vector<Location> ShotProblem::shapes(const Selection& s) const {
-  const Eigen::MatrixXd r = residuals(s.chosen.model, s.chosen.p);
+  if (const auto two = two_populations(s)) return {*two};
   for (int c = 0; c < width(); ++c) {
     const std::string& name = channel(c).name;
     if (!channel(c).refuted && name != widespread_) continue;
     for (const Finding& f : s.after.findings)
       if (f.channel == c && f.p_adjusted < 0.05) return {place(f)};
-    double n = 0, mean = 0, second = 0, fourth = 0;
-    for (const int i : rows_.train)
-      if (std::isfinite(r(i, c))) mean += r(i, c), ++n;
-    mean /= std::max(1.0, n);
-    for (const int i : rows_.train)
-      if (std::isfinite(r(i, c))) {
-        const double d = r(i, c) - mean;
-        second += d * d / n;
-        fourth += d * d * d * d / n;
-      }
-    // Bimodal: kurtosis below that of a normal sample by 2.5 of its own standard deviations.
-    if (n > 12 && kurtosis_deviation(fourth / (second * second), n) < -2.5)
-      return {{name, "", "a bimodal distribution: a mixture"}};
     if (name == widespread_) {
-      Location l{name, "", "many shots far off, the others within the noise: a mixture or a threshold"};
+      Location l{name, "", "many shots far off, the others within the noise"};
       for (const StructureMap* map : {&s.after, &s.before})
         for (const Finding& f : map->findings)
           if (f.channel == c && l.regressor.empty()) l.regressor = f.regressor;
@@ -389,6 +412,35 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
     }
   }
   return {};
+}
+
+/// A fifth of the rows is flagged or so far off that the loss is flat there, or half of them are off by many noise
+/// scales.
+std::vector<Location> ShotProblem::doubts(const Selection& s) const {
+  constexpr double lost_share = 0.2, many = 3;
+  std::vector<int> used = rows_.train;
+  used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
+  const std::size_t flagged = flags().size();
+  const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
+  const solvers::Loss loss = stages().back().loss;
+  double lost = double(flagged);
+  std::vector<Location> told;
+  std::vector<std::vector<double>> size(static_cast<std::size_t>(width()));
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const auto of = z.segment(std::ptrdiff_t(i) * width(), width());
+    lost += of.squaredNorm() > loss.cap;
+    for (int c = 0; c < width(); ++c)
+      if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(of[c]));
+  }
+  for (int c = 0; c < width(); ++c)
+    if (const double middle = median(size[std::size_t(c)]); middle > many)
+      told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});
+  if (const double share = lost / double(flagged + used.size()); share >= lost_share)
+    told.push_back({"", "",
+                    fmt::format("{:.0f} % of the rows are flagged or explained by nothing: what fits the others "
+                                "is no explanation of the set",
+                                100 * share)});
+  return told;
 }
 
 NextExperiment ShotProblem::next_experiment(const LoopResult& so_far) const {

@@ -53,6 +53,7 @@ class ShotProblem final : public Problem {
                          const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
+  std::vector<Location> doubts(const Selection& selection) const override;
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
  private:
@@ -62,6 +63,7 @@ class ShotProblem final : public Problem {
   void estimate_noise(const Fit* at);
   const std::vector<int>& shots(Part part) const;
   Location place(const Finding& f) const;
+  std::optional<Location> two_populations(const Selection& s) const;
 
   const ShotCase& case_;
   const std::optional<std::set<int>> held_rows_;

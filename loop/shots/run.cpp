@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-LoopResult pass(const ShotCase& c, const std::vector<DerivedColumn>& derived,
+LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
                 const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {}) {
   ShotProblem problem(c, derived, held_rows, doubted);
   LoopResult result;
@@ -27,6 +27,10 @@ LoopResult pass(const ShotCase& c, const std::vector<DerivedColumn>& derived,
   result.unused = problem.unused();
   result.forms = problem.forms();
   const Study study(problem, result.forms, c.effects, c.rules);
+  std::vector<Fit> rivals{study.selection.chosen, study.selection.richest};
+  for (const Candidate& candidate : study.selection.candidates) rivals.push_back(candidate.fit);
+  if (rivals.size() > 30) rivals.resize(30);
+  result.columns = columns.contradicted(rivals);
   conclude(study, result);
   if (!problem.too_few()) {
     const bool shown = !result.adopted.empty() || !result.ties.empty();
@@ -49,14 +53,15 @@ Shots without_flagged(const Shots& shots, const LoopResult& r) {
 }
 
 /// Every cluster is the holdout once; errors and residuals are pooled over the clusters.
-void leave_one_out(const ShotCase& c, const std::vector<DerivedColumn>& derived, LoopResult& whole) {
+void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
+                   LoopResult& whole) {
   const Groups g = groups(*c.shots.find(c.split.by));
   std::vector<UsedRow> pooled;
   for (std::size_t k = 0; k < g.name.size(); ++k) {
     std::set<int> held;
     for (std::size_t i = 0; i < g.of_row.size(); ++i)
       if (g.of_row[i] == int(k)) held.insert(int(i));
-    const LoopResult fold = pass(c, derived, held);
+    const LoopResult fold = pass(c, columns, derived, held);
     for (const UsedRow& u : fold.rows)
       if (u.holdout) pooled.push_back(u);
     if (fold.corrected && whole.corrected)
@@ -85,9 +90,10 @@ LoopResult run(const ShotCase& c) {
   if (c.shots.rows() > kMostShots)
     throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
                                 kMostShots));
+  const Columns columns(c);
   std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
   const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
-  LoopResult result = pass(c, derived, held);
+  LoopResult result = pass(c, columns, derived, held);
   if (!result.flagged.empty()) {
     // Bad rows can hide a formula: once they are known, look again.
     const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, result), c.blow.ball);
@@ -99,25 +105,28 @@ LoopResult run(const ShotCase& c) {
     };
     const bool refit = outputs(again) != outputs(derived);
     derived = again;
-    if (refit) result = pass(c, derived, held);
+    if (refit) result = pass(c, columns, derived, held);
     result.derived = derived;
   }
-  if (c.split.leave_one_out && !result.channels.empty()) leave_one_out(c, derived, result);
+  if (c.split.leave_one_out && !result.channels.empty()) leave_one_out(c, columns, derived, result);
   for (const DerivedColumn& d : derived) {
-    if (!d.input) continue;
-    for (int k = 0; k < kInputs; ++k) {
-      if (c.loft_unknown && Input(k) == Input::dynamic_loft) continue;
-      const Column* column = c.shots.find_stem(stem(Input(k)));
-      if (!column || column->name != d.column) continue;
-      const LoopResult without = pass(c, derived, held, Input(k));
-      std::vector<std::string> names = without.adopted;
-      for (const auto& tie : without.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
-      result.without.emplace_back(d.column, names);
-      result.notes.push_back(
-          fmt::format("{} is computed from {} and is no independent evidence; without it the verdict is {}{}", d.column,
-                      fmt::join(d.from, ", "), name(without.verdict),
-                      names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
-    }
+    if (!d.input && d.share == 1) continue;  // no channel to begin with
+    std::vector<DerivedColumn> others = derived;
+    for (DerivedColumn& x : others) x.share = x.column == d.column ? 1 : x.share;
+    std::optional<Input> doubted;
+    for (int k = 0; k < kInputs; ++k)
+      if (const Column* column = c.shots.find_stem(stem(Input(k))); column && column->name == d.column)
+        doubted = Input(k);
+    if (d.input != doubted.has_value() || (c.loft_unknown && doubted == Input::dynamic_loft)) continue;
+    if (!d.input && c.shots.find(d.column)->role != Role::output) continue;
+    const LoopResult without = pass(c, columns, others, held, doubted);
+    std::vector<std::string> names = without.adopted;
+    for (const auto& tie : without.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
+    result.without.emplace_back(d.column, names);
+    result.notes.push_back(
+        fmt::format("{} is computed from {}{} and is no independent evidence; without it the verdict is {}{}", d.column,
+                    fmt::join(d.from, ", "), d.share < 1 ? fmt::format(" on {:.0f} % of the rows", 100 * d.share) : "",
+                    name(without.verdict), names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
   }
   return result;
 }

@@ -319,7 +319,7 @@ Json score_sets(const fs::path& dir) {
       }
     false_derived += wrong;
   }
-  count("derived", "found", 1, false, any, [](const Outcome& o) {
+  const auto derived_found = [](const Outcome& o) {
     if (!o.ran || !o.report.contains("derived_columns")) return false;
     Names relation = names_of(o.key["derived"]["from"]);
     relation.insert(o.key["derived"]["column"].get<std::string>());
@@ -329,7 +329,50 @@ Json score_sets(const fs::path& dir) {
       if (std::includes(relation.begin(), relation.end(), columns.begin(), columns.end())) return true;
     }
     return false;
-  });
+  };
+  count("derived", "found", 1, false, any, derived_found);
+  count("mostly-computed", "found", 0.9, false, any, derived_found);
+
+  // Whole columns: the slip by its word, in a column that has it.
+  const auto silent = [](const Outcome& o) { return o.verdict == "no-residual" || o.verdict == "explained"; };
+  const auto slipped = [](const Outcome& o, bool with_kind) {
+    if (!o.ran || !o.report.contains("columns")) return false;
+    for (const auto& c : o.report["columns"])
+      if (names_of(o.key["slip"]["columns"]).contains(c.value("column", "")) &&
+          (!with_kind || c.value("finding", "") == o.key["slip"]["slip"]))
+        return true;
+    return false;
+  };
+  count("wrong-column", "no-residual or explained", 0, true, any, silent);
+  count("wrong-column", "column named", 0, false, any, [&](const Outcome& o) { return slipped(o, false); });
+  count("wrong-column", "column and slip named", 0.95, false, any, [&](const Outcome& o) { return slipped(o, true); });
+  int false_column = 0, other_sets = 0;
+  for (const Outcome& o : outcomes)
+    if (o.ran && o.key["stratum"] != "wrong-column") {
+      ++other_sets;
+      false_column += o.report.contains("columns") && !o.report["columns"].empty();
+    }
+  if (other_sets) lines.push_back({"all others", "a column falsely called wrong", false_column, other_sets, 1, true});
+
+  // Two populations.
+  const auto said_mixture = [](const Outcome& o) {
+    if (!o.ran || o.verdict != "unexplained") return false;
+    for (const auto& u : o.report["unexplained"])
+      if (u.value("detail", "").find("mixture") != std::string::npos) return true;
+    return false;
+  };
+  count("mixture", "said as such", 0.9, false, any, said_mixture);
+  count("mixture", "adoptions", 1, true, any, adopts);
+  int false_mixture = 0;
+  for (const Outcome& o : outcomes)
+    if (o.key["stratum"] != "mixture" && o.key.value("invention", "") != "two kinds of ball, not recorded")
+      false_mixture += said_mixture(o);
+  if (other_sets) lines.push_back({"all others", "falsely called a mixture", false_mixture, ran, 1, true});
+
+  count("two-and-outside", "what is adopted is right", 0.95, false, any,
+        [&](const Outcome& o) { return o.ran && !names_other(o); });
+  count("two-and-outside", "adoptions", 0, false, any, adopts);
+  count("two-and-outside", "the rest located", 0.8, false, any, [&](const Outcome& o) { return located(o, true); });
   lines.push_back({"all", "a column falsely called derived", false_derived, ran, 0, true});
 
   // Held-out error against the oracle, and the listing of what went wrong.
@@ -347,8 +390,11 @@ Json score_sets(const fs::path& dir) {
                   {"adopted", join(o.adopted)},
                   {"tied", join(o.tied)},
                   {"verdict", o.ran ? o.verdict : o.trouble}};
-    for (const char* field : {"s", "a", "rival", "invention", "channel", "columns"})
+    for (const char* field :
+         {"s", "a", "rival", "invention", "channel", "columns", "slip", "derived", "population", "arrangement"})
       if (o.key.contains(field)) entry[field] = o.key[field];
+    if (o.ran && o.report.contains("columns") && !o.report["columns"].empty())
+      entry["wrong_columns"] = o.report["columns"];
     if (o.ran && o.report.contains("unexplained") && !o.report["unexplained"].empty())
       entry["unexplained"] = o.report["unexplained"];
     if (runs.contains(name)) {

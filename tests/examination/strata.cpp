@@ -8,6 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "faults.hpp"
+
 namespace examination {
 namespace {
 
@@ -38,6 +40,7 @@ struct Geometry {
   std::vector<Eigen::MatrixXd> w;
   std::vector<int> rows;
   Eigen::MatrixXd base;
+  bool bounded = true;  ///< forms inside their plausible range
 
   explicit Geometry(const Session& session)
       : s(session),
@@ -54,7 +57,7 @@ struct Geometry {
   /// Distance of the outputs to the family of the forms, training rows.
   double distance(const Eigen::MatrixXd& outputs, const std::vector<const Form*>& forms) const {
     return forms.empty() ? train_share * norm(w, outputs - base)
-                         : train_share * fit(s, swings, forms, outputs, w, rows).distance;
+                         : train_share * fit(s, swings, forms, outputs, w, rows, bounded).distance;
   }
 };
 
@@ -379,6 +382,41 @@ Json spoil_cluster(Session& s, Random& random) {
           {"rows", rows}};
 }
 
+/// One column, or two, wrong from top to bottom: plainly, and where neither a slip of another column nor a name of the
+/// contract, of any size, comes near.
+Json spoil_column(Session& s, const Eigen::MatrixXd& outputs, int which, Random& random) {
+  const auto slip = draw_slip(s, which, random);
+  if (!slip) throw Redraw{};
+  Json key = {{"slip", slip->slip}, {"columns", slip->columns}};
+  Session misread = s;
+  Eigen::MatrixXd inputs(s.shots(), static_cast<int>(s.inputs.size())), seen = outputs;
+  for (int i = 0; i < s.shots(); ++i)
+    for (std::size_t k = 0; k < s.inputs.size(); ++k)
+      inputs(i, static_cast<int>(k)) = s.swings[static_cast<std::size_t>(i)].*s.inputs[k].member / s.inputs[k].unit;
+  slip->apply(inputs, seen);
+  misread.recorded_inputs = inputs;
+  misread.swings = recorded_swings(misread);
+  const auto w = whitening(s, s.swings);
+  bool possible = true;
+  try {
+    const SlipDistance d = distance(misread, misread.swings, seen, w, *slip);
+    if (d.base < 12 || d.other < 6) throw Redraw{};
+    key["s"] = d.base;
+    key["other"] = d.other;
+  } catch (const std::domain_error&) { possible = false; }  // such blows miss: nothing could be plainer
+  if (possible) {
+    Geometry g(misread);
+    g.w = w;
+    g.bounded = false;
+    const Rival rival = nearest(g, seen, {}, {&calibration()}, {}, 9);
+    if (rival.distance < 9) throw Redraw{};
+    key["a"] = rival.distance;
+    key["rival"] = rival.effect;
+  }
+  slip->apply(s.recorded_inputs, s.recorded_outputs);
+  return key;
+}
+
 // ---- outside the vocabulary ------------------------------------------------------------------------------
 
 struct Outside {
@@ -569,7 +607,8 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
 
   SessionOptions o{random.chance(0.35) ? "rigid-planar" : "rigid-eccentric", shots};
   o.clusters = random.chance(0.3);
-  o.input_noise = stratum == "null-input-noise" || (stratum != "derived" && random.chance(0.3));
+  o.input_noise = stratum == "null-input-noise" ||
+                  (stratum != "derived" && stratum != "mostly-computed" && random.chance(0.3));
   // Every name in turn; a name that this seed's sessions cannot separate gives way to the next.
   const Form* chosen = nullptr;
   if (stratum == "one-effect" || stratum == "confounded") {
@@ -585,7 +624,7 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     o.impact_spread = random.uniform(0.05, 0.4) * std::sqrt(100.0 / shots);
   // Two names at random; friction wants the lofts where a ball slides.
   const Form *first = nullptr, *second = nullptr;
-  if (stratum == "two-effects") {
+  if (stratum == "two-effects" || stratum == "two-and-outside") {
     const auto forms = applicable(o.base, natural_forms());
     first = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
     second = forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
@@ -655,7 +694,7 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     key["s"] = g.distance(outputs, {});
     key["a"] = rival.distance;
     key["rival"] = rival.effect;
-  } else if (stratum == "two-effects") {
+  } else if (stratum == "two-effects" || stratum == "two-and-outside") {
     const Geometry g(s);
     const Form *a = first, *b = second;
     std::vector<std::vector<double>> x;
@@ -685,6 +724,20 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     key["s"] = 8;
     key["a"] = std::min(distances[0]["a"].get<double>(), distances[1]["a"].get<double>());
     key["distances"] = distances;
+    if (stratum == "two-and-outside") {
+      // And something that neither a further name nor other sizes of these two come near.
+      Eigen::MatrixXd change;
+      const Outside what = invent(index % 10, s, outputs, change, random);
+      if (train_share * norm(g.w, change) < 1e-9) throw Redraw{};
+      const double factor = what.factor != 0 ? what.factor : 16 / (train_share * norm(g.w, change));
+      const Rival rival = nearest(g, outputs + factor * change, {}, {&calibration()}, {&known_a, &known_b}, 9);
+      if (rival.distance < 9) throw Redraw{};
+      outputs += factor * change;
+      key["invention"] = what.name;
+      key["channel"] = s.channels[static_cast<std::size_t>(what.channel)].header;
+      key["columns"] = what.columns;
+      key["rival"] = rival.effect;
+    }
   } else if (stratum == "outside") {
     const Geometry g(s);
     Eigen::MatrixXd change;
@@ -706,6 +759,40 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     key["s"] = train_share * norm(g.w, factor * change);
     key["a"] = rival.distance;
     key["rival"] = rival.effect;
+  } else if (stratum == "mixture") {
+    // Two populations without a column that tells them: another ball, player, setting.
+    const Geometry g(s);
+    std::vector<const Form*> forms;
+    for (const Form* f : applicable(s.base, natural_forms()))
+      if (f->effect != "friction-limit" && f->effect != "head-rotation" && f->effect != "session-drift")
+        forms.push_back(f);
+    const Form& f = *forms[static_cast<std::size_t>(random.below(static_cast<int>(forms.size())))];
+    const double apart = random.uniform(4.5, 8);  // of the two, per shot, in noise units
+    const auto found = scaled(g, f, apart * std::sqrt(s.shots()) * train_share, {}, random);
+    if (!found) throw Redraw{};
+    const Eigen::MatrixXd other = g.outputs({f}, {*found});
+    int far = 0;
+    for (int i = 0; i < s.shots(); ++i)
+      far += (g.w[static_cast<std::size_t>(i)] * (other - outputs).row(i).transpose()).norm() > 3;
+    if (far < 0.9 * s.shots()) throw Redraw{};
+    const double share = random.uniform(0.3, 0.7);
+    const int arrangement = random.below(3);  // at random, in runs, more and more of the second
+    const int run = 2 + random.below(std::max(1, s.shots() / 8));
+    int second = 0;
+    bool label = false;
+    for (int i = 0; i < s.shots(); ++i) {
+      const double now = arrangement == 2 ? 2 * share * i / s.shots() : share;
+      if (arrangement != 1 || i % run == 0) label = random.chance(now);
+      if (!label) continue;
+      outputs.row(i) = other.row(i);
+      ++second;
+    }
+    if (second < 0.25 * s.shots() || second > 0.75 * s.shots()) throw Redraw{};
+    key["population"] = describe(f, *found);
+    key["arrangement"] =
+        std::vector<std::string>{"at random", "in runs", "more and more"}[static_cast<std::size_t>(arrangement)];
+    key["apart"] = apart;
+    key["share"] = static_cast<double>(second) / s.shots();
   } else if (stratum == "null-club-effects") {
     // Every club has its own small offset in every channel: batches, grips, set-up.
     for (std::size_t c = 0; c < s.channels.size(); ++c) {
@@ -732,6 +819,12 @@ Set attempt(std::uint64_t seed, const std::string& stratum, int shots, int index
     }
   }
   if (stratum == "derived") key["derived"] = derive(s, index, random);
+  if (stratum == "mostly-computed") {
+    const auto computed = compute_mostly(s, index / 3, random);
+    if (!computed) throw Redraw{};
+    key["derived"] = *computed;
+  }
+  if (stratum == "wrong-column") key["slip"] = spoil_column(s, outputs, index / 3, random);
   lose_some(s, random);
 
   key["hidden"] = Json::array();
@@ -756,7 +849,11 @@ const std::vector<std::pair<std::string, int>>& strata() {
                                                              {"confounded", 100},
                                                              {"outside", 100},
                                                              {"bad-rows", 100},
-                                                             {"derived", 50}};
+                                                             {"derived", 50},
+                                                             {"wrong-column", 200},
+                                                             {"mixture", 100},
+                                                             {"mostly-computed", 100},
+                                                             {"two-and-outside", 100}};
   return list;
 }
 

@@ -1,8 +1,10 @@
 // The whole loop on small sets made here with the closed form, and on broken input.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -24,6 +26,7 @@ struct World {
   double tangential = 0;  ///< hidden tangential restitution
   double humidity = 0;    ///< hidden: ball speed per per cent [m/s]
   int swapped = -1;       ///< row whose ball speed is written in mph
+  double second = 0;      ///< of a second ball: its ball speed beyond the first's [m/s]
   bool rate = false;      ///< a column spin_rate computed from the other two
   unsigned seed = 1;
 };
@@ -56,6 +59,7 @@ std::string csv(const World& w) {
     const Launch l = model->launch(b);
     double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
     if (i == w.swapped) speed /= kMpsPerMph;
+    if (w.second != 0 && gauss(random) > 0) speed += w.second;
     const double back = std::round(rpm(l.backspin()) + 60 * gauss(random)),
                  side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
     char line[512];
@@ -145,6 +149,61 @@ TEST_F(Loop, AComputedColumnIsFound) {
   ASSERT_EQ(r.derived.size(), 1U);
   EXPECT_EQ(r.derived[0].column, "spin_rate_rpm");
   EXPECT_EQ(r.channels.size(), 5U);
+}
+
+TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
+  for (const auto& [header, wrong, unit] :
+       {std::array{"ball_speed_mps", "ball_speed_mph", "mps"}, std::array{"impact_toe_mm", "impact_toe_m", "mm"},
+        std::array{"launch_angle_deg", "launch_angle_rad", "deg"}}) {
+    std::string text = csv({});
+    text.replace(text.find(header), std::string(header).size(), wrong);
+    ShotCase c = case_of(csv({}));
+    c.shots = shots(text);
+    c.noise.erase(header);
+    const LoopResult r = run(c);
+    ASSERT_EQ(r.columns.size(), 1U) << wrong;
+    EXPECT_EQ(r.columns[0].column, wrong);
+    EXPECT_EQ(r.columns[0].finding, "unit");
+    EXPECT_NE(r.columns[0].text.find(fmt::format("reads like {}:", unit)), std::string::npos) << r.columns[0].text;
+    EXPECT_EQ(name(r.verdict), "unexplained");
+    EXPECT_TRUE(r.adopted.empty() && r.ties.empty());
+  }
+}
+
+TEST_F(Loop, TwoBallsAreAMixture) {
+  const LoopResult r = run(case_of(csv({.second = 1.5})));  // six times the noise
+  ASSERT_EQ(name(r.verdict), "unexplained");
+  EXPECT_TRUE(r.adopted.empty());
+  ASSERT_FALSE(r.unexplained.empty());
+  EXPECT_EQ(r.unexplained.back().channel, "ball_speed_mps");
+  EXPECT_NE(r.unexplained.back().detail.find("mixture"), std::string::npos) << r.unexplained.back().detail;
+}
+
+TEST_F(Loop, AColumnComputedOnSomeRowsIsFound) {
+  // The angle between face and club on two rows in three, a reading of its own on the others.
+  std::string table = "spin_loft_deg," + csv({.shots = 0});
+  std::istringstream lines(csv({}));
+  std::string line;
+  std::getline(lines, line);
+  std::mt19937 random(5);
+  std::normal_distribution<double> gauss;
+  for (int row = 0; std::getline(lines, line); ++row) {
+    std::vector<double> cell;
+    std::istringstream cells(line);
+    for (std::string c; std::getline(cells, c, ',');) cell.push_back(std::stod(c));
+    const auto along = [](double up, double right) {
+      return Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
+    };
+    const Vec3 club = along(radians(cell[2]), radians(cell[3])), face = along(radians(cell[5]), radians(cell[4]));
+    const double computed = degrees(std::acos(club.dot(face)));
+    table += fmt::format("{:.1f},{}\n", row % 3 == 0 ? computed + 0.8 * gauss(random) : computed, line);
+  }
+  const std::vector<DerivedColumn> found = audit(shots(table), {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].column, "spin_loft_deg");
+  EXPECT_EQ(std::set<std::string>(found[0].from.begin(), found[0].from.end()),
+            (std::set<std::string>{"attack_angle_deg", "club_path_deg", "face_angle_deg", "dynamic_loft_deg"}));
+  EXPECT_NEAR(found[0].share, 2.0 / 3, 0.1);  // of the other rows some agree by chance
 }
 
 /// Shots with a face angle that the instrument computed from azimuth and path, and a smash factor of two decimals.

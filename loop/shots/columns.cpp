@@ -1,0 +1,442 @@
+#include "hosel/loop/shots/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "hosel/loop/median.hpp"
+#include "hosel/loop/shots/inputs.hpp"
+#include "hosel/loop/shots/scatter.hpp"
+#include "hosel/models/rigid_eccentric.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr std::size_t kMostRows = 240;
+constexpr double kSure = 30;       // least fall of the deviance,
+constexpr double kShare = 0.15;    // and share of it,
+constexpr double kOverRival = 16;  // and lead over the library's best
+constexpr double kClean = 1.7;     // deviance per value that a slip of free size may leave
+
+bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
+
+/// Quantities whose sign is a convention.
+bool has_sign(const Column& c) {
+  const auto i = input_of(c.stem);
+  const auto o = output_of(c.stem);
+  if (i) return *i != Input::club_speed && *i != Input::head_mass && *i != Input::dynamic_loft;
+  return o && *o != Output::ball_speed && *o != Output::spin_rate;
+}
+
+Dimension dimension(const Column& c) {
+  if (const auto i = input_of(c.stem)) return quantity(*i).dimension;
+  return quantity(*output_of(c.stem)).dimension;
+}
+
+/// Units that launch monitors and people write, beside those that the project reads.
+std::vector<Unit> likely_units(Dimension d) {
+  std::vector<Unit> all;
+  for (const Unit& u : units())
+    if (u.dimension == d) all.push_back(u);
+  switch (d) {
+    case Dimension::length:
+      all.push_back({"inch", d, 0.0254});
+      all.push_back({"cm", d, 0.01});
+      break;
+    case Dimension::angular_velocity: all.push_back({"revolutions per second", d, 2 * kPi}); break;
+    case Dimension::speed: all.push_back({"feet per second", d, 0.3048}); break;
+    case Dimension::mass: all.push_back({"pounds", d, 0.45359237}); break;
+    default: break;
+  }
+  return all;
+}
+
+}  // namespace
+
+/// Values of `column` (and `second`) as they would have to be read: factor and offset, on the members only.
+struct Columns::Slip {
+  std::string finding;
+  int column = 0, second = -1;
+  double factor = 1, offset = 0;  ///< true value = factor * recorded + offset [SI]
+  std::vector<char> member;       ///< of a level shift: rows that are shifted; empty: all
+  std::string what;               ///< unit; where the shift begins
+  double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
+  double deviance = 0;
+  double criterion() const { return deviance + cost; }
+};
+
+Columns::~Columns() = default;
+
+Columns::Columns(const ShotCase& c) : case_(c) {
+  read();
+  if (rows_.size() < 8 || outputs_.empty()) return;
+  // A slow base is stood for by the closed form: gross slips show all the same.
+  static const models::RigidEccentric companion;
+  std::vector<ShotChannel> channels;
+  for (std::size_t k = 0; k < outputs_.size(); ++k) {
+    const Column& column = *columns_[inputs_.size() + k];
+    channels.push_back(ShotChannel{{.name = column.name, .si = 1, .resolution = column.resolution}, outputs_[k]});
+  }
+  std::vector<Shot> shots;
+  for (Eigen::Index i = 0; i < values_.rows(); ++i) shots.push_back(shot(i, values_));
+  model_ = std::make_unique<ShotModel>(c.direct ? *c.model : companion, true, std::move(shots), std::move(channels),
+                                       values_.rightCols(std::ptrdiff_t(outputs_.size())));
+  estimate_noise();
+  as_recorded_ = deviance(values_, Model{}, {});
+  try_constants();
+  try_sizes();
+  std::ranges::stable_sort(slips_, {}, &Slip::criterion);
+}
+
+void Columns::read() {
+  const Shots& shots = case_.shots;
+  for (int k = 0; k < kInputs; ++k)
+    if (const Column* c = shots.find_stem(stem(Input(k))); c && c->role == Role::input) {
+      columns_.push_back(c);
+      inputs_.push_back(Input(k));
+    }
+  for (int o = 0; o < kOutputs; ++o)
+    if (const Column* c = shots.find_stem(stem(Output(o))); c && c->role == Role::output) {
+      columns_.push_back(c);
+      outputs_.push_back(Output(o));
+    }
+  std::vector<int> complete;
+  for (std::size_t i = 0; i < shots.rows(); ++i) {
+    bool needed = true, output = false;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const bool there = std::isfinite(columns_[k]->value[i]);
+      if (k >= inputs_.size()) output = output || there;
+      else if (inputs_[k] == Input::club_speed || inputs_[k] == Input::dynamic_loft) needed = needed && there;
+    }
+    if (needed && output) complete.push_back(int(i));
+  }
+  const std::size_t n = std::min(complete.size(), kMostRows);
+  for (std::size_t k = 0; k < n; ++k) rows_.push_back(complete[k * complete.size() / n]);
+  order_ = session_order(shots, rows_);
+  values_.resize(std::ptrdiff_t(n), std::ptrdiff_t(columns_.size()));
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    std::vector<double> known;
+    for (const double x : columns_[k]->value)
+      if (std::isfinite(x)) known.push_back(x);
+    const double middle = median(known);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = columns_[k]->value[std::size_t(rows_[i])];
+      values_(std::ptrdiff_t(i), std::ptrdiff_t(k)) = std::isfinite(x) || k >= inputs_.size() ? x : middle;
+    }
+  }
+}
+
+Shot Columns::shot(Eigen::Index row, const Eigen::MatrixXd& values) const {
+  Shot s{case_.blow, order_[std::size_t(row)]};
+  for (std::size_t k = 0; k < inputs_.size(); ++k) set(s.blow, inputs_[k], values(row, std::ptrdiff_t(k)));
+  return s;
+}
+
+/// Model minus measured [SI], rows x channels; zero where nothing is measured, NaN where the blow cannot be.
+Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const {
+  const auto m = std::ptrdiff_t(outputs_.size()), first = std::ptrdiff_t(inputs_.size());
+  Eigen::MatrixXd r(values.rows(), m);
+  Eigen::VectorXd out(m);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    bool possible = true;
+    for (std::ptrdiff_t k = 0; k < first && possible; ++k) {
+      const InputQuantity& q = quantity(inputs_[std::size_t(k)]);
+      possible = values(i, k) >= q.low && values(i, k) <= q.high;
+    }
+    if (!possible || !model_->predict(shot(i, values), -1, model, p.data(), out.data())) {
+      r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    for (std::ptrdiff_t c = 0; c < m; ++c) {
+      const double y = values(i, first + c);
+      double d = std::isfinite(y) ? out[c] - y : 0.0;
+      if (is_angle(outputs_[std::size_t(c)])) d -= 2 * kPi * std::round(d / (2 * kPi));
+      r(i, c) = d;
+    }
+  }
+  return r;
+}
+
+/// Derivatives of the channels by an input column, or minus one for the channel itself: rows x channels.
+Eigen::MatrixXd Columns::sensitivity(const Eigen::MatrixXd& values, int column) const {
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(values.rows(), std::ptrdiff_t(outputs_.size()));
+  if (std::size_t(column) >= inputs_.size()) {
+    d.col(column - std::ptrdiff_t(inputs_.size())).setConstant(-1);
+    return d;
+  }
+  const double h = quantity(inputs_[std::size_t(column)]).step;
+  Eigen::MatrixXd up = values, down = values;
+  up.col(column).array() += h;
+  down.col(column).array() -= h;
+  d = (residuals(up, {}, {}) - residuals(down, {}, {})) / (2 * h);
+  return d.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+}
+
+/// Inverse factor of the covariance of a typical shot: instrument, and the inputs' noise through the base.
+Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values) const {
+  Eigen::MatrixXd cov = noise_.cwiseAbs2().asDiagonal();
+  if (input_noise_.maxCoeff() > 0) {
+    const Eigen::Index some = std::min<Eigen::Index>(values.rows(), 12), n = values.rows();
+    Eigen::MatrixXd few(some, values.cols());
+    for (Eigen::Index i = 0; i < some; ++i) few.row(i) = values.row(i * n / some);
+    for (std::size_t k = 0; k < inputs_.size(); ++k)
+      if (const double s = input_noise_[std::ptrdiff_t(k)]; s > 0) {
+        const Eigen::MatrixXd J = sensitivity(few, int(k));
+        cov += s * s / double(some) * J.transpose() * J;
+      }
+  }
+  return cov.llt().matrixL().solve(Eigen::MatrixXd::Identity(cov.rows(), cov.cols()));
+}
+
+double Columns::deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const {
+  const Eigen::MatrixXd r = residuals(values, model, p), W = whitening(values);
+  const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
+  double sum = -2 * double(r.rows()) * W.diagonal().array().log().sum();
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    sum += loss(r.row(i).allFinite() ? (W * r.row(i).transpose()).squaredNorm() : 1e6 * double(r.cols()));
+  return sum;
+}
+
+void Columns::estimate_noise() {
+  const auto m = std::ptrdiff_t(outputs_.size());
+  noise_ = Eigen::VectorXd::Zero(m);
+  input_noise_ = Eigen::VectorXd::Zero(std::ptrdiff_t(inputs_.size()));
+  for (std::size_t k = 0; k < inputs_.size(); ++k) {
+    const auto it = case_.input_noise.find(columns_[k]->name);
+    if (it != case_.input_noise.end()) input_noise_[std::ptrdiff_t(k)] = it->second * columns_[k]->si;
+  }
+  std::vector<int> all(rows_.size());
+  std::iota(all.begin(), all.end(), 0);
+  Eigen::MatrixXd r = residuals(values_, {}, {});
+  for (std::ptrdiff_t c = 0; c < m; ++c) {
+    const Column& column = *columns_[inputs_.size() + std::size_t(c)];
+    const double rounding = column.resolution / std::sqrt(12.0);
+    if (const auto it = case_.noise.find(column.name); it != case_.noise.end())
+      noise_[c] = std::hypot(it->second * column.si, rounding);
+    else noise_[c] = std::max(smooth_scatter(*model_, all, int(c), r), rounding);
+    std::vector<double> size;
+    for (Eigen::Index i = 0; i < values_.rows(); ++i)
+      if (const double y = values_(i, std::ptrdiff_t(inputs_.size()) + c); std::isfinite(y))
+        size.push_back(std::abs(y));
+    noise_[c] = std::max(noise_[c], 1e-6 * median(size) + 1e-12);
+  }
+}
+
+Eigen::MatrixXd Columns::corrected(const Slip& s) const {
+  Eigen::MatrixXd values = values_;
+  if (s.finding == "swapped") {
+    // The numbers were written under each other's header.
+    const double a = columns_[std::size_t(s.column)]->si, b = columns_[std::size_t(s.second)]->si;
+    values.col(s.column) = values_.col(s.second) * (a / b);
+    values.col(s.second) = values_.col(s.column) * (b / a);
+    return values;
+  }
+  for (const int k : {s.column, s.second}) {
+    if (k < 0) continue;
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      if (s.member.empty() || s.member[std::size_t(i)]) values(i, k) = s.factor * values(i, k) + s.offset;
+  }
+  return values;
+}
+
+void Columns::attempt(Slip slip) {
+  slip.deviance = deviance(corrected(slip), {}, {});
+  slips_.push_back(std::move(slip));
+}
+
+/// Slips without a free number.
+void Columns::try_constants() {
+  const int count = int(columns_.size());
+  for (int k = 0; k < count; ++k) {
+    const Column& c = *columns_[std::size_t(k)];
+    for (const Unit& u : likely_units(dimension(c))) {
+      if (std::abs(u.si / c.si - 1) < 1e-9) continue;
+      attempt({.finding = "unit", .column = k, .factor = u.si / c.si, .what = std::string(u.suffix), .cost = 2});
+    }
+    if (has_sign(c)) attempt({.finding = "sign", .column = k, .factor = -1, .cost = 2});
+    for (int l = k + 1; l < count; ++l) {
+      const Column& d = *columns_[std::size_t(l)];
+      if (dimension(c) != dimension(d)) continue;
+      attempt({.finding = "swapped", .column = k, .second = l, .cost = 4});
+      // Both in the same other unit: one monitor, one setting.
+      if (std::abs(c.si / d.si - 1) > 1e-9) continue;
+      for (const Unit& u : likely_units(dimension(c)))
+        if (std::abs(u.si / c.si - 1) > 1e-9)
+          attempt({.finding = "unit",
+                   .column = k,
+                   .second = l,
+                   .factor = u.si / c.si,
+                   .what = std::string(u.suffix),
+                   .cost = 8});
+    }
+  }
+}
+
+/// Slips whose size is found: offset, scale, and offset of a part of the session. All by linear algebra about the
+/// recorded values, the best of them again about themselves.
+void Columns::try_sizes() {
+  const Eigen::Index n = values_.rows(), m = std::ptrdiff_t(outputs_.size());
+  const Eigen::MatrixXd r = residuals(values_, {}, {}), W = whitening(values_);
+  const solvers::Loss loss = loss_of_shot(int(m)).uncapped();
+
+  /// The size that brings whitened residuals z + j t down most: from the middle of what single shots ask for.
+  const auto fitted = [&](const Eigen::MatrixXd& z, const Eigen::MatrixXd& j) {
+    std::vector<std::pair<double, double>> asked;  // by a shot, its weight
+    double total = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double jj = j.row(i).squaredNorm();
+      if (!(jj > 0) || !z.row(i).allFinite()) continue;
+      asked.emplace_back(-j.row(i).dot(z.row(i)) / jj, std::sqrt(jj));
+      total += std::sqrt(jj);
+    }
+    std::ranges::sort(asked);
+    double t = 0, sum = 0, value = 0;
+    for (const auto& [x, weight] : asked)
+      if ((sum += weight) > total / 2) {
+        t = x;
+        break;
+      }
+    for (int pass = 0; pass < 5; ++pass) {
+      double a = 0, b = 0;
+      value = 0;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!z.row(i).allFinite()) continue;
+        const Eigen::VectorXd at = (z.row(i) + t * j.row(i)).transpose();
+        const double w = loss.weight(at.squaredNorm());
+        value += loss(at.squaredNorm());
+        a += w * j.row(i).squaredNorm();
+        b += w * j.row(i).dot(at);
+      }
+      if (a > 0) t -= b / a;
+    }
+    return std::pair{t, value};
+  };
+
+  struct Trial {
+    Slip slip;
+    double criterion;
+  };
+  std::vector<Trial> trials;
+  const Eigen::MatrixXd z = r * W.transpose();
+  std::vector<std::pair<std::vector<char>, std::string>> parts;
+  std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
+  std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
+  std::ranges::stable_sort(by_order, {}, [&](Eigen::Index i) { return order_[std::size_t(i)]; });
+  for (Eigen::Index k = n / 6; n >= 12 && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
+    std::vector<char> member(static_cast<std::size_t>(n), 0);
+    for (Eigen::Index i = k; i < n; ++i) member[std::size_t(by_order[std::size_t(i)])] = 1;
+    parts.emplace_back(member, fmt::format("from shot {} on",
+                                           case_.shots.id[std::size_t(rows_[std::size_t(by_order[std::size_t(k)])])]));
+  }
+  for (const Column& c : case_.shots.columns) {
+    if (c.numeric || c.role == Role::output) continue;
+    const Groups g = groups(c);
+    if (g.name.size() < 2 || g.name.size() > 12) continue;
+    for (std::size_t k = 0; k + (g.name.size() == 2) < g.name.size(); ++k) {
+      std::vector<char> member(static_cast<std::size_t>(n), 0);
+      for (Eigen::Index i = 0; i < n; ++i)
+        member[std::size_t(i)] = g.of_row[std::size_t(rows_[std::size_t(i)])] == int(k + (g.name.size() == 2));
+      const auto inside = std::ranges::count(member, 1);
+      // A smaller group that recorded something else is a finding about rows.
+      if (inside * 4 < n || inside * 4 > 3 * n) continue;
+      parts.emplace_back(member, fmt::format("where {} is {}", c.name, g.name[k + (g.name.size() == 2)]));
+    }
+  }
+  for (int k = 0; k < int(columns_.size()); ++k) {
+    const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
+    if (J.norm() < 1e-12) continue;
+    const auto consider = [&](Slip slip, const Eigen::MatrixXd& j) {
+      const auto [t, value] = fitted(z, j);
+      (slip.finding == "scale" ? slip.factor : slip.offset) += t;
+      const double cost = slip.cost;
+      trials.push_back({std::move(slip), value + cost});
+    };
+    consider({.finding = "offset", .column = k, .cost = 8}, J);
+    const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+    consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
+    for (const auto& [member, what] : parts) {
+      Eigen::MatrixXd j = J;
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (!member[std::size_t(i)]) j.row(i).setZero();
+      consider({.finding = "level-shift", .column = k, .member = member, .what = what, .cost = 15}, j);
+    }
+  }
+  std::ranges::stable_sort(trials, {}, &Trial::criterion);
+  // The best few, of different columns or kinds, about themselves.
+  std::vector<Slip> kept;
+  for (const Trial& t : trials) {
+    if (kept.size() == 10) break;
+    const auto same = std::ranges::count_if(
+        kept, [&](const Slip& s) { return s.column == t.slip.column && s.finding == t.slip.finding; });
+    if (same < (t.slip.finding == "level-shift" ? 2 : 1)) kept.push_back(t.slip);
+  }
+  for (Slip& slip : kept) {
+    for (int pass = 0; pass < 3; ++pass) {
+      const Eigen::MatrixXd at = corrected(slip), V = whitening(at);
+      Eigen::MatrixXd j = sensitivity(at, slip.column) * V.transpose();
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double x = values_(i, slip.column);
+        j.row(i) *= slip.finding == "scale" ? (std::isfinite(x) ? x : 0.0)
+                                            : double(slip.member.empty() || slip.member[std::size_t(i)]);
+      }
+      const double t = fitted(residuals(at, {}, {}) * V.transpose(), j).first;
+      (slip.finding == "scale" ? slip.factor : slip.offset) += t;
+    }
+    attempt(std::move(slip));
+  }
+}
+
+std::string Columns::text(const Slip& s, bool second) const {
+  const Column& c = *columns_[std::size_t(second ? s.second : s.column)];
+  const std::string unit = split_unit(c.name).unit ? std::string(split_unit(c.name).unit->suffix) : "";
+  if (s.finding == "unit")
+    return fmt::format("{} reads like {}: ratio {:.4g} to what the other columns allow", c.name, s.what,
+                       s.factor < 1 ? 1 / s.factor : s.factor);
+  if (s.finding == "sign") return fmt::format("{} reads with the other sign", c.name);
+  if (s.finding == "swapped")
+    return fmt::format("{} reads like {}: the two columns are swapped", c.name,
+                       columns_[std::size_t(second ? s.column : s.second)]->name);
+  if (s.finding == "scale")
+    return fmt::format("{} reads {:.4g} times what the other columns allow", c.name, 1 / s.factor);
+  const std::string by =
+      fmt::format("{:.4g} {} too {}", std::abs(s.offset) / c.si, unit, s.offset < 0 ? "high" : "low");
+  if (s.finding == "offset") return fmt::format("{} reads {} throughout", c.name, by);
+  return fmt::format("{} reads {} {}", c.name, by, s.what);
+}
+
+std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) const {
+  if (slips_.empty()) return {};
+  const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
+  const double log_scale = -2 * double(values_.rows()) * whitening(values_).diagonal().array().log().sum();
+  double library = as_recorded_;
+  for (const Fit& f : rivals)
+    if (!f.at_bound)
+      library = std::min(library, deviance(values_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
+                                      case_.rules.further_gain * (double(f.model.forms.size()) - 1));
+  const auto holds = [&](const Slip& s) {
+    const bool free = s.finding == "offset" || s.finding == "scale" || s.finding == "level-shift";
+    const double base = as_recorded_ - log_scale;
+    return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > kOverRival &&
+           (!free || s.deviance - log_scale < kClean * values);
+  };
+  const auto best = std::ranges::find_if(slips_, holds);
+  if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie) return {};
+  std::vector<WrongColumn> told;
+  std::string also;
+  for (const Slip& s : slips_)
+    if (&s != &*best && s.criterion() < best->criterion() + case_.rules.tie && s.column != best->column && holds(s)) {
+      also = "; or " + text(s, false);
+      break;
+    }
+  for (const bool second : {false, true})
+    if (!second || best->second >= 0)
+      told.push_back({columns_[std::size_t(second ? best->second : best->column)]->name, best->finding,
+                      text(*best, second) + also});
+  return told;
+}
+
+}  // namespace hosel::loop

@@ -1,0 +1,61 @@
+/// Do whole columns hold what their headers say? Units, signs, columns swapped, offsets, scales, level shifts: told,
+/// never repaired.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hosel/loop/fit.hpp"
+#include "hosel/loop/shots/case.hpp"
+#include "hosel/loop/shots/model.hpp"
+
+namespace hosel::loop {
+
+struct WrongColumn {
+  std::string column;
+  std::string finding;  ///< unit, sign, swapped, offset, scale, level-shift
+  std::string text;     ///< "reads like mph: ..."
+};
+
+/// Every slip of whole columns is tried on all rows (of long sets on some, evenly spread): none is screened away,
+/// values that no blow can have count as far off. Slips compete by a deviance whose tail is logarithmic, so that a slip
+/// is seen however gross it is.
+class Columns {
+ public:
+  explicit Columns(const ShotCase& c);
+  ~Columns();
+  /// Those that contradict their header, where no fit among `rivals` (effects of the library inside their plausible
+  /// range) does nearly as well, the column in its header's sense.
+  std::vector<WrongColumn> contradicted(const std::vector<Fit>& rivals) const;
+
+ private:
+  struct Slip;
+  void read();
+  void estimate_noise();
+  Shot shot(Eigen::Index row, const Eigen::MatrixXd& values) const;
+  Eigen::MatrixXd residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
+  Eigen::MatrixXd sensitivity(const Eigen::MatrixXd& values, int column) const;
+  double deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
+  Eigen::MatrixXd whitening(const Eigen::MatrixXd& values) const;
+  Eigen::MatrixXd corrected(const Slip& slip) const;
+  void attempt(Slip slip);
+  void try_constants();
+  void try_sizes();
+  std::string text(const Slip& slip, bool second) const;
+
+  const ShotCase& case_;
+  std::vector<const Column*> columns_;   ///< inputs, then channels
+  std::vector<Input> inputs_;            ///< of the first columns
+  std::vector<Output> outputs_;          ///< of the others
+  std::vector<int> rows_;                ///< of the file
+  std::vector<double> order_;            ///< place in the session
+  Eigen::MatrixXd values_;               ///< rows x columns as recorded, SI; missing outputs NaN
+  Eigen::VectorXd noise_, input_noise_;  ///< per channel, per input [SI]
+  std::unique_ptr<ShotModel> model_;
+  std::vector<Slip> slips_;  ///< the likeliest first
+  double as_recorded_ = 0;   ///< deviance
+};
+
+}  // namespace hosel::loop

@@ -1,0 +1,340 @@
+#include "hosel/loop/shots/relations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "hosel/golf/vector.hpp"
+#include "hosel/loop/median.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kLeastShare = 0.35;  // of the rows
+constexpr double kContrast = 4;       // of the density within rounding to that beside it
+constexpr std::size_t kMostRows = 300;
+
+struct Source {
+  const Column* column;
+  std::vector<double> x;  ///< header's unit; NaN where missing
+  double step;            ///< of the recording
+  double spread;
+  bool divides;  ///< keeps its sign and stays away from zero
+};
+
+/// y = formula(x, k) on some rows: how many, and how much they stand out.
+struct Relation {
+  int target = 0;
+  std::vector<int> from;
+  std::string text;
+  double residual = 0, k = 0;
+  int rows = 0, held = 0;
+  double score() const { return held - 3.0 * double(from.size()); }
+  std::set<int> columns() const {
+    std::set<int> all(from.begin(), from.end());
+    all.insert(target);
+    return all;
+  }
+};
+
+Vec3 direction(double up, double right) {
+  return {std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up)};
+}
+double up(const Vec3& v) { return std::asin(v.z() / v.norm()); }
+double right(const Vec3& v) { return std::atan2(-v.y(), v.x()); }
+
+class Relations {
+ public:
+  explicit Relations(const Shots& shots) {
+    std::vector<std::size_t> rows;
+    const std::size_t n = std::min(shots.rows(), kMostRows);
+    for (std::size_t k = 0; k < n; ++k) rows.push_back(k * shots.rows() / n);
+    for (const Column& c : shots.columns) {
+      if (!c.numeric || c.role == Role::bookkeeping) continue;
+      Source s{&c, {}, c.resolution / c.si, 0, false};
+      std::vector<double> seen;
+      for (const std::size_t row : rows) {
+        s.x.push_back(c.native(row));
+        if (std::isfinite(s.x.back())) seen.push_back(s.x.back());
+      }
+      if (seen.size() < 20 || seen.size() * 2 < rows.size()) continue;
+      std::ranges::sort(seen);
+      const auto at = [&](double q) { return seen[std::size_t(q * double(seen.size() - 1))]; };
+      s.spread = at(0.9) - at(0.1);
+      // A coarse column cannot show a formula.
+      if (!(s.spread > 5 * s.step)) continue;
+      s.divides = at(0.05) * at(0.95) > 0 && std::max(std::abs(at(0.05)), std::abs(at(0.95))) <
+                                                 8 * std::min(std::abs(at(0.05)), std::abs(at(0.95)));
+      sources_.push_back(std::move(s));
+    }
+  }
+
+  std::vector<Relation> run() {
+    for (int y = 0; y < count(); ++y) {
+      scalars(y);
+      directions(y);
+    }
+    std::ranges::stable_sort(found_, std::ranges::greater{},
+                             [&](const Relation& r) { return std::pair(r.score(), -rank(r.target)); });
+    return found_;
+  }
+  const std::string& header(int k) const { return sources_[std::size_t(k)].column->name; }
+  const Column& column(int k) const { return *sources_[std::size_t(k)].column; }
+  double step(int k) const { return sources_[std::size_t(k)].step; }
+
+ private:
+  std::vector<Source> sources_;
+  std::vector<Relation> found_;
+
+  int count() const { return int(sources_.size()); }
+  double x(int k, std::size_t row) const { return sources_[std::size_t(k)].x[row]; }
+  std::size_t rows() const { return sources_.empty() ? 0 : sources_[0].x.size(); }
+
+  /// What an instrument is likely to compute first.
+  int rank(int k) const {
+    const Column& c = column(k);
+    if (c.role == Role::other) return 0;
+    if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
+    return c.stem == "spin_axis" ? 3 : 4;
+  }
+  bool same_dimension(int a, int b) const {
+    const auto p = split_unit(header(a)).unit, q = split_unit(header(b)).unit;
+    return p && q && p->suffix == q->suffix;
+  }
+
+  /// Residuals at hand: do more of them lie within rounding than beside it?
+  void judge(int y, const std::vector<int>& from, const std::string& text, double k,
+             const std::vector<double>& residual) {
+    const double t = 0.5 * sources_[std::size_t(y)].step * 1.02 + 1e-9 * sources_[std::size_t(y)].spread;
+    int held = 0, beside = 0;
+    double square = 0;
+    for (const double r : residual) {
+      if (std::abs(r) <= t) {
+        ++held;
+        square += r * r;
+      } else if (std::abs(r) <= 5 * t) {
+        ++beside;
+      }
+    }
+    const int n = int(residual.size());
+    if (n < 20 || held < 10 || held < kLeastShare * n || held < kContrast * (beside / 4.0 + 1)) return;
+    found_.push_back({y, from, text, std::sqrt(square / held), k, n, held});
+  }
+
+  /// y = u + k v: the number that most rows agree on, to rounding.
+  template <class U, class V>
+  void linear(int y, const std::vector<int>& from, std::optional<double> known, U&& u, V&& v, auto&& text) {
+    struct End {
+      double k;
+      int change;
+    };
+    std::vector<End> ends;
+    std::vector<std::pair<double, double>> parts;  // y - u, v
+    const double t = 0.5 * sources_[std::size_t(y)].step;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      const double a = x(y, i) - u(i), b = v(i);
+      if (!std::isfinite(a) || !std::isfinite(b) || b == 0) continue;
+      parts.emplace_back(a, b);
+      ends.push_back({a / b - t / std::abs(b), 1});
+      ends.push_back({a / b + t / std::abs(b), -1});
+    }
+    if (parts.size() < 20) return;
+    double k = 0;
+    if (known) {
+      k = *known;
+    } else {
+      std::ranges::sort(ends, {}, &End::k);
+      int open = 0, most = 0;
+      for (std::size_t e = 0; e + 1 < ends.size(); ++e)
+        if ((open += ends[e].change) > most) {
+          most = open;
+          k = 0.5 * (ends[e].k + ends[e + 1].k);
+        }
+      if (most < kLeastShare * double(parts.size())) return;
+    }
+    std::vector<double> residual;
+    for (const auto& [a, b] : parts) residual.push_back(a - k * b);
+    judge(y, from, text(k), k, residual);
+  }
+
+  void scalars(int y) {
+    const auto one = [](std::size_t) { return 1.0; };
+    const auto zero = [](std::size_t) { return 0.0; };
+    for (int a = 0; a < count(); ++a) {
+      if (a == y) continue;
+      const auto xa = [&, a](std::size_t i) { return x(a, i); };
+      linear(y, {a}, {}, zero, xa, [&](double k) { return fmt::format("{:.5g} * {}", k, header(a)); });
+      if (same_dimension(y, a))
+        linear(y, {a}, {}, xa, one, [&](double k) { return fmt::format("{} {:+.5g}", header(a), k); });
+      for (int b = 0; b < count(); ++b) {
+        if (b == y || b == a) continue;
+        const auto xb = [&, b](std::size_t i) { return x(b, i); };
+        if (a < b)
+          linear(
+              y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) * x(b, i); },
+              [&](double k) { return fmt::format("{:.5g} * {} * {}", k, header(a), header(b)); });
+        if (sources_[std::size_t(b)].divides)
+          linear(
+              y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) / x(b, i); },
+              [&](double k) { return fmt::format("{:.5g} * {} / {}", k, header(a), header(b)); });
+        if (same_dimension(a, b)) {
+          // A mean of the two, or one beyond the other.
+          linear(
+              y, {a, b}, {}, xb, [&](std::size_t i) { return x(a, i) - x(b, i); },
+              [&](double k) { return fmt::format("{:.4g} * {} {:+.4g} * {}", k, header(a), 1 - k, header(b)); });
+          linear(
+              y, {a, b}, 1.0, xa, [&](std::size_t i) { return -x(b, i); },
+              [&](double) { return fmt::format("{} - {}", header(a), header(b)); });
+          if (a < b)
+            linear(y, {a, b}, 1.0, xa, xb, [&](double) { return fmt::format("{} + {}", header(a), header(b)); });
+        } else if (same_dimension(y, a)) {
+          linear(y, {a, b}, {}, xa, xb,
+                 [&](double k) { return fmt::format("{} {:+.5g} * {}", header(a), k, header(b)); });
+        }
+        if (!same_dimension(y, a)) continue;
+        for (int c = 0; c < count(); ++c)
+          if (c != y && c != a && c != b && sources_[std::size_t(c)].divides)
+            linear(
+                y, {a, b, c}, {}, xa, [&](std::size_t i) { return x(b, i) / x(c, i); },
+                [&](double k) { return fmt::format("{} {:+.5g} * {} / {}", header(a), k, header(b), header(c)); });
+      }
+    }
+  }
+
+  int of(std::string_view stem) const {
+    for (int k = 0; k < count(); ++k)
+      if (column(k).stem == stem && column(k).role != Role::other) return k;
+    return -1;
+  }
+
+  /// y = value(row, k) [SI], the number between 0.4 and 1.1 that most rows agree on.
+  void directed(int y, const std::vector<int>& from, bool free, const std::string& text, auto&& value) {
+    const double si = column(y).si, t = 0.5 * sources_[std::size_t(y)].step;
+    const auto miss = [&](std::size_t i, double k) { return x(y, i) - value(i, k) / si; };
+    std::vector<std::size_t> good;
+    for (std::size_t i = 0; i < rows(); ++i)
+      if (std::isfinite(miss(i, 0.8))) good.push_back(i);
+    if (good.size() < 20) return;
+    double k = 1;
+    if (free) {
+      std::vector<std::pair<double, int>> ends;
+      for (const std::size_t i : good) {
+        double at = 0.8, slope = 0;
+        for (int pass = 0; pass < 6; ++pass) {
+          slope = (miss(i, at + 1e-5) - miss(i, at - 1e-5)) / 2e-5;
+          at -= std::clamp(miss(i, at) / slope, -0.2, 0.2);
+        }
+        if (!(at > 0.4 && at < 1.1)) continue;
+        ends.emplace_back(at - t / std::abs(slope), 1);
+        ends.emplace_back(at + t / std::abs(slope), -1);
+      }
+      std::ranges::sort(ends);
+      int open = 0, most = 0;
+      for (std::size_t e = 0; e + 1 < ends.size(); ++e)
+        if ((open += ends[e].second) > most) {
+          most = open;
+          k = 0.5 * (ends[e].first + ends[e + 1].first);
+        }
+      if (most < kLeastShare * double(good.size())) return;
+    }
+    std::vector<double> residual;
+    for (const std::size_t i : good) residual.push_back(miss(i, k));
+    judge(y, from, free ? fmt::format("{}, k = {:.4g}", text, k) : text, k, residual);
+  }
+
+  /// The face's normal, the club's direction and the ball's: b ~ k n + (1 - k) v, and the spin square to n and v.
+  void directions(int y) {
+    const int loft = of("dynamic_loft"), face = of("face_angle"), attack = of("attack_angle"), path = of("club_path"),
+              launch = of("launch_angle"), azimuth = of("azimuth"), back = of("backspin"), side = of("sidespin");
+    if (attack < 0 || path < 0) return;
+    const auto si = [&](int k, std::size_t i) { return x(k, i) * column(k).si; };
+    const auto club = [&](std::size_t i) { return direction(si(attack, i), si(path, i)); };
+    if (loft >= 0 && face >= 0 && launch >= 0 && azimuth >= 0) {
+      const auto normal = [&](std::size_t i, double k) {
+        return Vec3(direction(si(launch, i), si(azimuth, i)) - (1 - k) * club(i));
+      };
+      const auto ball = [&](std::size_t i, double k) {
+        return Vec3(k * direction(si(loft, i), si(face, i)) + (1 - k) * club(i));
+      };
+      const char* from_ball = "direction of ball - (1 - k) club";
+      const char* from_face = "direction of k face + (1 - k) club";
+      if (y == loft)
+        directed(y, {face, launch, azimuth, attack, path}, true, from_ball,
+                 [&](auto i, double k) { return up(normal(i, k)); });
+      if (y == face)
+        directed(y, {loft, launch, azimuth, attack, path}, true, from_ball,
+                 [&](auto i, double k) { return right(normal(i, k)); });
+      if (y == launch)
+        directed(y, {azimuth, loft, face, attack, path}, true, from_face,
+                 [&](auto i, double k) { return up(ball(i, k)); });
+      if (y == azimuth)
+        directed(y, {launch, loft, face, attack, path}, true, from_face,
+                 [&](auto i, double k) { return right(ball(i, k)); });
+    }
+    if (loft < 0 || face < 0) return;
+    const auto normal = [&](std::size_t i) { return direction(si(loft, i), si(face, i)); };
+    const auto spin = [&](std::size_t i) { return Vec3(club(i).cross(normal(i))); };
+    const std::vector<int> planes{loft, face, attack, path};
+    const char* square = "spin square to face and club";
+    if (column(y).stem == "spin_axis")
+      directed(y, planes, false, square, [&](auto i, double) {
+        const Vec3 w = spin(i);
+        return std::atan2(-w.z(), -w.y());
+      });
+    if (y == side && back >= 0)
+      directed(y, {loft, face, attack, path, back}, false, square,
+               [&](auto i, double) { return si(back, i) * spin(i).z() / spin(i).y(); });
+    if (y == back && side >= 0)
+      directed(y, {loft, face, attack, path, side}, false, square,
+               [&](auto i, double) { return si(side, i) * spin(i).y() / spin(i).z(); });
+    if (const auto unit = split_unit(header(y)).unit;
+        column(y).role == Role::other && unit && unit->dimension == Dimension::angle)
+      directed(y, planes, false, "angle between face and club: the spin loft",
+               [&](auto i, double) { return std::acos(std::clamp(normal(i).dot(club(i)), -1.0, 1.0)); });
+  }
+};
+
+}  // namespace
+
+std::vector<DerivedColumn> partly_derived(const Shots& shots, const std::vector<DerivedColumn>& whole) {
+  Relations relations(shots);
+  const auto names = [&](const Relation& r) {
+    std::set<std::string> all;
+    for (const int k : r.columns()) all.insert(relations.header(k));
+    return all;
+  };
+  const auto columns_of = [](const DerivedColumn& d) {
+    std::set<std::string> all(d.from.begin(), d.from.end());
+    all.insert(d.column);
+    return all;
+  };
+  std::vector<DerivedColumn> told;
+  for (const Relation& r : relations.run()) {
+    const std::set<std::string> columns = names(r);
+    // A relation can be solved for any column in it: the likeliest, then nothing that follows from it on the same rows.
+    const bool old = std::ranges::any_of(whole, [&](const DerivedColumn& d) {
+      const std::set<std::string> k = columns_of(d);
+      return std::ranges::includes(columns, k) || std::ranges::includes(k, columns);
+    });
+    const bool follows = std::ranges::any_of(told, [&](const DerivedColumn& d) {
+      const auto common = [&](const std::string& name) { return columns.contains(name); };
+      return d.column == relations.header(r.target) || std::ranges::count_if(columns_of(d), common) >= 2;
+    });
+    if (old || follows) continue;
+    DerivedColumn d{.column = relations.header(r.target), .from = {}, .formula = r.text};
+    for (const int k : r.from) d.from.push_back(relations.header(k));
+    d.residual_sd = r.residual;
+    d.recording_resolution = relations.step(r.target);
+    d.rows = r.held;
+    d.share = double(r.held) / double(r.rows);
+    d.input = relations.column(r.target).role == Role::input;
+    told.push_back(d);
+  }
+  return told;
+}
+
+}  // namespace hosel::loop
