@@ -26,6 +26,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, std::
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
+    if (!problem.too_few()) unexplained = problem.places(s);
     for (const WrongColumn& c : columns) unexplained.push_back({"", c.column, c.text});
     return Verdict::unexplained;
   }

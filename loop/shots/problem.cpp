@@ -354,16 +354,18 @@ std::vector<Location> ShotProblem::places(const Selection& s) const {
 std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   bool declared = true;
   for (int c = 0; c < width(); ++c) declared = declared && channel(c).declared.has_value();
-  std::set<int> clusters;
+  std::set<int> slipped;
   for (const RowFlag& f : flags_)
-    if (f.cluster) clusters.insert(f.shot);
+    if (f.slip) slipped.insert(f.shot);
   std::vector<int> rows;
   for (const int i : usable_)
-    if (!clusters.contains(i)) rows.push_back(i);
+    if (!slipped.contains(i)) rows.push_back(i);
   rows = thinned(rows);
   std::optional<Mixture> best;
   Eigen::MatrixXd of;
-  for (const Fit* fit : {&s.chosen, &s.base}) {
+  std::vector<const Fit*> fits{&s.chosen};
+  if (!s.clean) fits.push_back(&s.base);  // the chosen one is wrong, and may have drawn the two together
+  for (const Fit* fit : fits) {
     const Eigen::VectorXd whitened = model_->whitened(rows, fit->model, fit->p);
     const Eigen::MatrixXd z = whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
     auto two = mixture(z);

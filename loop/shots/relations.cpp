@@ -31,7 +31,7 @@ struct Relation {
   int target = 0;
   std::vector<int> from;
   std::string text;
-  double residual = 0, k = 0;
+  double residual = 0;
   int rows = 0, held = 0;
   double score() const { return held - 3.0 * double(from.size()); }
   std::set<int> columns() const {
@@ -106,23 +106,41 @@ class Relations {
     return p && q && p->suffix == q->suffix;
   }
 
-  /// Residuals at hand: do more of them lie within rounding than beside it?
-  void judge(int y, const std::vector<int>& from, const std::string& text, double k,
-             const std::vector<double>& residual) {
+  struct Residual {
+    std::size_t row;
+    double value;
+  };
+  /// Do more of the residuals lie within rounding than beside it? Rows that repeat (one value per cluster, zeros where
+  /// nothing was read) count once.
+  void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
     const double t = 0.5 * sources_[std::size_t(y)].step * 1.02 + 1e-9 * sources_[std::size_t(y)].spread;
-    int held = 0, beside = 0;
+    const auto count = [&](auto&& inside) {
+      return int(std::ranges::count_if(residual, [&](const Residual& r) { return inside(std::abs(r.value)); }));
+    };
+    const auto stands_out = [](int held, int beside, int n) {
+      return n >= 20 && held >= 10 && held >= kLeastShare * n && held >= kContrast * (beside / 4.0 + 1);
+    };
+    const auto within = [&](double r) { return r <= t; };
+    const auto near = [&](double r) { return r > t && r <= 5 * t; };
+    if (!stands_out(count(within), count(near), int(residual.size()))) return;
+    std::set<std::vector<double>> all, held, beside;
+    std::set<double> values;
     double square = 0;
-    for (const double r : residual) {
-      if (std::abs(r) <= t) {
-        ++held;
-        square += r * r;
-      } else if (std::abs(r) <= 5 * t) {
-        ++beside;
+    for (const Residual& r : residual) {
+      std::vector<double> key{x(y, r.row)};
+      for (const int k : from) key.push_back(x(k, r.row));
+      all.insert(key);
+      if (within(std::abs(r.value))) {
+        square += r.value * r.value;
+        values.insert(key[0]);
+        held.insert(key);
+      } else if (near(std::abs(r.value))) {
+        beside.insert(key);
       }
     }
-    const int n = int(residual.size());
-    if (n < 20 || held < 10 || held < kLeastShare * n || held < kContrast * (beside / 4.0 + 1)) return;
-    found_.push_back({y, from, text, std::sqrt(square / held), k, n, held});
+    if (values.size() < 8 || !stands_out(int(held.size()), int(beside.size()), int(all.size()))) return;
+    const int rows = count(within);
+    found_.push_back({y, from, text, std::sqrt(square / rows), int(residual.size()), rows});
   }
 
   /// y = u + k v: the number that most rows agree on, to rounding.
@@ -133,12 +151,16 @@ class Relations {
       int change;
     };
     std::vector<End> ends;
-    std::vector<std::pair<double, double>> parts;  // y - u, v
+    struct Part {
+      std::size_t row;
+      double a, b;  // y - u, v
+    };
+    std::vector<Part> parts;
     const double t = 0.5 * sources_[std::size_t(y)].step;
     for (std::size_t i = 0; i < rows(); ++i) {
       const double a = x(y, i) - u(i), b = v(i);
       if (!std::isfinite(a) || !std::isfinite(b) || b == 0) continue;
-      parts.emplace_back(a, b);
+      parts.push_back({i, a, b});
       ends.push_back({a / b - t / std::abs(b), 1});
       ends.push_back({a / b + t / std::abs(b), -1});
     }
@@ -156,9 +178,9 @@ class Relations {
         }
       if (most < kLeastShare * double(parts.size())) return;
     }
-    std::vector<double> residual;
-    for (const auto& [a, b] : parts) residual.push_back(a - k * b);
-    judge(y, from, text(k), k, residual);
+    std::vector<Residual> residual;
+    for (const auto& [row, a, b] : parts) residual.push_back({row, a - k * b});
+    judge(y, from, text(k), residual);
   }
 
   void scalars(int y) {
@@ -241,9 +263,9 @@ class Relations {
         }
       if (most < kLeastShare * double(good.size())) return;
     }
-    std::vector<double> residual;
-    for (const std::size_t i : good) residual.push_back(miss(i, k));
-    judge(y, from, free ? fmt::format("{}, k = {:.4g}", text, k) : text, k, residual);
+    std::vector<Residual> residual;
+    for (const std::size_t i : good) residual.push_back({i, miss(i, k)});
+    judge(y, from, free ? fmt::format("{}, k = {:.4g}", text, k) : text, residual);
   }
 
   /// The face's normal, the club's direction and the ball's: b ~ k n + (1 - k) v, and the spin square to n and v.
@@ -307,24 +329,15 @@ std::vector<DerivedColumn> partly_derived(const Shots& shots, const std::vector<
     for (const int k : r.columns()) all.insert(relations.header(k));
     return all;
   };
-  const auto columns_of = [](const DerivedColumn& d) {
-    std::set<std::string> all(d.from.begin(), d.from.end());
-    all.insert(d.column);
-    return all;
-  };
   std::vector<DerivedColumn> told;
   for (const Relation& r : relations.run()) {
     const std::set<std::string> columns = names(r);
     // A relation can be solved for any column in it: the likeliest, then nothing that follows from it on the same rows.
-    const bool old = std::ranges::any_of(whole, [&](const DerivedColumn& d) {
-      const std::set<std::string> k = columns_of(d);
-      return std::ranges::includes(columns, k) || std::ranges::includes(k, columns);
-    });
-    const bool follows = std::ranges::any_of(told, [&](const DerivedColumn& d) {
+    const auto follows = [&](const DerivedColumn& d) {
       const auto common = [&](const std::string& name) { return columns.contains(name); };
-      return d.column == relations.header(r.target) || std::ranges::count_if(columns_of(d), common) >= 2;
-    });
-    if (old || follows) continue;
+      return d.column == relations.header(r.target) || std::ranges::count_if(d.from, common) + common(d.column) >= 2;
+    };
+    if (std::ranges::any_of(whole, follows) || std::ranges::any_of(told, follows)) continue;
     DerivedColumn d{.column = relations.header(r.target), .from = {}, .formula = r.text};
     for (const int k : r.from) d.from.push_back(relations.header(k));
     d.residual_sd = r.residual;

@@ -123,6 +123,7 @@ LoopResult run(const ShotCase& c) {
     std::vector<std::string> names = without.adopted;
     for (const auto& tie : without.ties) names.push_back(fmt::format("{}", fmt::join(tie, " or ")));
     result.without.emplace_back(d.column, names);
+    if (names.empty() && !without.unexplained.empty()) names.push_back(without.unexplained.front().detail);
     result.notes.push_back(
         fmt::format("{} is computed from {}{} and is no independent evidence; without it the verdict is {}{}", d.column,
                     fmt::join(d.from, ", "), d.share < 1 ? fmt::format(" on {:.0f} % of the rows", 100 * d.share) : "",
