@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostRows = 240;
 constexpr double kSure = 30;       // least fall of the deviance,
 constexpr double kShare = 0.15;    // and share of it,
-constexpr double kOverRival = 16;  // and lead over the library's best
+constexpr double kOverRival = 8;   // and lead over the library's best
 constexpr double kClean = 1.7;     // deviance per value that a slip of free size may leave
 
 bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
