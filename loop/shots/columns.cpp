@@ -74,7 +74,6 @@ Columns::~Columns() = default;
 Columns::Columns(const ShotCase& c) : case_(c) {
   read();
   if (rows_.size() < 8 || outputs_.empty()) return;
-  // A slow base is stood for by the closed form: gross slips show all the same.
   static const models::RigidEccentric companion;
   std::vector<ShotChannel> channels;
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
@@ -83,12 +82,12 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   }
   std::vector<Shot> shots;
   for (Eigen::Index i = 0; i < values_.rows(); ++i) shots.push_back(shot(i, values_));
-  model_ = std::make_unique<ShotModel>(c.direct ? *c.model : companion, true, std::move(shots), std::move(channels),
+  model_ = std::make_unique<ShotModel>(quick() ? *c.model : companion, true, std::move(shots), std::move(channels),
                                        values_.rightCols(std::ptrdiff_t(outputs_.size())));
   estimate_noise();
   as_recorded_ = deviance(values_, Model{}, {});
   try_constants();
-  try_sizes();
+  if (quick()) try_sizes();
   std::ranges::stable_sort(slips_, {}, &Slip::criterion);
 }
 
@@ -414,7 +413,7 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) c
   const double log_scale = -2 * double(values_.rows()) * whitening(values_).diagonal().array().log().sum();
   double library = as_recorded_;
   for (const Fit& f : rivals)
-    if (!f.at_bound)
+    if (quick() && !f.at_bound)
       library = std::min(library, deviance(values_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
                                       case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
