@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/hertz_maw.hpp"
 #include "hosel/models/shaft_coupled.hpp"
