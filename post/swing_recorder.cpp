@@ -25,13 +25,7 @@ SwingRecorder::SwingRecorder(fs::path directory, const Club& club, const models:
       head_(head_mesh(club.head, kHeadWidth, kHeadHeight)),
       table_("time_s,arc_length_mm,x_mm,y_mm,z_mm,axial_force_N,torque_N_m,bending_moment_N_m\n") {}
 
-SwingRecorder::~SwingRecorder() {
-  try {
-    write_file(directory_ / "shaft.csv", table_);
-  } catch (const std::exception&) {
-    // A full disk has been said where the run's own results did not fit.
-  }
-}
+void SwingRecorder::finish() const { write_file(directory_ / "shaft.csv", table_); }
 
 void SwingRecorder::write(const char* body, double time, const VtkMesh& mesh) {
   auto it = series_.find(body);

@@ -23,11 +23,10 @@ class SwingRecorder {
   /// every frame. Without `vtk` the table alone. `club` and `swing` must outlive this.
   SwingRecorder(std::filesystem::path directory, const Club& club, const models::Swing& swing,
                 SwingRecorderOptions options);
-  /// At every step. The table is whole when the recorder goes.
+  /// At every step.
   void operator()(const models::SwingSample& sample, const fem::State& state);
-  ~SwingRecorder();
-  SwingRecorder(const SwingRecorder&) = delete;
-  SwingRecorder& operator=(const SwingRecorder&) = delete;
+  /// Writes the table. Throws std::runtime_error where the disk refuses.
+  void finish() const;
 
   /// What the shaft's sections carry along it, at five instants of the last `span` [s].
   Figure figure(double span) const;

@@ -81,6 +81,7 @@ class SwingJob final : public Job {
         {.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
     if (const std::string why = post::draw(figure, out.path("swing")); !why.empty()) out.say(why);
 
+    recorder.finish();
     if (const std::string why = post::draw(recorder.figure(0.4), out.path("shaft")); !why.empty()) out.say(why);
 
     const models::SwingSample& last = samples.back();

@@ -130,7 +130,7 @@ void Columns::read() {
 }
 
 Shot Columns::shot(Eigen::Index row, const Eigen::MatrixXd& values) const {
-  Shot s{case_.blow, order_[std::size_t(row)]};
+  Shot s{.blow = case_.blow, .order = order_[std::size_t(row)]};
   for (std::size_t k = 0; k < inputs_.size(); ++k) set(s.blow, inputs_[k], values(row, std::ptrdiff_t(k)));
   return s;
 }
