@@ -63,7 +63,7 @@ Panel face_panel(const FaceGrid& grid, const std::vector<double>& values, std::s
                  bool symmetric);
 /// Under every figure of maps.
 inline constexpr const char* kFaceView =
-    "seen from behind the head (right-handed): heel left; dashed: 12 mm from the face centre";
+    "seen from behind (right-handed): heel left, toe right; dashed: 12 mm from the face centre";
 
 /// The face's surface through the grid points (face frame) with every quantity of every map, and its
 /// differences to the reference, as point arrays `<model>.<quantity>` and `<model>-minus-<reference>.<quantity>`.
