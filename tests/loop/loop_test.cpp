@@ -31,6 +31,7 @@ struct World {
   bool face = false;      ///< hidden: a driver's face at the rules' limit
   int swapped = -1;       ///< row whose ball speed is written in mph
   double second = 0;      ///< of a second ball: its ball speed beyond the first's [m/s]
+  double drift = 0;       ///< hidden: of the ball speed over the session [m/s]
   bool rate = false;      ///< a column spin_rate computed from the other two
   unsigned seed = 1;
 };
@@ -74,6 +75,7 @@ std::string csv(const World& w) {
     const Launch l = model->launch(b);
     double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
     if (i == w.swapped) speed /= kMpsPerMph;
+    speed += w.drift * (double(i) / std::max(w.shots - 1, 1) - 0.5);
     if (w.second != 0 && gauss(random) > 0) speed += w.second;
     const double back = std::round(rpm(l.backspin()) + 60 * gauss(random)),
                  side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
@@ -209,6 +211,12 @@ TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
     EXPECT_EQ(name(r.verdict), "unexplained");
     EXPECT_TRUE(r.adopted.empty() && r.ties.empty());
   }
+}
+
+TEST_F(Loop, ADriftIsNoLevelShiftOfAColumn) {
+  const LoopResult r = run(case_of(csv({.drift = 2})));
+  EXPECT_TRUE(r.columns.empty());
+  EXPECT_EQ(r.adopted, std::vector<std::string>{"session-drift"});
 }
 
 TEST_F(Loop, TwoBallsAreAMixture) {
