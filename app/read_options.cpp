@@ -27,6 +27,12 @@ models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>&
         {"face_transition_speed",
          "regularised friction: slip speed at which it is fully developed; absent: sticking on a spring"},
         "mps", Range::positive());
+  if (contact.has("face_static_friction"))
+    o.static_friction = {
+        contact.number({"face_static_friction", "coefficient at a point that has not slid yet; absent: as sliding"},
+                       {0, 5}),
+        contact.quantity({"face_slip_distance", "slip over which friction falls from static to sliding by 1 - 1/e"},
+                         "um", Range::positive())};
   o.penalty = contact.number(
       {"penalty", "contact stiffness per area, times the ball's radius over its Young's modulus"}, {1, 1e6}, o.penalty);
   o.tangential_penalty = contact.number({"tangential_penalty", "stiffness of sticking over that of contact"},

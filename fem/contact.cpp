@@ -168,7 +168,7 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   if (derivatives) out.stiffness = en * (at.slope * at.slope.transpose() + at.gap * at.curvature);
   if (!laws_.friction) return out;
 
-  Slip slip{.pressure = out.pressure, .step = k.place - past.place};
+  Slip slip{.pressure = out.pressure, .step = k.place - past.place, .path = past.slip};
   slip.tangent = Mat3::Identity() - at.normal * at.normal.transpose();
   slip.velocity = slip.tangent * k.velocity;
   // A point that touches first within this step slides from where its straight path met the surface.

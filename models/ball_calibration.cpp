@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLaunchTolerance = 2e-4;  // [rad]; 0.05 % of an iron's spin, small against a step of the Jacobian
 
-int count(const Fitted& f) { return 2 + f.branch_times + f.cover + f.friction; }
+int count(const Fitted& f) { return 2 + f.branch_times + f.cover + f.friction + f.face; }
 
 /// The options with the factors in place whose `logs` are given: on long-term moduli, branch moduli, then what `fitted`
 /// says, in its order.
@@ -26,6 +26,7 @@ FeImpactOptions scaled(FeImpactOptions o, const Fitted& fitted, const Eigen::Vec
   const double time = fitted.branch_times ? std::exp(logs[next++]) : 1;
   const double cover = fitted.cover ? std::exp(logs[next++]) : 1;
   if (fitted.friction) o.friction *= std::exp(logs[next++]);
+  if (fitted.face) o.face->stiffness *= std::exp(logs[next++]);
   for (BallLayer& layer : o.ball.layers) {
     if (layer.material.branches.empty())
       throw std::invalid_argument("calibration needs layers with relaxation branches");
@@ -72,11 +73,14 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
                                const std::function<void(int, double)>& progress) {
   if (std::find(target.speeds.begin(), target.speeds.end(), target.contact_speed) == target.speeds.end())
     throw std::invalid_argument("calibration: the speed of the contact time must be one of the speeds");
-  if (shots.empty() && (fitted.cover || fitted.friction))
-    throw std::invalid_argument("calibration: a bounce sees neither the cover apart nor friction: give oblique shots");
+  if (shots.empty() && (fitted.cover || fitted.friction || fitted.face))
+    throw std::invalid_argument(
+        "calibration: a bounce sees neither the cover apart nor friction nor a club's face: give oblique shots");
+  if (fitted.face && !options.face) throw std::invalid_argument("calibration: no face to begin with");
   const auto points = [&](const Eigen::VectorXd& logs) {
     FeImpactOptions o = scaled(options, fitted, logs);
     o.harmonics = 0;
+    o.face.reset();
     std::vector<NormalImpactPoint> all;
     for (const double v : target.speeds) {
       all.push_back(normal_impact(o, ball, v));
@@ -102,8 +106,10 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
           r[Eigen::Index(target.speeds.size())] = (p.contact_time - target.contact_time) / target.contact_time_sigma;
       }
       const std::vector<ObliquePoint> found = struck_all(logs);
-      for (std::size_t k = 0; k < shots.size(); ++k)
+      for (std::size_t k = 0; k < shots.size(); ++k) {
         r[++i] = (found[k].spin_rate / found[k].target - 1) / shots[k].spin_sigma;
+        if (shots[k].ball_speed) r[++i] = (found[k].ball_speed / *shots[k].ball_speed - 1) / shots[k].ball_speed_sigma;
+      }
     } catch (const solvers::NonConvergence&) {
       return false;  // the search takes a shorter step
     }
@@ -123,7 +129,8 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
     }
     return true;
   };
-  const Eigen::Index parameters = count(fitted), rows = Eigen::Index(target.speeds.size() + 1 + shots.size());
+  const auto speeds = std::ranges::count_if(shots, [](const ObliqueTarget& s) { return s.ball_speed.has_value(); });
+  const Eigen::Index parameters = count(fitted), rows = Eigen::Index(target.speeds.size() + 1 + shots.size()) + speeds;
   const std::optional<solvers::Minimum> best =
       solvers::minimise({.residuals = int(rows),
                          .bounds = std::vector<solvers::Bounds>(std::size_t(parameters), {-3, 3, 1}),
@@ -138,6 +145,7 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
   const FeImpactOptions fit = scaled(options, fitted, logs);
   out.ball = fit.ball;
   out.friction = fit.friction;
+  out.face = fit.face;
   const fem::Solid& first = options.ball.layers.front().material;
   const auto say = [&](const char* name, double start) {
     out.names.emplace_back(name);
@@ -149,6 +157,7 @@ BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball,
   if (fitted.branch_times) say("branch time [s]", first.branches.front().time);
   if (fitted.cover) say("cover over core [-]", options.ball.layers.back().material.shear() / first.shear());
   if (fitted.friction) say("friction [-]", options.friction);
+  if (fitted.face) say("face stiffness [N/m]", options.face->stiffness);
   out.points = points(logs);
   out.shots = struck_all(logs);
   Eigen::VectorXd r(rows);

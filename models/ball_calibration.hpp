@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,12 @@ struct NormalImpactTarget {
 /// computed from the ball.
 struct ObliqueTarget {
   std::string name;
-  Blow blow;                ///< with a shaft: the full club; its loft is where the search begins
-  double launch_angle = 0;  ///< [rad]
-  double spin_rate = 0;     ///< [rad/s]
-  double spin_sigma = 0;    ///< relative [-]
+  Blow blow;                         ///< with a shaft: the full club; its loft is where the search begins
+  double launch_angle = 0;           ///< [rad]
+  double spin_rate = 0;              ///< [rad/s]
+  double spin_sigma = 0;             ///< relative [-]
+  std::optional<double> ball_speed;  ///< where it is a target as well [m/s]
+  double ball_speed_sigma = 0;       ///< relative; what the club's speed is known to counts here as well [-]
 };
 
 /// Beside the factors on long-term and branch moduli of all layers.
@@ -36,13 +39,14 @@ struct Fitted {
   bool branch_times = true;  ///< one factor for all
   bool cover = false;        ///< a factor on the moduli of the outermost layer alone
   bool friction = false;
+  bool face = false;  ///< a factor on the stiffness of the clubs' yielding face, one for all shots
 };
 
 struct ObliquePoint {
   std::string name;
   double loft = 0;                    ///< found [rad]
   double target = 0, spin_rate = 0;   ///< [rad/s]
-  double ball_speed = 0;              ///< no target [m/s]
+  double ball_speed = 0;              ///< [m/s]
   double tangential_restitution = 0;  ///< no target
 };
 
@@ -62,6 +66,7 @@ struct BallCalibration {
   std::vector<NormalImpactPoint> points;
   std::vector<ObliquePoint> shots;
   double friction = 0;
+  std::optional<FaceCompliance> face;
   double cost = 0;  ///< half the sum of squared residuals over sigmas
   int evaluations = 0;
   bool converged = false;
@@ -72,9 +77,9 @@ struct BallCalibration {
 NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball, double speed);
 
 /// Fits, by Ceres in logarithms, factors on the long-term moduli, the branch moduli and what `fitted` names besides.
-/// `options.ball` and `options.friction` are the start; the wall is met by the axisymmetric ball, the shots by
-/// `options.harmonics`. `progress` hears of every evaluation. Throws std::invalid_argument where cover or friction are
-/// to be fitted without shots: a bounce does not see them.
+/// `options.ball`, `options.friction` and `options.face` are the start; the wall is rigid and met by the axisymmetric
+/// ball, the shots by `options.harmonics`. `progress` hears of every evaluation. Throws std::invalid_argument where
+/// cover, friction or face are to be fitted without shots (a bounce does not see them), or a face without a start.
 BallCalibration calibrate_ball(const FeImpactOptions& options, const Ball& ball, const NormalImpactTarget& target,
                                const std::vector<ObliqueTarget>& shots, const Fitted& fitted,
                                const std::function<void(int evaluations, double cost)>& progress = {});

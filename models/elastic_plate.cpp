@@ -59,6 +59,7 @@ ElasticPlate::ElasticPlate(FeImpactOptions sphere, const ElasticSolid& plate, co
   material.elastic = fem::LinearElastic{fem::Lame::of(instead.sphere.young, instead.sphere.poisson)};
   ball = with_inertia(ball, instead.inertia_factor);
   stand_in_.friction *= instead.friction;
+  if (stand_in_.static_friction) stand_in_.static_friction->coefficient *= instead.friction;
   if (const auto faults = stand_in_.faults(); !faults.empty())
     throw std::invalid_argument("elastic plate: " + faults.front());
 }

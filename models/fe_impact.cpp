@@ -60,6 +60,10 @@ std::vector<std::string> FeImpactOptions::faults() const {
     out.emplace_back("angles must be at least 2 N + 1 (0 chooses)");
   if (contact_angles < 0) out.emplace_back("contact_angles must not be negative");
   if (!(friction >= 0) || !std::isfinite(friction)) out.emplace_back("friction must be at least zero and finite");
+  if (static_friction && !(static_friction->coefficient >= friction))
+    out.emplace_back("static friction must be at least that of sliding");
+  if (static_friction && transition_speed)
+    out.emplace_back("friction regularised by velocity knows no sticking, and so no static friction");
   if (!(penalty > 0)) out.emplace_back("penalty must be positive");
   if (!(tangential_penalty > 0)) out.emplace_back("tangential_penalty must be positive");
   if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf must lie in [0, 1]");
@@ -171,8 +175,11 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
                                                    fem::SolidQuadrature{rule(angles), 2}, materials, placement);
   fem::ContactLaws laws{o.penalty * o.ball.instant_young() / R, nullptr};
   if (!axial && o.friction > 0) {
+    const double sticking = o.tangential_penalty * laws.normal_stiffness;
     if (o.transition_speed) laws.friction = std::make_unique<fem::RegularisedFriction>(o.friction, *o.transition_speed);
-    else laws.friction = std::make_unique<fem::Coulomb>(o.friction, o.tangential_penalty * laws.normal_stiffness);
+    else if (o.static_friction)
+      laws.friction = std::make_unique<fem::SlipWeakening>(o.friction, *o.static_friction, sticking);
+    else laws.friction = std::make_unique<fem::Coulomb>(o.friction, sticking);
   }
   const fem::Symmetry symmetry = axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none;
   BallOnFace parts{.ball = ball.get()};

@@ -9,6 +9,7 @@
 #include "hosel/fem/beam.hpp"
 #include "hosel/fem/contact.hpp"
 #include "hosel/fem/face_spring.hpp"
+#include "hosel/fem/friction/slip_weakening.hpp"
 #include "hosel/fem/rigid_body.hpp"
 #include "hosel/golf/first_contact.hpp"
 #include "hosel/mesh/meridian.hpp"
@@ -24,8 +25,9 @@ enum class Accuracy { look, standard, reference };
 /// How the impact is solved.
 struct FeImpactOptions {
   FeBall ball = range_ball();
-  double friction = 0.4;                   ///< Coulomb's coefficient between ball and face [-]
-  std::optional<double> transition_speed;  ///< where set, friction is regularised by velocity [m/s]
+  double friction = 0.4;                               ///< Coulomb's coefficient between ball and face [-]
+  std::optional<double> transition_speed;              ///< where set, friction is regularised by velocity [m/s]
+  std::optional<fem::StaticFriction> static_friction;  ///< where set, what holds a point until it has slid some way
 
   std::optional<FaceCompliance> face;  ///< of the club; without it the face is rigid
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_face.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
@@ -67,6 +68,8 @@ class CalibrateBallJob final : public Job {
       if (!shots_.empty()) {
         fitted_.cover = fit->flag({"cover", "fit a factor on the moduli of the outermost layer"}, false);
         fitted_.friction = fit->flag({"friction", "fit the friction of the shots"}, false);
+        if (options_.face)
+          fitted_.face = fit->flag({"face", "fit the stiffness of the clubs' face, one for all shots"}, false);
       }
     }
     if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
@@ -125,10 +128,13 @@ class CalibrateBallJob final : public Job {
     time_wanted.error = {1e3 * target_.contact_time_sigma};
     out.write("fit.csv", csv);
     if (!fit.shots.empty())
-      out.say("shot       loft found [deg]   target spin [rpm]   spin [rpm]   speed [m/s]     e_t");
-    for (const auto& s : fit.shots) {
-      out.say(fmt::format("{:<10} {:16.2f} {:19.0f} {:12.0f} {:13.2f} {:7.3f}", s.name, degrees(s.loft), rpm(s.target),
-                          rpm(s.spin_rate), s.ball_speed, s.tangential_restitution));
+      out.say("shot       loft found [deg]   spin: target, ball [rpm]   speed: measured, ball [m/s]     e_t");
+    for (std::size_t k = 0; k < fit.shots.size(); ++k) {
+      const models::ObliquePoint& s = fit.shots[k];
+      const std::optional<double>& speed = shots_[k].ball_speed;
+      out.say(fmt::format("{:<10} {:16.2f} {:17.0f} {:8.0f} {:>20} {:8.2f} {:7.3f}", s.name, degrees(s.loft),
+                          rpm(s.target), rpm(s.spin_rate), speed ? fmt::format("{:.2f}", *speed) : "-", s.ball_speed,
+                          s.tangential_restitution));
       summary["shots"].push_back({{"name", s.name},
                                   {"dynamic_loft_deg", degrees(s.loft)},
                                   {"target_spin_rate_rpm", rpm(s.target)},
@@ -160,6 +166,7 @@ class CalibrateBallJob final : public Job {
     if (tables.empty()) return;
     options_.friction =
         root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
+    if (auto t = root.optional_table("face")) options_.face = read_face(*t);
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
     ClubGeometry geometry;
@@ -175,6 +182,11 @@ class CalibrateBallJob final : public Job {
           t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg", {-1.5, 1.5});
       shot.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
       shot.spin_sigma = t.number({"spin_sigma", "standard error of the spin, relative"}, {1e-4, 1});
+      if (t.has_quantity("ball_speed")) {
+        shot.ball_speed = t.quantity({"ball_speed", "measured; absent: no target"}, "mps", Range::positive());
+        shot.ball_speed_sigma =
+            t.number({"ball_speed_sigma", "standard error of ball speed over club speed, relative"}, {1e-4, 1});
+      }
       shots_.push_back(std::move(shot));
     }
   }
@@ -182,7 +194,9 @@ class CalibrateBallJob final : public Job {
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
     std::string saw = "no spin data";
-    for (const auto& shot : fit.shots) saw = (&shot == &fit.shots.front() ? "the spin of " : saw + ", ") + shot.name;
+    for (const auto& shot : shots_)
+      saw = (&shot == &shots_.front() ? "the spin of " : saw + ", ") + shot.name +
+            (shot.ball_speed ? " and its ball speed" : "");
     std::string text = fmt::format(
         "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; {}.\n# "
         "{}\n",

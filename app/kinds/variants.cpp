@@ -143,6 +143,7 @@ class VariantsJob final : public Job {
   void keep_bounce(models::FeImpactOptions& fe, const Ball& ball, const Prediction* reference, Prediction& a) const {
     models::FeImpactOptions axial = fe;
     axial.harmonics = 0;
+    axial.face.reset();  // of the club: the wall is rigid
     const models::NormalImpactPoint own = models::normal_impact(axial, ball, *bounce_speed_);
     a.normal_restitution = own.restitution;
     a.contact_time = own.contact_time;

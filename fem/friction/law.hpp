@@ -15,6 +15,7 @@ struct Slip {
   Vec3 step = Vec3::Zero();      ///< path since the last accepted state [m]
   Vec3 velocity = Vec3::Zero();  ///< tangential [m/s]
   Mat3 tangent = Mat3::Zero();   ///< projector on the tangent plane
+  double path = 0;               ///< slid until the last accepted state [m]
 };
 
 /// What it answers.

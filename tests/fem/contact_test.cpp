@@ -8,6 +8,7 @@
 #include "hosel/fem/face_surface.hpp"
 #include "hosel/fem/friction/coulomb.hpp"
 #include "hosel/fem/friction/regularised.hpp"
+#include "hosel/fem/friction/slip_weakening.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/fem/yielding_face.hpp"
 #include "hosel/golf/units.hpp"
@@ -74,9 +75,13 @@ struct Scene {
 };
 
 using MakeLaw = std::unique_ptr<const FrictionLaw> (*)();
-constexpr std::array<MakeLaw, 3> kLaws = {
+constexpr std::array<MakeLaw, 4> kLaws = {
     [] { return std::unique_ptr<const FrictionLaw>(); },
     [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<Coulomb>(0.01, 5e10)); },
+    [] {
+      return std::unique_ptr<const FrictionLaw>(
+          std::make_unique<SlipWeakening>(0.005, StaticFriction{0.02, 2e-6}, 5e10));
+    },
     [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<RegularisedFriction>(0.3, 1)); }};
 /// Small, so that the patch lies where it bends.
 const FaceCompliance kYielding{.mass = 0.01, .stiffness = 1e7, .half_width = 0.03, .half_height = 0.025};
@@ -91,6 +96,19 @@ TEST(Contact, Tangent) {
       // The curvature of the gap function is taken to first order: relative size gap / face radius.
       test::check_tangent(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3, 1e-5);
     }
+}
+
+/// Static friction until the point has slid; a third of what it has beyond sliding friction is left after the distance.
+TEST(Contact, FrictionFallsWithThePathThatAPointHasSlid) {
+  const SlipWeakening law(0.1, {0.4, 2e-6}, 1e12);
+  const auto limit = [&](double path) {
+    return law.at({.pressure = 1e6, .stretch = {0, 1, 0}, .path = path}, false).traction.norm();
+  };
+  EXPECT_DOUBLE_EQ(limit(0), 0.4e6);
+  EXPECT_DOUBLE_EQ(limit(2e-6), (0.1 + 0.3 / std::exp(1.0)) * 1e6);
+  EXPECT_NEAR(limit(1e-3), 0.1e6, 1);
+  EXPECT_FALSE(SlipWeakening(0.1, {0.05, 2e-6}, 1e12).faults().empty());
+  EXPECT_FALSE(SlipWeakening(0.1, {0.4, 0}, 1e12).faults().empty());
 }
 
 /// Pressure is the gradient of the penalty's energy, by the surface's own unknown as by all others.

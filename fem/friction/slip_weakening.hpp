@@ -1,0 +1,32 @@
+/// Friction that is higher until a point has slid some way.
+#pragma once
+
+#include "hosel/fem/friction/coulomb.hpp"
+
+namespace hosel::fem {
+
+/// What holds a point that has not slid yet.
+struct StaticFriction {
+  double coefficient = 0;  ///< [-]
+  double distance = 0;     ///< of slip over which what it has beyond sliding friction falls to 1/e [m]
+};
+
+/// Coulomb's law with a coefficient that falls from the static to the sliding one with the path that the point has
+/// slid: junctions break after a slip of their own size, about a micrometre between hard solids. [@slip-distance]
+/// The path is that of the last accepted state, so that a step has one answer however fast friction falls.
+class SlipWeakening final : public FrictionLaw {
+ public:
+  /// `sliding`: coefficient [-]; `stiffness` of the sticking spring per reference area [N/m^3].
+  SlipWeakening(double sliding, StaticFriction rest, double stiffness)
+      : sliding_(sliding), rest_(rest), stiffness_(stiffness) {}
+  Friction at(const Slip& slip, bool derivatives) const override;
+  bool rate_dependent() const override { return false; }
+  std::vector<std::string> faults() const override;
+
+ private:
+  double sliding_;
+  StaticFriction rest_;
+  double stiffness_;
+};
+
+}  // namespace hosel::fem
