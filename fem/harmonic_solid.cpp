@@ -88,10 +88,10 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
       const AngularFunction& f = basis_[static_cast<std::size_t>(k)];
       if (f.cosine[c] != 0 || f.sine[c] != 0) d.functions.push_back(k);
     }
-    const auto count = static_cast<Index>(d.functions.size());
-    d.value.resize(n, count);
-    d.derivative.resize(n, count);
-    for (Index k = 0; k < count; ++k)
+    const auto active = static_cast<Index>(d.functions.size());
+    d.value.resize(n, active);
+    d.derivative.resize(n, active);
+    for (Index k = 0; k < active; ++k)
       for (Index j = 0; j < n; ++j) {
         const AngularFunction& f = basis_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
         const double theta = angles.theta[static_cast<std::size_t>(j)];
