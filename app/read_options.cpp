@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/read_face.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/read_swing.hpp"
@@ -76,6 +77,7 @@ models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>&
                                   {1e-14, 1e-2}, o.newton_relative);
   o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
   if (const auto faults = o.faults(); !faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+  check_memory(root, o);
   return o;
 }
 

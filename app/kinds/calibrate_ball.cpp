@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_face.hpp"
 #include "hosel/app/read_shaft.hpp"
@@ -46,6 +47,7 @@ class CalibrateBallJob final : public Job {
             options_.harmonics));
       }
     }
+    check_memory(root, options_);
     if (auto time = root.optional_table("time"))
       options_.steps_per_contact =
           int(time->integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000,

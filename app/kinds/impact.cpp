@@ -94,8 +94,8 @@ class ImpactJob final : public Job {
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
     for (const Entry& entry : models_) {
-      if (const models::FeModel* fe = entry.fe()) {
-        const models::FeOutcome outcome = run_fe(out, entry.name, *fe, home(out, entry), files);
+      if (const models::FeModel* model = entry.fe()) {
+        const models::FeOutcome outcome = run_fe(out, entry.name, *model, home(out, entry), files);
         models::check_launch(blow_, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);

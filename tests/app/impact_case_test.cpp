@@ -24,6 +24,7 @@
 
 #include "build_info.hpp"
 #include "command.hpp"
+#include "tests/support/one_core.hpp"
 
 namespace hosel::test {
 namespace {
@@ -280,6 +281,26 @@ TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
   ASSERT_EQ(command(coarse_full_club() + without.string()).status, 0);
   EXPECT_EQ(content(without / "log.txt").find("goes on from t = "), std::string::npos);
   expect_same_files(without, expected);
+}
+
+TEST(ImpactCase, OneCoreGivesTheBytesOfAll) {
+  const fs::path all = fresh_directory("all_cores") / "out", one = fresh_directory("one_core") / "out";
+  ASSERT_EQ(command(coarse_full_club() + all.string()).status, 0);
+  const OneCore guard;
+  if (guard.cores_before() < 2) GTEST_SKIP() << "this machine has one core";
+  ASSERT_EQ(command(coarse_full_club() + one.string()).status, 0);
+  const auto expected = files(all);
+  ASSERT_GT(expected.size(), 60u);
+  expect_same_files(one, expected);
+}
+
+TEST(ImpactCase, AMeshTooLargeForTheMachineIsRefused) {
+  const Outcome o = command("check " HOSEL_SOURCE_DIR
+                            "/cases/driver-toe --set mesh.sector=64 --set mesh.rings=64 --set mesh.harmonics=16");
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("mesh: the solution would take some "), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("fewer sectors, rings or harmonics"), std::string::npos) << o.text;
+  EXPECT_EQ(command("check " HOSEL_SOURCE_DIR "/cases/driver-toe --set accuracy=reference").status, 0);
 }
 
 TEST(ImpactCase, TwoRunsInOneDirectoryAreOneTooMany) {

@@ -35,8 +35,8 @@ TEST_P(Monitors, ImportWithoutEditingAndRun) {
   for (const std::string& name : e.columns) {
     const loop::Column* column = shots.find(name);
     ASSERT_NE(column, nullptr) << name;
-    if (column->numeric)
-      for (const double x : column->value) EXPECT_TRUE(std::isfinite(x)) << name;
+    if (!column->numeric) continue;
+    for (const double x : column->value) EXPECT_TRUE(std::isfinite(x)) << name;
   }
   const auto run = command("run '" + dir.string() + "' --quiet --out '" + (dir / "out").string() + "'");
   ASSERT_EQ(run.status, 0) << run.text;

@@ -100,7 +100,9 @@ TEST(GeneralizedAlpha, LedgerClosesWithTheStep) {
     }
     // 11.2 J went to and fro (1.25 J of spring, 10 J of gravity): the event happened.
     EXPECT_GT(scheme.ledger().external, 9.0);
-    if (last > 0) EXPECT_NEAR(std::log2(last / worst), 2.0, 0.2);  // trapezoidal force work: order 2
+    if (last > 0) {
+      EXPECT_NEAR(std::log2(last / worst), 2.0, 0.2);  // trapezoidal force work: order 2
+    }
     EXPECT_LT(worst, 2e-3);
     last = worst;
   }

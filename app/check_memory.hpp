@@ -1,0 +1,16 @@
+/// Is the machine large enough for what a case asks?
+#pragma once
+
+#include "hosel/app/reader.hpp"
+#include "hosel/models/fe_impact.hpp"
+
+namespace hosel::app {
+
+/// Memory of a finite-element blow without a plane of symmetry [B]: element matrices and the factor, which grow alike.
+/// Within a factor of two of what was measured, 3 x 3 x N = 4 to 2 x 2 x N = 8; a planar blow takes a half of it.
+double memory_of(const models::FeImpactOptions& fe);
+
+/// Refuses, at `[mesh]`, what the memory of this machine cannot hold.
+void check_memory(const Table& root, const models::FeImpactOptions& fe);
+
+}  // namespace hosel::app
