@@ -9,7 +9,7 @@
 #include "hosel/golf/face_library.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/shaft_coupled.hpp"
+#include "hosel/models/shaft_impedance.hpp"
 #include "hosel/models/stick_slip.hpp"
 #include "hosel/models/volumetric.hpp"
 
@@ -32,12 +32,9 @@ Blow blow(double toe) {
   return b;
 }
 
-/// Argument: minus the power of ten of the tolerance (4 is the default), with what it costs in accuracy.
-void Volumetric(benchmark::State& state) {
-  const Blow b = blow(0.014);
-  const auto run = [&](double tolerance) {
-    return models::volumetric_impact(b, {}, {models::Integrator::rosenbrock, tolerance});
-  };
+/// Times `run(tolerance)` and says what the tolerance, 10 to the minus argument, costs in accuracy.
+template <class Run>
+void measure(benchmark::State& state, const Run& run) {
   const double tolerance = std::pow(10.0, -double(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(run(tolerance).launch);
   const auto r = run(tolerance), exact = run(1e-9);
@@ -45,6 +42,14 @@ void Volumetric(benchmark::State& state) {
   state.counters["rates"] = double(r.rate_calls);
   state.counters["speed_error"] = (r.launch.velocity - exact.launch.velocity).norm() / exact.launch.velocity.norm();
   state.counters["spin_error"] = (r.launch.spin - exact.launch.spin).norm() / exact.launch.spin.norm();
+}
+
+/// Argument: minus the power of ten of the tolerance (4 is the default).
+void Volumetric(benchmark::State& state) {
+  const Blow b = blow(0.014);
+  measure(state, [&](double tolerance) {
+    return models::volumetric_impact(b, {}, {models::Integrator::rosenbrock, tolerance});
+  });
 }
 BENCHMARK(Volumetric)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
 
@@ -96,10 +101,12 @@ void ShaftCoupled(benchmark::State& state) {
                               .outer_radius = 0.005});
   }
   b.club.shaft = shaft;
-  const models::ShaftCoupled model;
-  for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
+  const models::ShaftImpedance impedance = models::shaft_impedance(b.club);
+  measure(state, [&](double tolerance) {
+    return models::volumetric_impact(b, {}, {models::Integrator::rosenbrock, tolerance}, &impedance);
+  });
 }
-BENCHMARK(ShaftCoupled)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ShaftCoupled)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
 
 /// Efficiency = time of one thread / (2 x time of two).
 void TenThousand(benchmark::State& state) {

@@ -54,12 +54,11 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
   carried_ = static_cast<Index>(carried.size());
 
   const Index K = solid.unknowns();
-  for (double theta : angles_) {
-    Directions f(3, K);
+  functions_.resize(3 * static_cast<Index>(angles_.size()), K);
+  for (std::size_t a = 0; a < angles_.size(); ++a)
     for (Index k = 0; k < K; ++k)
-      f.col(k) = solid.placement().axes * solid.basis()[static_cast<std::size_t>(k)].at(theta);
-    functions_.push_back(f);
-  }
+      functions_.block<3, 1>(3 * static_cast<Index>(a), k) = solid.placement().axes *
+                                                             solid.basis()[static_cast<std::size_t>(k)].at(angles_[a]);
   const auto rule = gauss(edge_points);
   for (const auto& nodes : solid.mesh().surface) {
     Edge edge{nodes, {}, {}};
@@ -83,6 +82,15 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
     }
   }
   past_.resize(stations_.size() * angles_.size());
+  reference_.resize(3, static_cast<Index>(past_.size()));
+  Index point = 0;
+  for (const Station& station : stations_)
+    for (double theta : angles_) {
+      const double rho = station.reference.y();
+      reference_.col(point++) = solid.placement().origin + solid.placement().axes * Vec3(station.reference.x(),
+                                                                                         rho * std::cos(theta),
+                                                                                         rho * std::sin(theta));
+    }
 }
 
 Contact::Moved Contact::moved(const State& s) const {
@@ -102,29 +110,26 @@ Contact::Moved Contact::moved(const State& s) const {
   return m;
 }
 
-Vec3 Contact::place(const Moved& m, const Vec3& arm, Travel& travel) const {
+Vec3 Contact::place(const Moved& m, const Vec3& arm) const {
   Vec3 y = arm - carrier_.centre;
-  if (own_) {
-    travel = surface_->travel(y, m.own);
-    y.x() += travel.value;
-  }
+  if (own_) y.x() += surface_->travel(y, m.own);
   return y;
 }
 
 Vec3 Contact::in_body(const Kinematics& k, const Vec3& force) { return force + force.x() * k.travel.slope.head<3>(); }
 
-Vec3 Contact::reference(const Station& station, std::size_t angle) const {
-  const auto& [s, rho] = std::pair(station.reference.x(), station.reference.y());
-  return {s, rho * std::cos(angles_[angle]), rho * std::sin(angles_[angle])};
+Eigen::Ref<const Contact::Directions, 0, Eigen::OuterStride<>> Contact::functions(std::size_t angle) const {
+  return functions_.middleRows<3>(3 * static_cast<Index>(angle));
 }
 
 template <class Visit>
 void Contact::visit(const State& s, Visit&& visit) const {
   const Moved m = moved(s);
-  const Placement& placement = solid_.placement();
-  const Index K = solid_.unknowns();
+  const Mat3 to_body = m.R.transpose();
+  const Index K = solid_.unknowns(), angles = static_cast<Index>(angles_.size());
   Directions U(3, K), V(3, K);  // one row a node of the edge
   Vector u(K), v(K);
+  Directions arms(3, angles);
   const Edge* edge = nullptr;
   Kinematics k;
   for (const Station& station : stations_) {
@@ -140,19 +145,23 @@ void Contact::visit(const State& s, Visit&& visit) const {
     }
     u.noalias() = U.transpose() * station.shape;
     v.noalias() = V.transpose() * station.shape;
+    arms.colwise() = -m.node;
+    arms += reference_.middleCols(static_cast<Index>(k.number), angles);
+    arms.reshaped().noalias() += functions_ * u;
     k.station = &station;
     for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
-      const Directions& f = functions_[k.angle];
-      const Vec3 x = placement.origin + placement.axes * reference(station, k.angle) + f * u;
-      k.arm = m.R.transpose() * (x - m.node);
-      k.relative = m.R.transpose() * (f * v - m.node_velocity);
-      k.rate = k.relative - m.spin.cross(k.arm);
-      k.place = place(m, k.arm, k.travel);
-      k.velocity = k.rate;
-      if (own_)
-        k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
-                          k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
+      k.arm.noalias() = to_body * arms.col(static_cast<Index>(k.angle));
+      k.place = place(m, k.arm);
       k.gap = surface_->gap(k.place);
+      if (k.gap < 0) {  // elsewhere nothing acts
+        k.relative.noalias() = to_body * (functions(k.angle) * v - m.node_velocity);
+        k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
+        if (own_) {
+          k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
+          k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
+                            k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
+        }
+      }
       visit(m, std::as_const(k));
     }
   }
@@ -213,7 +222,7 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
     if (k.gap >= 0) return;
     const Station& station = *k.station;
     const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
-    r.noalias() = functions_[k.angle].transpose() * (m.R * f);
+    r.noalias() = functions(k.angle).transpose() * (m.R * f);
     const Edge& edge = edges_[station.edge];
     for (std::size_t i = 0; i < edge.places.size(); ++i)
       force[edge.dofs[i]] -= station.shape[edge.places[i] / K] * r[edge.places[i] % K];
@@ -229,51 +238,57 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
 }
 
 void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const {
-  const Index K = solid_.unknowns(), size = K + carried_;
+  const Index K = solid_.unknowns(), size = K + carried_, own = own_ ? own_->size : 0;
   const bool moving = carrier_.translation.has_value();
   const Local local = evaluate(k, true);
   const double area = k.station->area;
   const Mat3 turn = free_rotation(m.R);
   const Vec3 force = in_body(k, local.force);
 
-  // Change of the arm, then of the place, by each unknown.
-  Directions arm = Directions::Zero(3, size);
-  arm.leftCols(K).noalias() = m.R.transpose() * functions_[k.angle];
+  // Change of the arm by each unknown but the surface's own: these change nothing but the place.
+  const Index others = size - own;
+  Directions arm = Directions::Zero(3, others);
+  arm.leftCols(K).noalias() = m.R.transpose() * functions(k.angle);
   if (moving) {
     arm.middleCols<3>(K) = -m.R.transpose() * free_translation();
     arm.middleCols<3>(K + 3) = skew(k.arm) * turn;
   }
-  Directions place = arm;
-  Eigen::Matrix<double, Travel::size, Eigen::Dynamic> travelling;  // of the travel's arguments
-  if (own_) {
-    travelling.setZero(Travel::size, size);
-    travelling.topRows<3>() = arm;
-    for (Index i = 0; i < own_->size; ++i) travelling(3 + i, size - own_->size + i) = 1;
-    place.row(0).noalias() += k.travel.slope.transpose() * travelling;
+  using Square = Eigen::Matrix<double, Travel::size, Travel::size>;
+  Square by = Square::Zero();  // derivatives of -force by arm and own unknowns
+  by.topLeftCorner<3, 3>() = weights.stiffness * local.stiffness + weights.damping * local.damping;
+  Eigen::Matrix<double, 3, Travel::size> place = Eigen::Matrix<double, 3, Travel::size>::Identity();
+  if (own > 0) {
+    place.row(0) += k.travel.slope.transpose();
+    const Mat3 stiffness = by.topLeftCorner<3, 3>();
+    by.noalias() = place.transpose() * stiffness * place;
+    by -= weights.stiffness * local.force.x() * k.travel.second;
   }
-
-  Directions right = (weights.stiffness * local.stiffness + weights.damping * local.damping) * place;
+  Eigen::MatrixXd right(3 + own, size);
+  right.leftCols(others).noalias() = by.topLeftCorner(3 + own, 3) * arm;
+  right.rightCols(own) = by.block(0, 3, 3 + own, own);
   if (laws_.friction && laws_.friction->rate_dependent()) {
     Directions rate = Directions::Zero(3, size);  // of the velocity by each unknown
     if (moving) {
-      rate = -skew(m.spin) * arm;
+      rate.leftCols(others) = -skew(m.spin) * arm;
       rate.middleCols<3>(K + 3) += skew(k.relative) * turn;
     }
-    if (own_) {
+    if (own > 0) {
       Eigen::Matrix<double, Travel::size, 1> rates;
       rates << k.rate, m.own_rate;
-      rate.row(0) += k.travel.slope.head<3>().transpose() * rate + rates.transpose() * k.travel.second * travelling;
+      const Eigen::Matrix<double, 1, Travel::size> change = rates.transpose() * k.travel.second;
+      rate.row(0) += k.travel.slope.head<3>().transpose() * rate;
+      rate.row(0).head(others) += change.head<3>() * arm;
+      rate.row(0).tail(own) += change.segment(3, own);
     }
-    right += weights.stiffness * local.damping * rate;
+    right += place.leftCols(3 + own).transpose() * (weights.stiffness * local.damping * rate);
   }
-  sum.noalias() += area * place.transpose() * right;
-  if (own_)
-    sum.noalias() -= area * weights.stiffness * local.force.x() * travelling.transpose() * k.travel.second * travelling;
+  sum.topRows(others).noalias() += area * arm.transpose() * right.topRows<3>();
+  sum.bottomRows(own) += area * right.bottomRows(own);
   if (!moving) return;
   // The force turns with the body, the carrier's own moment excepted; and its arm moves, d(arm x f) = -f x d(arm).
   const Mat3 turning = area * weights.stiffness * skew(force) * turn;
   sum.topRows(K + 3).middleCols<3>(K + 3).noalias() += arm.leftCols(K + 3).transpose() * turning;
-  sum.middleRows<3>(K + 3).noalias() += turning.transpose() * arm;
+  sum.middleRows<3>(K + 3).leftCols(others).noalias() += turning.transpose() * arm;
 }
 
 void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
@@ -282,6 +297,8 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
   const auto angles = angles_.size();
   // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
   Eigen::MatrixXd sum, block;
+  Eigen::Matrix<Index, Eigen::Dynamic, 1> source;  // of each row of the block in the sum, and what it gets of it
+  Vector share;
   const Edge* edge = nullptr;
   bool touched = false;
   const auto finish_edge = [&] {
@@ -305,14 +322,15 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
     if (k.angle + 1 < angles || !touched) return;
     const auto own = static_cast<Index>(edge->places.size()), size = own + carried_;
     if (block.size() == 0) block = Eigen::MatrixXd::Zero(size, size);
-    const auto source = [&](Index i) {
-      return i < own ? edge->places[static_cast<std::size_t>(i)] % K : K + (i - own);
-    };
-    const auto share = [&](Index i) {
-      return i < own ? station.shape[edge->places[static_cast<std::size_t>(i)] / K] : 1.0;
-    };
+    source.resize(size);
+    share.setOnes(size);
+    for (Index i = 0; i < own; ++i) {
+      source[i] = edge->places[static_cast<std::size_t>(i)] % K;
+      share[i] = station.shape[edge->places[static_cast<std::size_t>(i)] / K];
+    }
+    for (Index i = own; i < size; ++i) source[i] = K + (i - own);
     for (Index j = 0; j < size; ++j)
-      for (Index i = 0; i < size; ++i) block(i, j) += share(i) * share(j) * sum(source(i), source(j));
+      for (Index i = 0; i < size; ++i) block(i, j) += share[i] * share[j] * sum(source[i], source[j]);
   });
   finish_edge();
 }
@@ -413,20 +431,18 @@ ContactReport Contact::report(const State& s) const {
 
 std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
-  const Placement& placement = solid_.placement();
   visit(s, [&](const Moved& m, const Kinematics& k) {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
-    out.push_back({placement.origin + placement.axes * reference(*k.station, k.angle), m.node + m.R * k.arm,
-                   m.R * in_body(k, local.force), local.pressure, k.gap, past.slip, k.station->area, past.sliding});
+    out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
+                   local.pressure, k.gap, past.slip, k.station->area, past.sliding});
   });
   return out;
 }
 
 double Contact::centre_gap(const State& s) const {
   const Moved m = moved(s);
-  Travel travel;
-  return surface_->gap(place(m, m.R.transpose() * (solid_.motion(s).centre - m.node), travel));
+  return surface_->gap(place(m, m.R.transpose() * (solid_.motion(s).centre - m.node)));
 }
 
 Mat3 Contact::free_translation() const {

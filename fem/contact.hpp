@@ -104,13 +104,14 @@ class Contact final : public Term {
   struct Kinematics {  // of one point
     std::size_t number = 0, angle = 0;
     const Station* station = nullptr;
-    Vec3 arm;       // body frame, from the node
+    Vec3 arm;    // body frame, from the node
+    Vec3 place;  // in the surface's axes, as if it had not moved
+    double gap = 0;
+    // Where the gap is negative:
     Vec3 relative;  // R^T (velocity of the point - of the node)
     Vec3 rate;      // of the arm
+    Vec3 velocity;  // of the place
     Travel travel;  // of a surface with unknowns
-    Vec3 place;     // in the surface's axes, as if it had not moved
-    Vec3 velocity;  // rate of `place`
-    double gap = 0;
   };
   struct Local {  // at one point, in the surface's axes, per area
     double pressure = 0;
@@ -121,13 +122,13 @@ class Contact final : public Term {
   };
 
   Moved moved(const State& s) const;
-  Vec3 place(const Moved& m, const Vec3& arm, Travel& travel) const;
+  Vec3 place(const Moved& m, const Vec3& arm) const;
   /// The force on the solid in the body frame: `force` works on the place as if the surface had not moved.
   static Vec3 in_body(const Kinematics& k, const Vec3& force);
   /// What symmetry leaves of the carrier's translation (global) and rotation (body frame).
   Mat3 free_translation() const;
   Mat3 free_rotation(const Mat3& R) const;
-  Vec3 reference(const Station& station, std::size_t angle) const;
+  Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
   Local evaluate(const Kinematics& k, bool derivatives) const;
   /// Derivatives of -force by the solid's functions at a station, carrier and own unknowns, added up in `sum`.
   void add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const;
@@ -144,7 +145,8 @@ class Contact final : public Term {
   std::vector<Edge> edges_;
   std::vector<Station> stations_;
   std::vector<double> angles_;
-  std::vector<Directions> functions_;  // 3 x K at each angle, global
+  Eigen::MatrixXd functions_;  // 3 x K at each angle, one below the other, global
+  Directions reference_;       // of each point, global
   std::vector<Past> past_;
   bool started_ = false;
   double friction_work_ = 0, penetration_ = 0, elastic_slip_ = 0;

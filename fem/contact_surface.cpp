@@ -4,7 +4,11 @@
 
 namespace hosel::fem {
 
-Travel ContactSurface::travel(const Vec3&, const SurfaceUnknowns&) const {
+double ContactSurface::travel(const Vec3& place, const SurfaceUnknowns& unknowns) const {
+  return travel_at(place, unknowns).value;
+}
+
+Travel ContactSurface::travel_at(const Vec3&, const SurfaceUnknowns&) const {
   throw std::logic_error("contact: a surface with unknowns states how far they move it");
 }
 

@@ -39,8 +39,9 @@ class ContactSurface {
   /// A block of at most kSurfaceUnknowns plain numbers in the system's layout. What they weigh and what holds
   /// them is a term of its own.
   virtual std::optional<DofMap::Block> unknowns() const { return std::nullopt; }
-  /// Where there are unknowns: how far they move the surface at a place.
-  virtual Travel travel(const Vec3& place, const SurfaceUnknowns& unknowns) const;
+  /// Where there are unknowns: how far they move the surface at a place [m], and that with its derivatives.
+  virtual double travel(const Vec3& place, const SurfaceUnknowns& unknowns) const;
+  virtual Travel travel_at(const Vec3& place, const SurfaceUnknowns& unknowns) const;
 };
 
 /// What carries the surface. Its axes are parallel to the body frame of the blocks' node; `centre` lies in it.

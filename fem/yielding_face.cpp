@@ -2,7 +2,11 @@
 
 namespace hosel::fem {
 
-Travel YieldingFace::travel(const Vec3& place, const SurfaceUnknowns& unknowns) const {
+double YieldingFace::travel(const Vec3& place, const SurfaceUnknowns& unknowns) const {
+  return unknowns[0] * compliance_.shape(place.y(), place.z()).value;
+}
+
+Travel YieldingFace::travel_at(const Vec3& place, const SurfaceUnknowns& unknowns) const {
   const FaceCompliance::Shape shape = compliance_.shape(place.y(), place.z());
   Travel out;
   out.value = unknowns[0] * shape.value;

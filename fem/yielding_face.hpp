@@ -13,7 +13,8 @@ class YieldingFace final : public FaceSurface {
   YieldingFace(const Face& face, const FaceCompliance& compliance, const DofMap::Block& travel)
       : FaceSurface(face), compliance_(compliance), travel_(travel) {}
   std::optional<DofMap::Block> unknowns() const override { return travel_; }
-  Travel travel(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
+  double travel(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
+  Travel travel_at(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
 
  private:
   FaceCompliance compliance_;

@@ -34,12 +34,12 @@ inline Overlap overlap(double depth, double radius, double curvature) {
     o.centroid = c * r > 1 ? r + smaller - d : 0;
     return o;
   }
-  const double D = 1 + c * (r - d);  // distance of the centres over R
-  o.volume = kPi * d * d * (12 * r - 4 * (1 + c * r) * d + c * d * d) / (12 * D);
-  o.area = kPi * d * (2 * r - d) * (2 - c * d) * (2 * (1 + c * r) - c * d) / (4 * D * D);
+  const double by_D = 1 / (1 + c * (r - d));  // R over the distance of the centres
+  o.volume = kPi / 12 * d * d * (12 * r - 4 * (1 + c * r) * d + c * d * d) * by_D;
+  o.area = kPi / 4 * d * (2 * r - d) * (2 - c * d) * (2 * (1 + c * r) - c * d) * by_D * by_D;
   // Two caps on the common disc at z0 from the ball's centre: the ball's beyond it, of height d - c eta,
   // and the face's before it, of height c eta.
-  const double eta = d * (2 * r - d) / (2 * D);
+  const double eta = d * (2 * r - d) / 2 * by_D;
   const double z0 = r - d + c * eta, beyond = (d - c * eta) * (r + z0);
   const double face_cap = kPi * (c * eta * eta - c * c * c * eta * eta * eta / 3);
   const double moment = kPi / 4 * beyond * beyond + (r - d) * face_cap +

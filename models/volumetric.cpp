@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "hosel/golf/first_contact.hpp"
@@ -130,7 +131,7 @@ class Contact {
       if (law_.face && !wall_) {
         Vec6 wrench;
         wrench << -force_, torque;
-        Eigen::Map<Vec6>(dy + kHeadVelocity) = (rigid_head() + face_.mass).ldlt().solve(wrench + face_.wrench);
+        Eigen::Map<Vec6>(dy + kHeadVelocity) = (rigid_head() + face_.mass).llt().solve(wrench + face_.wrench);
       } else {
         MutVec(dy + kHeadVelocity) = -inverse_mass_ * force_;
         MutVec(dy + kHeadSpin) = R_ * (inverse_inertia_ * (R_.transpose() * torque));
@@ -166,7 +167,7 @@ class Contact {
     } else {
       Eigen::Matrix<double, 6, 3> wrench;
       wrench << -Mat3::Identity(), -skew(head_arm_);
-      head_rate_ = head_mass().ldlt().solve(wrench);
+      head_rate_ = head_mass().llt().solve(wrench);
     }
     // Slip = v_h + w_h x c - v_b - w_cover x a.
     slip_of_head_ << Mat3::Identity(), -skew(head_arm_);
@@ -293,7 +294,7 @@ class Contact {
 
   void evaluate(const double* y) {
     const bool same_face = !law_.face || std::equal(y + kFree, y + kFree + 2, seen_face_.begin());
-    if (same_face && std::equal(y, y + kLostNormal, seen_.begin())) return;  // the same instant again
+    if (same_face && std::memcmp(y, seen_.data(), sizeof seen_) == 0) return;  // the same instant again
     std::copy(y, y + kLostNormal, seen_.begin());
     if (law_.face) std::copy(y + kFree, y + kFree + 2, seen_face_.begin());
     geometry(y);
@@ -314,7 +315,8 @@ class Contact {
   /// F_t / (F_n v_t), finite at rest.
   double friction_over_slip(double slip) const {
     const double s = slip / law_.transition_speed;
-    const double peak = (law_.static_friction - law_.friction) / ((s * s / 4 + 0.75) * (s * s / 4 + 0.75));
+    const double above = law_.static_friction - law_.friction, b = s * s / 4 + 0.75;
+    const double peak = above == 0 ? 0 : above / (b * b);
     const double e = std::exp(-8 * s);
     const double saturating = s > 1e-7 ? (1 - e) / ((1 + e) * s) : 4.0;  // tanh(4 s) / s
     return (law_.friction * saturating + peak) / law_.transition_speed;
@@ -381,7 +383,7 @@ class Contact {
       head += face_.mass;
       wrench += face_.wrench;
     }
-    const Vec6 a = (head + added_).ldlt().solve(wrench + held_ - head * carried_ - shaft_->coupling * dp_rate - pull);
+    const Vec6 a = (head + added_).llt().solve(wrench + held_ - head * carried_ - shaft_->coupling * dp_rate - pull);
     dp_rate -= shaft_->coupling.transpose() * a;
     Eigen::Map<Vec6>(dy + kHeadVelocity) = a + carried_;
     Vec6 carrier, moves;

@@ -1,9 +1,9 @@
 /// A linearly implicit one-step method for mildly stiff systems whose stiffness sits in a small block.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "hosel/solvers/errors.hpp"
 
@@ -27,7 +27,10 @@ struct RosenbrockStatistics {
 template <class System>
 class RosenbrockW {
  public:
-  explicit RosenbrockW(System& system) : s_(system), n_(system.size()), k_(4 * n_), y_(n_), work_(n_), next_(n_) {}
+  explicit RosenbrockW(System& system) : s_(system), n_(system.size()), k_(n_, 4), y_(n_), work_(n_), next_(n_) {
+    weight_.resize(n_);
+    for (int m = 0; m < n_; ++m) weight_[m] = s_.scale(m) > 0 ? 1 / s_.scale(m) : 0;
+  }
 
   /// Advances `y` from 0 until the event; returns its time. Throws NonConvergence where the step
   /// shrinks below `latest` * 1e-12 or the event does not come before `latest`.
@@ -70,71 +73,56 @@ class RosenbrockW {
     static constexpr double b[4] = {0.24212380706095346, -1.2232505839045147, 1.5452602553351020, 0.43586652150845900};
     static constexpr double d[4] = {b[0] - 0.37810903145819369, b[1] + 0.096042292212423178, b[2] - 0.5,
                                     b[3] - 0.21793326075422950};
+    const Eigen::Map<const Eigen::VectorXd> start(y, n_);
     for (int i = 0; i < 4; ++i) {
-      double* k = k_.data() + i * n_;
+      double* k = k_.col(i).data();
       if (i == 0) {
         s_.rate(y, k);
         s_.solve(h * g, k);
         continue;
       }
-      std::copy(y, y + n_, y_.begin());
-      std::fill(work_.begin(), work_.end(), 0.0);
-      for (int j = 0; j < i; ++j) {
-        const double* kj = k_.data() + j * n_;
-        const double hy = h * a[i][j], cw = c[i][j] / g;
-        for (int m = 0; m < n_; ++m) {
-          y_[m] += hy * kj[m];
-          work_[m] += cw * kj[m];
-        }
+      y_ = start + (h * a[i][0]) * k_.col(0);
+      work_ = (c[i][0] / g) * k_.col(0);
+      for (int j = 1; j < i; ++j) {
+        y_ += (h * a[i][j]) * k_.col(j);
+        work_ += (c[i][j] / g) * k_.col(j);
       }
       // (1 - h g A) k = f + h A sum(c k)  <=>  (1 - h g A)(k + w) = f + w with w = sum(c k) / g.
       s_.rate(y_.data(), k);
-      for (int m = 0; m < n_; ++m) k[m] += work_[m];
+      k_.col(i) += work_;
       s_.solve(h * g, k);
-      for (int m = 0; m < n_; ++m) k[m] -= work_[m];
+      k_.col(i) -= work_;
     }
     statistics.rate_calls += 4;
-    double worst = 0;
-    for (int m = 0; m < n_; ++m) {
-      double change = 0, err = 0;
-      for (int i = 0; i < 4; ++i) {
-        change += b[i] * k_[i * n_ + m];
-        err += d[i] * k_[i * n_ + m];
-      }
-      next_[m] = y[m] + h * change;
-      if (const double size = s_.scale(m); size > 0) worst = std::max(worst, std::abs(h * err) / size);
-      if (!std::isfinite(next_[m])) return INFINITY;
-    }
-    return worst;
+    next_ = start + h * (b[0] * k_.col(0) + b[1] * k_.col(1) + b[2] * k_.col(2) + b[3] * k_.col(3));
+    work_ = d[0] * k_.col(0) + d[1] * k_.col(1) + d[2] * k_.col(2) + d[3] * k_.col(3);
+    return std::isfinite(next_.sum()) ? h * work_.cwiseProduct(weight_).cwiseAbs().maxCoeff() : INFINITY;
   }
   const double* next() const { return next_.data(); }
 
   RosenbrockStatistics statistics;
 
  private:
-  /// The step that ends on the event: regula falsi (Illinois) on the step size.
+  /// The step that ends on the event: secant method on the step size, kept inside the bracket.
   double step_to_event(const double* y, double h, double before, double after, double tolerance) {
-    double low = 0, high = h, f_low = before, f_high = after;
-    for (int i = 0; i < 60 && std::abs(s_.gap(next_.data())) > tolerance; ++i) {
-      h = low - f_low * (high - low) / (f_high - f_low);
+    double low = 0, high = h, last = 0, f_last = before, f = after;
+    for (int i = 0; i < 60 && std::abs(f) > tolerance; ++i) {
+      double to = h - f * (h - last) / (f - f_last);
+      if (!(to > low && to < high)) to = 0.5 * (low + high);
+      last = h;
+      f_last = f;
+      h = to;
       step(y, h);
-      const double f = s_.gap(next_.data());
-      if (f > 0) {
-        low = h;
-        f_low = f;
-        f_high /= 2;
-      } else {
-        high = h;
-        f_high = f;
-        f_low /= 2;
-      }
+      f = s_.gap(next_.data());
+      (f > 0 ? low : high) = h;
     }
     return h;
   }
 
   System& s_;
   int n_;
-  std::vector<double> k_, y_, work_, next_;
+  Eigen::Matrix<double, Eigen::Dynamic, 4> k_;
+  Eigen::VectorXd y_, work_, next_, weight_;  // weight: one over the size of a component, 0: no error control
 };
 
 }  // namespace hosel::solvers

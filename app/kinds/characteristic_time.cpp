@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,8 @@ namespace {
 
 /// The rules' line between characteristic time [us] and restitution.
 double rules_line(double time_us) { return 0.718 + 0.000436 * time_us; }
+/// How near a lumped face is asked to come to it.
+constexpr double kClose = 0.008;
 
 class CharacteristicTimeJob final : public Job {
  public:
@@ -81,21 +84,18 @@ class CharacteristicTimeJob final : public Job {
     csv =
         "effective_mass_g,stiffness_N_per_m,characteristic_time_us,restitution,rules_line,contact_in_face_periods,"
         "face_energy_J\n";
+    const auto stiffness = [&](int i) { return softest_ * std::pow(stiffest_ / softest_, i / double(faces_ - 1)); };
     for (const double face_mass : masses_) {
       post::Series series{.label = fmt::format("face of {:g} g", 1e3 * face_mass), .style = "linespoints"};
       double worst = 0;
       for (int i = 0; i < faces_; ++i) {
-        FaceCompliance f = face_;
-        f.mass = face_mass;
-        f.stiffness = softest_ * std::pow(stiffest_ / softest_, i / double(faces_ - 1));
-        const double time = 1e6 * models::characteristic_time(sphere_, mass, f, shape, speeds_).time;
-        const models::FaceStrike drive = models::strike(ball, mass, f, shape, restitution_speed_);
-        const double e = drive.restitution, periods = drive.contact_time * std::sqrt(f.stiffness / f.mass) / (2 * kPi);
-        worst = std::max(worst, std::abs(e - rules_line(time)));
-        series.x.push_back(time);
-        series.y.push_back(e);
-        csv += fmt::format("{},{:.5g},{:.3f},{:.5f},{:.5f},{:.3f},{:.3f}\n", 1e3 * face_mass, f.stiffness, time, e,
-                           rules_line(time), periods, drive.energy);
+        const Compared face = compare(mass, shape, face_mass, stiffness(i));
+        const double k = face.face.stiffness, periods = face.drive.contact_time * std::sqrt(k / face_mass) / (2 * kPi);
+        worst = std::max(worst, std::abs(face.departure()));
+        series.x.push_back(face.time_us);
+        series.y.push_back(face.drive.restitution);
+        csv += fmt::format("{},{:.5g},{:.3f},{:.5f},{:.5f},{:.3f},{:.3f}\n", 1e3 * face_mass, k, face.time_us,
+                           face.drive.restitution, rules_line(face.time_us), periods, face.drive.energy);
       }
       out.say(fmt::format("faces of {:4.1f} g, {:.0f} to {:.0f} us: within {:.4f} of the rules' line", 1e3 * face_mass,
                           series.x.back(), series.x.front(), worst));
@@ -109,12 +109,57 @@ class CharacteristicTimeJob final : public Job {
     }
     rules.series.push_back(wanted);
     out.write("line.csv", csv);
-    post::Figure figure{.panels = {tap, rules}, .columns = 2};
+    post::Panel plane{.title = "restitution less the rules' line, thousandths",
+                      .x_label = "effective mass of the face [g]",
+                      .y_label = "its stiffness [MN/m]"};
+    plane.map_label = "[0.001]";
+    plane.map_symmetric = true;
+    const auto [lightest, heaviest] = std::ranges::minmax(masses_);
+    constexpr int kColumns = 31;
+    int inside = 0;
+    double always = 0;  // heaviest mass at which every stiffness lies inside
+    std::vector<bool> whole(kColumns, true);
+    for (int i = 0; i < kColumns; ++i)
+      plane.map_x.push_back(1e3 * (lightest + (heaviest - lightest) * i / (kColumns - 1)));
+    for (int j = 0; j < faces_; ++j) {
+      plane.map_y.push_back(1e-6 * stiffness(j));
+      for (int i = 0; i < kColumns; ++i) {
+        const double off = compare(mass, shape, 1e-3 * plane.map_x[i], stiffness(j)).departure();
+        plane.map.push_back(1e3 * off);
+        const bool in = std::abs(off) <= kClose;
+        inside += in;
+        whole[i] = whole[i] && in;
+      }
+    }
+    for (int i = 0; i < kColumns && whole[i]; ++i) always = plane.map_x[i];
+    const double share = 100.0 * inside / double(plane.map.size());
+    out.say(
+        fmt::format("between {:g} and {:g} g: {:.0f} % of the faces within {} of the line, all of them up to {:.1f} g",
+                    1e3 * lightest, 1e3 * heaviest, share, kClose, always));
+    summary["inside_percent"] = share;
+    summary["all_inside_up_to_g"] = always;
+    post::Figure figure{.panels = {tap, rules, plane}, .columns = 3};
     if (const std::string why = post::draw(figure, out.path("characteristic-time")); !why.empty()) out.say(why);
     out.write_summary(summary);
   }
 
  private:
+  /// A face of the same shape and damping in the same head, beside the rules' line.
+  struct Compared {
+    FaceCompliance face;
+    double time_us = 0;
+    models::FaceStrike drive;
+    double departure() const { return drive.restitution - rules_line(time_us); }
+  };
+  Compared compare(double head_mass, double shape, double face_mass, double stiffness) const {
+    Compared out{.face = face_};
+    out.face.mass = face_mass;
+    out.face.stiffness = stiffness;
+    out.time_us = 1e6 * models::characteristic_time(sphere_, head_mass, out.face, shape, speeds_).time;
+    out.drive = models::strike(models::golf_ball({}), head_mass, out.face, shape, restitution_speed_);
+    return out;
+  }
+
   Head head_;
   FaceCompliance face_;
   models::Striker sphere_;

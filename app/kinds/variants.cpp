@@ -173,7 +173,7 @@ class VariantsJob final : public Job {
                         "launch", "speed", "off [%]", "spin", "off [%]", "e_t", "ratio", "measured ratios"));
     std::string csv =
         "variant,dynamic_loft_deg,launch_angle_deg,ball_speed_mps,spin_rate_rpm,tangential_restitution,"
-        "launch_ratio,normal_restitution,contact_time_ms,elastic_factor,viscous_factor,range,error\n";
+        "launch_ratio,contact_ms,normal_restitution,contact_time_ms,elastic_factor,viscous_factor,range,error\n";
     nlohmann::json summary;
     std::vector<post::LaunchColumn> flights;
     for (std::size_t i = 0; i < variants_.size(); ++i) {
@@ -181,7 +181,7 @@ class VariantsJob final : public Job {
       const Prediction& a = answers[i];
       if (!a.error.empty()) {
         out.say(fmt::format("{:<{}} {}", v.name, width, a.error));
-        csv += fmt::format("{},,,,,,,,,,,,{}\n", post::csv_cell(v.name), post::csv_cell(a.error));
+        csv += fmt::format("{},,,,,,,,,,,,,{}\n", post::csv_cell(v.name), post::csv_cell(a.error));
         summary["variants"][v.name] = {{"error", a.error}};
         continue;
       }
@@ -194,16 +194,17 @@ class VariantsJob final : public Job {
       out.say(fmt::format("{:<{}} {:>7.2f} {:>7.2f} {:>8.2f} {} {:>8.0f} {} {:>7.3f} {:>7.3f}  {}", v.name, width,
                           degrees(a.loft), degrees(a.launch.launch_angle()), speed, off(speed, v.seen.ball_speed),
                           rpm(spin), off(spin, v.seen.spin_rate), a.e_t, a.ratio, ratios));
-      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},\n",
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},\n",
                          post::csv_cell(v.name), degrees(a.loft), degrees(a.launch.launch_angle()), speed, rpm(spin),
-                         a.e_t, a.ratio, a.normal_restitution, 1e3 * a.contact_time, a.elastic, a.viscous,
-                         post::csv_cell(v.range));
+                         a.e_t, a.ratio, 1e3 * a.launch.contact_time.value_or(NAN), a.normal_restitution,
+                         1e3 * a.contact_time, a.elastic, a.viscous, post::csv_cell(v.range));
       summary["variants"][v.name] = {{"dynamic_loft_deg", degrees(a.loft)},
                                      {"launch_angle_deg", degrees(a.launch.launch_angle())},
                                      {"ball_speed_mps", speed},
                                      {"spin_rate_rpm", rpm(spin)},
                                      {"tangential_restitution", a.e_t},
                                      {"launch_ratio", a.ratio}};
+      if (a.launch.contact_time) summary["variants"][v.name]["contact_ms"] = 1e3 * *a.launch.contact_time;
       if (a.flight) {
         flights.push_back({.title = v.name, .launch = a.launch, .flight = a.flight});
         summary["variants"][v.name]["flight"] = post::to_json(*a.flight);
