@@ -1,7 +1,7 @@
 // Where an impact's time goes, and how it grows with the mesh. Ratios within one run.
 #include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
 
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
@@ -31,11 +31,12 @@ FeImpactOptions options(int sector, int harmonics) {
   return o;
 }
 
+/// CPU time of all threads, since other work may run beside.
 template <class Work>
 double seconds(int repeats, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   for (int i = 0; i < repeats; ++i) work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / repeats;
+  return double(std::clock() - start) / CLOCKS_PER_SEC / repeats;
 }
 
 /// Unit costs at largest force times how often each was needed, over the time of the whole run; and one solution of
@@ -94,6 +95,8 @@ void Shares(benchmark::State& state) {
     state.counters["share_factorisation"] = f * factorisation / whole;
     state.counters["share_contact_tangent"] = n * dense / whole;
     state.counters["share_solves"] = n * solve / whole;
+    state.counters["share_of_elements_factors_solves"] =
+        (n * (ball + solve) + f * (assembly + factorisation) + n * dense) / whole;
     state.counters["lu_over_kept_factorisation"] = seconds(2, [&] { lu.factorise(all); }) / factorisation;
     state.counters["lu_over_kept_solve"] = seconds(20, [&] { benchmark::DoNotOptimize(lu.solve(right)); }) / solve;
     state.counters["seconds"] = whole;
@@ -101,9 +104,9 @@ void Shares(benchmark::State& state) {
 }
 BENCHMARK(Shares)->Iterations(1)->Unit(benchmark::kSecond);
 
-/// `accuracy` of a case, 0 look, 1 default, 2 reference: what it costs, and how far it is from the last.
-void AccuracyLevels(benchmark::State& state) {
-  Blow blow;  // cases/iron7-trackman
+/// cases/iron7-trackman.
+Blow iron7() {
+  Blow blow;
   blow.delivery = {.club_speed = 36.747,
                    .attack_angle = radians(-1.9),
                    .club_path = radians(0.4),
@@ -114,6 +117,12 @@ void AccuracyLevels(benchmark::State& state) {
   blow.club.head.mass = 0.2643;
   blow.club.head.cg = Vec3(-0.0011, 0, 0);
   blow.club.head.inertia = Vec3(2.752e-4, 0.577e-4, 2.889e-4).asDiagonal();
+  return blow;
+}
+
+/// `accuracy` of a case, 0 look, 1 default, 2 reference: what it costs, and how far it is from the last.
+void AccuracyLevels(benchmark::State& state) {
+  const Blow blow = iron7();
   for (auto _ : state) {
     Launch launch[2];
     double cost[2];
@@ -131,6 +140,34 @@ void AccuracyLevels(benchmark::State& state) {
   }
 }
 BENCHMARK(AccuracyLevels)->Arg(0)->Arg(1)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
+
+/// One blow on one core and on two, in turn. `alone`: by the time that the calling thread worked, which is the wall
+/// time where nothing else runs.
+void TwoCores(benchmark::State& state) {
+  const Blow blow = iron7();
+  FeImpactOptions o;
+  o.resolve(static_cast<Accuracy>(state.range(0)));
+  const auto now = [](clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+  };
+  constexpr clockid_t kClocks[] = {CLOCK_MONOTONIC, CLOCK_THREAD_CPUTIME_ID, CLOCK_PROCESS_CPUTIME_ID};
+  for (auto _ : state) {
+    double spent[3][2] = {};
+    for (int i = 0; i < 6; ++i) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(1 + i % 2));
+      double start[3];
+      for (int k = 0; k < 3; ++k) start[k] = now(kClocks[k]);
+      benchmark::DoNotOptimize(solve_free_body(blow, o).launch);
+      for (int k = 0; k < 3; ++k) spent[k][i % 2] += now(kClocks[k]) - start[k];
+    }
+    state.counters["wall_one_over_two"] = spent[0][0] / spent[0][1];
+    state.counters["alone_one_over_two"] = spent[1][0] / spent[1][1];
+    state.counters["cpu_two_over_one"] = spent[2][1] / spent[2][0];
+  }
+}
+BENCHMARK(TwoCores)->Arg(0)->Arg(1)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
 
 /// What a face that yields costs: drives 15 mm off the middle on both, in turn; CPU time, since other work may run.
 void YieldingFace(benchmark::State& state) {
