@@ -114,4 +114,21 @@ int SparsePolynomial::terms() const {
   return n;
 }
 
+Eigen::VectorXd SparsePolynomial::importance(Eigen::Index inputs) const {
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(inputs);
+  for (const std::vector<Term>& terms : terms_) {
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(inputs);
+    double all = 0;
+    for (const Term& t : terms) {
+      double variance = t.coefficient * t.coefficient;
+      for (const Factor& f : t.factors) variance /= 2 * f.degree + 1;
+      for (const Factor& f : t.factors)
+        if (f.degree) share[f.input] += variance;
+      if (t.factors[0].degree) all += variance;
+    }
+    if (all > 0) mean += (share / all).cwiseSqrt() / double(terms_.size());
+  }
+  return mean;
+}
+
 }  // namespace hosel::solvers

@@ -20,6 +20,9 @@ class SparsePolynomial {
   /// Values of the outputs at a point.
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   int terms() const;  ///< of all outputs together
+  /// How much each of so many inputs moves the outputs: root of its share of every output's variance over the box (with
+  /// all terms that hold it), mean over the outputs.
+  Eigen::VectorXd importance(Eigen::Index inputs) const;
   /// What was predicted of every point without the fold that it is in: points x outputs.
   const Eigen::MatrixXd& left_out() const { return left_out_; }
 

@@ -326,7 +326,7 @@ Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const 
         const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
         J.col(k) = d.head(m) - by_launch * d[m];
       }
-      cov += J * surrogate_->error() * J.transpose();
+      cov += J * surrogate_->error(t) * J.transpose();
     }
   } catch (const std::invalid_argument&) {}
   return cov;

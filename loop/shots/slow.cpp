@@ -19,7 +19,8 @@ namespace hosel::loop {
 namespace {
 
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
-constexpr int kRounds = 2;                         // of asking where the decision hangs
+constexpr int kRounds = 4;                         // of asking where the decision hangs
+constexpr double kSurprise = 2;                    // chi-squared per output up to which its error was told truly
 
 const models::RigidEccentric& closed_form() {
   static const models::RigidEccentric model;
@@ -75,7 +76,7 @@ std::string errors(const Surrogate& surrogate, const std::vector<Shot>& shots, c
         const double h = 1e-4;
         slope[k] = (get(Surrogate::shifted(l, s, h * Vec6::Unit(k)), *output) - get(l, *output)) / h / c.si;
       }
-      variance += slope.dot(surrogate.error() * slope) / double(shots.size());
+      variance += slope.dot(surrogate.error(s) * slope) / double(shots.size());
     }
     text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", c.name, std::sqrt(variance));
   }
@@ -95,8 +96,8 @@ std::vector<int> evenly(const std::vector<int>& all, std::size_t most) {
 LoopResult run_slow(const ShotCase& c) {
   const SlowBase& slow = *c.slow;
   const auto told = [&](const char* what, std::size_t of) {
-    return [&slow, what, of](int done) {
-      if (slow.told) slow.told(what, double(done) / double(of));
+    return [&c, what, of](int done) {
+      if (c.told) c.told(what, double(done) / double(of));
     };
   };
   ShotCase quick = without_holdout(c);
@@ -119,7 +120,7 @@ LoopResult run_slow(const ShotCase& c) {
     throw DataError(fmt::format("{}: surrogate of {}: {}", c.shots.file, c.base, e.what()));
   }
 
-  // What was found is asked of the base itself; where that moves it, once more.
+  // What was found is asked of the base itself; where that moves it, or was not foreseen, once more.
   const std::string spread_error = errors(*quick.surrogate, shots, c.shots);
   const int spread_points = exact.points();
   LoopResult result = run(quick);
@@ -128,7 +129,7 @@ LoopResult run_slow(const ShotCase& c) {
     const auto ties = result.ties;
     exact.learn(result.decisive, told("where the decision hangs", result.decisive.size()));
     result = run(quick);
-    if (result.adopted == adopted && result.ties == ties) break;
+    if (result.adopted == adopted && result.ties == ties && exact.surprise() < kSurprise) break;
   }
 
   ShotCase last = c;
@@ -138,23 +139,30 @@ LoopResult run_slow(const ShotCase& c) {
   last.closing = slow.fine ? slow.fine : slow.coarse;
   last.checked = slow.checked;
   last.notes.push_back(fmt::format(
-      "{} stands behind a sparse polynomial of {} of its answers over {} quantities of blow and effects ({} had "
-      "none){}; error of each predicted from the others: {}; where the decision hangs, {} more, after which {}",
+      "{} stands behind a sparse polynomial of {} of its answers over {} quantities of blow and effects ({} had none), "
+      "its residuals interpolated{}; error of each predicted from the others: {}",
       c.base, coarse.points(), coarse.inputs(), coarse.failed(),
-      slow.fine ? fmt::format(", corrected by {} at the case's own accuracy", fine.points()) : "", spread_error,
-      exact.points() - spread_points, errors(*quick.surrogate, shots, c.shots)));
+      slow.fine ? fmt::format(", corrected by {} at the case's own accuracy", fine.points()) : "", spread_error));
+  if (exact.points() > spread_points)
+    last.notes.push_back(fmt::format(
+        "where the decision hangs {} was asked {} times more, after which the error is {}; the last of these answers "
+        "were {:.2g} of the told errors away from what had been foretold (root mean square)",
+        c.base, exact.points() - spread_points, errors(*quick.surrogate, shots, c.shots), std::sqrt(exact.surprise())));
   return run(last);
 }
 
 std::vector<Shot> decisive(const ShotProblem& problem, const LoopResult& result) {
-  constexpr std::size_t shots = 8, candidates = 4;
-  std::vector<const Fit*> fits{&result.selection.base};
-  for (const Candidate& k : result.selection.candidates)
-    if (fits.size() <= candidates && k.fit.size() > 0) fits.push_back(&k.fit);
+  constexpr std::size_t rivals = 4, few = 8, many = 40;
   std::vector<Shot> out;
-  for (const Fit* fit : fits)
-    for (const int i : evenly(problem.training(), shots))
-      if (Shot s; problem.model().asked(i, fit->model, fit->p.data(), s)) out.push_back(std::move(s));
+  const auto ask = [&](const Fit& fit, std::size_t most) {
+    for (const int i : evenly(problem.training(), most))
+      if (Shot s; problem.model().asked(i, fit.model, fit.p.data(), s)) out.push_back(std::move(s));
+  };
+  const Selection& found = result.selection;
+  ask(found.chosen, many);
+  ask(found.base, few);
+  for (std::size_t k = 0; k < std::min(rivals, found.candidates.size()); ++k)
+    if (found.candidates[k].fit.size() > 0) ask(found.candidates[k].fit, few);
   return out;
 }
 

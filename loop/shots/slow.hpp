@@ -11,7 +11,8 @@ namespace hosel::loop {
 /// `c.slow` is set. Throws DataError where the data cannot be used, or the base has no answer near them.
 LoopResult run_slow(const ShotCase& c);
 
-/// What a pass on a surrogate would have the base asked about: some training shots at the likeliest candidates.
+/// What a pass on a surrogate would have the base asked about: training shots at what it chose, some at the base and
+/// at the likeliest candidates.
 std::vector<Shot> decisive(const ShotProblem& problem, const LoopResult& result);
 /// The base itself (`c.closing`) on held-out shots, at the fits before and after.
 Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before, const Fit& after);

@@ -37,6 +37,7 @@ void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(i
     } catch (const solvers::NonConvergence&) {}
     if (told) told(++done);
   });
+  surprise_ = surprise(shots, found);
   for (std::size_t i = 0; i < shots.size(); ++i) {
     if (!found[i]) {
       ++failed_;
@@ -46,6 +47,23 @@ void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(i
     beyond_.push_back(*found[i]);
   }
   fit();
+}
+
+double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std::optional<Vec6>>& found) const {
+  if (shots_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  int readings = 0;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    if (!found[i]) continue;
+    const Eigen::VectorXd x = coordinates(shots[i]);
+    const Vec6 miss = *found[i] - polynomial_(x) - residual_(x), told = residual_.error(x).diagonal();
+    for (int k = 0; k < 6; ++k)
+      if (told[k] > 0) {
+        sum += miss[k] * miss[k] / told[k];
+        ++readings;
+      }
+  }
+  return readings ? sum / readings : 0;
 }
 
 void Surrogate::fit() {
@@ -73,8 +91,11 @@ void Surrogate::fit() {
   }
   for (Eigen::Index i = 0; i < n; ++i) y.row(i) = beyond_[std::size_t(i)].transpose();
   polynomial_ = {x, y, degree_};
-  const Eigen::MatrixXd e = y - polynomial_.left_out();
-  error_ = e.transpose() * e / double(n);
+  Eigen::MatrixXd left = y;
+  for (Eigen::Index i = 0; i < n; ++i) left.row(i) -= polynomial_(x.row(i).transpose()).transpose();
+  // A quantity that hardly moves the answer hardly parts two blows.
+  constexpr double least = 0.05;
+  residual_ = {x, polynomial_.importance(d).cwiseMax(least).cwiseInverse(), left, y - polynomial_.left_out()};
 }
 
 Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
@@ -86,7 +107,14 @@ Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
 
 Launch Surrogate::launch(const Shot& shot) const {
   const Launch quick = quick_(shot);
-  return shots_.empty() ? quick : shifted(quick, shot, polynomial_(coordinates(shot)));
+  if (shots_.empty()) return quick;
+  const Eigen::VectorXd x = coordinates(shot);
+  return shifted(quick, shot, polynomial_(x) + residual_(x));
+}
+
+Mat6 Surrogate::error(const Shot& shot) const {
+  if (shots_.empty()) return Mat6::Zero();
+  return residual_.error(coordinates(shot));
 }
 
 Launch Surrogate::shifted(Launch l, const Shot& s, const Vec6& error) {

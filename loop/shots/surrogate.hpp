@@ -1,12 +1,15 @@
-/// A slow base made quick: a sparse polynomial of what it says beyond a quicker answer, over blows and effects
-/// together, with its error.
+/// A slow base made quick: what it says beyond a quicker answer, over blows and effects together, as a sparse
+/// polynomial whose residuals are interpolated, with its error.
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "hosel/golf/launch.hpp"
 #include "hosel/loop/effect.hpp"
+#include "hosel/solvers/kriging.hpp"
 #include "hosel/solvers/sparse_polynomial.hpp"
 
 namespace hosel::loop {
@@ -33,24 +36,29 @@ class Surrogate {
   int inputs() const { return int(features_.size()); }  ///< quantities that vary over them
   int failed() const { return failed_; }
   int terms() const { return polynomial_.terms(); }
-  /// Mean square of the error of ten-fold cross-validation [(m/s)^2, (rad/s)^2 over speed^2]: zero before it has
-  /// learnt.
-  const Mat6& error() const { return error_; }
+  /// Of the shots it learnt last: chi-squared per output of what it had said of them before. About 1 where it had told
+  /// its error truly; not a number before it has learnt twice.
+  double surprise() const { return surprise_; }
+  /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2], scaled to what
+  /// cross-validation shows: zero before it has learnt.
+  Mat6 error(const Shot& shot) const;
   /// A launch with such an error added.
   static Launch shifted(Launch launch, const Shot& shot, const Vec6& error);
 
  private:
   Eigen::VectorXd coordinates(const Shot& shot) const;
+  double surprise(const std::vector<Shot>& shots, const std::vector<std::optional<Vec6>>& found) const;
   void fit();
 
   Answer slow_, quick_;
   int degree_, failed_ = 0;
+  double surprise_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Shot> shots_;
   std::vector<Vec6> beyond_;           ///< what the slow model says beyond the quick one
   std::vector<std::size_t> features_;  ///< that vary over the shots
   Eigen::VectorXd middle_, half_;
   solvers::SparsePolynomial polynomial_;
-  Mat6 error_ = Mat6::Zero();
+  solvers::Kriging residual_;
 };
 
 }  // namespace hosel::loop

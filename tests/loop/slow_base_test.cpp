@@ -107,7 +107,7 @@ TEST(SlowBase, ASurrogateOverBlowsAndEffectsTellsItsError) {
   for (const Shot& s : elsewhere) {
     const Vec3 miss = surrogate.launch(s).spin - slow_model(s).spin;
     square += miss.squaredNorm() / 200;
-    told += surrogate.error().diagonal().tail<3>().sum() * s.blow.delivery.club_speed * s.blow.delivery.club_speed /
+    told += surrogate.error(s).diagonal().tail<3>().sum() * s.blow.delivery.club_speed * s.blow.delivery.club_speed /
             200;
   }
   EXPECT_NEAR(std::sqrt(told / square), 1, 0.4);  // told from 300 points with a tenth of them left out, seen on 200

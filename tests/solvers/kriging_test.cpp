@@ -1,0 +1,68 @@
+#include "hosel/solvers/kriging.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hosel/solvers/random.hpp"
+
+namespace hosel::solvers {
+namespace {
+
+Eigen::MatrixXd anywhere(int points, int inputs, std::mt19937_64& random) {
+  return Eigen::MatrixXd::NullaryExpr(points, inputs, [&] { return 2 * uniform(random) - 1; });
+}
+
+/// Two outputs of two inputs that matter; a third does not.
+Eigen::MatrixXd bumps(const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd y(x.rows(), 2);
+  y.col(0) = (3 * x.col(0).array()).sin() * x.col(1).array();
+  y.col(1) = 0.1 * (2 * x.col(1).array()).cos();
+  return y;
+}
+
+const Eigen::Vector3d kLength{1, 1, 20};
+
+TEST(Kriging, AnswersWhereItWasAskedAndTellsItsErrorElsewhere) {
+  std::mt19937_64 random(1);
+  const Eigen::MatrixXd x = anywhere(150, 3, random), y = bumps(x);
+  const Kriging fit(x, kLength, y, y);
+  ASSERT_TRUE(fit.interpolates());
+  for (int i = 0; i < 150; ++i) EXPECT_LT((fit(x.row(i).transpose()) - y.row(i).transpose()).norm(), 0.01);
+  const Eigen::MatrixXd there = anywhere(300, 3, random), truth = bumps(there);
+  Eigen::Vector2d chi = Eigen::Vector2d::Zero();
+  double square = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector2d miss = fit(there.row(i).transpose()) - truth.row(i).transpose();
+    square += miss.squaredNorm() / 300;
+    chi += (miss.array().square() / fit.error(there.row(i).transpose()).diagonal().array()).matrix() / 300;
+  }
+  EXPECT_LT(std::sqrt(square), 0.05);  // of a process of 0.4
+  for (const double c : chi) {         // told from 150 points, seen on 300 that lie no closer
+    EXPECT_GT(c, 0.3);
+    EXPECT_LT(c, 3);
+  }
+}
+
+TEST(Kriging, FarFromAllItSaysZeroAndTheWholeProcess) {
+  std::mt19937_64 random(2);
+  const Eigen::MatrixXd x = anywhere(100, 3, random), y = bumps(x);
+  const Kriging fit(x, kLength, y, y);
+  ASSERT_TRUE(fit.interpolates());
+  const Eigen::Vector3d far(1e3, 0, 0);
+  EXPECT_LT(fit(far).norm(), 1e-9);
+  EXPECT_GT(fit.error(far)(0, 0), 10 * fit.error(x.row(0).transpose())(0, 0));
+}
+
+TEST(Kriging, NoiseIsNotInterpolated) {
+  std::mt19937_64 random(3);
+  const Eigen::MatrixXd x = anywhere(120, 3, random);
+  const Eigen::MatrixXd noise = anywhere(120, 1, random);
+  const Kriging fit(x, kLength, noise, noise);
+  // Little better than the mean, zero, by the chance of some forty choices.
+  EXPECT_GT(fit.left_out().norm(), 0.93 * noise.norm());
+  EXPECT_NEAR(fit.error(Eigen::Vector3d(0.1, 0.2, 0.3))(0, 0), 1.0 / 3, 0.1);
+}
+
+}  // namespace
+}  // namespace hosel::solvers
