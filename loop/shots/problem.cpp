@@ -142,7 +142,7 @@ std::vector<Parametrisation> ShotProblem::forms() const {
   }
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own)) {
-    if (!e.on_shots) continue;
+    if (!e.on_shots || (e.name == "session-drift" && sorted_by(case_.shots))) continue;
     for (Parametrisation& f : e.on_shots(setting)) {
       // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
       if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.complexity += 10;
@@ -199,6 +199,8 @@ std::vector<Flag> ShotProblem::flags() const {
 
 std::vector<std::string> ShotProblem::notes() const {
   std::vector<std::string> all = notes_;
+  if (const Column* by = sorted_by(case_.shots))
+    all.push_back(fmt::format("rows stand sorted by {} and have no shot number: no session-drift is sought", by->name));
   if (select_.size() < rows_.train.size())
     all.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", select_.size(),
                               rows_.train.size()));
@@ -388,7 +390,14 @@ std::vector<Location> ShotProblem::places(const Selection& s) const {
 /// fitted to them here. A regressor that is known and explains as much is the plainer reason.
 std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   bool declared = true;
-  for (int c = 0; c < width(); ++c) declared = declared && channel(c).declared.has_value();
+  double grown = 1;  // noise that was refuted: the declared one is what either population should show
+  for (int c = 0; c < width(); ++c) {
+    declared = declared && channel(c).declared.has_value();
+    if (channel(c).refuted) grown = std::max(grown, channel(c).noise / *channel(c).declared);
+  }
+  const auto as_declared = [&](const Mixture& m) {
+    return declared && m.deviation * grown > 0.7 && m.deviation * grown < 1.4;
+  };
   std::set<int> slipped;
   for (const RowFlag& f : flags_)
     if (f.slip) slipped.insert(f.shot);
@@ -399,22 +408,19 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   std::optional<Mixture> best;
   Eigen::MatrixXd of;
   std::vector<const Fit*> fits{&s.chosen};
-  if (!s.clean) fits.push_back(&s.base);  // the chosen one is wrong, and may have drawn the two together
+  // The chosen one is wrong, or fits with more noise than there is: it may have drawn the two together.
+  if (!s.clean || grown > 1) fits.push_back(&s.base);
   for (const Fit* fit : fits) {
     const Eigen::VectorXd whitened = model_->whitened(rows, fit->model, fit->p);
     const Eigen::MatrixXd z = whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
     auto two = mixture(z);
     if (!two || (best && two->gain < best->gain)) continue;
+    if (fit == &s.base && s.clean && !as_declared(*two)) continue;
     best = std::move(two);
     of = z;
   }
   if (!best) return {};
-  // Noise that was refuted has grown: the declared one is what either population should show.
-  double grown = 1;
-  for (int c = 0; c < width(); ++c)
-    if (channel(c).refuted) grown = std::max(grown, channel(c).noise / *channel(c).declared);
-  const double deviation = best->deviation * grown;
-  if (best->gain < (declared && deviation > 0.7 && deviation < 1.4 ? kKnownMixture : kMixture)) return {};
+  if (best->gain < (as_declared(*best) ? kKnownMixture : kMixture)) return {};
   Eigen::VectorXd difference = Eigen::VectorXd::Zero(width());
   double count = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) count += best->second[i];

@@ -203,6 +203,18 @@ Groups groups(const Column& column) {
   return g;
 }
 
+const Column* sorted_by(const Shots& shots) {
+  if (shots.has_shot_column) return nullptr;
+  for (const Column& c : shots.columns) {
+    if (c.numeric) continue;
+    const Groups g = groups(c);
+    const std::size_t n = g.name.size();
+    if (n < 3 || 2 * n > shots.rows() || !std::ranges::is_sorted(g.of_row)) continue;
+    return &c;
+  }
+  return nullptr;
+}
+
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
   const auto read = [&](Output o) -> std::optional<double> {
     const Column* c = shots.find_stem(stem(o));

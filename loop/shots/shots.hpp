@@ -56,5 +56,8 @@ struct Groups {
   std::vector<std::string> name;
 };
 Groups groups(const Column& column);
+/// The text column by which rows without a shot number stand sorted, every value in one block: they are not in the
+/// order in which they were struck. nullptr where there is none.
+const Column* sorted_by(const Shots& shots);
 
 }  // namespace hosel::loop

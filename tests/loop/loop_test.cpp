@@ -219,6 +219,20 @@ TEST_F(Loop, ADriftIsNoLevelShiftOfAColumn) {
   EXPECT_EQ(r.adopted, std::vector<std::string>{"session-drift"});
 }
 
+TEST_F(Loop, RowsSortedByAColumnAreNoSession) {
+  // Without its number a shot's place is no time; sorted, it is the club.
+  std::string text = csv({.drift = 2});
+  std::istringstream lines(text);
+  std::string sorted, line;
+  for (int i = -1; std::getline(lines, line); ++i)
+    sorted += (i < 0 ? "club" : i < 30 ? "a" : i < 60 ? "b" : "c") + line.substr(line.find(',')) + "\n";
+  EXPECT_EQ(run(case_of(text)).adopted, std::vector<std::string>{"session-drift"});
+  const LoopResult r = run(case_of(sorted));
+  for (const ScoredCandidate& c : r.candidates) EXPECT_EQ(std::ranges::count(c.candidate.effects, "session-drift"), 0);
+  EXPECT_NE(std::ranges::find_if(r.notes, [](const std::string& n) { return n.find("sorted by club") != n.npos; }),
+            r.notes.end());
+}
+
 TEST_F(Loop, TwoBallsAreAMixture) {
   const LoopResult r = run(case_of(csv({.second = 1.5})));  // six times the noise
   ASSERT_EQ(name(r.verdict), "unexplained");
