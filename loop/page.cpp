@@ -51,6 +51,9 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
                            {before, after, holdout}});
 }
 
+/// What the words above it mean.
+std::string gloss(const char* text) { return fmt::format("<p><small>{}</small></p>", text); }
+
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "–"; }
 
 /// 95 % interval of a root mean square from n values.
@@ -154,8 +157,12 @@ std::string page(const LoopResult& r, const Shots& table) {
                      number(c.noise), c.noise_source, number(c.scatter), rms(c.before.holdout_rmse, c.before.holdout),
                      rms(c.after.holdout_rmse, c.after.holdout), number(c.before.holdout_bias),
                      number(c.after.holdout_bias));
-  s += "</table></div><p><small>Residual is model minus measured; 95 % intervals in brackets and as "
-       "whiskers.</small></p>";
+  s += "</table></div>";
+  s += gloss(
+      "Residual: model minus measured. Noise: standard deviation of one reading, as declared or as the readings' own "
+      "spread shows it. Scatter / noise: what is left about the fit over that noise, 1 where both are right. Held out: "
+      "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers. "
+      "Bias: their mean.");
   if (r.corrected && !r.corrected->rows.empty()) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(
@@ -234,12 +241,15 @@ std::string page(const LoopResult& r, const Shots& table) {
                      escape_html(fmt::format("{}", fmt::join(c.candidate.effects, " + "))), escape_html(parameters),
                      number(sel.base.deviance - c.candidate.fit.deviance), number(c.holdout_score));
   }
-  s += "</table></div><p><small>Each at its own optimum on the training part; the score is the mean log predictive "
-       "density per held-out value.</small></p>";
+  s += "</table></div>";
+  s += gloss(
+      "Each at its own optimum on the rows to learn from. Deviance: twice the negative logarithm of the likelihood; a "
+      "fall of 1 is one squared noise unit explained. Score: mean log predictive density per held-out value, higher is "
+      "better. ±: one standard deviation.");
   if (!r.ties.empty()) {
     s += "<p><b>Tied:</b> ";
     for (const auto& t : r.ties) s += escape_html(fmt::format("{}. ", fmt::join(t, " or ")));
-    s += "</p>";
+    s += "</p>" + gloss("Tied: these data cannot tell which of them acts; what could is under What to measure next.");
   }
   if (!r.likeness.absorption.empty()) {
     s += "<h2>What looks alike</h2><div class='scroll'><table><tr><th>effect<th class='l'>parameter<th>absorbed by "
@@ -248,7 +258,10 @@ std::string page(const LoopResult& r, const Shots& table) {
       s += fmt::format("<tr><td>{}<td class='l'>{}<td>{:.1f} %<td class='l'>{}<td>{}</tr>", escape_html(a.effect),
                        escape_html(a.parameter), 100 * a.absorbed, escape_html(a.nearest),
                        a.nearest.empty() ? std::string("–") : fmt::format("{:+.3f}", a.likeness));
-    s += "</table></div>";
+    s += "</table></div>" + gloss(
+                                "Absorbed: the share of an effect's trace in these data that the fitted effects can "
+                                "imitate. Correlation: of its trace with the nearest other's, 1 where they look the "
+                                "same.");
     if (!r.likeness.null_vectors.empty()) {
       s += "<p>Together these effects leave almost no trace (singular value of the whitened Jacobian, columns of unit "
            "length):</p><ul>";
@@ -272,7 +285,8 @@ std::string page(const LoopResult& r, const Shots& table) {
     s += "</ul>";
   }
   if (!r.derived.empty()) {
-    s += "<h2>Columns that are not measurements</h2><ul>";
+    s += "<h2>Columns that are not measurements</h2>" +
+         gloss("Computed from other columns, by the instrument or afterwards: no independent evidence.") + "<ul>";
     for (const DerivedColumn& d : r.derived)
       s += fmt::format("<li><b>{}</b> = {} <small>(residual {}, recording step {}, {} rows)</small>",
                        escape_html(d.column), escape_html(d.formula), number(d.residual_sd),
@@ -287,7 +301,10 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (std::size_t i = 0; i < std::min<std::size_t>(r.flagged.size(), 200); ++i)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}</tr>", escape_html(r.flagged[i].id),
                        escape_html(r.flagged[i].column), escape_html(r.flagged[i].reason), r.flagged[i].finding);
-    s += "</table></div>";
+    s += "</table></div>" +
+         gloss(
+             "Flagged: contradicts the other rows and is left out of every fit. Finding: rows with one cause "
+             "have one number.");
     if (r.flagged.size() > 200)
       s += fmt::format("<p><small>and {} more, in report.json</small></p>", r.flagged.size() - 200);
   }
@@ -310,7 +327,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     s += fmt::format("<tr><td>{}<td class='l'>{}<td>{} {}</tr>", escape_html(d.effect), escape_html(d.parameter),
                      std::isfinite(d.value) ? number(d.value) : std::string("beyond its plausible range"),
                      std::isfinite(d.value) && d.unit != "1" ? d.unit : "");
-  s += "</table>";
+  s += "</table>" + gloss("An effect of this size would be adopted in nine of ten such data sets.");
   if (!r.notes.empty() || !r.unused.empty()) {
     s += "<h2>Notes</h2><ul>";
     for (const auto& [reason, n] : r.unused) s += fmt::format("<li>{} rows not used: {}", n, escape_html(reason));

@@ -45,10 +45,11 @@ std::size_t order_of(const std::string& effect) {
 }
 
 Search::Search(const Problem& problem, const std::vector<const Parametrisation*>& base_forms,
-               const std::vector<const Parametrisation*>& forms, const Rules& rules)
+               const std::vector<const Parametrisation*>& forms, const Rules& rules, Told told)
     : problem_(problem),
       base_forms_(base_forms.size()),
       rules_(rules),
+      told_(std::move(told)),
       effort_(problem.effort()),
       loss_(problem.stages().back().loss) {
   const Model model{base_forms};
@@ -72,7 +73,7 @@ Search::Search(const Problem& problem, const std::vector<const Parametrisation*>
   tbb::parallel_for(std::size_t(0), of_form_.size(),
                     [&](std::size_t k) { columns[k] = about_zero(*of_form_[k].fit.model.forms.back()); });
   const bool quiet = nothing_to_find(columns);
-  tbb::parallel_for(std::size_t(0), of_form_.size(), [&](std::size_t k) {
+  told_for(told_, "single effects", of_form_.size(), [&](std::size_t k) {
     const Model& with = of_form_[k].fit.model;
     std::vector<Eigen::VectorXd> from;
     for (const Eigen::VectorXd& start : starts(Model{{with.forms.back()}})) {
@@ -124,7 +125,7 @@ std::vector<Search::Guess> Search::guesses() const {
 void Search::fit_pairs() {
   const std::vector<Guess> chosen = guesses();
   std::vector<Candidate> all(chosen.size());
-  tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t k) {
+  told_for(told_, "pairs of effects", chosen.size(), [&](std::size_t k) {
     const auto& [criterion, a, b, p] = chosen[k];
     const Eigen::VectorXd pa = optimum(a), pb = optimum(b);
     std::vector<Eigen::VectorXd> from = {joined({base.p, p}), joined({base.p, pa, pb})};
@@ -179,7 +180,7 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
     }
   }
   std::vector<Candidate> all(plans.size());
-  tbb::parallel_for(std::size_t(0), plans.size(), [&](std::size_t k) {
+  told_for(told_, "richer sets of effects", plans.size(), [&](std::size_t k) {
     const Fit zero = beside(plans[k].set->fit, plans[k].more);
     const Eigen::VectorXd half = joined({plans[k].set->fit.p, 0.5 * optimum(plans[k].more)});
     all[k] = candidate(fit(problem_, Part::select, zero.model, {half, zero.p}, 1, true));

@@ -4,6 +4,7 @@
 
 #include "hosel/loop/fit.hpp"
 #include "hosel/loop/rules.hpp"
+#include "hosel/loop/told.hpp"
 
 namespace hosel::loop {
 
@@ -20,7 +21,7 @@ class Search {
  public:
   /// Fits the base and every single form. `forms`: what may be added to the forms of the base.
   Search(const Problem& problem, const std::vector<const Parametrisation*>& base,
-         const std::vector<const Parametrisation*>& forms, const Rules& rules);
+         const std::vector<const Parametrisation*>& forms, const Rules& rules, Told told = {});
   void fit_pairs();
   void fit_triples();
 
@@ -66,6 +67,7 @@ class Search {
   const Problem& problem_;
   const std::size_t base_forms_;
   const Rules& rules_;
+  const Told told_;
   const Effort effort_;
   const solvers::Loss loss_;
   std::vector<Candidate> of_form_;  ///< every form that acts, at its optimum

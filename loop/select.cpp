@@ -33,9 +33,9 @@ void tell_ties(const std::vector<const Candidate*>& tied, Selection& out) {
 }  // namespace
 
 Selection select(const Problem& problem, const std::vector<const Parametrisation*>& base,
-                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep) {
+                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep, const Told& told) {
   Selection s;
-  Search search(problem, base, forms, rules);
+  Search search(problem, base, forms, rules, told);
   s.base = s.chosen = search.base;
   s.silent = search.silent;
   const auto fall = [&](const std::vector<Candidate>& from) {

@@ -24,6 +24,7 @@ struct Selection {
 /// `base`: forms that are always part of the model; `forms`: what may be added. `deep`: go on to triples where pairs
 /// leave structure.
 Selection select(const Problem& problem, const std::vector<const Parametrisation*>& base,
-                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep);
+                 const std::vector<const Parametrisation*>& forms, const Rules& rules, bool deep,
+                 const Told& told = {});
 
 }  // namespace hosel::loop

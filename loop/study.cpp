@@ -10,8 +10,8 @@
 namespace hosel::loop {
 
 Study::Study(Problem& data, const std::vector<Parametrisation>& forms, const std::vector<std::string>& declared,
-             const Rules& figures)
-    : problem(data), rules(figures) {
+             const Rules& figures, Told progress)
+    : problem(data), rules(figures), told_(std::move(progress)) {
   for (const std::string& name : declared) {
     const auto first = std::ranges::find(forms, name, &Parametrisation::effect);
     if (first == forms.end()) throw DataError(fmt::format("effect '{}' cannot act here", name));
@@ -23,7 +23,7 @@ Study::Study(Problem& data, const std::vector<Parametrisation>& forms, const std
 }
 
 void Study::select(bool deep) {
-  selection = loop::select(problem, base, candidates, rules, deep);
+  selection = loop::select(problem, base, candidates, rules, deep, told_);
   if (!std::isfinite(selection.base.deviance)) throw DataError("the model has no answer for these data");
 }
 

@@ -9,7 +9,7 @@ struct Study {
   /// `forms`: every form that can act, outliving the study; `declared`: effects that are part of the base, their first
   /// form's parameters fitted. Throws DataError where one of them has no form.
   Study(Problem& problem, const std::vector<Parametrisation>& forms, const std::vector<std::string>& declared,
-        const Rules& rules);
+        const Rules& rules, Told told = {});
 
   Problem& problem;
   const Rules rules;
@@ -17,6 +17,7 @@ struct Study {
   Selection selection;
 
  private:
+  const Told told_;
   void select(bool deep);
   void settle();
   void refute_noise();

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -130,18 +129,11 @@ class LoopJob final : public Job {
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     loop::LoopResult result;
-    std::unique_ptr<Progress> progress;
-    std::mutex at_work;
-    if (fe_)
-      slow_.told = [&, at = std::string()](std::string_view what, double done) mutable {
-        const std::scoped_lock lock(at_work);
-        if (at != what) progress.reset(new Progress(out.progress(at = what)));  // cannot be moved
-        progress->update(done);
-      };
+    case_.told = progress_of(out);
     try {
       result = loop::run(case_);
     } catch (const DataError& e) { throw InputError(e.what()); }
-    progress.reset();
+    case_.told = {};
     report_loop(out, result, case_.shots, "rows");
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
   }

@@ -3,9 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 namespace hosel::app {
+
+loop::Told progress_of(const Output& out) {
+  struct Work {
+    std::mutex mutex;
+    std::string what;
+    std::unique_ptr<Progress> progress;
+  };
+  return [&out, work = std::make_shared<Work>()](std::string_view what, double done) {
+    const std::scoped_lock lock(work->mutex);
+    if (work->what != what || done == 0) {
+      work->progress.reset();  // its line ends before the next begins
+      work->what = what;
+      work->progress.reset(new Progress(out.progress(work->what)));  // cannot be moved
+    }
+    work->progress->update(done);
+  };
+}
 
 void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&)) {
   into.title = root.text({"title", "of tables, pages and figures"}, "");

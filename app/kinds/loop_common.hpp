@@ -13,6 +13,9 @@ namespace hosel::app {
 /// `title`, `[model] base` and `effects` (those that `acts` is true of), `[split]` but for its clusters.
 void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&));
 
+/// Tells the person what the loop is doing, each kind of work as a progress of its own, until it is destroyed.
+loop::Told progress_of(const Output& out);
+
 /// Writes report.json, report.html, residuals.csv and the summary, and tells the person what came out. `table`: what
 /// the result's rows count; `rows`: what a flagged one is called.
 void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows);

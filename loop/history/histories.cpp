@@ -15,7 +15,7 @@ LoopResult run(const HistoryCase& c) {
   result.seed = c.split.seed;
   result.read = int(problem.measured().rows());
   result.forms = problem.forms();
-  const Study study(problem, result.forms, c.effects, c.rules);
+  const Study study(problem, result.forms, c.effects, c.rules, c.told);
   conclude(study, result);
   return result;
 }

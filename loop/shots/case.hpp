@@ -20,7 +20,6 @@ struct SlowBase {
   int fine_runs = 24;
   int checked = 40;  ///< held-out shots that the corrected base itself is asked about, at most
   unsigned long seed = 1;
-  std::function<void(std::string_view what, double done)> told = {};  ///< progress, `done` of 1; from any thread
 };
 
 struct ShotCase : Case {

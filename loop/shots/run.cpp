@@ -26,7 +26,7 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
   result.derived = derived;
   result.unused = problem.unused();
   result.forms = problem.forms();
-  const Study study(problem, result.forms, c.effects, c.rules);
+  const Study study(problem, result.forms, c.effects, c.rules, c.told);
   std::vector<Fit> rivals{study.selection.chosen, study.selection.richest};
   for (const Candidate& candidate : study.selection.candidates) rivals.push_back(candidate.fit);
   if (rivals.size() > 30) rivals.resize(30);

@@ -1,0 +1,26 @@
+/// What a loop is doing while it works.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <functional>
+#include <string_view>
+
+namespace hosel::loop {
+
+/// `done` of 1 of what is being done; from any thread.
+using Told = std::function<void(std::string_view what, double done)>;
+
+/// `body(0)` to `body(n - 1)` on all cores, told as they end.
+template <class Body>
+void told_for(const Told& told, std::string_view what, std::size_t n, const Body& body) {
+  if (told && n) told(what, 0);
+  std::atomic<std::size_t> ended = 0;
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {
+    body(k);
+    if (const std::size_t e = ++ended; told) told(what, double(e) / double(n));
+  });
+}
+
+}  // namespace hosel::loop
