@@ -36,4 +36,23 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
   throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
 }
 
+std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name) {
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    if (sheet.names[c] != name) continue;
+    std::vector<double> out;
+    for (std::size_t r = 0; r < sheet.rows(); ++r) {
+      const std::string& cell = sheet.columns[c][r];
+      double x = std::nan("");
+      if (!cell.empty()) {
+        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+        if (error != std::errc() || end != cell.data() + cell.size())
+          throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], name, cell));
+      }
+      out.push_back(x);
+    }
+    return out;
+  }
+  throw InputError(fmt::format("{}: no column '{}'", sheet.file, name));
+}
+
 }  // namespace hosel::app

@@ -18,4 +18,7 @@ post::Sheet read_sheet(const std::filesystem::path& file);
 std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension,
                            bool unit_needed = true);
 
+/// The numeric column of that name in its header's unit, NaN where a cell is empty. Throws InputError.
+std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name);
+
 }  // namespace hosel::app

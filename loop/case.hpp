@@ -1,19 +1,23 @@
 /// What every loop is told, whatever its data are.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hosel/loop/effect.hpp"
 #include "hosel/loop/rules.hpp"
+#include "hosel/loop/told.hpp"
 
 namespace hosel::loop {
 
 struct Split {
   double holdout_fraction = 1.0 / 3.0;
   unsigned long seed = 1;
-  std::string by;              ///< column whose clusters are held out whole; empty: rows
-  bool leave_one_out = false;  ///< every cluster is the holdout once
+  std::string by;                             ///< column whose clusters are held out whole; empty: rows
+  bool leave_one_out = false;                 ///< every cluster is the holdout once
+  std::optional<std::array<double, 2>> span;  ///< of time histories: held out are the readings of these instants [s]
 };
 
 struct Case {
@@ -24,6 +28,7 @@ struct Case {
   Split split;
   Rules rules;
   std::vector<std::string> notes;  ///< about the case itself
+  Told told = {};                  ///< progress
 };
 
 }  // namespace hosel::loop

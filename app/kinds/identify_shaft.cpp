@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_markers.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_sheet.hpp"
 #include "hosel/app/read_swing.hpp"
@@ -19,32 +20,6 @@
 namespace hosel::app {
 namespace {
 
-std::vector<double> numbers(const post::Sheet& sheet, const std::string& name) {
-  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
-    if (sheet.names[c] != name) continue;
-    std::vector<double> out;
-    for (std::size_t r = 0; r < sheet.rows(); ++r) {
-      const std::string& cell = sheet.columns[c][r];
-      double x = std::nan("");
-      if (!cell.empty()) {
-        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-        if (error != std::errc() || end != cell.data() + cell.size())
-          throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], name, cell));
-      }
-      out.push_back(x);
-    }
-    return out;
-  }
-  throw InputError(fmt::format("{}: no column '{}'", sheet.file, name));
-}
-
-std::vector<Vec3> points(const post::Sheet& sheet, const std::string& stem) {
-  const auto x = numbers(sheet, stem + "_x_m"), y = numbers(sheet, stem + "_y_m"), z = numbers(sheet, stem + "_z_m");
-  std::vector<Vec3> out;
-  for (std::size_t i = 0; i < x.size(); ++i) out.emplace_back(x[i], y[i], z[i]);
-  return out;
-}
-
 class IdentifyJob final : public Job {
  public:
   explicit IdentifyJob(CaseFile& file) {
@@ -55,10 +30,7 @@ class IdentifyJob final : public Job {
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
     options_ = read_swing_options(root);
     if (auto markers = root.optional_table("markers")) {
-      file_ = markers->data_file({"file", "CSV of the markers on grip and head"});
-      smoothing_ = markers->quantity({"smoothing", "time constant of the smoothing spline"}, "ms", Range::positive());
-      still_ = markers->quantity({"still", "how long the club hangs still at the start of the record"}, "s",
-                                 Range::positive(), 0.1);
+      markers_ = read_markers(*markers);
       train_ = markers->quantities({"train", "first and last instant that is fitted"}, "s", 2);
       test_ = markers->quantities({"test", "first and last instant that is predicted"}, "s", 2);
       marker_kind_ = true;
@@ -124,9 +96,9 @@ class IdentifyJob final : public Job {
                               .begin = r.motion.begin,
                               .end = r.motion.end,
                               .train = r.train};
-      m.times = numbers(sheet, "time_s");
-      m.lead = numbers(sheet, "lead_mm");
-      m.droop = numbers(sheet, "droop_mm");
+      m.times = column_with_gaps(sheet, "time_s");
+      m.lead = column_with_gaps(sheet, "lead_mm");
+      m.droop = column_with_gaps(sheet, "droop_mm");
       for (double& x : m.lead) x *= 1e-3;
       for (double& x : m.droop) x *= 1e-3;
       measured.push_back(std::move(m));
@@ -149,27 +121,14 @@ class IdentifyJob final : public Job {
   }
 
   void markers(Output& out) {
-    if (!std::filesystem::exists(file_)) return out.skip(file_);
-    const post::Sheet sheet = read_sheet(file_);
-    models::MarkerTrack track;
-    track.times = numbers(sheet, "time_s");
-    std::array<std::vector<Vec3>, 3> shaft, head;
-    for (std::size_t k = 0; k < 3; ++k) {
-      shaft[k] = points(sheet, fmt::format("shaft_{}", k + 1));
-      head[k] = points(sheet, fmt::format("head_{}", k + 1));
-    }
-    const auto left = points(sheet, "left_wrist"), right = points(sheet, "right_wrist");
-    for (std::size_t i = 0; i < track.times.size(); ++i) {
-      track.shaft.push_back({shaft[0][i], shaft[1][i], shaft[2][i]});
-      track.head.push_back({head[0][i], head[1][i], head[2][i]});
-      track.wrists.push_back(0.5 * (left[i] + right[i]));
-    }
+    if (!std::filesystem::exists(markers_.file)) return out.skip(markers_.file);
+    const models::MarkerTrack track = read_marker_track(markers_.file);
     const double end = test_[1];
-    const models::MarkerSwing swing = models::marker_swing(track, still_, end);
+    const models::MarkerSwing swing = models::marker_swing(track, markers_.still, end);
     options_.grip_point = club_.shaft->length() - swing.length;
     if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
-      throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
-    const models::GripMotion motion(swing.clamp, smoothing_);
+      throw InputError(fmt::format("{}: {}", markers_.file.string(), wrong.front()));
+    const models::GripMotion motion(swing.clamp, markers_.smoothing);
 
     const auto part = [&](double from, double to, bool train) {
       models::MeasuredSwing m{
@@ -228,8 +187,7 @@ class IdentifyJob final : public Job {
   Club club_;
   models::SwingOptions options_;
   bool marker_kind_ = false;
-  std::filesystem::path file_;
-  double smoothing_ = 0, still_ = 0;
+  MarkerInput markers_;
   std::vector<double> train_, test_;
   std::vector<Recorded> swings_;
 };

@@ -7,6 +7,7 @@
 
 #include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_markers.hpp"
 #include "hosel/app/read_series.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/app/read_swing.hpp"
@@ -29,20 +30,28 @@ class HistoryJob final : public Job {
       setting.head = true;
     }
     if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
-    setting.swing = root.has("motion");
+    setting.swing = root.has("motion") || root.has("markers");
     if (setting.swing && !setting.head) root.fail("head", "a swing needs a head");
     if (auto grip = root.optional_table("grip");
         grip && grip->choice({"hold", "of the butt"}, {"clamped", "free"}, "clamped") == "free")
       grip->fail("hold", "the records of a free shaft are not modelled: clamp the butt");
-    setting.swing ? read_swing_test(root) : read_bench_test(root);
+    if (auto split = root.optional_table("split"); split && split->has_quantity("holdout")) {
+      const auto span =
+          split->quantities({"holdout", "first and last instant of every record that no fit sees"}, "s", 2);
+      if (!(span[0] < span[1])) split->fail("holdout_s", "the first instant comes before the last");
+      case_.split.span = {span[0], span[1]};
+    }
+    root.has("markers") ? read_marker_test(root) : setting.swing ? read_swing_test(root) : read_bench_test(root);
   }
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     loop::LoopResult result;
+    case_.told = progress_of(out);
     try {
       result = loop::run(case_);
     } catch (const DataError& e) { throw InputError(e.what()); }
+    case_.told = {};
     report_loop(out, result, loop::as_shots(case_), "readings");
   }
 
@@ -78,17 +87,23 @@ class HistoryJob final : public Job {
         place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(), 0);
         if (place.has("axis")) place.choice({"axis", "bending that the strain gauge feels"}, {"lead", "droop"});
       }
-    if (auto noise = data.optional_table("noise"))
-      for (const std::string& key : noise->keys()) {
-        const double sigma = noise->number({key, "standard deviation of the channel", "<channel>"}, Range::positive());
-        const auto it = std::ranges::find(channels, key, &loop::HistoryChannel::name);
-        if (it != channels.end()) {
-          it->declared = sigma;
-        } else if (skipped_.empty()) {
-          noise->fail(key, "no measured channel of this name");
-        }
-      }
+    read_noise(data);
     return drives;
+  }
+
+  void read_noise(Table& table) {
+    auto noise = table.optional_table("noise");
+    if (!noise) return;
+    std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
+    for (const std::string& key : noise->keys()) {
+      const double sigma = noise->number({key, "standard deviation of the channel", "<channel>"}, Range::positive());
+      const auto it = std::ranges::find(channels, key, &loop::HistoryChannel::name);
+      if (it != channels.end()) {
+        it->declared = sigma;
+      } else if (skipped_.empty()) {
+        noise->fail(key, "no measured channel of this name");
+      }
+    }
   }
 
   void read_bench_test(Table root) {
@@ -172,9 +187,54 @@ class HistoryJob final : public Job {
                                      case_.records[times.size()].name, motion.begin, motion.end));
       times.push_back(r.times);
     }
-    auto swing = std::make_unique<loop::SwingHistory>(club_, options,
-                                                      models::GripMotion(motion.track, motion.smoothing), motion.begin,
-                                                      times, case_.setting.channels);
+    use_swing(options, models::GripMotion(motion.track, motion.smoothing), motion.begin, std::move(times));
+  }
+
+  /// Lead and droop of the hosel as the markers on the head show them, the markers on the shaft driving.
+  void read_marker_test(Table root) {
+    Table table = root.table("markers");
+    const MarkerInput in = read_markers(table);
+    const auto span = table.quantities({"span", "first and last instant whose deflection is a reading"}, "s", 2);
+    models::SwingOptions options = read_swing_options(root);
+    std::vector<loop::HistoryChannel>& channels = case_.setting.channels;
+    for (const auto& [name, reading] :
+         {std::pair{"lead_mm", loop::Reading::lead}, {"droop_mm", loop::Reading::droop}}) {
+      loop::HistoryChannel c;
+      c.name = name;
+      c.si = 1e-3;
+      c.reading = reading;
+      channels.push_back(c);
+    }
+    if (auto data = root.optional_table("data")) read_noise(*data);
+    if (!std::filesystem::exists(in.file)) {
+      skipped_ = in.file;
+      return;
+    }
+    const models::MarkerSwing swing = models::marker_swing(read_marker_track(in.file), in.still, span[1]);
+    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
+      throw InputError(fmt::format("{}: {}", in.file.string(), wrong.front()));
+    options.grip_point = club_.shaft->length() - swing.length;
+    loop::HistoryRecord record{.name = in.file.filename().string(), .times = {}, .measured = {}, .train = {}};
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < swing.times.size(); ++i)
+      if (swing.times[i] >= span[0] && swing.times[i] <= span[1]) rows.push_back(i);
+    record.measured.resize(Eigen::Index(rows.size()), 2);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      record.times.push_back(swing.times[rows[k]]);
+      record.measured.row(Eigen::Index(k)) << 1e3 * swing.lead[rows[k]], 1e3 * swing.droop[rows[k]];
+    }
+    if (rows.empty()) table.fail("span_s", "no head markers in it");
+    models::GripMotion motion(swing.clamp, in.smoothing);
+    const double begin = motion.first();
+    std::vector<std::vector<double>> times{record.times};
+    case_.records.push_back(std::move(record));
+    use_swing(options, std::move(motion), begin, std::move(times));
+  }
+
+  void use_swing(const models::SwingOptions& options, models::GripMotion motion, double begin,
+                 std::vector<std::vector<double>> times) {
+    auto swing = std::make_unique<loop::SwingHistory>(club_, options, std::move(motion), begin, std::move(times),
+                                                      case_.setting.channels);
     loop::HistorySetting& setting = case_.setting;
     setting.driven = true;
     std::tie(setting.frequency, setting.ratio) = swing->first_mode();

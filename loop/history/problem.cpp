@@ -57,6 +57,12 @@ void HistoryProblem::split(const Split& how) {
   std::mt19937_64 random(how.seed);
   const double fraction = how.holdout_fraction;
   for (HistoryRecord& r : records_) r.train.assign(r.times.size(), 1);
+  if (how.span) {
+    for (HistoryRecord& r : records_)
+      for (std::size_t i = 0; i < r.times.size(); ++i)
+        r.train[i] = r.times[i] < (*how.span)[0] || r.times[i] > (*how.span)[1];
+    return;
+  }
   if (!(fraction > 0)) return;
   if (setting_.driven && records_.size() >= 3) {
     const std::vector<std::size_t> order = solvers::shuffled(records_.size(), random);

@@ -188,6 +188,17 @@ TEST(Histories, TwoEffectsAreBothNamed) {
   EXPECT_EQ(r.adopted, (Names{"tip-mass", "sensor-delay"}));
 }
 
+TEST(Histories, WhatIsHeldOutCanBeTheEndOfARecord) {
+  Bench b = bench({.tip_mass = 0.01});
+  b.c.split.span = {1.0, 1.5};
+  const LoopResult r = run(b.c);
+  ASSERT_EQ(r.adopted, Names{"tip-mass"});
+  for (const UsedRow& u : r.rows) EXPECT_EQ(u.holdout, b.c.records.front().times[std::size_t(u.row)] >= 1.0) << u.row;
+  EXPECT_EQ(r.channels[0].before.holdout, 200);  // half a second of 400 Hz
+  EXPECT_GT(r.channels[0].before.holdout_rmse, 3 * kNoise);
+  EXPECT_LT(r.channels[0].after.holdout_rmse, 1.2 * kNoise);  // of 200 readings
+}
+
 TEST(Histories, WithAnUnknownStartFrequencyAndShapeStillTell) {
   // Nothing is known of the release: stiffness is seen in the frequencies alone, and one delay between the channels.
   const Bench stiff = bench({.stiffness = 1.3}, true, Start::unknown);

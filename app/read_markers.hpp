@@ -1,0 +1,22 @@
+/// A measured swing from a case's table `[markers]`: optical markers on a body clamped to the shaft and on the head.
+#pragma once
+
+#include <filesystem>
+
+#include "hosel/app/reader.hpp"
+#include "hosel/models/marker_swing.hpp"
+
+namespace hosel::app {
+
+/// `[markers]`: `file`, smoothing and how long the club hangs still at first.
+struct MarkerInput {
+  std::filesystem::path file;
+  double smoothing = 0, still = 0;  ///< [s]
+};
+MarkerInput read_markers(Table& table);
+
+/// Columns `time_s`, `shaft_1_x_m` ... `shaft_3_z_m`, `head_1_x_m` ... `head_3_z_m`, `left_wrist_x_m` ...
+/// `right_wrist_z_m`; a drop-out is an empty cell. Throws InputError.
+models::MarkerTrack read_marker_track(const std::filesystem::path& file);
+
+}  // namespace hosel::app
