@@ -217,4 +217,15 @@ void Growth(benchmark::State& state) {
 }
 BENCHMARK(Growth)->Arg(0)->Arg(2)->ArgName("harmonics")->Iterations(1)->Unit(benchmark::kSecond);
 
+/// Exponent of the cost over the number of harmonics, from 3 to 6.
+void GrowthOverHarmonics(benchmark::State& state) {
+  for (auto _ : state) {
+    double cost[2];
+    for (int i = 0; i < 2; ++i) cost[i] = seconds(1, [&] { solve_free_body(oblique(), options(3, 3 + 3 * i)); });
+    state.counters["exponent"] = std::log2(cost[1] / cost[0]);
+    state.counters["seconds"] = cost[1];
+  }
+}
+BENCHMARK(GrowthOverHarmonics)->Iterations(1)->Unit(benchmark::kSecond);
+
 }  // namespace

@@ -1,6 +1,8 @@
-// What the shaft costs: fe-full-club against fe-free-body, the same ball and blow (ratio at most 1.3), and
-// the swing against the number of its elements (160 to 40: at most 5).
+// What the shaft costs: fe-full-club against fe-free-body, the same ball and blow; a swing against the number of its
+// elements and against its own duration. CPU time, in turn.
 #include <benchmark/benchmark.h>
+
+#include <ctime>
 
 #include "hosel/models/fe_full_club.hpp"
 #include "tests/support/swing_motion.hpp"
@@ -9,7 +11,15 @@ namespace {
 using namespace hosel;
 using namespace hosel::models;
 
-void impact(benchmark::State& state) {
+/// CPU time of all threads.
+template <class Work>
+double seconds(const Work& work) {
+  const std::clock_t start = std::clock();
+  work();
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+void FullClub(benchmark::State& state) {
   Blow blow;
   blow.club = test::driver_club();
   blow.club.shaft->damping_time = 2 * 0.01 / (2 * kPi * 1000);
@@ -18,20 +28,34 @@ void impact(benchmark::State& state) {
   options.impact.harmonics = 2;
   options.impact.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
   options.impact.steps_per_contact = 60;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(state.range(0) ? solve_full_club(blow, options).launch
-                                            : solve_free_body(blow, options.impact).launch);
-}
-BENCHMARK(impact)->Arg(0)->Arg(1)->ArgName("full")->Unit(benchmark::kMillisecond);
-
-void swing(benchmark::State& state) {
-  const GripMotion grip(test::swing_track(), 0);
-  const fem::Motion motion = [&](double t) { return grip.at(t); };
   for (auto _ : state) {
-    Swing s(test::driver_club(), {.elements = static_cast<int>(state.range(0))}, {.motion = motion});
-    benchmark::DoNotOptimize(s.run(s.start(-1.1, s.equilibrium(-1.1)), 0, {}));
+    double cpu[2] = {};
+    for (int i = 0; i < 6; ++i)
+      cpu[i % 2] += seconds([&] {
+        benchmark::DoNotOptimize(i % 2 ? solve_full_club(blow, options).launch
+                                       : solve_free_body(blow, options.impact).launch);
+      });
+    state.counters["free_body_s"] = cpu[0] / 3;
+    state.counters["full_club_over_free_body"] = cpu[1] / cpu[0];
   }
 }
-BENCHMARK(swing)->Arg(40)->Arg(80)->Arg(160)->ArgName("elements")->Unit(benchmark::kMillisecond);
+BENCHMARK(FullClub)->Iterations(1)->Unit(benchmark::kSecond);
+
+void SwingElements(benchmark::State& state) {
+  const GripMotion grip(test::swing_track(), 0);
+  const fem::Motion motion = [&](double t) { return grip.at(t); };
+  constexpr double kDuration = 1.1;
+  for (auto _ : state) {
+    double cpu[2] = {};
+    for (int i = 0; i < 4; ++i)
+      cpu[i % 2] += seconds([&] {
+        Swing s(test::driver_club(), {.elements = i % 2 ? 160 : 40}, {.motion = motion});
+        benchmark::DoNotOptimize(s.run(s.start(-kDuration, s.equilibrium(-kDuration)), 0, {}));
+      });
+    state.counters["duration_over_cpu_of_40"] = 2 * kDuration / cpu[0];
+    state.counters["160_over_40"] = cpu[1] / cpu[0];
+  }
+}
+BENCHMARK(SwingElements)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "hosel/solvers/linear.hpp"
 
+#include <klu.h>
 #include <umfpack.h>
 
 #include <algorithm>
@@ -179,14 +180,56 @@ Eigen::MatrixXd SparseTangent::dense() const {
 }
 
 struct Factorisation::State {
-  void* symbolic = nullptr;
+  void* symbolic = nullptr;  // of UMFPACK
   void* numeric = nullptr;
+  klu_symbolic* chain = nullptr;  // of KLU, instead
+  klu_numeric* chain_numeric = nullptr;
+  klu_common chain_common{};
   const SparseTangent* matrix = nullptr;
   std::vector<double> values;  // as factorised: UMFPACK refines against them
   std::array<double, UMFPACK_CONTROL> control{};
+  bool ready = false;
+
+  State() { klu_defaults(&chain_common); }
   ~State() {
-    if (symbolic) umfpack_di_free_symbolic(&symbolic);
+    forget_numbers();
+    forget_order();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  void forget_numbers() {
     if (numeric) umfpack_di_free_numeric(&numeric);
+    if (chain_numeric) klu_free_numeric(&chain_numeric, &chain_common);
+    ready = false;
+  }
+  void forget_order() {
+    if (symbolic) umfpack_di_free_symbolic(&symbolic);
+    if (chain) klu_free_symbolic(&chain, &chain_common);
+  }
+
+  /// Factors with hardly any fill, as of a chain of beams, come faster without dense blocks: KLU. The bound is that
+  /// at which CHOLMOD does without them (operations per entry of the factor).
+  void order(int n, int* starts, int* rows) {
+    constexpr double kDense = 40;
+    chain = klu_analyze(n, starts, rows, &chain_common);
+    if (chain && !(chain->est_flops >= 0 && chain->est_flops < kDense * chain->lnz))
+      klu_free_symbolic(&chain, &chain_common);
+    if (!chain && umfpack_di_symbolic(n, n, starts, rows, values.data(), &symbolic, control.data(), nullptr) < 0)
+      throw NonConvergence("the tangent matrix cannot be ordered: it holds numbers that are not finite");
+  }
+  /// UMFPACK's status, also for KLU's.
+  int factorise(int* starts, int* rows) {
+    if (!chain) {
+      if (numeric) umfpack_di_free_numeric(&numeric);
+      return umfpack_di_numeric(starts, rows, values.data(), symbolic, &numeric, control.data(), nullptr);
+    }
+    // Pivots stay where they were until Newton's method gives up on them.
+    if (chain_numeric && !klu_refactor(starts, rows, values.data(), chain, chain_numeric, &chain_common))
+      klu_free_numeric(&chain_numeric, &chain_common);
+    if (!chain_numeric) chain_numeric = klu_factor(starts, rows, values.data(), chain, &chain_common);
+    return chain_numeric                              ? UMFPACK_OK
+           : chain_common.status == KLU_OUT_OF_MEMORY ? UMFPACK_ERROR_out_of_memory
+                                                      : UMFPACK_WARNING_singular_matrix;
   }
 };
 
@@ -201,27 +244,25 @@ Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;
 Factorisation& Factorisation::operator=(Factorisation&&) noexcept = default;
 
-bool Factorisation::ready() const { return state_->numeric != nullptr; }
+bool Factorisation::ready() const { return state_->ready; }
 
-void Factorisation::forget() {
-  if (state_->numeric) umfpack_di_free_numeric(&state_->numeric);
-  state_->numeric = nullptr;
-}
+void Factorisation::forget() { state_->forget_numbers(); }
 
 void Factorisation::factorise(const SparseTangent& matrix) {
-  forget();
   State& s = *state_;
-  const int n = static_cast<int>(matrix.size());
-  if (s.matrix != &matrix && s.symbolic) umfpack_di_free_symbolic(&s.symbolic);
-  s.matrix = &matrix;
+  s.ready = false;
+  // Both libraries ask for pointers that they do not write through.
+  auto *starts = const_cast<int*>(matrix.column_starts().data()), *rows = const_cast<int*>(matrix.row_indices().data());
   s.values.assign(matrix.values().begin(), matrix.values().end());
-  const int *starts = matrix.column_starts().data(), *rows = matrix.row_indices().data();
-  if (!s.symbolic &&
-      umfpack_di_symbolic(n, n, starts, rows, s.values.data(), &s.symbolic, s.control.data(), nullptr) < 0)
-    throw NonConvergence("the tangent matrix cannot be ordered: it holds numbers that are not finite");
-  const int status =
-      umfpack_di_numeric(starts, rows, s.values.data(), s.symbolic, &s.numeric, s.control.data(), nullptr);
-  if (status == UMFPACK_OK) return;
+  if (s.matrix != &matrix) {
+    s.forget_numbers();
+    s.forget_order();
+    s.matrix = &matrix;
+  }
+  if (!s.symbolic && !s.chain) s.order(static_cast<int>(matrix.size()), starts, rows);
+  const int status = s.factorise(starts, rows);
+  s.ready = status == UMFPACK_OK;
+  if (s.ready) return;
   forget();
   throw NonConvergence(
       status == UMFPACK_ERROR_out_of_memory
@@ -230,12 +271,15 @@ void Factorisation::factorise(const SparseTangent& matrix) {
 }
 
 Vector Factorisation::solve(const Vector& right) const {
-  const State& s = *state_;
-  if (!s.numeric) throw std::logic_error("solve before factorise");
-  Vector x(right.size());
-  const int status = umfpack_di_solve(UMFPACK_A, s.matrix->column_starts().data(), s.matrix->row_indices().data(),
-                                      s.values.data(), x.data(), right.data(), s.numeric, s.control.data(), nullptr);
-  if (status != UMFPACK_OK || !x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");
+  State& s = *state_;
+  if (!s.ready) throw std::logic_error("solve before factorise");
+  Vector x = right;
+  const bool solved =
+      s.chain ? klu_solve(s.chain, s.chain_numeric, static_cast<int>(x.size()), 1, x.data(), &s.chain_common) != 0
+              : umfpack_di_solve(UMFPACK_A, s.matrix->column_starts().data(), s.matrix->row_indices().data(),
+                                 s.values.data(), x.data(), right.data(), s.numeric, s.control.data(),
+                                 nullptr) == UMFPACK_OK;
+  if (!solved || !x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");
   return x;
 }
 
