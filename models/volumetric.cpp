@@ -383,14 +383,14 @@ class Contact {
       head += face_.mass;
       wrench += face_.wrench;
     }
-    const Vec6 a = (head + added_).llt().solve(wrench + held_ - head * carried_ - shaft_->coupling * dp_rate - pull);
+    const Vec6 inner = shaft_->coupling * dp_rate;  // of the modes as if the tip were held
+    const Vec6 a = (head + added_).llt().solve(wrench + held_ - head * carried_ - inner - pull);
     dp_rate -= shaft_->coupling.transpose() * a;
     Eigen::Map<Vec6>(dy + kHeadVelocity) = a + carried_;
     Vec6 carrier, moves;
     carrier << start_velocity_, start_spin_;
     moves << ConstVec(y + kHeadVelocity), ConstVec(y + kHeadSpin);
-    dy[kCarrier] = moves.dot(held_) -
-                   (carrier + y[kTime] * carried_).dot(shaft_->mass * a + shaft_->coupling * dp_rate + pull);
+    dy[kCarrier] = moves.dot(held_) - (carrier + y[kTime] * carried_).dot(added_ * a + inner + pull);
     dy[kLostShaft] = damping * (v.dot(shaft_->stiffness * v) + dp.dot(shaft_->frequency2.cwiseProduct(dp)));
   }
 
