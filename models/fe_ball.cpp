@@ -53,7 +53,8 @@ FeBall three_piece_ball() {
 }
 
 FeBall range_skin_ball() {
-  return {"range-skin", {{0.91, rubber(13.899e6, 1e9, 1129, 53.246e6)}, {1, rubber(30.578e6, 1.3e9, 1129, 117.14e6)}}};
+  return {"range-skin",
+          {{0.91, rubber(13.9257e6, 1e9, 1129, 53.6697e6)}, {1, rubber(24.693e6, 1.3e9, 1129, 95.1535e6)}}};
 }
 
 constexpr std::array kBalls = {
@@ -64,10 +65,9 @@ constexpr std::array kBalls = {
     NamedFeBall{"three-piece",
                 "rubber core, mantle four times as stiff, soft cover, as cases/calibrate-three-piece finds it",
                 three_piece_ball},
-    NamedFeBall{
-        "range-skin",
-        "one piece with a skin 2.2 times as stiff: saw the spin of three irons as well, cases/irons-matched-launch",
-        range_skin_ball},
+    NamedFeBall{"range-skin",
+                "one piece with a skin 1.77 times as stiff: saw three irons as well, cases/calibrate-range-skin",
+                range_skin_ball},
 };
 }  // namespace
 

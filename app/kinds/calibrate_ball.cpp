@@ -195,15 +195,22 @@ class CalibrateBallJob final : public Job {
 
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
-    std::string saw = "no spin data";
-    for (const auto& shot : shots_)
-      saw = (&shot == &shots_.front() ? "the spin of " : saw + ", ") + shot.name +
-            (shot.ball_speed ? " and its ball speed" : "");
+    std::vector<std::string> spins, speeds;
+    for (const auto& shot : shots_) {
+      spins.push_back(shot.name);
+      if (shot.ball_speed) speeds.push_back(shot.name);
+    }
+    std::string saw, not_seen = "any oblique blow, so neither friction nor a cover apart from its core";
+    if (!spins.empty()) {
+      saw = fmt::format("; spin of {}", fmt::join(spins, ", "));
+      if (!speeds.empty()) saw += fmt::format("; ball speed of {}", fmt::join(speeds, ", "));
+      not_seen = "other clubs, recorded lofts, tangential restitution, launch ratios";
+    }
     std::string text = fmt::format(
-        "# Fitted to restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall; {}.\n# "
-        "{}\n",
+        "# Saw restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall{}.\n"
+        "# Did not see {}.\n# {}\n",
         target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
-        target_.contact_speed, saw, fit.report);
+        target_.contact_speed, saw, not_seen, fit.report);
     for (std::size_t p = 0; p < fit.names.size(); ++p)
       text += fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p],
                           100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));

@@ -109,7 +109,7 @@ TEST(GeneralizedAlpha, LedgerClosesWithTheStep) {
 }
 
 /// What the ledger calls numerical against the energy that the pendulum lost, worked out here from where it is and how
-/// fast. They differ by the trapezoidal work of the spring: 0.5 % at the larger step, and less at the smaller.
+/// fast. They differ by the trapezoidal work of the spring, of second order as they are: by 0.5 % at either step.
 TEST(GeneralizedAlpha, NumericalDissipationIsTheLossOfEnergy) {
   const auto energy = [](const fem::State& s) {
     const Eigen::Vector2d x = s.q;
@@ -122,7 +122,7 @@ TEST(GeneralizedAlpha, NumericalDissipationIsTheLossOfEnergy) {
     for (int i = 0; i < int(std::lround(3 / h)); ++i) scheme.step(h);
     const double lost = before - energy(scheme.state());
     ASSERT_GT(lost, 5e-4);
-    EXPECT_NEAR(scheme.ledger().numerical / lost, 1, 7e-3) << h;
+    EXPECT_NEAR(scheme.ledger().numerical / lost, 0.995, 3e-3) << h;
   }
 }
 
