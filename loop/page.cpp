@@ -167,11 +167,13 @@ std::string page(const LoopResult& r, const Shots& table) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(
         "<h2>By the base model itself</h2><p>{}, no surrogate between, asked about {} of the held-out shots as it was "
-        "declared and with the adopted effects in it:</p><table><tr><th>channel<th>RMS before<th>RMS after</tr>",
+        "declared and with the adopted effects in it:</p><table><tr><th>channel<th>RMS before<th>RMS after<th>shots "
+        "with both answers</tr>",
         escape_html(r.base), rows.size());
     for (std::size_t c = 0; c < r.channels.size(); ++c)
-      s += fmt::format("<tr><td>{}<td>{}<td>{}</tr>", escape_html(r.channels[c].name),
-                       number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)));
+      s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(r.channels[c].name),
+                       number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)),
+                       answered(rows, c));
     s += "</table><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
          "measured.</small></p>";
   }

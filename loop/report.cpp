@@ -154,7 +154,7 @@ json to_json(const LoopResult& r) {
       channels.push_back({{"name", r.channels[k].name},
                           {"before_rmse", value(rms(r.corrected->rows, &Corrected::Row::before, k))},
                           {"after_rmse", value(rms(r.corrected->rows, &Corrected::Row::after, k))},
-                          {"rows", r.corrected->rows.size()}});
+                          {"rows", answered(r.corrected->rows, k)}});
     out["corrected"] = {{"case", r.corrected->shots.empty() ? json(nullptr) : json("corrected/case.toml")},
                         {"channels", channels},
                         {"not_in_the_case", r.corrected->instrument}};

@@ -77,7 +77,7 @@ struct Corrected {
   struct Row {
     std::string id;
     std::vector<double> before,
-        after;  ///< per channel, header's unit: model minus measured; NaN where it has no answer
+        after;  ///< per channel, header's unit: model minus measured; both NaN where one has no answer
   };
   std::vector<Row> rows;
   /// Shots with the adopted effects in them, as the base is asked about them, and what was measured.
@@ -92,6 +92,8 @@ struct Corrected {
 
 /// Root mean square over the rows that have an answer.
 double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Corrected::Row::*of, std::size_t channel);
+/// How many those are.
+int answered(const std::vector<Corrected::Row>& rows, std::size_t channel);
 
 struct LoopResult {
   LoopResult() = default;

@@ -115,6 +115,10 @@ double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Correcte
   return n > 0 ? std::sqrt(square / n) : kNaN;
 }
 
+int answered(const std::vector<Corrected::Row>& rows, std::size_t channel) {
+  return int(std::ranges::count_if(rows, [&](const auto& r) { return std::isfinite(r.before[channel]); }));
+}
+
 void conclude(const Study& study, LoopResult& result) {
   const Problem& problem = study.problem;
   const Selection& s = result.selection = study.selection;

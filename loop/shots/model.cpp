@@ -196,7 +196,8 @@ bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model
                            double* out) const {
   Shot there = trial(shot);
   if (seen_ && !find_loft(there, shot, model, parameters)) return false;
-  for (int k = 0; k < 5; ++k) {
+  double slope = kLaunchPerLoft, before = 0, step = 0;
+  for (int k = 0; k < 12; ++k) {
     Shot t = there;
     change(model, parameters, t);
     Launch l = other(t);
@@ -205,7 +206,10 @@ bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model
                                     seen_->value[shot] * seen_->channel.si
                               : 0;
     if (std::abs(miss) < radians(0.02)) return read(t, shot, model, parameters, l, out);
-    there.blow.delivery.dynamic_loft -= miss / kLaunchPerLoft;
+    if (k > 0 && step != 0) slope = std::clamp((miss - before) / step, 0.3, 2.0);
+    before = miss;
+    step = -miss / slope;
+    there.blow.delivery.dynamic_loft += step;
   }
   return false;
 }

@@ -20,7 +20,8 @@ namespace {
 
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
 constexpr int kRounds = 4;                         // of asking where the decision hangs
-constexpr double kSurprise = 2;                    // chi-squared per output up to which its error was told truly
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSurprise = 2;  // chi-squared per output up to which its error was told truly
 
 const models::RigidEccentric& closed_form() {
   static const models::RigidEccentric model;
@@ -189,7 +190,7 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
     Corrected::Row& row = out.rows[k];
     row.id = id.at(i);
     for (const auto& [fit, into] : {std::pair{&before, &row.before}, {&after, &row.after}}) {
-      into->assign(std::size_t(model.width()), std::numeric_limits<double>::quiet_NaN());
+      into->assign(std::size_t(model.width()), kNone);
       if (fit == &after && after.size() == before.size()) {  // nothing was added
         row.after = row.before;
         continue;
@@ -201,6 +202,9 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
       } catch (const std::invalid_argument&) {
       } catch (const solvers::NonConvergence&) {}
     }
+    // Before and after are compared on the same shots.
+    for (std::size_t j = 0; j < row.before.size(); ++j)
+      if (!std::isfinite(row.before[j] + row.after[j])) row.before[j] = row.after[j] = kNone;
   });
   return out;
 }
