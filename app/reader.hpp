@@ -146,7 +146,7 @@ class Table {
 class CaseFile {
  public:
   /// `overrides` are `dotted.key=value` in TOML syntax (bare words are taken as strings); `layers[2].law=yeoh` is a
-  /// key of the second table of a list, `head.cg_mm[2]=1` the second value of one.
+  /// key of the second table of a list.
   explicit CaseFile(const std::filesystem::path& where, const std::vector<std::string>& overrides = {});
   /// The case as `read` found it, whatever has become of the file since, with other overrides.
   CaseFile(const CaseFile& read, const std::vector<std::string>& overrides);
