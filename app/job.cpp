@@ -15,6 +15,7 @@
 #include "hosel/app/kinds/identify_shaft.hpp"
 #include "hosel/app/kinds/impact.hpp"
 #include "hosel/app/kinds/loaded_club.hpp"
+#include "hosel/app/kinds/loaded_face_map.hpp"
 #include "hosel/app/kinds/loop.hpp"
 #include "hosel/app/kinds/material_point.hpp"
 #include "hosel/app/kinds/modes.hpp"
@@ -48,6 +49,8 @@ constexpr std::array kKinds = {
     Kind{"modes", "free vibrations of a ball, harmonic by harmonic, or of a shaft with its head", read_either_modes},
     Kind{"swing", "a flexible club driven by the motion of the grip, up to impact", read_swing},
     Kind{"loaded-club", "a swing and the blow at its end: what preload, gravity and the grip change", read_loaded_club},
+    Kind{"loaded-face-map", "what the club of a swing changes over the face: shaft, preload, the hands' wrench",
+         read_loaded_face_map},
     Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall", read_calibrate_ball},

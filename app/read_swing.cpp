@@ -28,6 +28,9 @@ MotionInput read_motion(Table table) {
       table.quantity({"longest_gap", "longest allowed gap between samples"}, "ms", Range::positive(), 0.02);
   const double turn =
       table.quantity({"turn_about_shaft", "turns the recorded grip about the shaft's axis"}, "deg", Range::finite(), 0);
+  const double lower_hand = table.quantity(
+      {"lower_hand", "down the shaft from the recorded point to where the hands let go: the motion is carried there"},
+      "mm", Range::non_negative(), 0);
   const double tolerance =
       table.number({"orthonormal_tolerance", "allowed error of recorded axes"}, {0, 0.1, true}, 1e-3);
   const bool span = table.has_quantity("begin") || table.has_quantity("end");
@@ -72,6 +75,8 @@ MotionInput read_motion(Table table) {
   }
   const Eigen::Quaterniond about(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
   for (Eigen::Quaterniond& q : track.attitudes) q = q * about;
+  for (std::size_t i = 0; i < track.positions.size(); ++i)
+    track.positions[i] -= track.attitudes[i] * Vec3(0, 0, lower_hand);
   if (const auto wrong = track.faults(gap); !wrong.empty())
     throw InputError(fmt::format("{}: {}", sheet.file, wrong.front()));
   if (!span) {
@@ -81,6 +86,8 @@ MotionInput read_motion(Table table) {
   if (in.begin < track.times.front() - 1e-9 || in.end > track.times.back() + 1e-9)
     table.fail(table.has_quantity("begin") ? "begin" : "end",
                fmt::format("the motion covers {:g} to {:g} s only", track.times.front(), track.times.back()));
+  // What comes after the end is not the swing's: an impact would reach back through the smoothing.
+  if (span) track.cut(in.end);
   return in;
 }
 

@@ -629,6 +629,24 @@ std::vector<std::string> Table::keys() const {
 
 namespace {
 
+/// `cg_mm[2]`, `inertia_kg_m2[1][3]`: one value of a list that is there.
+void override_element(detail::Document& document, toml::table& table, const std::string& key, const toml::table& parsed,
+                      const std::string& text) {
+  toml::node* node = table.get(key.substr(0, key.find('[')));
+  toml::array* list = nullptr;
+  std::size_t number = 0;
+  for (std::size_t at = key.find('['); at != std::string::npos; at = key.find('[', at + 1)) {
+    if (list) node = list->get(number - 1);
+    list = node ? node->as_array() : nullptr;
+    number = std::strtoul(key.c_str() + at + 1, nullptr, 10);
+    if (!list || number < 1 || number > list->size())
+      throw InputError(fmt::format("--set {}: there is no '{}'", text, key));
+  }
+  document.set.erase(list->get(number - 1));
+  list->replace(list->cbegin() + static_cast<std::ptrdiff_t>(number - 1), *parsed.get("value"));
+  document.set[list->get(number - 1)] = text;
+}
+
 void apply_override(detail::Document& document, const std::string& text) {
   if (!utf8::is_valid(text.begin(), text.end())) throw InputError("--set: the text is not UTF-8");
   const auto equals = text.find('=');
@@ -664,6 +682,7 @@ void apply_override(detail::Document& document, const std::string& text) {
     at = node->as_table();
     if (!at) throw InputError(fmt::format("--set {}: '{}' is not a table", text, path[i]));
   }
+  if (path.back().find('[') != std::string::npos) return override_element(document, *at, path.back(), parsed, text);
   // The same quantity in another unit is replaced, not doubled.
   const SplitName split = split_unit(path.back());
   if (split.unit) {

@@ -1,5 +1,6 @@
 #include "hosel/models/grip_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -40,6 +41,15 @@ std::vector<std::string> GripTrack::faults(double longest_gap) const {
       say("the attitude jumps (Euler angles near gimbal lock, or samples too far apart)", times[i]);
   }
   return out;
+}
+
+void GripTrack::cut(double end) {
+  const auto after = std::ranges::lower_bound(times, end - 1e-9);
+  if (after == times.end()) return;
+  const auto count = static_cast<std::size_t>(after - times.begin()) + 1;
+  times.resize(count);
+  positions.resize(count);
+  attitudes.resize(count);
 }
 
 Eigen::Quaterniond from_yxz(double a, double b, double c) {

@@ -18,6 +18,8 @@ struct GripTrack {
   /// Sentences naming what no motion can have: time backwards, a gap longer than `longest_gap` [s], a
   /// turn of more than a quarter circle between neighbours; empty if all is well.
   std::vector<std::string> faults(double longest_gap) const;
+  /// Leaves the samples up to the first at `end` [s] or after it.
+  void cut(double end);
 };
 
 /// Y-X-Z Euler angles: rotation = Ry(a) Rx(b) Rz(c).

@@ -180,6 +180,13 @@ std::vector<NamedFigure> shaft_effect(const FaceGrid& g, const FaceMap& club, co
   return out;
 }
 
+std::vector<std::string> shaft_effect_names() {
+  const FaceMap flat{"", std::vector<std::optional<Launch>>(9, Launch{.velocity = Vec3::UnitX()})};
+  std::vector<std::string> names;
+  for (const NamedFigure& f : shaft_effect({.columns = 3, .rows = 3}, flat, flat)) names.push_back(f.name);
+  return names;
+}
+
 std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, const FaceMap& heavier, double mass,
                                     double extra) {
   const auto inverse = [](const Launch& l) { return 1 / l.ball_speed(); };

@@ -13,6 +13,8 @@ namespace hosel::post {
 /// a parabola through the best grid point and its neighbours; slopes are least-squares planes over the
 /// grid, per mm towards toe and up. Throws std::invalid_argument where a point has no launch.
 std::vector<NamedFigure> shaft_effect(const FaceGrid& grid, const FaceMap& club, const FaceMap& free);
+/// The names of those figures for maps without flights: what statements may speak of.
+std::vector<std::string> shaft_effect_names();
 
 /// Extra head mass [kg] that gives the free head the club's ball speed, at every point. `heavier` is
 /// the free head's map with `extra` more mass at its centre of gravity, `mass` the head's own. 1/v is

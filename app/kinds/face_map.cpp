@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_face_map.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/stop.hpp"
+#include "hosel/app/stored_launch.hpp"
 #include "hosel/app/sweep.hpp"
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/models/checked_launch.hpp"
@@ -26,42 +28,6 @@ namespace hosel::app {
 namespace {
 
 using nlohmann::json;
-
-json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 vector(const json& j) { return Vec3(j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()); }
-
-json stored(const Launch& l) {
-  json out = {{"velocity", list(l.velocity)},
-              {"spin", list(l.spin)},
-              {"head_velocity", list(l.head_velocity)},
-              {"head_spin", list(l.head_spin)}};
-  if (l.contact_time) out["contact_time"] = *l.contact_time;
-  if (l.peak_force) out["peak_force"] = *l.peak_force;
-  if (l.peak_compression) out["peak_compression"] = *l.peak_compression;
-  return out;
-}
-
-/// Rows of time [s], force [N] and moment [N m], and what they add up to.
-json stored(const models::HoselHistory& h) {
-  const fem::Wrench impulse = h.impulse();
-  json out = {{"impulse", {list(impulse.force), list(impulse.moment)}}};
-  for (std::size_t i = 0; i < h.times.size(); ++i)
-    out["history"].push_back({h.times[i], list(h.loads[i].force), list(h.loads[i].moment)});
-  return out;
-}
-
-std::optional<Launch> launch_from(const json& j) {
-  if (j.contains("error")) return {};
-  Launch l;
-  l.velocity = vector(j.at("velocity"));
-  l.spin = vector(j.at("spin"));
-  l.head_velocity = vector(j.at("head_velocity"));
-  l.head_spin = vector(j.at("head_spin"));
-  if (j.contains("contact_time")) l.contact_time = j["contact_time"].get<double>();
-  if (j.contains("peak_force")) l.peak_force = j["peak_force"].get<double>();
-  if (j.contains("peak_compression")) l.peak_compression = j["peak_compression"].get<double>();
-  return l;
-}
 
 /// One map: a model asked about one club, at every point of the grid or at the nine coarse ones.
 struct Layer {
@@ -91,6 +57,7 @@ class FaceMapJob final : public PointJob {
     reference_ = s.reference;
     extra_ = s.extra_mass;
     claims_ = s.claims;
+    figures_ = s.figures;
     // The maps themselves, then the reference with a heavier head, then each again with finer numerics.
     for (const Variant& v : s.variants) add(file, v, false);
     maps_ = layers_.size();
@@ -190,6 +157,7 @@ class FaceMapJob final : public PointJob {
     std::vector<std::string> refinement;
     std::optional<FlightSetup> flight;
     std::vector<post::Claim> claims;
+    bool figures = true;
   };
 
   /// Every key that a face map knows.
@@ -220,30 +188,15 @@ class FaceMapJob final : public PointJob {
       const auto first = std::ranges::find(s.variants, v.model, &Variant::model);
       s.pairs.push_back({m, std::size_t(against - names.begin()), std::size_t(first - s.variants.begin())});
     }
-    if (auto grid = root.optional_table("grid")) {
-      s.grid.width = grid->quantity({"width", "of the grid, heel to toe"}, "mm", {1e-3, 0.2}, s.grid.width);
-      s.grid.height = grid->quantity({"height", "of the grid, up the face"}, "mm", {1e-3, 0.2}, s.grid.height);
-      s.grid.columns = int(grid->integer({"columns", "points of the grid, heel to toe"}, 3, 1001, s.grid.columns));
-      s.grid.rows = int(grid->integer({"rows", "points of the grid, up the face"}, 3, 1001, s.grid.rows));
-    }
+    s.grid = read_face_grid(root);
     if (auto e = root.optional_table("equivalent_mass"))
       s.extra_mass =
           e->quantity({"extra", "head mass added to the reference: what the shaft's effect is compared with"}, "g",
                       {1e-5, 0.1}, 5e-3);
     if (auto r = root.optional_table("refinement"))
       s.refinement = r->texts({"set", "keys that refine the numerics, table.key=value"});
-    for (Table t : root.tables("statements")) {
-      post::Claim claim{t.text({"text", "a published statement that the maps may bear out or not"}), {}};
-      const std::vector<std::string> figures = figure_names(s.extra_mass > 0);
-      for (const std::string& where :
-           t.texts({"where", "comparisons of the maps' figures that bear the statement out"})) {
-        try {
-          claim.where.emplace_back(where, figures);
-        } catch (const std::invalid_argument& e) { t.fail("where", e.what()); }
-      }
-      if (claim.where.empty()) t.fail("where", "name at least one comparison that bears the statement out");
-      s.claims.push_back(std::move(claim));
-    }
+    s.claims = read_statements(root, figure_names(s.extra_mass > 0));
+    s.figures = root.flag({"figures", "draw the maps; a sweep of many may do without"}, true);
     std::vector<std::string> asked;
     for (const Variant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
@@ -256,10 +209,7 @@ class FaceMapJob final : public PointJob {
 
   /// What statements may speak of.
   static std::vector<std::string> figure_names(bool with_mass) {
-    const post::FaceMap flat{"", std::vector<std::optional<Launch>>(9, Launch{.velocity = Vec3::UnitX()})};
-    std::vector<std::string> names;
-    for (const post::NamedFigure& f : post::shaft_effect({.columns = 3, .rows = 3}, flat, flat))
-      names.push_back(f.name);
+    std::vector<std::string> names = post::shaft_effect_names();
     if (with_mass)
       for (const post::NamedFigure& f : mass_figures({0}, 0)) names.push_back(f.name);
     return names;
@@ -340,7 +290,7 @@ class FaceMapJob final : public PointJob {
       if (!has) continue;
       any = true;
       for (const json& row : points[i]["hosel"]["history"]) {
-        const Vec3 force = vector(row.at(1)), moment = vector(row.at(2));
+        const Vec3 force = vector_from(row.at(1)), moment = vector_from(row.at(2));
         csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n",
                            1e3 * grid_.toe_at(work_[i].place), 1e3 * grid_.high_at(work_[i].place),
                            1e3 * row.at(0).get<double>(), force.x(), force.y(), force.z(), moment.x(), moment.y(),
@@ -362,7 +312,8 @@ class FaceMapJob final : public PointJob {
     picture(out, figure, "figures/hosel-" + name);
   }
 
-  static void picture(Output& out, const post::Figure& figure, const std::string& stem) {
+  void picture(Output& out, const post::Figure& figure, const std::string& stem) const {
+    if (!figures_) return;
     if (const std::string why = post::draw(figure, out.path(stem)); !why.empty()) out.say(why);
   }
 
@@ -480,6 +431,7 @@ class FaceMapJob final : public PointJob {
   post::FaceGrid grid_;
   std::size_t reference_ = 0, maps_ = 0, bases_ = 0;  // layers: maps, heavier head, refined
   double extra_ = 0;
+  bool figures_ = true;
   std::vector<post::Claim> claims_;
   std::vector<Layer> layers_;
   std::vector<Pair> pairs_;

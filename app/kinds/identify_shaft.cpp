@@ -60,6 +60,16 @@ class IdentifyJob final : public Job {
     const double factor = std::exp(1.96 * std::sqrt(log_variance));
     return {value / factor, value * factor};
   }
+  /// What a rigid club misses of the deflection, over the swings that are fitted or the others.
+  static double rigid_rms(const std::vector<models::MeasuredSwing>& swings, bool train) {
+    double sum = 0, count = 0;
+    for (const models::MeasuredSwing& m : swings) {
+      if (m.train != train) continue;
+      for (const auto* deflection : {&m.lead, &m.droop})
+        for (const double x : *deflection) sum += x * x, ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0.0;
+  }
   static nlohmann::json to_json(const models::ShaftIdentification& r) {
     return {{"bending_scale", r.bending_scale},
             {"bending_scale_95", interval(r.bending_scale, r.log_covariance(0, 0))},
@@ -83,6 +93,11 @@ class IdentifyJob final : public Job {
           "{} steps did not converge at their full length: shorten solution.step, or the interval says too little",
           r.shortened_steps));
   }
+  static nlohmann::json tell_rigid(Output& out, const std::vector<models::MeasuredSwing>& swings) {
+    const double train = 1e3 * rigid_rms(swings, true), holdout = 1e3 * rigid_rms(swings, false);
+    out.say(fmt::format("a rigid club: deflection RMS train {:.2f} mm, holdout {:.2f} mm", train, holdout));
+    return {{"train", train}, {"holdout", holdout}};
+  }
   void recorded(Output& out) {
     std::vector<models::GripMotion> motions;
     motions.reserve(swings_.size());
@@ -105,7 +120,7 @@ class IdentifyJob final : public Job {
     }
     const models::ShaftIdentification r = models::identify_shaft(club_, options_, measured);
     say(out, r);
-    out.write_summary({{"identified", to_json(r)}});
+    out.write_summary({{"identified", to_json(r)}, {"rigid_rms_mm", tell_rigid(out, measured)}});
   }
 
   std::vector<models::SwingSample> simulate(const models::GripMotion& motion, double end, double scale,
@@ -143,9 +158,11 @@ class IdentifyJob final : public Job {
       return m;
     };
     out.say(fmt::format("clamp to hosel {:.3f} m; identifying on {:g} to {:g} s", swing.length, train_[0], train_[1]));
-    const models::ShaftIdentification r =
-        models::identify_shaft(club_, options_, {part(train_[0], train_[1], true), part(test_[0], test_[1], false)});
+    const std::vector<models::MeasuredSwing> parts = {part(train_[0], train_[1], true),
+                                                      part(test_[0], test_[1], false)};
+    const models::ShaftIdentification r = models::identify_shaft(club_, options_, parts);
     say(out, r);
+    const nlohmann::json rigid = tell_rigid(out, parts);
 
     const auto nominal = simulate(motion, motion.last(), 1, club_.shaft->damping_time);
     const auto identified = simulate(motion, motion.last(), r.bending_scale, r.damping_time);
@@ -181,7 +198,10 @@ class IdentifyJob final : public Job {
       figure.panels.push_back(panel);
     }
     if (const std::string why = post::draw(figure, out.path("deflection")); !why.empty()) out.say(why);
-    out.write_summary({{"identified", to_json(r)}, {"head_markers_rms", errors}, {"clamp_to_hosel_m", swing.length}});
+    out.write_summary({{"identified", to_json(r)},
+                       {"rigid_rms_mm", rigid},
+                       {"head_markers_rms", errors},
+                       {"clamp_to_hosel_m", swing.length}});
   }
 
   Club club_;

@@ -16,6 +16,7 @@
 #include "hosel/models/fe_full_club.hpp"
 #include "hosel/models/hosel_load.hpp"
 #include "hosel/models/shaft_coupled.hpp"
+#include "hosel/models/swing_end.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -24,20 +25,13 @@ namespace hosel::app {
 namespace {
 
 using models::Grip;
+using models::SwingEnd;
 
 /// One answer at one point of the face.
 struct Prediction {
   std::string name;
   Launch launch;
   models::HoselHistory hosel;  // of finite-element clubs
-};
-
-/// The end of a swing: how the head arrives, and the shaft behind it.
-struct SwingEnd {
-  Delivery delivery;
-  models::LoadedShaft shaft;
-  models::GripLoad hands;  // as a measurement of the grip alone would have it
-  double lie = 0, lead = 0, droop = 0;
 };
 
 class LoadedClubJob final : public Job {
@@ -67,10 +61,8 @@ class LoadedClubJob final : public Job {
 
   void run(Output& out) override {
     if (!motion_.present) return out.skip(motion_.file);
-    // A delivery knows no lie: the swing's own is taken into the description of the club.
-    const double lie = swing_to_end(blow_.club, swing_.gravity).lie;
-    const Club club = models::turned_about_normal(blow_.club, lie);
-    const SwingEnd end = swing_to_end(club, swing_.gravity), weightless = swing_to_end(club, Vec3::Zero());
+    const SwingEnd end = swing_to_end(swing_.gravity), weightless = swing_to_end(Vec3::Zero(), end.lie);
+    const double lie = end.lie;
     const Delivery& d = end.delivery;
     out.say(
         fmt::format("the swing ends with lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path "
@@ -99,10 +91,11 @@ class LoadedClubJob final : public Job {
     summary["axial_wave_back_from_the_grip_ms"] = 1e3 * back;
     for (std::size_t k = 0; k < toe_.size(); ++k) {
       Blow blow = blow_;
-      blow.club = club;
+      blow.club = end.club;
       blow.delivery = d;
-      blow.delivery.impact_toe = std::cos(lie) * toe_[k] - std::sin(lie) * high_[k];
-      blow.delivery.impact_high = std::sin(lie) * toe_[k] + std::cos(lie) * high_[k];
+      blow.delivery.impact_toe = toe_[k];
+      blow.delivery.impact_high = high_[k];
+      models::turn_place(lie, blow.delivery);
       const std::string at = fmt::format("toe {:g} mm, high {:g} mm", 1e3 * toe_[k], 1e3 * high_[k]);
       const std::vector<Prediction> answers = ask(out, blow, end, weightless, at);
       std::vector<post::LaunchColumn> columns;
@@ -179,23 +172,12 @@ class LoadedClubJob final : public Job {
     throw std::logic_error("no such club");
   }
 
-  SwingEnd swing_to_end(const Club& club, const Vec3& gravity) const {
+  SwingEnd swing_to_end(const Vec3& gravity, std::optional<double> lie = {}) const {
     const models::GripMotion grip(motion_.track, motion_.smoothing);
     models::SwingOptions options = swing_;
     options.gravity = gravity;
-    models::Swing swing(club, options, {.motion = [&](double t) { return grip.at(t); }});
-    models::SwingSample before, last;
-    const fem::State s = swing.run(swing.start(motion_.begin, swing.equilibrium(motion_.begin)), motion_.end,
-                                   [&](const models::SwingSample& x) {
-                                     before = last;
-                                     last = x;
-                                   });
-    return {models::delivery_of(last.head),
-            models::loaded_by_swing(swing, s, before, last),
-            {.force = last.grip.rotation.conjugate() * last.force, .moment = last.moment, .gravity = gravity},
-            models::dynamic_lie(last.head),
-            last.lead,
-            last.droop};
+    return models::swing_end(
+        blow_.club, options, [&](double t) { return grip.at(t); }, motion_.begin, motion_.end, lie);
   }
 
   std::vector<Prediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,

@@ -28,7 +28,7 @@ struct Parameter {
   std::vector<std::string> values;  ///< TOML text, one a level (grid) or one a point (sample)
 };
 
-/// Every number of a summary by its dotted name.
+/// Every number of a summary by its dotted name; what holds or not is 1 or 0.
 void flatten(const json& j, const std::string& name, json& out) {
   if (j.is_object()) {
     for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
@@ -36,6 +36,8 @@ void flatten(const json& j, const std::string& name, json& out) {
     for (std::size_t i = 0; i < j.size(); ++i) flatten(j[i], fmt::format("{}.{}", name, i), out);
   } else if (j.is_number()) {
     out[name] = j;
+  } else if (j.is_boolean()) {
+    out[name] = j.get<bool>() ? 1 : 0;
   }
 }
 
@@ -169,11 +171,21 @@ class SweepJob final : public PointJob {
     }
     out.write("sweep.csv", csv);
     for (const std::string& c : columns) {
-      double low = INFINITY, high = -INFINITY;
-      for (const json& p : points)
-        if (p.contains(c)) low = std::min(low, p[c].get<double>()), high = std::max(high, p[c].get<double>());
-      if (low <= high) summary["range"][c] = {low, high};
+      double low = INFINITY, high = -INFINITY, sum = 0;
+      int count = 0;
+      for (const json& p : points) {
+        if (!p.contains(c)) continue;
+        const double x = p[c].get<double>();
+        low = std::min(low, x);
+        high = std::max(high, x);
+        sum += x;
+        ++count;
+      }
+      if (count == 0) continue;
+      summary["range"][c] = {low, high};
+      summary["mean"][c] = sum / count;
     }
+    if (sampled_ && !record_.empty()) tell_correlations(out, points, summary);
     if (!record_.empty()) draw(out, points);
     out.write_summary(summary);
     out.say(fmt::format("{} points, {} without an answer; the table is {}", size_, summary["failed"].get<int>(),
@@ -222,6 +234,40 @@ class SweepJob final : public PointJob {
       if (*end) return {};
     }
     return out;
+  }
+
+  /// What a sample says: each recorded number's spread, and the key with which it goes most (Pearson's r).
+  void tell_correlations(Output& out, const std::vector<json>& points, json& summary) const {
+    const auto correlation = [](const std::vector<double>& x, const std::vector<double>& y) {
+      const double n = double(x.size()), mx = std::accumulate(x.begin(), x.end(), 0.0) / n,
+                   my = std::accumulate(y.begin(), y.end(), 0.0) / n;
+      double xy = 0, xx = 0, yy = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        xy += (x[i] - mx) * (y[i] - my);
+        xx += (x[i] - mx) * (x[i] - mx);
+        yy += (y[i] - my) * (y[i] - my);
+      }
+      return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0.0;
+    };
+    out.say(fmt::format("{:>10} {:>10} {:>10}  {}", "lowest", "mean", "highest", "recorded; goes most with (r)"));
+    for (const std::string& c : record_) {
+      if (!summary["range"].contains(c)) continue;
+      double most = 0;
+      std::string with;
+      for (std::size_t p = 0; p < parameters_.size(); ++p) {
+        const std::vector<double> values = numbers(p);
+        std::vector<double> x, y;
+        for (std::size_t i = 0; i < values.size(); ++i)
+          if (points[i].contains(c)) x.push_back(values[i]), y.push_back(points[i][c].get<double>());
+        if (x.empty()) continue;
+        const double r = correlation(x, y);
+        summary["correlation"][c][parameters_[p].key] = r;
+        if (std::abs(r) > std::abs(most)) most = r, with = parameters_[p].key;
+      }
+      out.say(fmt::format("{:>10.4g} {:>10.4g} {:>10.4g}  {}{}", summary["range"][c][0].get<double>(),
+                          summary["mean"][c].get<double>(), summary["range"][c][1].get<double>(), c,
+                          with.empty() ? "" : fmt::format("; {} ({:+.2f})", with, most)));
+    }
   }
 
   /// Each recorded number against the first parameter that is a number.

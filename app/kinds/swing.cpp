@@ -90,6 +90,12 @@ class SwingJob final : public Job {
                          {"lead_mm", 1e3 * last.lead},
                          {"droop_mm", 1e3 * last.droop},
                          {"twist_deg", degrees(last.twist.z())}};
+    if (const fem::RigidBody* head = swing.head()) {
+      // What the same grip would give the head of a club that does not bend.
+      const Vec3 arm = swing.shaft().line().back().position + head->properties().offset;
+      const fem::Pose& g = last.grip;
+      summary["rigid_club_speed_mps"] = (g.velocity + g.rotation * g.angular_velocity.cross(arm)).norm();
+    }
     summary["peak"] = {{"lead_mm", 1e3 * peak_lead}, {"droop_mm", 1e3 * peak_droop}};
     summary["delivery"] = {{"club_speed_mps", d.club_speed},
                            {"attack_angle_deg", degrees(d.attack_angle)},

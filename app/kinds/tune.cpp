@@ -12,6 +12,7 @@
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
+#include "hosel/app/read_shaft.hpp"
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
@@ -28,7 +29,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 struct TuneChannel {
   std::string name;  ///< with unit
   ShotChannel channel;
-  double si, noise;  ///< noise in the unit of the name
+  double si, noise;    ///< noise in the unit of the name
+  bool fitted = true;  ///< or only compared
 };
 
 struct Free {
@@ -76,6 +78,8 @@ class TuneJob final : public Job {
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
+    if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
     options_ = read_options(root, {model_});
     const std::optional<FlightSetup> flight = read_optional_flight(root);
     flies_ = flight.has_value();
@@ -98,6 +102,16 @@ class TuneJob final : public Job {
            noise.number({key, "standard deviation of the measured channel", "<channel>"}, Range::positive())});
     }
     if (channels_.empty()) data.fail("noise", "name at least one launch quantity and its noise");
+    for (const std::string& name :
+         data.texts({"compared_only", "channels of [data.noise] that no parameter is fitted to"},
+                    std::vector<std::string>{})) {
+      const auto c = std::ranges::find(channels_, name, &TuneChannel::name);
+      if (c == channels_.end()) data.fail("compared_only", fmt::format("[data.noise] has no '{}'", name));
+      c->fitted = false;
+    }
+    for (std::size_t c = 0; c < channels_.size(); ++c)
+      if (channels_[c].fitted) fitted_.push_back(c);
+    if (fitted_.empty()) data.fail("compared_only", "leave at least one channel to be fitted");
     for (Table t : data.tables("keep")) {
       Keep k{t.text({"column", "a column of the shots"}), t.text({"equals", "text that a kept row has there"}, ""),
              t.number({"min", "smallest number that a kept row has there"}, {}, -INFINITY),
@@ -143,7 +157,7 @@ class TuneJob final : public Job {
     if (!std::filesystem::exists(shots_file_)) return out.skip(shots_file_);
     read_data(out);
     const auto residuals = [this](const Eigen::VectorXd& p, Eigen::VectorXd& r) { return whitened(train_, p, r); };
-    const int width = static_cast<int>(channels_.size());
+    const int width = static_cast<int>(fitted_.size());
     const int count = static_cast<int>(train_.size()) * width;
     if (count <= static_cast<int>(free_.size()))
       throw InputError(fmt::format("{}: {} training rows cannot settle {} parameters", shots_file_.string(),
@@ -246,13 +260,13 @@ class TuneJob final : public Job {
 
   bool whitened(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
     std::atomic<bool> good = true;
-    const std::size_t width = channels_.size();
+    const std::size_t width = fitted_.size();
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
       const std::vector<double> model = predict(rows[i], p);
-      for (std::size_t c = 0; c < width; ++c) {
-        const double e = error(rows[i], c, model) / channels_[c].noise;
+      for (std::size_t k = 0; k < width; ++k) {
+        const double e = error(rows[i], fitted_[k], model) / channels_[fitted_[k]].noise;
         if (!std::isfinite(e)) good = false;
-        r[static_cast<Eigen::Index>(i * width + c)] = e;
+        r[static_cast<Eigen::Index>(i * width + k)] = e;
       }
     });
     return good;
@@ -263,7 +277,7 @@ class TuneJob final : public Job {
     nlohmann::json summary;
     const auto n = static_cast<Eigen::Index>(free_.size());
     // The scatter left over, in units of the declared noise: the parameters' spread grows by it.
-    Eigen::VectorXd r(static_cast<Eigen::Index>(train_.size() * channels_.size()));
+    Eigen::VectorXd r(static_cast<Eigen::Index>(train_.size() * fitted_.size()));
     whitened(train_, fit.parameters, r);
     const double scatter = std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - n)));
     summary["scatter_over_declared_noise"] = scatter;
@@ -390,6 +404,7 @@ class TuneJob final : public Job {
   std::filesystem::path shots_file_, join_file_;
   bool flies_ = false;
   std::vector<TuneChannel> channels_;
+  std::vector<std::size_t> fitted_;  // of the channels
   std::vector<Keep> keep_;
   std::vector<Free> free_;
   solvers::LeastSquaresOptions search_;

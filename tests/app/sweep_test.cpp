@@ -203,6 +203,54 @@ TEST(Sweep, LatinHypercubeFillsEveryStratumOnce) {
   EXPECT_LT(std::abs(sum / 400 / (20 / std::sqrt(12.0) * 40 / std::sqrt(12.0))), 0.2);
 }
 
+TEST(Sweep, AStatementHoldsInAShareOfTheRange) {
+  // The ball is fastest where the centre of gravity stands behind it: towards the toe for three quarters of the range.
+  const fs::path dir = fresh_directory("sweep_share");
+  write(dir / "blow" / "case.toml", R"(kind = "face-map"
+models = ["rigid-eccentric"]
+figures = false
+[delivery]
+club_speed_mps = 45.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 0.0]
+inertia_kg_m2 = [[2.0e-4, 0, 0], [0, 3.0e-4, 0], [0, 0, 4.5e-4]]
+[grid]
+columns = 5
+rows = 3
+[[variants]]
+name = "heavier"
+model = "rigid-eccentric"
+set = ["head.mass_kg=0.21"]
+[[statements]]
+text = "fastest towards the toe"
+where = ["fastest_club_toe_mm > 0"]
+)");
+  write(dir / "sweep" / "case.toml", R"(kind = "sweep"
+case = "../blow"
+record = ["effect.heavier.statements.0.holds", "effect.heavier.figures.fastest_club_toe_mm.value"]
+[sample]
+points = 20
+seed = 3
+[[parameters]]
+key = "head.cg_mm[2]"
+range = [-3.0, 1.0]
+[[parameters]]
+key = "delivery.club_speed_mps"
+range = [44.0, 46.0]
+)");
+  const Outcome run = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(run.status, 0) << run.text;
+  const auto summary = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  EXPECT_DOUBLE_EQ(summary["mean"]["effect.heavier.statements.0.holds"], 0.75);  // one point in each stratum
+  EXPECT_LT(summary["correlation"]["effect.heavier.figures.fastest_club_toe_mm.value"]["head.cg_mm[2]"], -0.999);
+  EXPECT_NE(run.text.find("fastest_club_toe_mm.value; head.cg_mm[2] (-1.00)"), std::string::npos) << run.text;
+  const Outcome bad =
+      command("run " + (dir / "blow").string() + " --out " + (dir / "bad").string() + " --set 'head.cg_mm[4]=1'");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.text.find("there is no 'cg_mm[4]'"), std::string::npos) << bad.text;
+}
+
 TEST(Sweep, GridTakesNumbersAndWords) {
   const fs::path dir = sweep_case("sweep_grid", R"(kind = "sweep"
 case = "../blow"

@@ -217,6 +217,37 @@ max = 0.8
     EXPECT_TRUE(std::filesystem::exists(d / "out" / name)) << name;
 }
 
+TEST(Tune, AChannelThatIsOnlyComparedMovesNothing) {
+  const auto d = scratch("tune_compared");
+  std::ofstream(d / "case.toml") << R"(kind = "tune"
+model = "rigid-planar"
+[head]
+mass_kg = 0.26
+[data]
+shots = "shots.csv"
+compared_only = ["spin_rate_rpm"]
+[data.noise]
+ball_speed_mps = 0.25
+spin_rate_rpm = 60.0
+[[parameters]]
+name = "restitution"
+min = 0.5
+max = 1.0
+)";
+  std::vector<nlohmann::json> told;
+  for (const double spin : {4000.0, 8000.0}) {
+    std::ofstream shots(d / "shots.csv");
+    shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,spin_rate_rpm\n";
+    for (int i = 0; i < 12; ++i) shots << i + 1 << ',' << 38 + i % 3 << ",-2,20," << 53 + i % 3 << ',' << spin << '\n';
+    shots.close();
+    told.push_back(run(d));
+  }
+  EXPECT_GT(told[0]["parameters"][0]["value"].get<double>(), 0.7);
+  EXPECT_EQ(told[0]["parameters"][0]["value"], told[1]["parameters"][0]["value"]);
+  EXPECT_NEAR(told[1]["errors"][1]["after"]["mean"].get<double>(),
+              told[0]["errors"][1]["after"]["mean"].get<double>() - 4000, 1e-6);
+}
+
 TEST(CrossCheck, NamesPlaceAndQuantity) {
   const auto d = scratch("cross_check_case");
   std::ofstream(d / "case.toml") << R"(kind = "cross-check"

@@ -67,6 +67,23 @@ TEST(GripMotion, SmoothingTamesTheAccelerationOfNoise) {
   EXPECT_LT(worst_smooth, 60);
 }
 
+TEST(GripMotion, WhatComesAfterTheEndDoesNotReachBack) {
+  GripTrack struck = reference_track(0, 1);
+  const double end = struck.times[50];
+  for (std::size_t i = 51; i < struck.times.size(); ++i)  // as a grip does that an impact stops
+    struck.positions[i] = struck.positions[50];
+  const double wrong =
+      (GripMotion(struck, 0.02).at(end).velocity - GripMotion(reference_track(0, 1), 0.02).at(end).velocity).norm();
+  EXPECT_GT(wrong, 0.5);
+  struck.cut(end);
+  ASSERT_EQ(struck.times.size(), 51u);
+  ASSERT_EQ(struck.attitudes.size(), 51u);
+  const GripMotion motion(struck, 0.02);
+  EXPECT_DOUBLE_EQ(motion.last(), end);
+  const Vec3 exact(20 * std::cos(20 * end), -15 * std::sin(15 * end), 2 * end);
+  EXPECT_LT((motion.at(end).velocity - exact).norm(), 0.01 * wrong);
+}
+
 TEST(GripMotion, NamesWhatIsWrong) {
   GripTrack track = reference_track(0, 1);
   EXPECT_TRUE(track.faults(0.01).empty());
