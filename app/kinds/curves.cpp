@@ -15,6 +15,7 @@
 #include "hosel/models/registry.hpp"
 #include "hosel/models/stick_slip.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -52,10 +53,8 @@ class CurvesJob final : public Job {
 
  private:
   std::string member(double value) const {
-    std::string name(family_.parameter->name);
-    std::ranges::replace(name, '_', ' ');
-    return fmt::format("{} {:g}{}{}", name, value / family_.si, family_.parameter->unit.empty() ? "" : " ",
-                       family_.parameter->unit);
+    return fmt::format("{} {:g}{}{}", post::spoken(family_.parameter->name), value / family_.si,
+                       family_.parameter->unit.empty() ? "" : " ", post::symbol(family_.parameter->unit));
   }
 
   void curves(Output& out) const {
@@ -68,7 +67,7 @@ class CurvesJob final : public Job {
         std::string name(c.name);
         std::ranges::replace(name, '_', ' ');
         figure.panels.push_back(
-            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c.unit), .key = "top left"});
+            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, post::symbol(c.unit))});
       }
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)
@@ -108,8 +107,7 @@ class CurvesJob final : public Job {
     nlohmann::json summary = nlohmann::json::array();
     for (const std::string& m : models_) {
       post::Panel tangential{.title = m, .x_label = "time [ms]", .y_label = "tangential force [kN]"},
-          ratio{
-              .title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]", .key = "bottom left"};
+          ratio{.title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]"};
       for (const double f : family_.values) {
         models::Options options = options_;
         Blow blow = blow_;
@@ -164,7 +162,7 @@ class CurvesJob final : public Job {
 
   void finish(Output& out, const std::string& csv, const post::Figure& figure, const nlohmann::json& notes) const {
     out.write("curves.csv", csv);
-    if (const std::string missing = post::draw(figure, out.path("curves")); !missing.empty()) out.say(missing);
+    out.draw(figure, "curves");
     if (!history_)
       for (const auto& n : notes) out.say(n.get<std::string>());
     out.say("wrote curves.csv and curves.png");

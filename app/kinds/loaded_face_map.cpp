@@ -468,8 +468,8 @@ class LoadedFaceMapJob final : public PointJob {
       if (!assumptions_.empty()) panel.series.push_back(assumption_bars(maps, *q));
       along.panels.push_back(std::move(panel));
     }
-    if (const std::string why = post::draw(figure, out.path("figures/parts")); !why.empty()) out.say(why);
-    if (const std::string why = post::draw(along, out.path("figures/along")); !why.empty()) out.say(why);
+    out.draw(figure, "figures/parts");
+    out.draw(along, "figures/along");
   }
 
   /// How far the whole effect goes under the assumptions, at heel, centre and toe; a little beside them, to be seen.

@@ -16,6 +16,7 @@
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 #include "hosel/solvers/least_squares.hpp"
 #include "hosel/solvers/random.hpp"
@@ -348,7 +349,7 @@ class TuneJob final : public Job {
     out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows",
                         "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"));
     for (const TuneChannel& c : channels_)
-      figure.panels.push_back({.x_label = "measured " + c.name, .y_label = "model - measured"});
+      figure.panels.push_back({.x_label = "measured " + post::label(c.name), .y_label = "model - measured"});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
       std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
       std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
@@ -391,7 +392,7 @@ class TuneJob final : public Job {
     }
     out.write("errors.csv", csv);
     out.write("residuals.csv", rows_csv);
-    if (const std::string missing = post::draw(figure, out.path("errors")); !missing.empty()) out.say(missing);
+    out.draw(figure, "errors");
     for (const auto& [why, k] : left_out_) summary["left_out"][why] = k;
     summary["rows"] = {{"train", train_.size()}, {"test", test_.size()}};
     summary["seed"] = seed_;
