@@ -451,8 +451,7 @@ class LoadedFaceMapJob final : public PointJob {
     for (const post::MapQuantity* q : shown(maps)) {
       if (std::ranges::find(kDrawn, q->name) == kDrawn.end()) continue;
       post::Panel panel{.x_label = "heel  <-  impact toe [mm]  ->  toe",
-                        .y_label = fmt::format("change of {} [{}]", words(q->name), unit_text(*q)),
-                        .key = along.panels.empty() ? "top right" : "off"};
+                        .y_label = fmt::format("change of {} [{}]", words(q->name), unit_text(*q))};
       for (const Part& part : parts()) {
         post::Series s{.label = part.name, .style = "linespoints"};
         const post::FaceGrid grid = grid_of(maps, part);
