@@ -46,6 +46,21 @@ void describe(std::string& page, const CLI::App& command, const std::string& nam
 
 }  // namespace
 
+std::string typed(int argc, char** argv) {
+  std::string line = "hosel";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                            "0123456789_-+=./,:%@") == word.npos;
+    line += plain ? fmt::format(" {}", word) : " '";
+    if (plain) continue;
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
 std::string man_page(const CLI::App& command) {
   std::string page = fmt::format(R"(.TH HOSEL 1 "" "hosel {}" "hosel"
 .SH NAME

@@ -6,6 +6,8 @@
 
 namespace hosel::app {
 
+/// The line that was typed, so that a shell takes it as the same words.
+std::string typed(int argc, char** argv);
 /// The man page hosel(1), as roff.
 std::string man_page(const CLI::App& command);
 /// A bash script that completes commands, options, shipped cases and files: `source <(hosel completion)`.

@@ -20,7 +20,8 @@ class Job {
 
 struct Kind {
   std::string_view name;
-  std::string_view what;  ///< one sentence for `hosel list`
+  std::string_view what;      ///< one sentence for `hosel list`
+  std::string_view question;  ///< that a run answers: what its page begins with
   /// Reads every key that the kind knows (`kind` and `title` are read already).
   std::unique_ptr<Job> (*read)(CaseFile& file);
 };

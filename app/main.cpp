@@ -25,7 +25,7 @@ namespace {
 using namespace hosel;
 
 struct Arguments {
-  std::string case_dir, out, from, of, log, shard = "1/1";
+  std::string command, case_dir, out, from, of, log, shard = "1/1", units;
   std::vector<std::string> sets;
   bool force = false, quiet = false, strict = false, markdown = false;
 };
@@ -37,7 +37,15 @@ void run(const Arguments& a) {
   const std::filesystem::path out = a.out.empty() ? std::filesystem::path("out") /
                                                         std::filesystem::canonical(file.directory()).filename()
                                                   : std::filesystem::path(a.out);
-  app::Output output({.directory = out, .force = a.force, .quiet = a.quiet, .log = a.log, .strict = a.strict},
+  app::Output output({.directory = out,
+                      .force = a.force,
+                      .quiet = a.quiet,
+                      .log = a.log,
+                      .command = a.command,
+                      .units = a.units.empty()     ? std::nullopt
+                               : a.units == "golf" ? std::optional(post::Units::golf)
+                                                   : std::optional(post::Units::metric),
+                      .strict = a.strict},
                      file.resolved());
   job->run(output);
 }
@@ -71,6 +79,7 @@ int main(int argc, char** argv) {
   cli.set_version_flag("--version", "hosel " + app::program_version());
   cli.require_subcommand(1);
   Arguments a;
+  a.command = app::typed(argc, argv);
   const auto add_case = [&](CLI::App* c) {
     c->add_option("CASE", a.case_dir, "case directory, case.toml, or the name of a shipped case")->required();
     c->add_option("--set", a.sets, "override a key: table.key=value (repeatable)")->expected(1)->take_all();
@@ -81,6 +90,8 @@ int main(int argc, char** argv) {
   run_command->add_flag("--force", a.force, "overwrite a finished run");
   run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
   run_command->add_flag("--strict", a.strict, "fail where the numbers are in doubt, instead of warning");
+  run_command->add_option("--units", a.units, "of what is shown: metric (m/s, m) or golf (mph, yards)")
+      ->check(CLI::IsMember({"metric", "golf"}));
   run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
   run_command->callback([&] { run(a); });
   CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");

@@ -87,6 +87,7 @@ struct Output::State {
   std::unique_ptr<DirectoryLock> lock;
   std::vector<std::string> doubts;
   std::string resolved;
+  RunPage page;
   std::shared_ptr<spdlog::logger> logger;
 };
 
@@ -125,17 +126,39 @@ fs::path Output::path(std::string_view name) const {
 const std::string& Output::resolved_case() const { return state_->resolved; }
 
 bool Output::quiet() const { return state_->options.quiet; }
+std::optional<post::Units> Output::asked_units() const { return state_->options.units; }
+post::Units Output::units() const { return state_->options.units.value_or(post::Units::metric); }
+post::Units Output::page_units() const {
+  const bool golf = resolved_case().find("_mph") != std::string::npos;
+  return state_->options.units.value_or(golf ? post::Units::golf : post::Units::metric);
+}
 bool Output::force() const { return state_->options.force; }
 
 void Output::say(std::string_view line) {
   if (!quiet()) fmt::print("{}\n", line);
   std::fflush(stdout);
+  state_->page.print(line);
   log(line);
 }
+
+void Output::show(const post::TextTable& table, std::string_view heading) {
+  say(table.text());
+  if (heading.empty()) state_->page.answer(table);
+  else state_->page.section(heading, table.html());
+}
+
+void Output::draw(const post::Figure& figure, std::string_view name, bool on_page) {
+  if (const std::string why = post::draw(figure, path(name), on_page); !why.empty()) say(why);
+  else if (on_page) state_->page.figure(figure, path(name));
+  else state_->page.link(fmt::format("{}.png", name));
+}
+
+RunPage& Output::page() { return state_->page; }
 
 void Output::warn(std::string_view doubt) {
   if (state_->options.strict) throw solvers::NonConvergence(fmt::format("--strict: {}", doubt));
   state_->doubts.emplace_back(doubt);
+  state_->page.doubt(doubt);
   if (!quiet()) fmt::print(stderr, "warning: {}\n", doubt);
   log(fmt::format("warning: {}", doubt));
 }
@@ -170,6 +193,8 @@ void Output::write_summary(const nlohmann::json& summary) const {
     throw solvers::NonConvergence(fmt::format("'{}' of the result is not finite: no summary.json is written", name));
   nlohmann::json all = summary;
   if (!state_->doubts.empty()) all["doubts"] = state_->doubts;
+  if (state_->options.durable)
+    write("report.html", state_->page.html(resolved_case(), state_->options.command, directory()));
   write_json("summary.json", all);
 }
 

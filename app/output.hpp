@@ -4,10 +4,16 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include "hosel/app/run_page.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/post/text_table.hpp"
 
 namespace hosel::app {
 
@@ -16,9 +22,11 @@ struct OutputOptions {
   std::filesystem::path directory;  ///< OUT
   bool force = false;               ///< overwrite a finished run
   bool quiet = false;
-  std::filesystem::path log = {};  ///< besides OUT/log.txt
-  bool strict = false;             ///< a doubt about the numbers is a failure
-  bool durable = true;             ///< files wait for the disk: not worth it where they are thrown away
+  std::filesystem::path log = {};         ///< besides OUT/log.txt
+  std::string command = {};               ///< what was typed, for the page
+  std::optional<post::Units> units = {};  ///< of what is shown; absent: m/s, and the case's own on the page
+  bool strict = false;                    ///< a doubt about the numbers is a failure
+  bool durable = true;                    ///< files wait for the disk: not worth it where they are thrown away
 };
 
 /// Progress of one long piece of work: a bar with time to go on a terminal, plain lines elsewhere.
@@ -48,10 +56,19 @@ class Output {
   std::filesystem::path path(std::string_view name) const;  ///< OUT/name, parent folders made
   const std::string& resolved_case() const;                 ///< as written to `case.resolved.toml`
   bool quiet() const;
-  bool force() const;  ///< what an unfinished run left is to be discarded
+  std::optional<post::Units> asked_units() const;  ///< on the command line
+  post::Units units() const;                       ///< of tables
+  post::Units page_units() const;  ///< of the page's answer: those asked for, else those that the case speaks
+  bool force() const;              ///< what an unfinished run left is to be discarded
 
-  /// A line for the person and the log.
+  /// A line for the person, the log and the page.
   void say(std::string_view line);
+  /// A table likewise: on the page under this heading, without one among the answers.
+  void show(const post::TextTable& table, std::string_view heading = {});
+  /// Draws OUT/name and puts it on the page (where there are many, as a link), or says why it cannot be drawn.
+  void draw(const post::Figure& figure, std::string_view name, bool on_page = true);
+  /// OUT/report.html as it grows.
+  RunPage& page();
   /// A doubt about the numbers: for the person, the log and `summary.json`. Throws solvers::NonConvergence where the
   /// run is strict.
   void warn(std::string_view doubt);
@@ -61,7 +78,8 @@ class Output {
   /// See post::write_file: a killed run or a full disk never leaves half a file.
   void write(std::string_view name, std::string_view content) const;
   void write_json(std::string_view name, const nlohmann::json& content) const;
-  /// `summary.json` marks the run as finished. Throws solvers::NonConvergence where a number in it is not finite.
+  /// Writes the page and the summary: `summary.json` marks the run as finished. Throws solvers::NonConvergence where a
+  /// number in it is not finite.
   void write_summary(const nlohmann::json& summary) const;
   /// Finishes a run whose measured data are not there.
   void skip(const std::filesystem::path& missing);

@@ -44,10 +44,14 @@ void open_in_paraview(const fs::path& out) {
   if (folders.empty())
     throw InputError(fmt::format("{}: no series for ParaView (vtk/*.pvd) in this run", out.string()));
   if (!installed("paraview")) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
-    throw InputError(
-        fmt::format("there is no screen here; without one: scripts/pvbatch post/paraview/impact.py {} impact.png",
-                    folders.front()));
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) {
+    const auto ball = std::ranges::find_if(folders, [](const auto& f) { return fs::exists(fs::path(f) / "ball.pvd"); });
+    throw InputError("there is no screen here; " +
+                     (ball == folders.end() ? "the figures beside report.html need none"
+                                            : fmt::format("without one: scripts/pvbatch post/paraview/impact.py {} "
+                                                          "impact.png",
+                                                          *ball)));
+  }
   fmt::print("{}\n", fmt::join(folders, "\n"));
   std::fflush(stdout);
   setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, ":")).c_str(), 1);

@@ -162,6 +162,11 @@ std::optional<FlightSetup> read_optional_flight(Table root) {
   return {};
 }
 
+void FlightSetup::show_in(const Output& out) {
+  if (const auto asked = out.asked_units())
+    unit = *asked == post::Units::golf ? post::DistanceUnit::yards : post::DistanceUnit::metres;
+}
+
 post::ShotFlight FlightSetup::follow(const Launch& launch, const Ball& ball, double sample) const {
   post::ShotFlight s{
       models::fly(launch, ball, conditions, {.tolerance = options.tolerance, .sample = sample}), {}, unit};
@@ -197,8 +202,10 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
     flights.push_back({law.name, other.follow(launch, ball, sample)});
   }
   const models::FlightBudget budget = setup.budget(launch, ball);
-  out.say(fmt::format("\n{}, {} in air of {:.4f} kg/m^3:\n{}", name, setup.conditions.law.name,
-                      setup.conditions.air.density, post::budget_table(budget, setup.errors, setup.unit)));
+  const std::string how =
+      fmt::format("{}, {} in air of {:.4f} kg/m^3", name, setup.conditions.law.name, setup.conditions.air.density);
+  out.say(fmt::format("\n{}:", how));
+  out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;
   if (flight.outside > 0)
     out.say(
@@ -207,9 +214,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
                     name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
                     flight.spin.low, flight.spin.high));
   const std::string file = file_name(name);
-  if (const std::string why = post::draw(post::trajectory_figure(name, flights), out.path("figures/flight-" + file));
-      !why.empty())
-    out.say(why);
+  out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)
       .write(flight.time, post::trajectory_mesh(flight));
   return post::to_json(budget, setup.errors, setup.unit);

@@ -17,6 +17,8 @@ struct FlightSetup {
   std::vector<models::LaunchError> errors;
   std::vector<models::FlightLaw> others;  ///< laws shown beside
 
+  /// Distances in the unit that was asked for on the command line, if one was.
+  void show_in(const Output& out);
   post::ShotFlight follow(const Launch& launch, const Ball& ball, double sample = 0) const;
   models::FlightBudget budget(const Launch& launch, const Ball& ball) const;
 };

@@ -5,6 +5,7 @@
 
 #include "hosel/loop/report.hpp"
 #include "hosel/post/html.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/svg.hpp"
 
 namespace hosel::loop {
@@ -37,16 +38,16 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
   const double margin = 0.03 * (x1 - x0);
   x0 -= margin;
   x1 += margin;
-  const std::string label = r.channels[channel].name + ": model − measured";
+  const std::string label = "model − measured " + post::label(r.channels[channel].name);
   return svg(post::SvgPlot{460,
                            270,
                            x0,
                            x1,
                            -y1,
                            y1,
-                           column.name,
+                           post::label(column.name),
                            label,
-                           label + " against " + column.name,
+                           label + " against " + post::label(column.name),
                            {{x0, x1, -noise, noise}},
                            {before, after, holdout}});
 }
@@ -91,14 +92,14 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   const double pad = 0.08 * (y1 - y0);
   y0 -= pad;
   y1 += pad;
-  const std::string& label = r.channels[channel].name;
+  const std::string label = post::label(r.channels[channel].name);
   post::SvgPlot plot{960,
                      240,
                      measured.x.front(),
                      measured.x.back(),
                      y0,
                      y1,
-                     "time_s",
+                     "time [s]",
                      label,
                      label + " over time",
                      {},
@@ -111,7 +112,7 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
 std::string bars(const std::vector<ChannelResult>& channels) {
   post::SvgBars picture{"errors before and after", "the noise", "held-out RMS in units of the noise", {}};
   for (const ChannelResult& c : channels) {
-    picture.rows.push_back({c.name, {}});
+    picture.rows.push_back({post::label(c.name), {}});
     for (const auto& [e, style] : {std::pair{&c.before, "before"}, {&c.after, "after"}})
       if (std::isfinite(e->holdout_rmse) && c.noise > 0)
         picture.rows.back().bars.push_back({style, e->holdout_rmse / c.noise,
@@ -141,10 +142,9 @@ std::string page(const LoopResult& r, const Shots& table) {
   const char* thing = records ? "samples" : "shots";
   const Selection& sel = r.selection;
   std::string s = fmt::format(
-      "<h1>{}</h1><p class='lead'>Base model <b>{}</b>. {} {} read, {} used: {} to learn from, {} held out (seed {}). "
+      "<p class='lead'>Base model <b>{}</b>. {} {} read, {} used: {} to learn from, {} held out (seed {}). "
       "{} flagged.</p>",
-      escape_html(r.title.empty() ? "Measurement against a model" : r.title), escape_html(r.base), r.read, thing,
-      r.used, r.train, r.holdout, r.seed, r.flagged.size());
+      escape_html(r.base), r.read, thing, r.used, r.train, r.holdout, r.seed, r.flagged.size());
   s += fmt::format("<p class='verdict {}'><b>{}</b><span>{}</span></p>", mood(r.verdict), name(r.verdict),
                    escape_html(sentence(r)));
 
@@ -153,10 +153,10 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS "
        "after<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)
-    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}<td>{}<td>{}</tr>", escape_html(c.name),
-                     number(c.noise), c.noise_source, number(c.scatter), rms(c.before.holdout_rmse, c.before.holdout),
-                     rms(c.after.holdout_rmse, c.after.holdout), number(c.before.holdout_bias),
-                     number(c.after.holdout_bias));
+    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}<td>{}<td>{}</tr>",
+                     escape_html(post::label(c.name)), number(c.noise), c.noise_source, number(c.scatter),
+                     rms(c.before.holdout_rmse, c.before.holdout), rms(c.after.holdout_rmse, c.after.holdout),
+                     number(c.before.holdout_bias), number(c.after.holdout_bias));
   s += "</table></div>";
   s += gloss(
       "Residual: model minus measured. Noise: standard deviation of one reading, as declared or as the readings' own "
@@ -171,7 +171,7 @@ std::string page(const LoopResult& r, const Shots& table) {
         "with both answers</tr>",
         escape_html(r.base), rows.size());
     for (std::size_t c = 0; c < r.channels.size(); ++c)
-      s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(r.channels[c].name),
+      s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(post::label(r.channels[c].name)),
                        number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)),
                        answered(rows, c));
     s += "</table><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
@@ -196,9 +196,9 @@ std::string page(const LoopResult& r, const Shots& table) {
   }
 
   if (records && !r.rows.empty()) {
-    s += "<h2>Records</h2><p class='key'><small><i style='background:#222'></i>measured<i "
+    s += "<h2>Records</h2><p class='key'><small><i style='background:var(--ink)'></i>measured<i "
          "style='background:var(--grey)'></i>before<i style='background:var(--blue)'></i>after"
-         "<i style='background:#f4efe1'></i>held out</small></p>";
+         "<i style='background:var(--band)'></i>held out</small></p>";
     std::vector<std::string> names;
     for (const std::string& n : table.find("record")->text)
       if (std::ranges::find(names, n) == names.end() && names.size() < 4) names.push_back(n);
@@ -210,7 +210,7 @@ std::string page(const LoopResult& r, const Shots& table) {
 
   s += "<h2>Residuals</h2><p class='key'><small><i style='background:var(--grey)'></i>before<i "
        "style='background:var(--blue)'></i>after, learnt from"
-       "<i style='background:var(--orange)'></i>after, held out<i style='background:#f4efe1'></i>one standard "
+       "<i style='background:var(--orange)'></i>after, held out<i style='background:var(--band)'></i>one standard "
        "deviation of the noise</small></p><div class='figures'>";
   for (std::size_t c = 0; c < r.channels.size(); ++c) {
     // Against the columns that the structure follows most.
@@ -313,7 +313,7 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "<h2>What to measure next</h2><p>" + escape_html(r.next.text) + ".</p>";
   if (!r.next.shots.empty()) {
     s += "<div class='scroll'><table><tr>";
-    for (const auto& [header, x] : r.next.shots[0]) s += "<th>" + escape_html(header);
+    for (const auto& [header, x] : r.next.shots[0]) s += "<th>" + escape_html(post::label(header));
     s += "</tr>";
     for (const DesignedShot& d : r.next.shots) {
       s += "<tr>";
@@ -336,7 +336,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (const std::string& n : r.notes) s += "<li>" + escape_html(n);
     s += "</ul>";
   }
-  return post::html_page(r.title, s);
+  return s;
 }
 
 }  // namespace hosel::loop

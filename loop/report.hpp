@@ -14,7 +14,7 @@ nlohmann::json to_json(const LoopResult& result);
 std::string residuals_csv(const LoopResult& result, const Shots& table);
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);
-/// A self-contained page with the figures inline.
+/// The body of a page with the figures inline.
 std::string page(const LoopResult& result, const Shots& table);
 
 }  // namespace hosel::loop

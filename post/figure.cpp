@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -64,96 +65,179 @@ std::string map_block(const std::string& name, const Panel& p) {
   return out + "EOD\n";
 }
 
-}  // namespace
-
-std::string gnuplot_script(const Figure& f, std::string_view png) {
-  const int n = static_cast<int>(f.panels.size());
-  const int columns = std::max(1, std::min(f.columns, n)), rows = std::max(1, (n + columns - 1) / columns);
-  std::string s, plots;
-  for (int k = 0; k < n; ++k) {
-    const Panel& p = f.panels[k];
-    plots += "\nset title " + literal(p.title) + "\nset xlabel " + literal(p.x_label) + "\nset ylabel " +
-             literal(p.y_label) + "\nset key opaque " + p.key + "\n";
-    plots += p.log_x ? "set logscale x\n" : "unset logscale x\n";
-    plots += p.log_y ? "set logscale y\n" : "unset logscale y\n";
-    if (!p.map.empty()) {
-      const std::string name = fmt::format("map{}", k);
-      s += map_block(name, p);
-      double low = INFINITY, high = -INFINITY;
-      for (const double v : p.map)
-        if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
-      // A field that is constant to round-off is shown as one colour, not as noise.
-      const double size = std::max(std::abs(low), std::abs(high));
-      if (p.map_symmetric) {
-        high = size > 1e-9 ? size : 1;
-        low = -high;
-      } else if (!(high - low > 1e-9 * size)) {
-        low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;
-      }
-      plots += fmt::format(
-          "set palette defined ({})\nset size {}\n"
-          "set cblabel {}\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\n",
-          p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
-                          : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
-          p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
-          p.map_y.front(), p.map_y.back());
-      if (p.map_contours)
-        plots +=
-            "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
-            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
-            "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
-      plots += "set pm3d map interpolate 3,3\nsplot $" + name + " with pm3d nocontour notitle";
-      if (p.map_contours) plots += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
-      for (std::size_t i = 0; i < p.series.size(); ++i) {
-        const std::string mark = fmt::format("s{}_{}", k, i);
-        s += data_block(mark, p.series[i]);
-        plots += ", $" + mark + " using 1:2:(0) with " + p.series[i].style + " lc rgb '#000000' nocontour " +
-                 (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
-      }
-      if (p.map_contours) plots += ", $" + name + " with labels boxed nosurface notitle";
-      plots += "\nunset contour\nunset pm3d\nset size noratio\nset autoscale xy\n";
-      continue;
-    }
-    std::string plot;
-    bool marks = false;
-    for (std::size_t i = 0; i < p.series.size(); ++i) {
-      const Series& c = p.series[i];
-      if (c.x.empty()) continue;
-      marks = marks || !c.error.empty() || c.style.find("points") != std::string::npos;
-      const std::string name = fmt::format("s{}_{}", k, i);
-      s += data_block(name, c);
-      const std::string title = c.label.empty() ? "notitle" : "title " + literal(c.label);
-      if (!plot.empty()) plot += ", \\\n     ";
-      plot += "$" + name +
-              (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
-      plot += fmt::format(" lt {} lw 1.6 ", i + 1);
-      // The colours come round: the next eight curves are dashed.
-      if (i >= 8 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
-      if (!c.error.empty() || c.style.find("points") != std::string::npos)
-        plot += fmt::format("pt {} ps 0.9 ", 6 + static_cast<int>(i) % 8);
-      plot += title;
-    }
-    plots += plot.empty()
-                 ? "set xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\nset autoscale xy\n"
-                 // Marks and their bars stay clear of the frame.
-                 : (marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
-                                                  : "unset offsets\n") +
-                       std::string("plot ") + plot + "\n";
+/// In lines that fit a width [pixel], as a gnuplot expression.
+std::string title(std::string_view text, int width) {
+  const std::size_t most = std::size_t(std::max(20, int(width / 7.8)));
+  std::string out, line;
+  std::size_t begin = 0;
+  const auto flush = [&] {
+    out += (out.empty() ? "" : R"(."\n".)") + literal(line);
+    line.clear();
+  };
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (!line.empty() && line.size() + 1 + end - begin > most) flush();
+    line += (line.empty() ? "" : " ") + std::string(text.substr(begin, end - begin));
+    begin = end + 1;
   }
-  std::string head = fmt::format(
-      "set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n"
-      "set grid lc rgb '#dddddd'\nset tics nomirror\n",
-      columns * f.panel_width, rows * f.panel_height + (f.title.empty() ? 0 : 40), literal(png));
-  head +=
-      fmt::format("set multiplot layout {},{}{}\n", rows, columns, f.title.empty() ? "" : " title " + literal(f.title));
-  return s + head + plots + "\nunset multiplot\nunset output\n";
+  flush();
+  return out;
 }
 
-std::string draw(const Figure& figure, const std::filesystem::path& stem) {
+bool shows(const Panel& p) {
+  return !p.map.empty() || std::ranges::any_of(p.series, [](const Series& s) { return !s.x.empty(); });
+}
+
+/// Data of panel k, and behind it the words that plot them.
+std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width) {
+  std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + literal(p.x_label) +
+                        "\nset ylabel " + literal(p.y_label) + "\n";
+  s += p.log_x ? "set logscale x\n" : "unset logscale x\n";
+  s += p.log_y ? "set logscale y\n" : "unset logscale y\n";
+  if (!p.map.empty()) {
+    const std::string name = fmt::format("map{}", k);
+    data += map_block(name, p);
+    double low = INFINITY, high = -INFINITY;
+    for (const double v : p.map)
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    // A field that is constant to round-off is shown as one colour, not as noise.
+    const double size = std::max(std::abs(low), std::abs(high));
+    if (p.map_symmetric) {
+      high = size > 1e-9 ? size : 1;
+      low = -high;
+    } else if (!(high - low > 1e-9 * size)) {
+      low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;
+    }
+    s += fmt::format(
+        "set palette defined ({})\nset size {}\n"
+        "set cblabel {}\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\n",
+        p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
+                        : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
+        p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
+        p.map_y.front(), p.map_y.back());
+    if (p.map_contours)
+      s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
+           "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
+           "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
+    s += "set pm3d map interpolate 3,3\nsplot $" + name + " with pm3d nocontour notitle";
+    if (p.map_contours) s += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
+    for (std::size_t i = 0; i < p.series.size(); ++i) {
+      const std::string mark = fmt::format("s{}_{}", k, i);
+      data += data_block(mark, p.series[i]);
+      s += ", $" + mark + " using 1:2:(0) with " + p.series[i].style + " lc rgb '#000000' nocontour " +
+           (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
+    }
+    if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
+    return {data, s + "\nunset contour\nunset pm3d\nset size noratio\nset autoscale xy\n"};
+  }
+  std::string plot;
+  bool marks = false;
+  for (std::size_t i = 0; i < p.series.size(); ++i) {
+    const Series& c = p.series[i];
+    if (c.x.empty()) continue;
+    const bool points = !c.error.empty() || c.style.find("points") != std::string::npos;
+    marks = marks || points;
+    const std::string name = fmt::format("s{}_{}", k, i);
+    data += data_block(name, c);
+    if (!plot.empty()) plot += ", \\\n     ";
+    plot += "$" + name + (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
+    plot += fmt::format(" lt {} lw 1.8 ", i + 1);
+    // The colours come round: the next eight curves are dashed.
+    if (i >= 8 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
+    if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + static_cast<int>(i) % 8);
+    plot += c.label.empty() ? "notitle" : "title " + literal(c.label);
+  }
+  // Marks and their bars stay clear of the frame.
+  s += marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
+                                     : "unset offsets\n";
+  return {data, s + "plot " + plot + "\n"};
+}
+
+/// What a panel is called: its title, else what stands at its upright axis, without the unit.
+std::string called(const Panel& p) {
+  const std::string& name = p.title.empty() ? p.y_label : p.title;
+  return p.title.empty() ? name.substr(0, name.find(" [")) : name;
+}
+
+/// Tells eight curves apart for every kind of eye; the key stands below, never over a curve.
+constexpr const char* kLook =
+    "set grid lc rgb '#dddddd'\nset tics nomirror\nset border lc rgb '#404040'\n"
+    "set linetype 1 lc rgb '#0072b2'\nset linetype 2 lc rgb '#d55e00'\nset linetype 3 lc rgb '#009e73'\n"
+    "set linetype 4 lc rgb '#cc79a7'\nset linetype 5 lc rgb '#56b4e9'\nset linetype 6 lc rgb '#e69f00'\n"
+    "set linetype 7 lc rgb '#000000'\nset linetype 8 lc rgb '#8c8c8c'\nset linetype cycle 8\n"
+    "set key below center horizontal Left reverse samplen 2 maxrows 4\n";
+
+}  // namespace
+
+std::vector<PanelFile> panel_files(const Figure& f, std::string_view stem) {
+  std::vector<PanelFile> out;
+  const auto n = std::ranges::count_if(f.panels, shows);
+  for (const Panel& p : f.panels) {
+    if (!shows(p)) continue;
+    std::string file(stem);
+    if (n > 1) {
+      file += fmt::format("/{}-", out.size() + 1);
+      const std::string name = called(p);
+      for (const char c : name.substr(0, name.find(" ["))) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c));
+        if (plain || !file.ends_with('-')) file += plain ? char(std::tolower(static_cast<unsigned char>(c))) : '-';
+      }
+      while (file.ends_with('-')) file.pop_back();
+    }
+    out.push_back({file + (p.map.empty() ? ".svg" : ".png"), file + ".pdf", called(p).empty() ? f.title : called(p),
+                   !p.map.empty()});
+  }
+  return out;
+}
+
+std::string gnuplot_script(const Figure& f, std::string_view stem, bool each) {
+  const auto files = panel_files(f, stem);
+  const int n = static_cast<int>(files.size());
+  const int columns = std::max(1, std::min(f.columns, n)), rows = std::max(1, (n + columns - 1) / columns);
+  std::string data;
+  std::vector<std::string> panels;
+  for (const Panel& p : f.panels) {
+    if (!shows(p)) continue;
+    auto [block, words] = panel_script(p, static_cast<int>(panels.size()), f.panel_width);
+    data += block;
+    panels.push_back(std::move(words));
+  }
+  std::string s = data + kLook;
+  const int width = columns * f.panel_width;
+  const std::string above = f.title.empty() ? "" : title(f.title, width);
+  const int lines = above.empty() ? 0 : 1 + int(above.size() / std::size_t(width / 7.8));
+  s += fmt::format("set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n",
+                   width, rows * f.panel_height + 22 * lines + 18 * (lines > 0), literal(std::string(stem) + ".png"));
+  s += fmt::format("set multiplot layout {},{}{}\n", rows, columns, above.empty() ? "" : " title " + above);
+  for (const std::string& p : panels) s += p;
+  s += "\nunset multiplot\n";
+  const auto alone = [&](std::string_view terminal, const std::string& file, int k) {
+    s += fmt::format("set terminal {}\nset output {}\n{}", terminal, literal(file), panels[std::size_t(k)]);
+  };
+  for (int k = 0; each && k < n; ++k) {
+    const PanelFile& file = files[std::size_t(k)];
+    if (!file.map)
+      alone(fmt::format("svg noenhanced size {},{} font 'sans-serif,13' background '#ffffff'", f.panel_width,
+                        f.panel_height),
+            file.picture, k);
+    else if (n > 1)
+      alone(fmt::format("pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'", f.panel_width,
+                        f.panel_height),
+            file.picture, k);
+    alone(fmt::format("pdfcairo noenhanced size {:.2f},{:.2f} font 'Sans,10'", f.panel_width / 110.0,
+                      f.panel_height / 110.0),
+          file.pdf, k);
+  }
+  return s + "unset output\n";
+}
+
+std::string draw(const Figure& figure, const std::filesystem::path& stem, bool panels) {
+  if (std::ranges::none_of(figure.panels, shows)) return "no picture: there is nothing to show in " + stem.string();
+  if (panels && panel_files(figure, "").size() > 1) std::filesystem::create_directories(stem);
   std::filesystem::path gp = stem;
   gp += ".gp";
   const std::string name = stem.filename().string(), place = stem.parent_path().empty() ? "." : stem.parent_path();
-  if (std::ofstream out(gp); !(out << gnuplot_script(figure, name + ".png")) || !out.flush())
+  if (std::ofstream out(gp); !(out << gnuplot_script(figure, name, panels)) || !out.flush())
     throw std::runtime_error("cannot write " + gp.string());
   // gnuplot works beside the script: no path of the person's ever becomes program text.
   std::string program = "gnuplot", script = "./" + name + ".gp";

@@ -1,4 +1,4 @@
-/// Figures: data and script in one gnuplot file, and the picture that gnuplot makes of it.
+/// Figures: data and script in one gnuplot file, and the pictures that gnuplot makes of it.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,6 @@ struct Panel {
   std::string x_label = {}, y_label = {};  ///< with units: "dynamic loft [deg]"
   bool log_x = false, log_y = false;
   std::vector<Series> series = {};
-  std::string key = "top right";  ///< place of the key, as gnuplot says it
 
   std::vector<double> map_x = {}, map_y = {};  ///< grid lines of the map
   std::vector<double> map = {};                ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
@@ -39,13 +38,22 @@ struct Figure {
   int panel_width = 620, panel_height = 440;  ///< [pixel]
 };
 
-/// The gnuplot script with its data, which draws the file `png` where gnuplot is started. Titles, labels and names may
-/// hold anything: they are quoted. `Series::style` and `Panel::key` are gnuplot's own words and come from the code.
-std::string gnuplot_script(const Figure& figure, std::string_view png);
+/// One panel alone: `picture`, and the same as PDF. Curves as SVG; maps, which are thousands of coloured cells, as PNG.
+struct PanelFile {
+  std::string picture, pdf;
+  std::string title;  ///< what to call it: its own title, else what stands at its axes
+  bool map;
+};
 
-/// Writes `stem`.gp and lets gnuplot draw `stem`.png. Returns an empty string, or a sentence why there
-/// is no picture (gnuplot absent or refusing); the script stays in both cases.
-/// Throws std::invalid_argument on series or maps whose lengths do not match.
-std::string draw(const Figure& figure, const std::filesystem::path& stem);
+/// The gnuplot script with its data: where gnuplot is started it draws `stem`.png, all panels that hold something, and
+/// if asked each of them alone in the folder `stem`, a single one beside it. Titles, labels and names may hold
+/// anything: they are quoted. `Series::style` is gnuplot's own word and comes from the code. Throws
+/// std::invalid_argument on series or maps whose lengths do not match.
+std::string gnuplot_script(const Figure& figure, std::string_view stem, bool panels = true);
+std::vector<PanelFile> panel_files(const Figure& figure, std::string_view stem);
+
+/// Writes `stem`.gp and lets gnuplot draw it. Returns an empty string, or a sentence why there is no picture (gnuplot
+/// absent or refusing, nothing to show); the script stays. Throws as gnuplot_script.
+std::string draw(const Figure& figure, const std::filesystem::path& stem, bool panels = true);
 
 }  // namespace hosel::post

@@ -61,39 +61,29 @@ nlohmann::json to_json(const ShotFlight& shot) {
   return out;
 }
 
-std::string budget_table(const models::FlightBudget& b, const std::vector<models::LaunchError>& errors,
-                         DistanceUnit unit) {
-  // A title, then a cell an answer; widths are those of the titles.
-  std::vector<std::vector<std::string>> columns = {{""}, {"value"}, {"integration"}};
-  for (const models::LaunchError& e : errors) columns.push_back({e.source});
-  if (errors.size() > 1) columns.push_back({"launch, all"});
-  for (const auto& law : b.laws) columns.push_back({law.name});
+TextTable budget_table(const models::FlightBudget& b, const std::vector<models::LaunchError>& errors,
+                       DistanceUnit unit) {
+  TextTable table{.rows = {{"", "value", "integration"}}, .first_width = 30, .least_width = 12, .even = false};
+  auto& head = table.rows[0];
+  for (const models::LaunchError& e : errors) head.push_back(e.source);
+  if (errors.size() > 1) head.emplace_back("launch, all");
+  for (const auto& law : b.laws) head.push_back(law.name);
   const auto rows = answer_rows(unit);
   for (int a = 0; a < models::kFlightAnswers; ++a) {
-    const AnswerRow& row = rows[std::size_t(a)];
-    auto column = columns.begin();
-    const auto add = [&](std::string cell) { (column++)->push_back(std::move(cell)); };
-    add(fmt::format("{} [{}]", row.name, row.unit));
-    add(fmt::format("{:.2f}", b.value[a] / row.si));
-    add(fmt::format("+- {:.0e}", b.numerical[a] / row.si));
-    for (const models::FlightAnswers& sd : b.launch) add(fmt::format("+- {:.2f}", sd[a] / row.si));
-    if (errors.size() > 1) add(fmt::format("+- {:.2f}", b.launch_total[a] / row.si));
-    for (const auto& law : b.laws) add(fmt::format("{:.2f}", law.value[a] / row.si));
+    const AnswerRow& r = rows[std::size_t(a)];
+    auto& row = table.rows.emplace_back();
+    row = {fmt::format("{} [{}]", r.name, r.unit), fmt::format("{:.2f}", b.value[a] / r.si),
+           fmt::format("+- {:.0e}", b.numerical[a] / r.si)};
+    for (const models::FlightAnswers& sd : b.launch) row.push_back(fmt::format("+- {:.2f}", sd[a] / r.si));
+    if (errors.size() > 1) row.push_back(fmt::format("+- {:.2f}", b.launch_total[a] / r.si));
+    for (const auto& law : b.laws) row.push_back(fmt::format("{:.2f}", law.value[a] / r.si));
   }
   if (!b.laws.empty()) {
-    columns[0].push_back("time outside the law's range");
-    for (std::size_t i = 0; i < b.laws.size(); ++i)
-      columns[columns.size() - b.laws.size() + i].push_back(fmt::format("{:.0f} %", 100 * b.laws[i].outside));
+    auto& row = table.rows.emplace_back(table.rows[0].size() - b.laws.size());
+    row[0] = "time outside the law's range";
+    for (const auto& law : b.laws) row.push_back(fmt::format("{:.0f} %", 100 * law.outside));
   }
-  std::string text;
-  for (std::size_t line = 0; line < columns[0].size(); ++line) {
-    if (line) text += '\n';
-    text += fmt::format("{:<30}", columns[0][line]);
-    for (std::size_t c = 1; c < columns.size(); ++c)
-      text += fmt::format("{:>{}}", line < columns[c].size() ? columns[c][line] : "",
-                          std::max<std::size_t>(12, columns[c][0].size() + 2));
-  }
-  return text;
+  return table;
 }
 
 nlohmann::json to_json(const models::FlightBudget& b, const std::vector<models::LaunchError>& errors,

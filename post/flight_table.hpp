@@ -11,6 +11,7 @@
 
 #include "hosel/models/bounce_roll.hpp"
 #include "hosel/models/flight_budget.hpp"
+#include "hosel/post/text_table.hpp"
 
 namespace hosel::post {
 
@@ -40,8 +41,8 @@ std::span<const FlightChannel> flight_channels(DistanceUnit unit);
 nlohmann::json to_json(const ShotFlight& shot);
 
 /// A row per answer: the value; what the integration, each launch error and the choice of the law do to it.
-std::string budget_table(const models::FlightBudget& budget, const std::vector<models::LaunchError>& errors,
-                         DistanceUnit unit);
+TextTable budget_table(const models::FlightBudget& budget, const std::vector<models::LaunchError>& errors,
+                       DistanceUnit unit);
 nlohmann::json to_json(const models::FlightBudget& budget, const std::vector<models::LaunchError>& errors,
                        DistanceUnit unit);
 

@@ -1,6 +1,7 @@
 /// A self-contained page for people: the style sheet inline, nothing fetched.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace hosel::post {
@@ -8,8 +9,12 @@ namespace hosel::post {
 /// Text as it may stand between tags and inside an attribute.
 std::string escape_html(const std::string& text);
 
-/// The whole document around a body. Classes: `verdict` with `good`, `open` or `bad`; `figures`, `scroll`, `key`; `l`
-/// sets a cell left; those of the pictures in svg.
+/// A picture (svg, png) as the address of an image, so that the page needs no other file.
+std::string data_uri(const std::filesystem::path& picture);
+
+/// The whole document around a body, for a light and a dark screen and for paper. Classes: `verdict` with `good`,
+/// `open` or `bad`; `answers`, `figures`, `inputs`, `scroll`, `key`; `l` sets a cell left; `command` of a `pre`;
+/// `curves` of a picture that may be inverted in the dark; those of the pictures in svg.
 std::string html_page(const std::string& title, const std::string& body);
 
 }  // namespace hosel::post

@@ -71,6 +71,7 @@ struct ImpactRecorder::State {
   std::string run;
   std::optional<SavedImpact> resumed;
   std::optional<Pose> start;
+  std::optional<BallSection> section;
   long steps = 0;
 
   fs::path checkpoint() const { return directory / "checkpoint.cbor"; }
@@ -122,6 +123,12 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
 
 ImpactRecorder::~ImpactRecorder() = default;
 
+const BallSection* ImpactRecorder::at_largest_force() const {
+  const State& s = *state_;
+  const bool before = s.resumed && s.section && s.resumed->impact.so_far.peak_force > s.section->force;
+  return s.section && !before ? &*s.section : nullptr;
+}
+
 const models::ImpactCheckpoint* ImpactRecorder::resume() const {
   return state_->resumed ? &state_->resumed->impact : nullptr;
 }
@@ -158,6 +165,9 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   for (double x : {e.contact, e.friction, e.viscous, e.numerical, e.external, e.closure}) row.push_back(x);
   for (double x : view.ball.dissipated()) row.push_back(x);
   s.history->write(row);
+
+  if (view.report.normal_force > (s.section ? s.section->force : 0))
+    s.section = ball_section(view, s.blow.club.head.face);
 
   const Pose now{face.centre, face.axes};
   if (!s.start) s.start = now;

@@ -7,6 +7,7 @@
 
 #include "hosel/golf/blow.hpp"
 #include "hosel/models/fe_impact.hpp"
+#include "hosel/post/ball_section.hpp"
 
 namespace hosel::post {
 
@@ -27,6 +28,8 @@ class ImpactRecorder {
   ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options, std::string run);
   ~ImpactRecorder();
   void operator()(const models::ImpactView& view);
+  /// The ball when the force was largest; null where that was before the run was stopped and gone on with.
+  const BallSection* at_largest_force() const;
   /// Where the impact goes on from; null: from the start.
   const models::ImpactCheckpoint* resume() const;
   /// The series written, for a person to open.

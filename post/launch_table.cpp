@@ -36,55 +36,51 @@ std::string channel_names() {
   return all;
 }
 
-std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured,
-                         const MeasuredOblique& ranges) {
+TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured,
+                       const MeasuredOblique& ranges, Units units) {
   const bool beside = !measured.empty() || ranges.tangential_restitution || ranges.launch_ratio;
-  std::size_t width = 17;
-  for (const LaunchColumn& c : columns) width = std::max(width, c.title.size() + 2);
-  std::string text = fmt::format("{:<18}", "");
-  for (const LaunchColumn& c : columns) text += fmt::format("{:>{}}", c.title, width);
-  if (beside) text += fmt::format("{:>{}}", "measured", width);
-  for (const Channel& channel : kChannels) {
-    text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
+  TextTable table{.rows = {{""}}};
+  for (const LaunchColumn& c : columns) table.rows[0].push_back(c.title);
+  if (beside) table.rows[0].emplace_back("measured");
+  for (Channel channel : kChannels) {
+    const Channel* const measured_as = find_channel(channel.name);
+    if (channel.unit == "mps" && units == Units::golf) channel.unit = "mph", channel.si = kMpsPerMph;
+    auto& row = table.rows.emplace_back();
+    row.push_back(fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
       double shown = (c.launch.*channel.value)() / channel.si;
       const double error = c.coarser ? std::abs(shown - ((*c.coarser).*channel.value)() / channel.si) : 0;
       // Without spin its axis has no direction.
       if (channel.name == "spin_axis" && rpm(c.launch.spin_rate()) < 0.5) shown = 0;
       if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
-      std::string cell = fmt::format("{:.{}f}", shown, channel.decimals);
-      if (c.coarser) cell += fmt::format(" +-{:.{}f}", error, channel.decimals);
-      text += fmt::format("{:>{}}", cell, width);
+      row.push_back(fmt::format("{:.{}f}", shown, channel.decimals));
+      if (c.coarser) row.back() += fmt::format(" +-{:.{}f}", error, channel.decimals);
     }
     if (!beside) continue;
-    const auto it = std::ranges::find(measured, &channel, &Measured::value_type::first);
-    text += it == measured.end() ? fmt::format("{:>{}}", "-", width)
-                                 : fmt::format("{:>{}.{}f}", it->second / channel.si, width, channel.decimals);
+    const auto it = std::ranges::find(measured, measured_as, &Measured::value_type::first);
+    row.push_back(it == measured.end() ? "-" : fmt::format("{:.{}f}", it->second / channel.si, channel.decimals));
   }
-  const auto row = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
+  const auto add = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
     if (!range && std::ranges::none_of(columns, [&](const LaunchColumn& c) { return (c.oblique.*value).has_value(); }))
       return;
-    text += fmt::format("\n{:<18}", name);
+    auto& row = table.rows.emplace_back(1, name);
     for (const LaunchColumn& c : columns)
-      text += c.oblique.*value ? fmt::format("{:>{}.3f}", *(c.oblique.*value), width)
-                               : fmt::format("{:>{}}", "-", width);
-    if (beside)
-      text += fmt::format("{:>{}}", range ? fmt::format("{:g} to {:g}", range->first, range->second) : "-", width);
+      row.push_back(c.oblique.*value ? fmt::format("{:.3f}", *(c.oblique.*value)) : "-");
+    if (beside) row.push_back(range ? fmt::format("{:g} to {:g}", range->first, range->second) : "-");
   };
-  row("e_t [-]", &Oblique::tangential_restitution, ranges.tangential_restitution);
-  row("launch ratio [-]", &Oblique::launch_ratio, ranges.launch_ratio);
+  add("e_t [-]", &Oblique::tangential_restitution, ranges.tangential_restitution);
+  add("launch ratio [-]", &Oblique::launch_ratio, ranges.launch_ratio);
   const auto flown = std::ranges::find_if(columns, [](const LaunchColumn& c) { return c.flight.has_value(); });
-  if (flown == columns.end()) return text;
+  if (flown == columns.end()) return table;
   for (const FlightChannel& channel : flight_channels(flown->flight->unit)) {
     if (!channel.value(*flown->flight)) continue;
-    text += fmt::format("\n{:<18}", fmt::format("{} [{}]", channel.name, channel.unit));
+    auto& row = table.rows.emplace_back(1, fmt::format("{} [{}]", channel.name, channel.unit));
     for (const LaunchColumn& c : columns) {
       const auto x = c.flight ? channel.value(*c.flight) : std::nullopt;
-      text += x ? fmt::format("{:>{}.{}f}", *x / channel.si, width, channel.decimals)
-                : fmt::format("{:>{}}", "-", width);
+      row.push_back(x ? fmt::format("{:.{}f}", *x / channel.si, channel.decimals) : "-");
     }
   }
-  return text;
+  return table;
 }
 
 nlohmann::json to_json(const Launch& launch) {

@@ -11,8 +11,12 @@
 
 #include "hosel/golf/launch.hpp"
 #include "hosel/post/flight_table.hpp"
+#include "hosel/post/text_table.hpp"
 
 namespace hosel::post {
+
+/// In which speeds and distances are shown: m/s and m, or mph and yards.
+enum class Units { metric, golf };
 
 /// One launch quantity in the unit in which it is shown.
 struct Channel {
@@ -44,10 +48,10 @@ using Range = std::optional<std::pair<double, double>>;
 struct MeasuredOblique {
   Range tangential_restitution, launch_ratio;
 };
-/// A text table: a row per quantity, a column per model, the measurement last where there is one; then the flights,
-/// where the columns have them.
-std::string launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
-                         const MeasuredOblique& ranges = {});
+/// A row per quantity, a column per model, the measurement last where there is one; then the flights, where the columns
+/// have them.
+TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
+                       const MeasuredOblique& ranges = {}, Units units = Units::metric);
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
 nlohmann::json to_json(const Launch& launch);
 

@@ -1,5 +1,6 @@
 #include "hosel/post/patch_figure.hpp"
 
+#include <fmt/format.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
@@ -10,8 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "hosel/post/figure.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -94,11 +93,11 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes, const Mat3& 
   return out;
 }
 
-std::string draw_patch(const PatchHistory& patch, const fs::path& stem) {
-  if (patch.time.size() < 2) return "no picture of the patch: it was never seen to touch";
+Figure patch_figure(const PatchHistory& patch, std::string_view model) {
   Figure figure;
-  figure.title = "the ball's surface along the line of slip";
+  figure.title = fmt::format("{}: the ball's surface along the line of slip", model);
   figure.columns = 3;
+  if (patch.time.size() < 2) return figure;
   const auto panel = [&](const char* title, const char* label, const std::vector<double>& values, double unit,
                          bool symmetric) {
     Panel p;
@@ -116,7 +115,7 @@ std::string draw_patch(const PatchHistory& patch, const fs::path& stem) {
   panel("pressure", "[MPa]", patch.pressure, 1e6, false);
   panel("traction along the slip", "[MPa]", patch.traction, 1e6, true);
   panel("path slid", "[mm]", patch.slip, 1e-3, false);
-  return draw(figure, stem);
+  return figure;
 }
 
 }  // namespace hosel::post

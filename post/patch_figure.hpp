@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "hosel/golf/vector.hpp"
+#include "hosel/post/figure.hpp"
 
 namespace hosel::post {
 
@@ -24,7 +25,7 @@ struct PatchHistory {
 /// touch, and the next on either side.
 PatchHistory read_patch(const std::filesystem::path& vtk, const Mat3& ball_axes, const Mat3& mesh_axes);
 
-/// Pressure, traction and slip as maps, `stem`.png; as `draw`, a sentence where there is no picture.
-std::string draw_patch(const PatchHistory& patch, const std::filesystem::path& stem);
+/// Pressure, traction and slip as maps; no panel where nothing was seen to touch.
+Figure patch_figure(const PatchHistory& patch, std::string_view model);
 
 }  // namespace hosel::post

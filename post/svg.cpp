@@ -55,6 +55,30 @@ std::string svg(const SvgPlot& p) {
       else points += fmt::format("{:.1f},{:.1f} ", X(one.x[i]), Y(one.y[i]));
     }
     if (!points.empty()) s += fmt::format("<polyline class='{}' points='{}'/>", one.style, points);
+    if (one.label.empty() || one.y.empty()) continue;
+    // Above or below the line, where the words are farthest from every line.
+    const double half = 3.3 * double(one.label.size());
+    double best = -1, at_x = 0, at_y = 0;
+    for (std::size_t i = 0; i < one.y.size(); ++i)
+      for (const double above : {14.0, -14.0, 24.0, -24.0}) {
+        const double cx = X(one.x[i]), cy = Y(one.y[i]) - above;
+        if (cx - half < kLeft || cx + half > kLeft + w || cy < kTop + 8 || cy > kTop + h - 8) continue;
+        double nearest = 20 - 0.2 * std::abs(above);  // room enough
+        for (const SvgSeries& other : p.series)
+          for (std::size_t k = 0; k < other.x.size(); ++k)
+            nearest = std::min(nearest, std::hypot(std::max(0.0, std::abs(X(other.x[k]) - cx) - half),
+                                                   std::max(0.0, std::abs(Y(other.y[k]) - cy) - 6)));
+        if (nearest > best) best = nearest, at_x = cx, at_y = cy;
+      }
+    if (best >= 0)
+      s += fmt::format("<text class='{}' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", one.style, at_x,
+                       at_y + 4, escape_html(one.label));
+  }
+  for (const SvgMark& m : p.marks) {
+    const bool left = X(m.x) > kLeft + 0.6 * w;
+    s += fmt::format(
+        "<circle class='mark' cx='{:.1f}' cy='{:.1f}' r='4'/><text x='{:.1f}' y='{:.1f}' text-anchor='{}'>{}</text>",
+        X(m.x), Y(m.y), X(m.x) + (left ? -9 : 9), Y(m.y) + 4, left ? "end" : "start", escape_html(m.text));
   }
   return s + fmt::format(
                  "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text><text transform='translate(13 {:.1f}) "

@@ -9,7 +9,14 @@ namespace hosel::post {
 struct SvgSeries {
   std::string style;  ///< class
   std::vector<double> x, y;
-  double radius = 0;  ///< of dots; 0: a line
+  double radius = 0;       ///< of dots; 0: a line
+  std::string label = {};  ///< beside the line
+};
+
+/// A point of interest: a ring and its words.
+struct SvgMark {
+  double x, y;
+  std::string text;
 };
 
 struct SvgBand {
@@ -23,6 +30,7 @@ struct SvgPlot {
   std::string x_label, y_label, told;  ///< told: for who cannot see it
   std::vector<SvgBand> bands;
   std::vector<SvgSeries> series;
+  std::vector<SvgMark> marks = {};
 };
 std::string svg(const SvgPlot& plot);
 

@@ -83,9 +83,9 @@ void SwingRecorder::operator()(const models::SwingSample& sample, const fem::Sta
 Figure SwingRecorder::figure(double span) const {
   constexpr int kInstants = 5;
   const std::string along = "from the grip point along the shaft [mm]";
-  Panel bending{.title = "bending moment", .x_label = along, .y_label = "moment [N m]", .key = "top right"},
-      torque{.title = "torque", .x_label = along, .y_label = "torque [N m]", .key = "off"},
-      axial{.title = "axial force", .x_label = along, .y_label = "tension [N]", .key = "off"};
+  Panel bending{.title = "bending moment", .x_label = along, .y_label = "moment [N m]"},
+      torque{.title = "torque", .x_label = along, .y_label = "torque [N m]"},
+      axial{.title = "axial force", .x_label = along, .y_label = "tension [N]"};
   if (frames_.empty()) return {};
   const double end = frames_.back().time, begin = std::max(frames_.front().time, end - span);
   for (int k = 0; k < kInstants; ++k) {

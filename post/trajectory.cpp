@@ -12,13 +12,12 @@ namespace hosel::post {
 Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flights) {
   const DistanceUnit unit = flights.front().shot.unit;
   const std::string_view shown = suffix(unit);
-  Figure figure{.title = std::move(title), .columns = 1, .panel_width = 960};
-  // As high as the key beside it.
-  figure.panel_height = std::max(340, 90 + 20 * int(flights.size()));
+  Figure figure{.title = std::move(title), .columns = 1, .panel_width = 700};
+  // With room for the key below.
+  figure.panel_height = 330 + 5 * int(flights.size());
   Panel side{.title = "from the side",
              .x_label = fmt::format("towards the target [{}]", shown),
-             .y_label = fmt::format("height [{}]", shown),
-             .key = "outside right"},
+             .y_label = fmt::format("height [{}]", shown)},
       top = side;
   top.title = "from above";
   top.y_label = fmt::format("left  <-  [{}]  ->  right", shown);

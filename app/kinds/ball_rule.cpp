@@ -100,7 +100,7 @@ class BallRuleJob final : public Job {
         .title = fmt::format("a ball at {:.0f} yd under the old test, changed to be so under the new", limit_ / yard()),
         .panel_width = 900,
         .panel_height = 520};
-    post::Panel panel{.x_label = "club speed [mph]", .y_label = "loss of total distance [yd]", .key = "top left"};
+    post::Panel panel{.x_label = "club speed [mph]", .y_label = "loss of total distance [yd]"};
     for (std::size_t k = 0; k < changed.size(); ++k)
       panel.series.push_back({.label = fmt::format("by {}", kRemedies[k].name), .style = "linespoints"});
     post::Series published{.label = "published for such players"};
@@ -135,7 +135,7 @@ class BallRuleJob final : public Job {
     if (!published.x.empty()) panel.series.push_back(published);
     figure.panels = {panel};
     out.write("losses.csv", csv);
-    if (const std::string why = post::draw(figure, out.path("figures/losses")); !why.empty()) out.say(why);
+    out.draw(figure, "figures/losses");
     out.write_summary(summary);
   }
 

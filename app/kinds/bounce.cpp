@@ -135,8 +135,7 @@ class BounceJob final : public Job {
     nlohmann::json summary{{"bounces", count}};
     if (measured_.empty()) table(out, bounces);
     else compare(out, bounces, summary);
-    if (const std::string missing = post::draw(figure(bounces), out.path("bounces")); !missing.empty())
-      out.say(missing);
+    out.draw(figure(bounces), "bounces");
     out.write_summary(summary);
   }
 
@@ -207,7 +206,7 @@ class BounceJob final : public Job {
   post::Figure figure(const std::vector<models::Bounce>& all) const {
     post::Figure f{.title = title_, .columns = 2};
     for (const Quantity& q : kQuantities) {
-      post::Panel p{.x_label = "angle of incidence from the normal [deg]", .y_label = q.label, .key = "outside right"};
+      post::Panel p{.x_label = "angle of incidence from the normal [deg]", .y_label = q.label};
       for (std::size_t t = 0; t < thrown_.size(); ++t)
         for (std::size_t s = 0; s < speeds_.size(); ++s) {
           post::Series line{.label = title(t, s)};

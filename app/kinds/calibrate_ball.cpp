@@ -156,7 +156,7 @@ class CalibrateBallJob final : public Job {
       panel.series = series;
       figure.panels.push_back(panel);
     }
-    if (const std::string why = post::draw(figure, out.path("fit")); !why.empty()) out.say(why);
+    out.draw(figure, "fit");
     if (!fit.converged) out.say("the fit has not converged: " + fit.report);
     out.write_summary(summary);
   }

@@ -67,7 +67,6 @@ class CharacteristicTimeJob final : public Job {
       line.x.push_back(x);
       line.y.push_back(1e6 * (ct.time + ct.slope * x));
     }
-    tap.key = "bottom right";
     tap.series = {points, line};
     out.write("taps.csv", csv);
 
@@ -79,7 +78,6 @@ class CharacteristicTimeJob final : public Job {
     summary["restitution_rigid"] = models::strike(ball, mass, {}, 0, restitution_speed_).restitution;
     post::Panel rules{
         .title = "faces from stiff to soft", .x_label = "characteristic time [us]", .y_label = "restitution"};
-    rules.key = "bottom right";
     post::Series wanted{.label = "0.718 + 0.000436 CT / us"};
     csv =
         "effective_mass_g,stiffness_N_per_m,characteristic_time_us,restitution,rules_line,contact_in_face_periods,"
@@ -139,7 +137,7 @@ class CharacteristicTimeJob final : public Job {
     summary["inside_percent"] = share;
     summary["all_inside_up_to_g"] = always;
     post::Figure figure{.panels = {tap, rules, plane}, .columns = 3};
-    if (const std::string why = post::draw(figure, out.path("characteristic-time")); !why.empty()) out.say(why);
+    out.draw(figure, "characteristic-time");
     out.write_summary(summary);
   }
 

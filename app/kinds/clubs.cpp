@@ -216,19 +216,15 @@ class ClubsJob final : public Job {
                         .columns = 3,
                         .panel_width = 520};
     const Line spin_fit = straight_line(means[0], means[1]), launch_fit = straight_line(means[0], means[2]);
-    figure.panels = {
-        {.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}, .key = "bottom right"},
-        {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}, .key = "bottom right"},
-        {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}, .key = "bottom left"}};
+    figure.panels = {{.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}},
+                     {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}},
+                     {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}}};
     const std::array<const char*, 3> labels = {"spin rate [rpm]", "launch angle [deg]", "ball speed [mph]"};
     for (int k = 0; k < 3; ++k) {
       measured[k].label = "measured (printed bars)";
       predicted[k].label = model_;
       predicted[k].style = "linespoints";
-      post::Panel p{.x_label = "dynamic loft [deg]",
-                    .y_label = labels[k],
-                    .series = {measured[k], predicted[k]},
-                    .key = k == 2 ? "bottom left" : "top left"};
+      post::Panel p{.x_label = "dynamic loft [deg]", .y_label = labels[k], .series = {measured[k], predicted[k]}};
       if (k < 2) {
         const Line& f = k == 0 ? spin_fit : launch_fit;
         p.series.push_back({.label = fmt::format("{:.4g} loft + {:.4g}", f.slope, f.intercept),
@@ -237,7 +233,7 @@ class ClubsJob final : public Job {
       }
       figure.panels.push_back(p);
     }
-    if (const std::string missing = post::draw(figure, out.path("clubs")); !missing.empty()) out.say(missing);
+    out.draw(figure, "clubs");
     out.write_summary(summary);
   }
 

@@ -178,8 +178,7 @@ class CrossCheckJob final : public Job {
                                           {"quantities_pct", quantities}});
       }
       const std::string stem = "map-" + models_[m];
-      if (const std::string missing = post::draw(figure(answers, m), out.path(stem)); !missing.empty())
-        out.say(missing);
+      out.draw(figure(answers, m), stem);
       page += fmt::format("\n![{} minus {}]({}.png)\n", models_[m], models_[reference_], stem);
     }
     out.write("differences.csv", csv);

@@ -67,8 +67,7 @@ class CurvesJob final : public Job {
       for (const std::string& m : models_) {
         std::string name(c.name);
         std::ranges::replace(name, '_', ' ');
-        figure.panels.push_back(
-            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c.unit), .key = "top left"});
+        figure.panels.push_back({.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c.unit)});
       }
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)
@@ -108,8 +107,7 @@ class CurvesJob final : public Job {
     nlohmann::json summary = nlohmann::json::array();
     for (const std::string& m : models_) {
       post::Panel tangential{.title = m, .x_label = "time [ms]", .y_label = "tangential force [kN]"},
-          ratio{
-              .title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]", .key = "bottom left"};
+          ratio{.title = m, .x_label = "time [ms]", .y_label = "tangential over normal force [-]"};
       for (const double f : family_.values) {
         models::Options options = options_;
         Blow blow = blow_;
@@ -164,7 +162,7 @@ class CurvesJob final : public Job {
 
   void finish(Output& out, const std::string& csv, const post::Figure& figure, const nlohmann::json& notes) const {
     out.write("curves.csv", csv);
-    if (const std::string missing = post::draw(figure, out.path("curves")); !missing.empty()) out.say(missing);
+    out.draw(figure, "curves");
     if (!history_)
       for (const auto& n : notes) out.say(n.get<std::string>());
     out.say("wrote curves.csv and curves.png");

@@ -18,6 +18,8 @@
 #include "hosel/models/hosel_load.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/face_map.hpp"
+#include "hosel/post/html.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 #include "hosel/post/shaft_effect.hpp"
 #include "hosel/post/vtk_series.hpp"
@@ -167,10 +169,11 @@ class FaceMapJob final : public PointJob {
         const auto& flight = map.flights[post::coarse_points(grid_)[4]];
         if (flight) m["centre"].update(post::to_json(*flight));
       }
-      draw(out, map);
+      // The page shows the reference, and what the first of the others makes different.
+      draw(out, map, nullptr, &map == &maps[reference_]);
       hosel(out, points, std::size_t(&map - maps.data()));
       if (&map == &maps[reference_]) continue;
-      draw(out, map, &reference);
+      draw(out, map, &reference, &map == &maps[reference_ == 0 ? 1 : 0]);
       if (whole && std::ranges::all_of(reference.launches, [](const auto& l) { return l.has_value(); }))
         summary["effect"][map.title] = effect(out, all, std::size_t(&map - maps.data()));
     }
@@ -302,27 +305,28 @@ class FaceMapJob final : public PointJob {
     }
   }
 
-  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference = nullptr) const {
-    draw(out, map, reference, false);
-    if (!map.flights.empty()) draw(out, map, reference, true);
+  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference, bool on_page) const {
+    draw(out, map, reference, false, on_page);
+    if (!map.flights.empty()) draw(out, map, reference, true, on_page);
   }
 
   /// Every quantity of a map, or of its difference to another: those of the launch, or those of the flight.
-  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference, bool of_flight) const {
+  void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference, bool of_flight, bool on_page) const {
     const std::string what = reference ? fmt::format("{} minus {}", map.title, reference->title) : map.title;
     post::Figure figure{.title = what + "; " + post::kFaceView, .columns = 3, .panel_width = 640, .panel_height = 330};
     for (const post::MapQuantity& q : post::map_quantities(map)) {
       if (q.of_flight != of_flight) continue;
       const auto v = reference ? post::differences(map, *reference, q) : post::values(map, q);
       if (v.empty()) continue;
-      const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
-      figure.panels.push_back(
-          post::face_panel(grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", q.name, unit),
-                           fmt::format("[{}]", unit), reference != nullptr));
+      const std::string unit = post::symbol(q.unit);
+      figure.panels.push_back(post::face_panel(
+          grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", post::spoken(q.name), unit),
+          fmt::format("[{}]", unit), reference != nullptr));
     }
-    picture(out, figure,
-            fmt::format("figures/{}{}{}", of_flight ? "flight-" : "", reference ? "difference-" : "map-",
-                        file_name(map.title)));
+    out.draw(figure,
+             fmt::format("figures/{}{}{}", of_flight ? "flight-" : "", reference ? "difference-" : "map-",
+                         file_name(map.title)),
+             on_page);
   }
 
   /// What the shaft does to the head at every point: force and moment over time, and their impulses as maps.
@@ -359,11 +363,7 @@ class FaceMapJob final : public PointJob {
       figure.panels.push_back(post::face_panel(
           grid_, impulses[k], fmt::format("{} along {}", k < 3 ? "force's impulse" : "moment's impulse", kAxes[k % 3]),
           k < 3 ? "[N s]" : "[N m s]", true));
-    picture(out, figure, "figures/hosel-" + name);
-  }
-
-  static void picture(Output& out, const post::Figure& figure, const std::string& stem) {
-    if (const std::string why = post::draw(figure, out.path(stem)); !why.empty()) out.say(why);
+    out.draw(figure, "figures/hosel-" + name, false);
   }
 
   static std::string file_name(std::string title) {
@@ -386,8 +386,7 @@ class FaceMapJob final : public PointJob {
       std::vector<double> grams;
       for (const double x : mass) grams.push_back(1e3 * x);
       const std::string label = "equivalent extra head mass [g]";
-      picture(
-          out,
+      out.draw(
           {.title = fmt::format("head mass by which {} plays as {}; {}", reference.title, map.title, post::kFaceView),
            .panels = {post::face_panel(grid_, grams, label, label, false)},
            .panel_width = 1100,
@@ -430,11 +429,26 @@ class FaceMapJob final : public PointJob {
     }
     j["uncertainty_source"] = finer ? "finer numerics at the nine corner, edge and centre points"
                                     : "none: no [refinement] declared, or a point of it failed";
+    // The page answers with the first map; the others are printed beneath.
+    RunPage* page = &map == &all[reference_ == 0 ? 1 : 0] ? &out.page() : nullptr;
+    if (page) {
+      const std::string note = fmt::format("{} minus {}", map.title, reference.title);
+      for (const auto& [name, value] : figures)
+        if (std::ranges::find(kAnswers, name) != kAnswers.end()) {
+          const SplitName split = split_unit(name);
+          page->answer(post::spoken(split.stem), fmt::format("{:+.3g} {}", value, post::symbol(split.unit->suffix)),
+                       note);
+        }
+    }
+    std::string statements;
     for (const post::Claim& claim : claims_) {
       const bool holds = claim.holds(figures);
+      statements += fmt::format("<tr><td>{}<td class='l'>{}</tr>", holds ? "yes" : "no", post::escape_html(claim.text));
       j["statements"].push_back({{"text", claim.text}, {"holds", holds}});
       out.say(fmt::format("  {}  {}", holds ? "yes" : "NO ", claim.text));
     }
+    if (page && !statements.empty())
+      page->section("Published statements borne out here", "<table>" + statements + "</table>");
     return j;
   }
 
@@ -459,20 +473,25 @@ class FaceMapJob final : public PointJob {
         if (std::isfinite(before[k]) && std::isfinite(now[k]))
           product += before[k] * now[k], square += before[k] * before[k];
       if (!(square > 0)) continue;
-      const std::string unit = q.unit == "mps" ? "m/s" : q.unit == "rad_per_s" ? "rad/s" : q.unit;
+      const std::string unit = post::symbol(q.unit);
       j[q.name + "_share"] = product / square;
       out.say(fmt::format("  {:<48} {:>12.3f}", q.name, product / square));
       if (std::ranges::find(kShown, q.name) == kShown.end()) continue;
       for (const auto* v : {&before, &now})
         figure.panels.push_back(post::face_panel(grid_, *v,
                                                  v == &before
-                                                     ? fmt::format("{} [{}]", q.name, unit)
+                                                     ? fmt::format("{} [{}]", post::spoken(q.name), unit)
                                                      : fmt::format("{:.0f} % are left", 100 * product / square),
                                                  fmt::format("[{}]", unit), true));
     }
-    picture(out, figure, "figures/kept-" + file_name(map.title));
+    out.draw(figure, "figures/kept-" + file_name(map.title));
     return j;
   }
+
+  /// Of an effect's figures, those that its page begins with.
+  static constexpr std::array<std::string_view, 6> kAnswers = {
+      "ball_speed_gain_centre_mps",   "ball_speed_gain_mean_mps", "sidespin_difference_toe_rpm",
+      "sidespin_difference_heel_rpm", "carry_gain_centre_yd",     "equivalent_head_mass_centre_g"};
 
   struct Work {
     std::size_t layer, place;

@@ -58,6 +58,7 @@ class FlightJob final : public Job {
   }
 
   void run(Output& out) override {
+    setup_.show_in(out);
     const models::FlightLaw& used = setup_.conditions.law;
     nlohmann::json summary = {{"law", {{"name", used.name}, {"source", used.source}}}};
     std::string csv = "launch,law";
@@ -89,13 +90,10 @@ class FlightJob final : public Job {
         row(law.name, other.follow(s.launch, ball_));
       }
     }
-    out.say("\n" + post::launch_table(columns));
+    out.say("");
+    out.show(post::launch_table(columns, {}, {}, out.units()));
     out.write("flights.csv", csv);
-    if (shots_.size() > 1)
-      if (const std::string why =
-              post::draw(post::trajectory_figure(setup_.conditions.law.name, flights), out.path("figures/flights"));
-          !why.empty())
-        out.say(why);
+    if (shots_.size() > 1) out.draw(post::trajectory_figure(setup_.conditions.law.name, flights), "figures/flights");
     out.write_summary(summary);
   }
 

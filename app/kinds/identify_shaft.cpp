@@ -163,10 +163,7 @@ class IdentifyJob final : public Job {
 
     post::Figure figure{.columns = 2};
     for (const bool is_lead : {true, false}) {
-      post::Panel panel{.title = is_lead ? "lead" : "droop",
-                        .x_label = "time [s]",
-                        .y_label = "deflection [mm]",
-                        .key = "bottom left"};
+      post::Panel panel{.title = is_lead ? "lead" : "droop", .x_label = "time [s]", .y_label = "deflection [mm]"};
       post::Series measured{.label = "measured", .style = "points"};
       for (std::size_t i = 0; i < swing.times.size(); ++i)
         if (swing.times[i] > end - 0.6)
@@ -180,7 +177,7 @@ class IdentifyJob final : public Job {
       }
       figure.panels.push_back(panel);
     }
-    if (const std::string why = post::draw(figure, out.path("deflection")); !why.empty()) out.say(why);
+    out.draw(figure, "deflection");
     out.write_summary({{"identified", to_json(r)}, {"head_markers_rms", errors}, {"clamp_to_hosel_m", swing.length}});
   }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "hosel/app/kinds/impact_page.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
@@ -21,7 +22,6 @@
 #include "hosel/models/registry.hpp"
 #include "hosel/post/impact_recorder.hpp"
 #include "hosel/post/launch_table.hpp"
-#include "hosel/post/patch_figure.hpp"
 
 namespace hosel::app {
 namespace {
@@ -90,12 +90,14 @@ class ImpactJob final : public Job {
   void run(Output& out) override {
     const bool fe = std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !face_ && models::wants_yielding_face(blow_.club.head)) out.say(rigid_face_costs());
+    if (flight_) flight_->show_in(out);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
+    std::vector<FeRun> runs;
     for (const Entry& entry : models_) {
       if (const models::FeModel* model = entry.fe()) {
-        const models::FeOutcome outcome = run_fe(out, entry.name, *model, home(out, entry), files);
+        const models::FeOutcome outcome = run_fe(out, entry.name, *model, home(out, entry), files, runs);
         models::check_launch(blow_, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
         summary["models"][entry.name] = post::to_json(outcome.launch);
@@ -124,14 +126,17 @@ class ImpactJob final : public Job {
       note_oblique(found.blow, columns.back(), said);
     }
     if (flight_)
-      for (post::LaunchColumn& c : columns) {
-        c.flight = flight_->follow(c.launch, blow_.ball);
+      for (post::LaunchColumn& c : columns) c.flight = flight_->follow(c.launch, blow_.ball);
+    for (const auto& [channel, value] : measured_)
+      summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
+    const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
+    out.say(table.text());
+    show_impact(out, {blow_, columns, measured_, table, runs, face_.has_value(), flight_.has_value(), record_.vtk});
+    if (flight_)
+      for (const post::LaunchColumn& c : columns) {
         nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
         said["budget"] = report_flight(out, *flight_, c.title, c.launch, blow_.ball);
       }
-    for (const auto& [channel, value] : measured_)
-      summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
-    out.say(post::launch_table(columns, measured_, ranges_));
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
     for (const Entry& entry : models_)
@@ -170,7 +175,7 @@ class ImpactJob final : public Job {
   }
 
   models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const fs::path& home,
-                           std::vector<fs::path>& files) const {
+                           std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
     if (out.force()) fs::remove(home / "checkpoint.cbor");
     post::ImpactRecorder recorder(home, blow_, record_,
                                   fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
@@ -191,11 +196,11 @@ class ImpactJob final : public Job {
         recorder.resume());
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
-    if (record_.vtk) {
-      const post::PatchHistory patch =
+    runs.push_back({name, home, outcome.result});
+    if (const post::BallSection* section = recorder.at_largest_force()) runs.back().section = *section;
+    if (record_.vtk)
+      runs.back().patch =
           post::read_patch(home / "vtk", models::encounter(blow_).ball_axes, models::mesh_axes(blow_, fe_));
-      if (const std::string why = post::draw_patch(patch, home / "patch"); !why.empty()) out.say(why);
-    }
     return outcome;
   }
 

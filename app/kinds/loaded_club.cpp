@@ -125,7 +125,7 @@ class LoadedClubJob final : public Job {
               {"moment_N_m_s", {impulse.moment.x(), impulse.moment.y(), impulse.moment.z()}}};
       }
       out.say(at);
-      out.say(post::launch_table(columns));
+      out.say(post::launch_table(columns).text());
       for (const auto& [what, with, without] : parts()) {
         const Launch &a = find(answers, with).launch, &b = find(answers, without).launch;
         point["parts"][what] = difference(a, b);
@@ -143,8 +143,8 @@ class LoadedClubJob final : public Job {
       waves.panels.push_back(grip_panel(answers, at, back));
     }
     out.write("points.csv", table);
-    if (const std::string why = post::draw(figure, out.path("hosel")); !why.empty()) out.say(why);
-    if (const std::string why = post::draw(waves, out.path("grip")); !why.empty()) out.say(why);
+    out.draw(figure, "hosel");
+    out.draw(waves, "grip");
     out.write_summary(summary);
   }
 
@@ -260,8 +260,7 @@ class LoadedClubJob final : public Job {
   static post::Panel panel(const Prediction& loaded, const Prediction& at_rest, const std::string& at, bool force) {
     post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"),
                   .x_label = "time [ms]",
-                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]",
-                  .key = "outside right"};
+                  .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]"};
     for (const Prediction* a : {&loaded, &at_rest})
       for (int c = 0; c < 3; ++c) {
         post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"),
@@ -291,8 +290,7 @@ class LoadedClubJob final : public Job {
   post::Panel grip_panel(const std::vector<Prediction>& answers, const std::string& at, double back) const {
     post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back),
                   .x_label = "time [ms]",
-                  .y_label = "force at the hosel, change [N]",
-                  .key = "outside right"};
+                  .y_label = "force at the hosel, change [N]"};
     const models::HoselHistory& forced = find(answers, "club loaded").hosel;
     const Vec3 axis = blow_.club.geometry.shaft_axis.normalized();
     for (const auto& [name, label] : {std::pair{"club loaded, clamped", "clamped"}, {"club loaded, free", "free"}}) {

@@ -49,7 +49,7 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
 
 void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows) {
   out.write("residuals.csv", loop::residuals_csv(result, table));
-  out.write("report.html", loop::page(result, table));
+  out.page().section("", loop::page(result, table));
   out.write_json("report.json", loop::to_json(result));
   out.say(loop::sentence(result));
   for (const auto& c : result.channels)

@@ -95,7 +95,7 @@ class MaterialPointJob final : public Job {
     post::Figure figure;
     figure.title = "material point";
     figure.panels.push_back(panel);
-    if (const std::string why = post::draw(figure, out.path("curve")); !why.empty()) out.say(why);
+    out.draw(figure, "curve");
     nlohmann::json summary{
         {"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}, {"work_J_per_m3", work}};
     out.say(fmt::format("{}: final stress {:.6g} Pa, dissipated {:.6g} J/m^3", what_, last, dissipated));

@@ -64,7 +64,7 @@ class RestitutionFaceJob final : public Job {
     post::Figure figure{
         .panels = {panel("restitution", e_map, "[-]"), panel("ball speed over head speed", gain_map, "[-]")},
         .columns = 2};
-    if (const std::string why = post::draw(figure, out.path("restitution-face")); !why.empty()) out.say(why);
+    out.draw(figure, "restitution-face");
     summary["largest_restitution"] = *std::ranges::max_element(e_map);
     summary["least_restitution"] = *std::ranges::min_element(e_map);
     out.write_summary(summary);

@@ -242,7 +242,7 @@ class SweepJob final : public PointJob {
       shown.erase(0, shown.rfind('.') + 1);
       figure.panels.push_back({.title = shown, .x_label = parameters_[across].key, .y_label = "", .series = {series}});
     }
-    if (const std::string why = post::draw(figure, out.path("figures/sweep")); !why.empty()) out.say(why);
+    out.draw(figure, "figures/sweep");
   }
 
   std::string title_;

@@ -75,14 +75,13 @@ class SwingJob final : public Job {
     figure.panels.push_back({.title = "hosel in the grip frame",
                              .x_label = "time [s]",
                              .y_label = "deflection [mm]",
-                             .series = {lead, droop},
-                             .key = "bottom left"});
+                             .series = {lead, droop}});
     figure.panels.push_back(
         {.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
-    if (const std::string why = post::draw(figure, out.path("swing")); !why.empty()) out.say(why);
+    out.draw(figure, "swing");
 
     recorder.finish();
-    if (const std::string why = post::draw(recorder.figure(0.4), out.path("shaft")); !why.empty()) out.say(why);
+    out.draw(recorder.figure(0.4), "shaft");
 
     const models::SwingSample& last = samples.back();
     const Delivery d = models::delivery_of(last.head);

@@ -377,7 +377,7 @@ class TuneJob final : public Job {
     }
     out.write("errors.csv", csv);
     out.write("residuals.csv", rows_csv);
-    if (const std::string missing = post::draw(figure, out.path("errors")); !missing.empty()) out.say(missing);
+    out.draw(figure, "errors");
     for (const auto& [why, k] : left_out_) summary["left_out"][why] = k;
     summary["rows"] = {{"train", train_.size()}, {"test", test_.size()}};
     summary["seed"] = seed_;

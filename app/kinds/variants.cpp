@@ -210,7 +210,10 @@ class VariantsJob final : public Job {
         summary["variants"][v.name]["flight"] = post::to_json(*a.flight);
       }
     }
-    if (!flights.empty()) out.say("\n" + post::launch_table(flights));
+    if (!flights.empty()) {
+      out.say("");
+      out.show(post::launch_table(flights, {}, {}, out.units()));
+    }
     out.write("variants.csv", csv);
     out.write_summary(summary);
   }

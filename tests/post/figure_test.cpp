@@ -40,13 +40,37 @@ TEST(Figure, PictureIsDrawn) {
   EXPECT_GT(std::filesystem::file_size(stem.string() + ".png"), 10000u);
 }
 
+TEST(Figure, EachPanelIsAFileOfItsOwn) {
+  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_panels";
+  Figure f = two_panels();
+  f.panels.insert(f.panels.begin(), Panel{.title = "nothing was measured", .series = {{.label = "measured"}}});
+  ASSERT_EQ(draw(f, stem), "");
+  const auto files = panel_files(f, stem.string());
+  ASSERT_EQ(files.size(), 2u) << "a panel without data is not drawn";
+  EXPECT_EQ(files[0].picture, stem.string() + "/1-curve.svg");
+  EXPECT_EQ(files[1].picture, stem.string() + "/2-map.png");
+  for (const PanelFile& file : files)
+    for (const std::string& name : {file.picture, file.pdf}) {
+      ASSERT_TRUE(std::filesystem::exists(name)) << name;
+      EXPECT_GT(std::filesystem::file_size(name), 5000u) << name;
+    }
+  EXPECT_NE(draw({.title = "empty", .panels = {Panel{}}}, stem), "") << "no picture of nothing";
+}
+
+TEST(Figure, LongTitlesAreBroken) {
+  Figure f = two_panels();
+  f.title = std::string(100, 'a') + " " + std::string(100, 'b');  // two panels of 620 pixels hold some 160 letters
+  EXPECT_NE(gnuplot_script(f, "x").find("'" + std::string(100, 'a') + "'.\"\\n\".'" + std::string(100, 'b') + "'"),
+            std::string::npos);
+}
+
 TEST(Figure, UnequalColumnsAreRefused) {
   Figure f = two_panels();
   f.panels[0].series[0].y.pop_back();
-  EXPECT_THROW(gnuplot_script(f, "x.png"), std::invalid_argument);
+  EXPECT_THROW(gnuplot_script(f, "x"), std::invalid_argument);
   f = two_panels();
   f.panels[1].map.pop_back();
-  EXPECT_THROW(gnuplot_script(f, "x.png"), std::invalid_argument);
+  EXPECT_THROW(gnuplot_script(f, "x"), std::invalid_argument);
 }
 
 }  // namespace

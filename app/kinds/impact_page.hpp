@@ -1,0 +1,38 @@
+/// The page of a blow: the answer, what happened while the ball touched the face, how exact it is.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hosel/app/output.hpp"
+#include "hosel/models/fe_impact.hpp"
+#include "hosel/post/ball_section.hpp"
+#include "hosel/post/launch_table.hpp"
+#include "hosel/post/patch_figure.hpp"
+
+namespace hosel::app {
+
+/// What a finite-element model left behind.
+struct FeRun {
+  std::string model;
+  std::filesystem::path home;  ///< of history.csv
+  models::FeImpactResult result;
+  std::optional<post::BallSection> section = {};  ///< at the largest force
+  std::optional<post::PatchHistory> patch = {};   ///< where series were written
+};
+
+struct ImpactStory {
+  const Blow& blow;
+  const std::vector<post::LaunchColumn>& columns;  ///< a model each; the last answers
+  const post::Measured& measured;
+  const post::TextTable& table;
+  const std::vector<FeRun>& runs;
+  bool yields;  ///< the face does
+  bool flies;   ///< the case asks for the flight
+  bool vtk;     ///< there are series
+};
+
+void show_impact(Output& out, const ImpactStory& story);
+
+}  // namespace hosel::app

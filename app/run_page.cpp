@@ -1,0 +1,146 @@
+#include "hosel/app/run_page.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <sstream>
+
+#include "hosel/app/job.hpp"
+#include "hosel/app/version.hpp"
+#include "hosel/golf/units.hpp"
+#include "hosel/post/html.hpp"
+#include "hosel/post/labels.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+using post::escape_html;
+
+void RunPage::answer(std::string_view what, std::string_view value, std::string_view note) {
+  answers_ += fmt::format("<div><span>{}</span><b>{}</b><small style='display:block'>{}</small></div>",
+                          escape_html(std::string(what)), escape_html(std::string(value)),
+                          escape_html(std::string(note)));
+}
+
+void RunPage::answer(const post::TextTable& table) { tables_ += table.html(); }
+
+void RunPage::close_figures() {
+  if (!figures_.empty()) body_ += "<div class='figures'>" + figures_ + "</div>";
+  figures_.clear();
+}
+
+void RunPage::section(std::string_view heading, std::string html) {
+  close_figures();
+  sections_ = true;
+  if (!heading.empty()) body_ += fmt::format("<h2>{}</h2>", escape_html(std::string(heading)));
+  body_ += html;
+}
+
+void RunPage::figure(std::string_view caption, std::string svg) {
+  figures_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>", svg, escape_html(std::string(caption)));
+}
+
+void RunPage::figure(const post::Figure& figure, const fs::path& stem) {
+  close_figures();
+  const auto panels = post::panel_files(figure, stem.string());
+  if (!figure.title.empty()) body_ += "<p class='soft'>" + escape_html(figure.title) + "</p>";
+  for (const post::PanelFile& p : panels)
+    figures_ += fmt::format("<figure{}><img class='{}' alt='{}' src='{}'></figure>",
+                            panels.size() == 1 ? " class='alone'" : "", p.map ? "map" : "curves", escape_html(p.title),
+                            post::data_uri(p.picture));
+  close_figures();
+}
+
+void RunPage::link(std::string_view file) {
+  links_ += fmt::format("<li><a href='{0}'>{0}</a>", escape_html(std::string(file)));
+}
+
+void RunPage::doubt(std::string_view text) { doubts_ += "<li>" + escape_html(std::string(text)); }
+
+void RunPage::print(std::string_view line) { printed_ += std::string(line) + '\n'; }
+
+void RunPage::suggest(std::string_view why, std::string_view command) { next_.emplace_back(why, command); }
+
+namespace {
+
+std::string value_text(const toml::node& node) {
+  std::ostringstream out;
+  if (const auto text = node.value<std::string>(); node.is_string()) out << *text;
+  else if (node.is_array()) out << toml::toml_formatter(*node.as_array(), toml::format_flags::relaxed_float_precision);
+  else if (const auto number = node.value<double>(); node.is_floating_point()) return fmt::format("{:.6g}", *number);
+  else node.visit([&](const auto& n) { out << n; });
+  return out.str();
+}
+
+/// The keys of a table that are no tables, as rows; then its tables, each under its own name.
+void add_inputs(std::string& html, const std::string& name, const toml::table& table) {
+  std::string rows;
+  for (const auto& [key, node] : table) {
+    if (node.is_table() || (node.is_array() && node.as_array()->is_homogeneous(toml::node_type::table))) continue;
+    const SplitName split = split_unit(key.str());
+    rows += fmt::format("<tr><td>{}<td>{}{}</tr>", escape_html(post::spoken(split.stem)), escape_html(value_text(node)),
+                        split.unit ? " " + escape_html(post::symbol(split.unit->suffix)) : "");
+  }
+  if (!rows.empty())
+    html += fmt::format("<table><tr><th colspan='2'>{}</tr>{}</table>",
+                        escape_html(name.empty() ? "the case" : post::spoken(name)), rows);
+  for (const auto& [key, node] : table) {
+    const std::string inner = (name.empty() ? "" : name + ": ") + std::string(key.str());
+    if (const toml::table* t = node.as_table()) add_inputs(html, inner, *t);
+    const toml::array* list = node.as_array();
+    if (!list || !list->is_homogeneous(toml::node_type::table)) continue;
+    for (std::size_t i = 0; i < list->size(); ++i)
+      add_inputs(html, fmt::format("{} {}", inner, i + 1), *list->get(i)->as_table());
+  }
+}
+
+std::string now() {
+  const std::time_t t = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&t, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+std::string commands(const std::string& lines) { return "<pre class='command'>" + escape_html(lines) + "</pre>"; }
+
+}  // namespace
+
+std::string RunPage::html(const std::string& resolved, const std::string& command, const fs::path& directory) const {
+  RunPage whole = *this;
+  whole.close_figures();
+  const toml::table table = toml::parse(resolved);
+  const std::string title = table["title"].value_or(""), kind = table["kind"].value_or("impact");
+  const auto known = std::ranges::find(kinds(), kind, &Kind::name);
+  const std::string question(known == kinds().end() ? "" : known->question);
+  std::string s = fmt::format("<h1>{}</h1>", escape_html(title.empty() ? question : title));
+  if (!title.empty()) s += "<p class='lead'>" + escape_html(question) + "</p>";
+  if (!answers_.empty()) s += "<div class='answers'>" + answers_ + "</div>";
+  s += tables_;
+  const std::string printed = "<pre>" + escape_html(printed_) + "</pre>";
+  const bool own = !answers_.empty() || !tables_.empty() || sections_;
+  if (!own) s += printed;
+  if (!doubts_.empty()) s += "<div class='verdict open'><b>In doubt</b><ul>" + doubts_ + "</ul></div>";
+  s += whole.body_;
+  if (!links_.empty()) s += "<h2>More pictures</h2><ul>" + links_ + "</ul>";
+  std::string inputs;
+  add_inputs(inputs, "", table);
+  s += "<h2>What to try next</h2><ul>";
+  for (const auto& [why, how] : next_) s += "<li>" + escape_html(why) + commands(how);
+  s += fmt::format("<li>Every key that such a case takes, with unit, range and default:{}</ul>",
+                   commands("hosel keys " + kind));
+  s += "<h2>Inputs</h2><div class='inputs'>" + inputs + "</div>";
+  s += "<h2>The same again</h2>" +
+       commands(command + "\nhosel run " + (directory / "case.resolved.toml").string() + " --out again") +
+       fmt::format(
+           "<p><small>hosel {}, {}. The second command needs no default of this version: the case beside this "
+           "page names every one; summary.json there has the numbers.</small></p>",
+           escape_html(program_version()), now());
+  if (own && !printed_.empty()) s += "<h2>Printed by the run</h2>" + printed;
+  return post::html_page(title.empty() ? question : title, s);
+}
+
+}  // namespace hosel::app

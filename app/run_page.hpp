@@ -1,0 +1,47 @@
+/// OUT/report.html: what a run tells people, on one page that needs no network.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hosel/post/figure.hpp"
+#include "hosel/post/text_table.hpp"
+
+namespace hosel::app {
+
+/// Filled while a job runs, written with its summary. Sections stand in the order in which they come.
+class RunPage {
+ public:
+  /// A number that the question asks for, large at the top; `note` in small type beneath.
+  void answer(std::string_view what, std::string_view value, std::string_view note = {});
+  /// A table beneath those numbers.
+  void answer(const post::TextTable& table);
+  /// HTML under a heading; under the one before where it is empty.
+  void section(std::string_view heading, std::string html);
+  /// A picture that stands in the page's own text, beside others that come with it.
+  void figure(std::string_view caption, std::string svg);
+  /// What post::draw has made: lines as they are, maps as one picture of points.
+  void figure(const post::Figure& figure, const std::filesystem::path& stem);
+  /// A picture beside the page.
+  void link(std::string_view file);
+  void doubt(std::string_view text);
+  /// A line that the run has printed: the answer where the page has no other.
+  void print(std::string_view line);
+  /// What to try next.
+  void suggest(std::string_view why, std::string_view command);
+
+  /// The document. `resolved`: the case with every default; `command`: what was typed.
+  std::string html(const std::string& resolved, const std::string& command,
+                   const std::filesystem::path& directory) const;
+
+ private:
+  void close_figures();
+
+  std::string answers_, tables_, body_, figures_, printed_, doubts_, links_;
+  bool sections_ = false;
+  std::vector<std::pair<std::string, std::string>> next_;
+};
+
+}  // namespace hosel::app

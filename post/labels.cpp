@@ -1,0 +1,44 @@
+#include "hosel/post/labels.hpp"
+
+#include "hosel/golf/units.hpp"
+
+namespace hosel::post {
+
+std::string spoken(std::string_view name) {
+  std::string text(name);
+  // An index of a symbol stays one: e_t.
+  for (std::size_t i = 2; i < text.size(); ++i)
+    if (text[i] == '_') text[i] = ' ';
+  return text;
+}
+
+std::string symbol(std::string_view unit) {
+  if (unit == "mps") return "m/s";
+  if (unit == "kmh") return "km/h";
+  if (unit == "pct") return "%";
+  if (unit == "um") return "µm";
+  if (unit == "us") return "µs";
+  // The rest say themselves: factors by `_`, what is divided by behind `per`.
+  std::string out;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit.substr(i).starts_with("_per_")) {
+      out += '/';
+      i += 4;
+    } else if (unit[i] == '_') {
+      out += ' ';
+    } else if (unit[i] == '2' || unit[i] == '3') {
+      out += unit[i] == '2' ? "²" : "³";
+    } else {
+      out += unit[i];
+    }
+  }
+  return out;
+}
+
+std::string label(std::string_view key) {
+  if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
+  const SplitName split = split_unit(key);
+  return spoken(split.stem) + (split.unit ? " [" + symbol(split.unit->suffix) + "]" : "");
+}
+
+}  // namespace hosel::post

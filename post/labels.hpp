@@ -1,0 +1,16 @@
+/// Keys and quantities as people read them: `club_speed_mph` is "club speed [mph]".
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace hosel::post {
+
+/// "club_speed" -> "club speed".
+std::string spoken(std::string_view name);
+/// A unit's suffix as it is printed: "mps" -> "m/s", "kg_m2" -> "kg m²".
+std::string symbol(std::string_view unit);
+/// Name and unit of a key, dotted or not; the tables before a dotted one are left out.
+std::string label(std::string_view key);
+
+}  // namespace hosel::post

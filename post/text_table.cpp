@@ -1,0 +1,49 @@
+#include "hosel/post/text_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hosel/post/html.hpp"
+#include "hosel/post/labels.hpp"
+
+namespace hosel::post {
+
+std::string TextTable::text() const {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows) {
+    width.resize(std::max(width.size(), row.size()), least_width);
+    for (std::size_t c = 1; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size() + 2);
+  }
+  if (even && !width.empty()) std::ranges::fill(width, std::ranges::max(width));
+  std::string out;
+  for (const auto& row : rows) {
+    if (&row != rows.data()) out += '\n';
+    out += fmt::format("{:<{}}", row[0], first_width);
+    for (std::size_t c = 1; c < row.size(); ++c) out += fmt::format("{:>{}}", row[c], width[c]);
+  }
+  return out;
+}
+
+std::string TextTable::html() const {
+  std::vector<std::vector<std::string>> shown = rows;
+  for (auto& row : shown) row[0] = spoken(row[0]);
+  const std::size_t columns = rows.front().size();
+  if (columns > 6 && columns > rows.size()) {
+    shown.assign(columns, std::vector<std::string>(rows.size()));
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t c = 0; c < rows[r].size(); ++c) shown[c][r] = c || !r ? rows[r][c] : spoken(rows[r][0]);
+  }
+  std::string out = "<div class='scroll'><table>";
+  for (std::size_t r = 0; r < shown.size(); ++r) {
+    out += "<tr>";
+    for (std::string& cell : shown[r]) {
+      if (const auto sign = cell.find("+-"); sign != cell.npos) cell.replace(sign, 2, "±");
+      out += (r ? "<td>" : "<th>") + escape_html(cell);
+    }
+    out += "</tr>";
+  }
+  return out + "</table></div>";
+}
+
+}  // namespace hosel::post

@@ -1,0 +1,85 @@
+// OUT/report.html: says what the summary says, in one file.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "command.hpp"
+
+namespace hosel::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
+
+/// Nothing that a browser would fetch.
+void expect_alone(const std::string& page) {
+  EXPECT_FALSE(std::regex_search(page, std::regex("<(script|link|iframe)|(src|href)=.?(https?:|//)|@import|url\\(")));
+  EXPECT_TRUE(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+}
+
+TEST(RunPage, SaysWhatABlowAndItsFlightCameTo) {
+  const fs::path dir = fresh_directory("page_blow");
+  std::string text = kEccentricBlow;
+  text.replace(text.find("club_speed_mps = 45.0"), 21, "club_speed_mph = 100.0");
+  write(dir / "case.toml", "title = \"it's <b>mine</b>\"\n" + text + "[flight]\nlaw = \"ferguson-2022\"\n");
+  const std::string typed = "run " + dir.string() + " --quiet --set ball.mass_g=45.9 --out " + (dir / "out").string();
+  const Outcome o = command(typed);
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string page = content(dir / "out/report.html");
+  const json summary = json::parse(content(dir / "out/summary.json"));
+  const double speed = summary["models"]["rigid-eccentric"]["ball_speed_mps"];
+  const double carry = summary["flights"]["rigid-eccentric"]["carry_yd"];
+  ASSERT_GT(speed, 50) << "the ball was struck";
+  expect_alone(page);
+  EXPECT_TRUE(holds(page, "What does the ball do after this blow?"));
+  EXPECT_TRUE(holds(page, fmt::format("<b>{:.1f} mph</b>", speed / 0.44704))) << "in the case's own unit";
+  EXPECT_TRUE(holds(page, fmt::format("smash factor</span><b>{:.3f}</b>", speed / 44.704)));
+  EXPECT_TRUE(holds(page, fmt::format("carry</span><b>{:.1f} yd</b>", carry)));
+  EXPECT_TRUE(holds(page, "it&#39;s &lt;b&gt;mine")) << "a title is no markup";
+  EXPECT_TRUE(holds(page, "<td>club speed<td>100 mph")) << "inputs with their units";
+  EXPECT_TRUE(holds(page, "hosel " + typed)) << "the command as it was typed";
+  EXPECT_TRUE(holds(page, "data:image/svg+xml;base64,")) << "side and top view of the flight";
+}
+
+TEST(RunPage, SpeaksTheUnitsThatWereAskedFor) {
+  const fs::path dir = fresh_directory("page_units");
+  write(dir / "case.toml", kEccentricBlow + "[flight]\nlaw = \"ferguson-2022\"\n");
+  const auto asked = [&](const std::string& units) {
+    const Outcome o = command("run " + dir.string() + " --force --units " + units + " --out " + (dir / "out").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    return o.text + content(dir / "out/report.html");
+  };
+  const std::string golf = asked("golf"), metric = asked("metric");
+  const double speed =
+      json::parse(content(dir / "out/summary.json"))["models"]["rigid-eccentric"]["ball_speed_mps"].get<double>();
+  EXPECT_TRUE(std::regex_search(golf, std::regex(fmt::format("ball_speed \\[mph\\] +{:.2f}", speed / 0.44704))));
+  EXPECT_TRUE(std::regex_search(metric, std::regex(fmt::format("ball_speed \\[m/s\\] +{:.2f}", speed))));
+  EXPECT_TRUE(holds(golf, "carry [yd]") && !holds(golf, "carry [m]"));
+  EXPECT_TRUE(holds(metric, "carry [m]") && !holds(metric, "carry [yd]"));
+  EXPECT_TRUE(holds(golf, fmt::format("<b>{:.1f} mph</b>", speed / 0.44704)));
+  EXPECT_TRUE(holds(metric, fmt::format("<b>{:.2f} m/s</b>", speed)));
+  EXPECT_EQ(command("run " + dir.string() + " --units furlongs").status, 2);
+}
+
+TEST(RunPage, ShowsTheLargestForceAndTheLedger) {
+  const fs::path out = fresh_directory("page_fe") / "out";
+  const Outcome o =
+      command("run driver-toe --quiet --set 'models=[\"fe-free-body\"]' --set accuracy=look --out " + out.string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string page = content(out / "report.html");
+  const json solution = json::parse(content(out / "summary.json"))["models"]["fe-free-body"]["solution"];
+  const double force = solution["peak_force_N"], time = solution["peak_time_ms"];
+  ASSERT_GT(force, 5000) << "ball and face met";
+  expect_alone(page);
+  EXPECT_TRUE(holds(page, fmt::format("{:.2f} kN at {:.3f} ms</text>", 1e-3 * force, time))) << "marked in the curve";
+  EXPECT_TRUE(holds(page, fmt::format("at the largest force, {:.2f} kN after {:.3f} ms", 1e-3 * force, time)));
+  EXPECT_TRUE(holds(page, fmt::format("unaccounted for<td>{:.4f}", solution["energy_J"]["closure"].get<double>())));
+  EXPECT_TRUE(holds(page, "data:image/png;base64,")) << "the patch";
+}
+
+}  // namespace
+}  // namespace hosel::test
