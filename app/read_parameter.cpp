@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "hosel/post/labels.hpp"
+
 namespace hosel::app {
 
 const models::NamedParameter& read_parameter(Table& table, Key key) {
@@ -19,9 +21,7 @@ double unit_of(const models::NamedParameter& p) {
 }
 
 std::string label(const models::NamedParameter& p) {
-  std::string text(p.name);
-  std::ranges::replace(text, '_', ' ');
-  return fmt::format("{} [{}]", text, p.unit.empty() ? "-" : p.unit);
+  return fmt::format("{} [{}]", post::spoken(p.name), p.unit.empty() ? "-" : post::symbol(p.unit));
 }
 
 std::string column(const models::NamedParameter& p) {

@@ -90,8 +90,10 @@ bool shows(const Panel& p) {
 
 /// Data of panel k, and behind it the words that plot them.
 std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width) {
+  // A key below stands so near the label that an empty line must part them.
+  const bool key = p.map.empty() && std::ranges::any_of(p.series, [](const Series& c) { return !c.label.empty(); });
   std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + literal(p.x_label) +
-                        "\nset ylabel " + literal(p.y_label) + "\n";
+                        (key ? R"(."\n" offset 0,0.4)" : "") + "\nset ylabel " + literal(p.y_label) + "\n";
   s += p.log_x ? "set logscale x\n" : "unset logscale x\n";
   s += p.log_y ? "set logscale y\n" : "unset logscale y\n";
   if (!p.map.empty()) {

@@ -15,6 +15,7 @@
 #include "hosel/models/registry.hpp"
 #include "hosel/models/stick_slip.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -52,10 +53,8 @@ class CurvesJob final : public Job {
 
  private:
   std::string member(double value) const {
-    std::string name(family_.parameter->name);
-    std::ranges::replace(name, '_', ' ');
-    return fmt::format("{} {:g}{}{}", name, value / family_.si, family_.parameter->unit.empty() ? "" : " ",
-                       family_.parameter->unit);
+    return fmt::format("{} {:g}{}{}", post::spoken(family_.parameter->name), value / family_.si,
+                       family_.parameter->unit.empty() ? "" : " ", post::symbol(family_.parameter->unit));
   }
 
   void curves(Output& out) const {
@@ -67,7 +66,8 @@ class CurvesJob final : public Job {
       for (const std::string& m : models_) {
         std::string name(c.name);
         std::ranges::replace(name, '_', ' ');
-        figure.panels.push_back({.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, c.unit)});
+        figure.panels.push_back(
+            {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, post::symbol(c.unit))});
       }
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)

@@ -15,6 +15,7 @@
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/file.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/solvers/random.hpp"
 
 namespace hosel::app {
@@ -238,9 +239,8 @@ class SweepJob final : public PointJob {
           series.x.push_back(x[i]);
           series.y.push_back(points[i][c].get<double>());
         }
-      std::string shown = c.ends_with(".value") ? c.substr(0, c.size() - 6) : c;
-      shown.erase(0, shown.rfind('.') + 1);
-      figure.panels.push_back({.title = shown, .x_label = parameters_[across].key, .y_label = "", .series = {series}});
+      const std::string shown = post::label(c.ends_with(".value") ? c.substr(0, c.size() - 6) : c);
+      figure.panels.push_back({.x_label = post::label(parameters_[across].key), .y_label = shown, .series = {series}});
     }
     out.draw(figure, "figures/sweep");
   }
