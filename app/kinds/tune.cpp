@@ -15,6 +15,7 @@
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 #include "hosel/solvers/least_squares.hpp"
 #include "hosel/solvers/random.hpp"
@@ -334,7 +335,7 @@ class TuneJob final : public Job {
     out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows",
                         "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"));
     for (const TuneChannel& c : channels_)
-      figure.panels.push_back({.x_label = "measured " + c.name, .y_label = "model - measured"});
+      figure.panels.push_back({.x_label = "measured " + post::label(c.name), .y_label = "model - measured"});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
       std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
       std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
