@@ -32,7 +32,7 @@ TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
 }
 
 /// A shaft that does not bend is part of the head: the same blow on a free body of head and rod together. What the rod
-/// changes is met to a per cent of itself; 1 % of its mass or of its arm would show.
+/// changes is met to 0.2 % of itself in velocity (four elements, the coarse ball); 1 % of its mass moves that by 0.4 %.
 TEST(FeFullClub, AStiffShaftIsMoreHead) {
   Blow blow = driver_blow(0.01);
   const FeOutcome bare = solve_free_body(blow, coarse());
@@ -67,7 +67,7 @@ TEST(FeFullClub, AStiffShaftIsMoreHead) {
   const FeOutcome together = solve_free_body(lump, coarse());
   const double gain = (together.launch.velocity - bare.launch.velocity).norm();
   ASSERT_GT(gain, 0.5);
-  EXPECT_LT((full.launch.velocity - together.launch.velocity).norm(), 0.01 * gain);
+  EXPECT_LT((full.launch.velocity - together.launch.velocity).norm(), 0.004 * gain);
   EXPECT_LT((full.launch.spin - together.launch.spin).norm(), 0.01 * (together.launch.spin - bare.launch.spin).norm());
 }
 
