@@ -29,6 +29,7 @@ std::vector<Variant> variants() {
        {"output.vtk=true", "mesh.tilt_rad=0.1", "contact.face_transition_speed_mps=0.5", "grip.force_N=[0,0,0]",
         "grip.moment_N_m=[0,0,0]"}},
       {"driver-toe", {"grip={hold='hands', " + springs + "}", "face={effective_mass_g=10, stiffness_N_per_m=5e6}"}},
+      {"driver-toe", {"joint={kind='hinge', axis=[0,1,0]}"}},
       {"driver-toe", {"shaft={table={file='case.toml'}}"}},
       {"driver-toe", {"ball.changes={}"}},
       {"driver-toe",

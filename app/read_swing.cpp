@@ -146,6 +146,24 @@ models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem
   return drive;
 }
 
+models::HeadJoint read_head_joint(Table& t) {
+  using Kind = models::HeadJoint::Kind;
+  const std::string kind =
+      t.choice({"kind", "how the head is joined to the shaft"}, {"rigid", "hinge", "spring", "none"}, "rigid");
+  models::HeadJoint joint{.kind = kind == "hinge"    ? Kind::hinge
+                                  : kind == "spring" ? Kind::spring
+                                  : kind == "none"   ? Kind::none
+                                                     : Kind::rigid};
+  if (joint.kind == Kind::hinge) {
+    const auto axis = t.numbers({"axis", "of the hinge, grip frame: YG lies across the shaft and the face's normal"}, 3,
+                                Range::finite(), std::vector<double>{0, 1, 0});
+    joint.axis = Vec3(axis[0], axis[1], axis[2]);
+    if (!(joint.axis.norm() > 0)) t.fail("axis", "the axis of a hinge has a direction");
+  }
+  if (joint.kind == Kind::spring) joint.stiffness = read_springs(t);
+  return joint;
+}
+
 models::SwingOptions read_swing_options(Table root) {
   models::SwingOptions o;
   if (auto t = root.optional_table("solution")) {
@@ -166,21 +184,7 @@ models::SwingOptions read_swing_options(Table root) {
     o.grip_point = t->quantity({"grip_point", "distance from the butt of the point whose motion was recorded"}, "mm",
                                Range::non_negative(), o.grip_point);
   }
-  if (auto t = root.optional_table("joint")) {
-    const std::string kind =
-        t->choice({"kind", "how the head is joined to the shaft"}, {"rigid", "hinge", "spring", "none"}, "rigid");
-    using models::HeadJoint;
-    o.joint = kind == "hinge"    ? HeadJoint::hinge
-              : kind == "spring" ? HeadJoint::spring
-              : kind == "none"   ? HeadJoint::none
-                                 : HeadJoint::rigid;
-    if (o.joint == HeadJoint::hinge) {
-      const auto axis = t->numbers({"axis", "of the hinge, grip frame"}, 3);
-      o.hinge_axis = Vec3(axis[0], axis[1], axis[2]);
-      if (!(o.hinge_axis.norm() > 0)) t->fail("axis", "the axis of a hinge has a direction");
-    }
-    if (o.joint == HeadJoint::spring) o.joint_stiffness = read_springs(*t);
-  }
+  if (auto t = root.optional_table("joint")) o.joint = read_head_joint(*t);
   return o;
 }
 

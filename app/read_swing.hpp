@@ -37,6 +37,9 @@ GripInput read_grip_drive(Table root);
 /// file does not cover the motion's span.
 models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem::Motion motion);
 
+/// `[joint]`: how the head hangs on the shaft.
+models::HeadJoint read_head_joint(Table& table);
+
 /// `[solution]` and `[joint]` of a swing.
 models::SwingOptions read_swing_options(Table root);
 

@@ -30,11 +30,7 @@ std::vector<SwingSample> changed_swing(const Club& declared, const SwingOptions&
     for (int a = 0; a < 3; ++a) k.rotation[a] = compliance[a] > 0 ? std::min(firm, 1 / compliance[a]) : firm;
     return k;
   };
-  if (c.hosel.norm() > 0) {
-    options.joint = HeadJoint::spring;
-    options.joint_stiffness = spring(c.hosel);
-    options.joint_stiffness.frame = face_to_grip(club.geometry).transpose();
-  }
+  if (c.hosel.norm() > 0) { options.joint = {.kind = HeadJoint::Kind::spring, .stiffness = spring(c.hosel)}; }
   GripDrive drive{.motion = [&](double t) { return motion.at(t); }};
   if (c.clamp.norm() > 0) {
     drive.kind = GripDrive::Kind::hands;

@@ -17,6 +17,8 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
         "fe full club: the shaft turns the head, which the axisymmetric ball cannot follow: use harmonics of 2 or "
         "more");
   ShaftMount mount = options.mount;
+  if (mount.load && mount.joint.gives())
+    throw std::invalid_argument("fe full club: hands that load the shaft need a head that is rigid on it");
   if (mount.load && !mount.loaded)
     mount.loaded = loaded_by_grip(blow, *mount.load, mount.grip_point, mount.elements, mount.growth, mount.shear);
   FullClubImpact out;

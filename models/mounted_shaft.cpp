@@ -22,6 +22,9 @@ fem::SectionLaw mounted_sections(const Club& club, double grip_point, bool shear
 
 const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem::Node& head, const Club& club,
                              const ShaftMount& mount) {
+  if (mount.joint.kind == HeadJoint::Kind::none) throw std::invalid_argument("a blow needs a head on the shaft");
+  if (mount.loaded && mount.joint.gives())
+    throw std::invalid_argument("a loaded start needs a head that is rigid on the shaft");
   const auto line = shaft_line(club, mount.grip_point, mount.elements, mount.growth);
   LoadedShaft shaft;  // straight and at rest on the head
   if (mount.loaded) shaft = *mount.loaded;
@@ -33,9 +36,15 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   const Vec3 x = initial.q.segment<3>(head.translation.q), v = initial.v.segment<3>(head.translation.v);
   const Vec3 w = initial.v.segment<3>(head.rotation.v);  // body frame
   const Eigen::Quaterniond R = fem::rotation(initial, head.rotation);
+  fem::Node tip = head;
+  if (mount.joint.gives()) {
+    tip = {system.dof_map.add_vector(3), system.dof_map.add_rotation()};
+    system.terms.push_back(std::make_unique<fem::SpringJoint>(
+        "joint", tip, head, stiffness_of(mount.joint, *club.shaft, face_to_grip(club.geometry).transpose())));
+  }
   auto owned = std::make_unique<fem::Beam>(
       system.dof_map, line, mounted_sections(club, mount.grip_point, mount.shear),
-      fem::BeamOptions{.gravity = R * shaft.gravity, .damping_time = club.shaft->damping_time, .last = head});
+      fem::BeamOptions{.gravity = R * shaft.gravity, .damping_time = club.shaft->damping_time, .last = tip});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
 
@@ -44,7 +53,8 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   grown.q.head(initial.q.size()) = initial.q;
   grown.v.head(initial.v.size()) = initial.v;
   grown.a.head(initial.a.size()) = initial.a;
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+  const std::size_t own = line.size() - (mount.joint.gives() ? 0 : 1);  // a rigid joint's tip is the head's node
+  for (std::size_t i = 0; i < own; ++i) {
     const fem::Node& n = beam.nodes()[i];
     const LoadedShaft::Node& s = shaft.nodes[i];
     grown.q.segment<3>(n.translation.q) = x + R * s.position;

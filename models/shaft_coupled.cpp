@@ -9,8 +9,8 @@ namespace {
 
 /// Everything a condensed shaft depends on, as numbers.
 std::vector<double> signature(const Club& club, const ShaftImpedanceOptions& o) {
-  std::vector<double> s = {double(o.functions), o.highest, double(o.feels_translation), double(o.feels_rotation),
-                           club.shaft ? club.shaft->damping_time : -1};
+  std::vector<double> s = {double(o.functions),      o.highest,        double(o.feels_translation),
+                           double(o.feels_rotation), double(o.hinged), club.shaft ? club.shaft->damping_time : -1};
   for (const Vec3& v : {club.geometry.hosel, club.geometry.shaft_axis, club.head.cg})
     s.insert(s.end(), v.data(), v.data() + 3);
   if (club.shaft)
@@ -45,6 +45,8 @@ std::shared_ptr<const ShaftImpedance> condensed(const Club& club, const ShaftImp
 
 Launch ShaftCoupled::launch(const Blow& blow) const {
   const auto shaft = condensed(blow.club, beam_);
+  if (beam_.hinged && (mount_.loaded || mount_.load))
+    throw std::invalid_argument("shaft-coupled: a loaded start needs a head that is rigid on the shaft");
   std::optional<LoadedShaft> loaded = mount_.loaded;
   if (!loaded && mount_.load)
     loaded = loaded_by_grip(blow, *mount_.load, mount_.grip_point, mount_.elements, mount_.growth, mount_.shear);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -68,11 +69,12 @@ struct Condensed {
   VectorXd frequency2;
 };
 
-/// Splits M, K into tip freedoms (first of each field) and inner ones and condenses.
-Condensed condense(const MatrixXd& M, const MatrixXd& K, int fields, double highest) {
-  const int n = static_cast<int>(M.rows()), per = n / fields, inner = n - fields;
-  std::vector<int> tip, rest;
-  for (int i = 0; i < n; ++i) (i % per == 0 ? tip : rest).push_back(i);
+/// Splits M, K into the freedoms of the tip that the head carries along and all others, and condenses.
+Condensed condense(const MatrixXd& M, const MatrixXd& K, const std::vector<int>& tip, double highest) {
+  const int n = static_cast<int>(M.rows()), inner = n - static_cast<int>(tip.size());
+  std::vector<int> rest;
+  for (int i = 0; i < n; ++i)
+    if (std::ranges::find(tip, i) == tip.end()) rest.push_back(i);
   const auto pick = [](const MatrixXd& A, const std::vector<int>& r, const std::vector<int>& c) {
     return MatrixXd(A(r, c));
   };
@@ -131,8 +133,10 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
       Ka += st.axial_stiffness * gg;
     }
   }
-  const Condensed along_y = condense(My, Ky, 2, options.highest), along_z = condense(Mz, Kz, 2, options.highest),
-                  torsion = condense(Mt, Kt, 1, options.highest), axial = condense(Ma, Ka, 1, options.highest);
+  // The first function of each field is the one that moves the tip; a hinge leaves the slope along y to the shaft.
+  const Condensed along_y = condense(My, Ky, options.hinged ? std::vector{0} : std::vector{0, n}, options.highest),
+                  along_z = condense(Mz, Kz, {0, n}, options.highest), torsion = condense(Mt, Kt, {0}, options.highest),
+                  axial = condense(Ma, Ka, {0}, options.highest);
 
   // Tip freedoms in shaft axes: x, y, z, turn about x, y, z. Shaft axes: x towards the tip, y the face's
   // normal made perpendicular to it.
@@ -169,7 +173,7 @@ ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& op
     out.frequency2.segment(at, k) = c.frequency2;
     at += k;
   };
-  place(along_y, {1, 5}, {1, 1});
+  place(along_y, options.hinged ? std::vector{1} : std::vector{1, 5}, {1, 1});
   place(along_z, {2, 4}, {1, -1});
   place(torsion, {3}, {1});
   place(axial, {0}, {1});

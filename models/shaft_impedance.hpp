@@ -29,6 +29,8 @@ struct ShaftImpedanceOptions {
   /// Which part of the head's motion carries the shaft's tip along: without the head's rotation about
   /// its cg the shaft is added mass alone, without the translation added rotational inertia alone.
   bool feels_translation = true, feels_rotation = true;
+  /// The tip turns freely in the head about the axis across shaft and face normal (YG of the grip).
+  bool hinged = false;
 };
 
 /// The shaft clamped at its butt, straight and linear: bending in two planes (Timoshenko), torsion and

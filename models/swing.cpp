@@ -14,22 +14,6 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A hinge lets one axis go and holds the rest as a weld would: stiff against the shaft's own tip, soft enough
-/// for the tangent's conditioning.
-fem::JointStiffness joint_of(const SwingOptions& o, const Shaft& shaft) {
-  if (o.joint == HeadJoint::spring) return o.joint_stiffness;
-  fem::JointStiffness k;
-  const double bend = 1e4 * shaft.stations.back().bending_stiffness_y / shaft.length();
-  const Vec3 axis = o.hinge_axis.normalized();
-  const Vec3 towards = std::abs(axis.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-  k.frame.col(0) = axis;
-  k.frame.col(1) = axis.cross(towards).normalized();
-  k.frame.col(2) = axis.cross(k.frame.col(1));
-  k.translation = Vec3::Constant(1e4 * bend / (shaft.length() * shaft.length()));
-  k.rotation = {0, bend, bend};
-  return k;
-}
-
 }  // namespace
 
 std::vector<std::string> SwingOptions::faults() const {
@@ -102,12 +86,11 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
   system_.terms.push_back(std::move(beam));
   head_node_ = shaft_->nodes().back();
 
-  if (options.joint != HeadJoint::none) {
-    if (options.joint != HeadJoint::rigid) {
+  if (options.joint.kind != HeadJoint::Kind::none) {
+    if (options.joint.gives()) {
       head_node_ = {system_.dof_map.add_vector(3), system_.dof_map.add_rotation()};
-      fem::JointStiffness k = joint_of(options, shaft);
-      k.frame = (face_to_grip_ * k.frame).eval();
-      system_.terms.push_back(std::make_unique<fem::SpringJoint>("joint", shaft_->nodes().back(), head_node_, k));
+      system_.terms.push_back(std::make_unique<fem::SpringJoint>("joint", shaft_->nodes().back(), head_node_,
+                                                                 stiffness_of(options.joint, shaft, Mat3::Identity())));
     }
     const Head& head = club.head;
     auto body = std::make_unique<fem::RigidBody>(

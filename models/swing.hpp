@@ -14,17 +14,10 @@
 #include "hosel/fem/supports.hpp"
 #include "hosel/golf/blow.hpp"
 #include "hosel/golf/units.hpp"
+#include "hosel/models/head_joint.hpp"
 #include "hosel/solvers/generalized_alpha.hpp"
 
 namespace hosel::models {
-
-/// How the head hangs on the shaft.
-enum class HeadJoint {
-  rigid,
-  hinge,   ///< turns freely about one axis
-  spring,  ///< six stiffnesses
-  none,    ///< no head
-};
 
 /// What integrates the swing.
 enum class SwingIntegrator {
@@ -43,12 +36,9 @@ struct SwingOptions {
   bool shear = true;        ///< Timoshenko; false: Rayleigh
   double grip_point = 0;    ///< arc length of the grip point from the butt; the shaft above it is the hands' [m]
   Vec3 gravity = Vec3(0, 0, -kGravity);
-  HeadJoint joint = HeadJoint::rigid;
+  HeadJoint joint;
   /// Damping ratios of the club's first modes, held at the grip, beside the shaft's own damping time.
   std::vector<double> modal_damping = {};
-  Vec3 hinge_axis = Vec3::UnitX();  ///< face frame
-  /// For HeadJoint::spring, in face axes; of a hinge the stiffness about the other two axes.
-  fem::JointStiffness joint_stiffness;
 
   std::vector<std::string> faults() const;
 };

@@ -44,7 +44,7 @@ class LoadedClubJob final : public Job {
     if (auto ball = root.optional_table("ball")) blow_.ball = read_ball(*ball);
     motion_ = read_motion(root.table("motion"));
     swing_ = read_swing_options(root);
-    if (swing_.joint != models::HeadJoint::rigid)
+    if (swing_.joint.kind != models::HeadJoint::Kind::rigid)
       root.fail("joint", "a loaded start needs a head that is rigid on the shaft");
     solve_ = read_options(root, {"fe-free-body"});
     models::ShaftMount& mount = solve_.shaft_mount;

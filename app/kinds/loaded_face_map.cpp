@@ -189,7 +189,7 @@ class LoadedFaceMapJob final : public PointJob {
     if (auto ball = root.optional_table("ball")) setup.ball = read_ball(*ball);
     setup.motion = read_motion(root.table("motion"));
     setup.swing = read_swing_options(root);
-    if (setup.swing.joint != models::HeadJoint::rigid)
+    if (setup.swing.joint.kind != models::HeadJoint::Kind::rigid)
       root.fail("joint", "a loaded start needs a head that is rigid on the shaft");
     setup.solve = read_options(root, {s.reduced ? "volumetric" : "fe-free-body"});
     models::ShaftMount& mount = setup.solve.shaft_mount;

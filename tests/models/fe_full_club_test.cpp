@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hosel/models/hosel_load.hpp"
+#include "hosel/models/shaft_coupled.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {
@@ -83,6 +85,49 @@ TEST(FeFullClub, AShaftOfNothingIsAFreeHead) {
   EXPECT_LT((full.launch.velocity - free.launch.velocity).norm(), 1e-4 * free.launch.ball_speed());
   EXPECT_LT((full.launch.spin - free.launch.spin).norm(), 1e-3 * free.launch.spin_rate());
   EXPECT_LT((full.launch.head_spin - free.launch.head_spin).norm(), 1e-3 * free.launch.head_spin.norm());
+}
+
+/// Springs as stiff as a hinge holds its other axes are a rigid joint; without the one about YG nothing is left of that
+/// moment, and the head turns more. The ball knows: what the hinge takes is far above what the welds' yielding changes.
+TEST(FeFullClub, AHingedHeadFeelsTheShaftButNotItsMomentAboutTheHinge) {
+  const Blow blow = driver_blow(0.0, 0.015);  // high: the blow turns the head about the hinge
+  const Vec3 across = face_to_grip(blow.club.geometry).transpose().col(1);
+  const auto solve = [&](const HeadJoint& joint, double& moment) {
+    ShaftMount mount;
+    mount.joint = joint;
+    return solve_full_club(blow, {coarse(), mount}, [&](const ImpactView& v) {
+      moment = std::max(moment, std::abs(hosel_load(*v.shaft, v.state).moment.dot(across)));
+    });
+  };
+  HeadJoint weld{.kind = HeadJoint::Kind::spring};
+  weld.stiffness.translation = Vec3::Constant(2e9);
+  weld.stiffness.rotation = Vec3::Constant(2e5);
+  double rigid_moment = 0, weld_moment = 0, hinge_moment = 0;
+  const FeOutcome free = solve_free_body(blow, coarse()), rigid = solve({}, rigid_moment),
+                  welded = solve(weld, weld_moment), hinged = solve({.kind = HeadJoint::Kind::hinge}, hinge_moment);
+  for (const FeOutcome* o : {&rigid, &welded, &hinged}) {
+    ASSERT_GT(o->result.peak_force, 1e4);
+    EXPECT_LT(std::abs(o->result.ledger.closure), 5e-3 * o->result.ledger.initial);
+  }
+  ASSERT_GT(rigid_moment, 1);
+  EXPECT_LT(hinge_moment, 1e-3 * rigid_moment);
+  const double shaft = (rigid.launch.spin - free.launch.spin).norm();
+  EXPECT_LT((welded.launch.spin - rigid.launch.spin).norm(), 0.02 * shaft);
+  EXPECT_GT((hinged.launch.spin - rigid.launch.spin).norm(), 0.2 * shaft);
+  // The shaft is still carried along: more ball speed than a free head gives, less than the rigid joint does.
+  EXPECT_GT(hinged.launch.ball_speed(), free.launch.ball_speed() + 0.05);
+  EXPECT_GT(rigid.launch.ball_speed(), hinged.launch.ball_speed());
+  // The condensed shaft with its slope let go says the same of the head's turn.
+  const auto turn = [&](bool is_hinged) { return ShaftCoupled({}, {}, {.hinged = is_hinged}).launch(blow).head_spin; };
+  const Vec3 by_fe = hinged.launch.head_spin - rigid.launch.head_spin, reduced = turn(true) - turn(false);
+  EXPECT_LT((by_fe - reduced).norm(), 0.15 * by_fe.norm());
+}
+
+TEST(FeFullClub, RefusesALoadedHinge) {
+  ShaftMount mount;
+  mount.joint.kind = HeadJoint::Kind::hinge;
+  mount.load = GripLoad{};
+  EXPECT_THROW(solve_full_club(driver_blow(0), {coarse(), mount}), std::invalid_argument);
 }
 
 TEST(FeFullClub, RefusesAClubWithoutShaft) {

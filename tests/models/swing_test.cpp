@@ -195,12 +195,12 @@ TEST(Swing, HingeAndSpringJoints) {
   // A stiff spring is a weld; a hinge lets the head turn about its axis and nothing else.
   const auto last = [](const SwingOptions& o) { return swing(o, -0.3, -0.1).back(); };
   const SwingSample rigid = last({.elements = 8});
-  SwingOptions stiff{.elements = 8, .joint = HeadJoint::spring};
-  stiff.joint_stiffness.translation = Vec3::Constant(1e8);
-  stiff.joint_stiffness.rotation = Vec3::Constant(1e5);
+  SwingOptions stiff{.elements = 8, .joint = {.kind = HeadJoint::Kind::spring}};
+  stiff.joint.stiffness.translation = Vec3::Constant(1e8);
+  stiff.joint.stiffness.rotation = Vec3::Constant(1e5);
   const SwingSample spring = last(stiff);
   EXPECT_NEAR(spring.lead, rigid.lead, 1e-3 * std::abs(rigid.lead) + 1e-4);
-  const SwingSample hinge = last({.elements = 8, .joint = HeadJoint::hinge, .hinge_axis = Vec3::UnitZ()});
+  const SwingSample hinge = last({.elements = 8, .joint = {.kind = HeadJoint::Kind::hinge}});
   EXPECT_GT(hinge.head.rotation.angularDistance(rigid.head.rotation), 0.05);
 }
 
