@@ -3,9 +3,12 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <string_view>
 
 namespace hosel::app {
 
+/// A word that a shell takes as it is: in quotes where it holds anything but letters, digits and a few signs.
+std::string shell_word(std::string_view word);
 /// The line that was typed, so that a shell takes it as the same words.
 std::string typed(int argc, char** argv);
 /// The man page hosel(1), as roff.

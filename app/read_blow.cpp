@@ -124,7 +124,7 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   blow.club.head = read_head(root.table("head"), whole);
   blow.delivery = read_delivery(root.table("delivery"));
   if (auto shaft = root.optional_table("shaft")) blow.club.shaft = read_shaft(*shaft);
-  if (auto hosel = root.optional_table("hosel")) blow.club.geometry = read_club_geometry(*hosel);
+  if (blow.club.shaft || root.has("hosel")) blow.club.geometry = read_club_geometry(root.default_table("hosel"));
   if (auto contact = root.optional_table("contact")) blow.contact = read_contact_law(*contact);
   return blow;
 }

@@ -569,7 +569,7 @@ Table Table::table(Key key) {
     if (!access.document.known[&access.table].contains(other.str()) && node.is_table() &&
         edit_distance(other.str(), key.name) <= 2)
       fail(other.str(), fmt::format("unknown table; did you mean '[{}]'?", key.name));
-  fail("", fmt::format("table '[{}]' is missing", dotted(path_, key.name)));
+  fail("", fmt::format("table '[{0}]' is missing: `hosel keys {0}` says what it holds", dotted(path_, key.name)));
 }
 
 std::optional<Table> Table::optional_table(std::string_view key) {

@@ -179,7 +179,7 @@ std::vector<PanelFile> panel_files(const Figure& f, std::string_view stem) {
     std::string file(stem);
     if (n > 1) {
       file += fmt::format("/{}-", out.size() + 1);
-      const std::string name = called(p);
+      const std::string name = called(p).substr(0, 100);  // of a file's name no more than 255 bytes are stored
       for (const char c : name.substr(0, name.find(" ["))) {
         const bool plain = std::isalnum(static_cast<unsigned char>(c));
         if (plain || !file.ends_with('-')) file += plain ? char(std::tolower(static_cast<unsigned char>(c))) : '-';

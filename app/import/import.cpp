@@ -269,6 +269,11 @@ void import_shots(const ImportOptions& o) {
   mass.header = "(nominal)";
   mass.name = "head_mass_kg";
   mass.note = "not recorded: nominal of the club";
+  // One club's mass is the head's own, in the case, where its owner corrects it once.
+  const bool one_mass = mass.filled == shots &&
+                        std::ranges::count(mass.cells, mass.cells.front()) == std::ssize(mass.cells);
+  const std::string own_mass = one_mass ? fmt::format("mass_kg = {}  # nominal\n", mass.cells.front()) : "";
+  if (one_mass) mass.note += ", in case.toml";
   columns.push_back(std::move(mass));
 
   // The table of what was understood.
@@ -307,6 +312,7 @@ void import_shots(const ImportOptions& o) {
   std::vector<const Understood*> good, rest;
   std::vector<std::string> good_names, rest_names;
   for (const Understood& u : columns) {
+    if (one_mass && u.name == "head_mass_kg") continue;
     (u.name.empty() ? rest : good).push_back(&u);
     (u.name.empty() ? rest_names : good_names).push_back(u.name.empty() ? u.header : u.name);
   }
@@ -330,12 +336,14 @@ void import_shots(const ImportOptions& o) {
   if (turns) {
     const NominalHead& head = d.heads().at(*heads.begin());
     toml += fmt::format(
-        "\n[head]  # a generic {}; its mass stands in shots.csv. Put in your own.\ncg_mm = {}\ninertia_kg_m2 = {}\n"
+        "\n[head]  # a generic {}{}: put in your own\n{}cg_mm = {}\ninertia_kg_m2 = {}\n"
         "bulge_mm = inf  # the recorded face angle and loft are those where the ball met the face\nroll_mm  = inf\n",
-        *heads.begin(), head.cg_mm, head.inertia_kg_m2);
-  } else if (find("azimuth")) {
-    fmt::print("  clubs of several kinds: the model is planar and says nothing of direction; --club NAME takes one\n");
+        *heads.begin(), one_mass ? "" : ", whose mass stands in shots.csv", own_mass, head.cg_mm, head.inertia_kg_m2);
+  } else if (one_mass) {
+    toml += "\n[head]\n" + own_mass;
   }
+  if (!turns && find("azimuth"))
+    fmt::print("  clubs of several kinds: the model is planar and says nothing of direction; --club NAME takes one\n");
   toml += "\n[data]\nshots = \"shots.csv\"\n";
   if (!notes.empty())
     toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";

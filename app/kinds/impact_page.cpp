@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hosel/app/command_help.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/face_strike.hpp"
 #include "hosel/post/html.hpp"
@@ -119,7 +120,8 @@ post::TextTable ledger(const std::vector<FeRun>& runs) {
 
 void suggest(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
-  const std::string here = out.directory().string(), again = fmt::format("hosel run {}/case.resolved.toml", here);
+  const std::string here = shell_word(out.directory().string()),
+                    again = "hosel run " + shell_word((out.directory() / "case.resolved.toml").string());
   const bool fe = !s.runs.empty();
   if (fe && out.resolved_case().find("accuracy = \"look\"") != std::string::npos)
     page.suggest("A finer answer, with the numerical error of every number (some ten times as long):",

@@ -70,7 +70,8 @@ class LoopJob final : public Job {
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
     if (fe) case_.blow.contact.friction = options.fe.friction;
-    if (auto hosel = root.optional_table("hosel")) case_.blow.club.geometry = read_club_geometry(*hosel);
+    if (root.has("shaft") || root.has("hosel"))
+      case_.blow.club.geometry = read_club_geometry(root.default_table("hosel"));
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
       case_.head_mass_declared = table->has_quantity("mass");

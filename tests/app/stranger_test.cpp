@@ -49,6 +49,10 @@ duration_ms = 1.0
   EXPECT_FALSE(fs::exists("executed"));
   EXPECT_FALSE(fs::exists(out / "executed"));
   EXPECT_FALSE(fs::exists(mark));
+  EXPECT_NE(content(out / "report.html")
+                .find("hosel run &#39;" + dir.string() + "/a&#39;\\&#39;&#39;\nsystem(&#39;\\&#39;&#39;touch"),
+            std::string::npos)
+      << "the command that the page gives for copying is one word of a path";
 }
 
 TEST(Stranger, HeadersAreNoAttributesOfThePage) {
