@@ -1,5 +1,6 @@
 #include "hosel/loop/shots/mixture.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -89,6 +90,72 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& z) {
     if (!best || two.gain > best->gain) best = std::move(two);
   }
   return best;
+}
+
+double one_population(const Eigen::MatrixXd& z) {
+  double sum = 0;
+  for (const auto& column : z.colwise()) sum += one_population(Eigen::VectorXd(column));
+  return sum;
+}
+
+std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& second, const Eigen::VectorXd& start,
+                               const Eigen::VectorXd& low, const Eigen::VectorXd& high, double one) {
+  constexpr double step = 0.01, cost = 4, told = 0.05, untold_share = 1.0 / 7;
+  constexpr int passes = 15;
+  const Eigen::Index n = first.rows(), m = first.cols(), size = start.size();
+  if (n < 16) return {};
+  Eigen::VectorXd p = start;
+  Eigen::MatrixXd z, moved;
+  if (!second(p, z)) return {};
+  // A row is of the second population where it lies nearer to it.
+  Eigen::ArrayXd in = (z.rowwise().squaredNorm().array() < first.rowwise().squaredNorm().array()).cast<double>();
+  Eigen::ArrayXd scatter = Eigen::ArrayXd::Ones(m);
+  Mixture out;
+  double log_likelihood = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    out.share = in.mean();
+    if (std::min(out.share, 1 - out.share) < kLeastShare) return {};
+    // Its size by one Gauss-Newton step on the rows that are in it.
+    std::vector<Eigen::MatrixXd> slope;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      Eigen::VectorXd there = p;
+      there[k] += there[k] + step > high[k] ? -step : step;
+      if (!second(there, moved)) return {};
+      slope.push_back((moved - z) / (there[k] - p[k]));
+    }
+    const auto weighted = [&](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+      return (((a.array() * b.array()).colwise() * in).colwise().sum().transpose() / scatter.square()).sum();
+    };
+    for (Eigen::Index k = 0; k < size; ++k) {
+      gradient[k] = weighted(slope[std::size_t(k)], z);
+      for (Eigen::Index l = 0; l < size; ++l) normal(k, l) = weighted(slope[std::size_t(k)], slope[std::size_t(l)]);
+    }
+    normal.diagonal() *= 1 + 1e-9;
+    p = (p - normal.ldlt().solve(gradient)).cwiseMax(low).cwiseMin(high);
+    if (!p.allFinite() || !second(p, z)) return {};
+    scatter = (((z.array().square().colwise() * in) + (first.array().square().colwise() * (1 - in))).colwise().mean())
+                  .sqrt()
+                  .transpose();
+    if (!(scatter.minCoeff() > 1e-9)) return {};
+    log_likelihood = -0.5 * double(n * m) * std::log(2 * std::numbers::pi) - double(n) * scatter.log().sum();
+    const auto distance = [&](const Eigen::MatrixXd& a) -> Eigen::ArrayXd {
+      return (a.array().rowwise() / scatter.transpose()).square().rowwise().sum();
+    };
+    const Eigen::ArrayXd a = std::log(1 - out.share) - 0.5 * distance(first), b = std::log(out.share) - 0.5 * distance(z);
+    const Eigen::ArrayXd top = a.max(b), both = top + ((a - top).exp() + (b - top).exp()).log();
+    in = (b - both).exp();
+    log_likelihood += both.sum();
+  }
+  if (double((in > told && in < 1 - told).count()) > untold_share * double(n)) return {};
+  const Eigen::MatrixXd apart = (z - first).array().rowwise() / scatter.transpose();
+  out.apart = std::sqrt(apart.squaredNorm() / double(n));
+  if (out.apart < kLeastApart) return {};
+  out.deviation = std::sqrt(scatter.square().mean());
+  out.gain = 2 * (log_likelihood - one) - cost * double(size);
+  for (const double x : in) out.second.push_back(x > 0.5);
+  return out;
 }
 
 }  // namespace hosel::loop

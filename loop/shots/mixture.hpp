@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,5 +20,15 @@ struct Mixture {
 /// against one normal or Student population: the likelihood ratio, its largest. `z`: standardised residuals, rows x
 /// channels. Nothing where a share is below an eighth or the two are not apart.
 std::optional<Mixture> mixture(const Eigen::MatrixXd& z);
+
+/// Standardised residuals, rows x channels, where an effect has that size; false where a blow cannot happen.
+using Residuals = std::function<bool(const Eigen::VectorXd& size, Eigen::MatrixXd& z)>;
+/// Largest log-likelihood of one population: normal with a scatter per column, or Student.
+double one_population(const Eigen::MatrixXd& z);
+/// Two populations, of which the second alone has an effect: each row's place follows from the effect, not from one
+/// direction common to all. `start` is where its size is searched from, within `low` and `high`; `one`: what one
+/// population reaches. The gain has paid for the size. Nothing where more than a seventh of the rows cannot be told.
+std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& second, const Eigen::VectorXd& start,
+                               const Eigen::VectorXd& low, const Eigen::VectorXd& high, double one);
 
 }  // namespace hosel::loop

@@ -386,18 +386,57 @@ std::vector<Location> ShotProblem::places(const Selection& s) const {
   return told;
 }
 
+namespace {
+
+/// Two populations of which the second has this effect beside the base, searched from sizes of either sign that part
+/// the shots visibly. `of_base`: the base's standardised residuals, `seen`: those of any model.
+std::vector<Mixture> parted_by(const Parametrisation& f, const Fit& base, const Eigen::MatrixXd& of_base,
+                               const std::function<Eigen::MatrixXd(const Model&, const Eigen::VectorXd&)>& seen,
+                               double one) {
+  constexpr double visible = 6;  // standard deviations
+  Model with = base.model;
+  with.forms.push_back(&f);
+  const auto n = Eigen::Index(f.parameters.size());
+  Eigen::VectorXd low(n), high(n), scale(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Parameter& q = f.parameters[std::size_t(k)];
+    scale[k] = q.scale;
+    low[k] = q.min / q.scale;
+    high[k] = q.max / q.scale;
+  }
+  const Residuals second = [&](const Eigen::VectorXd& size, Eigen::MatrixXd& z) {
+    Eigen::VectorXd p(base.p.size() + n);
+    p << base.p, size.cwiseProduct(scale);
+    z = seen(with, p);
+    return z.allFinite();
+  };
+  std::vector<Mixture> found;
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (const double end : {low[k], high[k]}) {
+      if (end == 0) continue;
+      Eigen::VectorXd size = Eigen::VectorXd::Zero(n);
+      Eigen::MatrixXd z;
+      size[k] = std::copysign(std::min(1.0, std::abs(end)), end);
+      if (!second(size, z)) continue;
+      const double apart = std::sqrt((z - of_base).squaredNorm() / double(z.rows()));
+      if (!(apart > 0)) continue;
+      size[k] = std::clamp(size[k] * visible / apart, low[k], high[k]);
+      if (auto two = mixture(of_base, second, size, low, high, one)) found.push_back(std::move(*two));
+    }
+  return found;
+}
+
+}  // namespace
+
 /// Two populations in the residuals of the chosen model or of the base, on all shots that could be used: nothing is
 /// fitted to them here. A regressor that is known and explains as much is the plainer reason.
 std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
-  bool declared = true;
-  double grown = 1;  // noise that was refuted: the declared one is what either population should show
+  bool declared = true, refuted = false;
   for (int c = 0; c < width(); ++c) {
     declared = declared && channel(c).declared.has_value();
-    if (channel(c).refuted) grown = std::max(grown, channel(c).noise / *channel(c).declared);
+    refuted = refuted || channel(c).refuted;
   }
-  const auto as_declared = [&](const Mixture& m) {
-    return declared && m.deviation * grown > 0.7 && m.deviation * grown < 1.4;
-  };
+  const auto as_declared = [&](const Mixture& m) { return declared && m.deviation > 0.7 && m.deviation < 1.4; };
   std::set<int> slipped;
   for (const RowFlag& f : flags_)
     if (f.slip) slipped.insert(f.shot);
@@ -405,35 +444,55 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   for (const int i : usable_)
     if (!slipped.contains(i)) rows.push_back(i);
   rows = thinned(rows);
+  ShotModel model = *model_;
+  if (refuted) {  // what was declared is what either population should show
+    for (int c = 0; c < width(); ++c)
+      if (channel(c).refuted) model.channel(c).noise = *channel(c).declared;
+    model.set_covariance(inputs_.covariance, s.chosen.model, s.chosen.p.data());
+  }
+  const auto seen = [&](const Model& with, const Eigen::VectorXd& p) -> Eigen::MatrixXd {
+    const Eigen::VectorXd whitened = model.whitened(rows, with, p);
+    return whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
+  };
   std::optional<Mixture> best;
-  Eigen::MatrixXd of;
-  std::vector<const Fit*> fits{&s.chosen};
+  std::string by;  // the effect that parts them, where it is one
+  const Eigen::MatrixXd chosen = seen(s.chosen.model, s.chosen.p), base = seen(s.base.model, s.base.p);
   // The chosen one is wrong, or fits with more noise than there is: it may have drawn the two together.
-  if (!s.clean || grown > 1) fits.push_back(&s.base);
-  for (const Fit* fit : fits) {
-    const Eigen::VectorXd whitened = model_->whitened(rows, fit->model, fit->p);
-    const Eigen::MatrixXd z = whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
-    auto two = mixture(z);
+  const bool doubtful = !s.clean || refuted;
+  for (const Eigen::MatrixXd* z : {&chosen, &base}) {
+    if (z == &base && !doubtful) continue;
+    auto two = mixture(*z);
     if (!two || (best && two->gain < best->gain)) continue;
-    if (fit == &s.base && s.clean && !as_declared(*two)) continue;
+    if (z == &base && s.clean && !as_declared(*two)) continue;
     best = std::move(two);
-    of = z;
+  }
+  if (best && best->gain < (as_declared(*best) ? kKnownMixture : kMixture)) best.reset();
+  // The same, where the second population has an effect that does not move every shot alike.
+  if (!best && (doubtful || (s.level > 0 && !declared))) {
+    const double one = std::max(one_population(chosen), one_population(base));
+    for (const Parametrisation& f : forms()) {
+      if (f.threshold || f.effect == "session-drift") continue;
+      for (const Mixture& two : parted_by(f, s.base, base, seen, one))
+        if (two.gain > kMixture && (!best || two.gain > best->gain) && (!declared || as_declared(two))) {
+          best = two;
+          by = f.effect;
+        }
+    }
   }
   if (!best) return {};
-  if (best->gain < (as_declared(*best) ? kKnownMixture : kMixture)) return {};
   Eigen::VectorXd difference = Eigen::VectorXd::Zero(width());
   double count = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) count += best->second[i];
   for (std::size_t i = 0; i < rows.size(); ++i)
-    difference += of.row(std::ptrdiff_t(i)).transpose() *
+    difference += base.row(std::ptrdiff_t(i)).transpose() *
                   (best->second[i] ? 1 / count : -1 / (double(rows.size()) - count));
   Eigen::Index most = 0;
   difference.cwiseAbs().maxCoeff(&most);
   return Location{
       channel(int(most)).name, "",
-      fmt::format("a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others: "
+      fmt::format("a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others{}: "
                   "two balls, players or settings that no column tells apart",
-                  100 * best->share, best->apart)};
+                  100 * best->share, best->apart, by.empty() ? "" : fmt::format(", as {} would move them", by))};
 }
 
 /// Where the residual is no structure in any regressor and yet no noise: two populations; a channel whose scatter

@@ -1,0 +1,63 @@
+// Two populations of shots that no one direction parts: the second has an effect, whose size on a shot is its own.
+#include "hosel/loop/shots/mixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hosel::loop {
+namespace {
+
+constexpr int kShots = 60, kChannels = 3;
+
+/// Readings with unit noise: the effect moves channel 1 by an input of either sign times `size(i)`.
+struct Made {
+  Eigen::VectorXd input{kShots};
+  Eigen::MatrixXd z{kShots, kChannels};
+
+  template <class Size>
+  explicit Made(Size&& size) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> gauss;
+    std::uniform_real_distribution<double> uniform(0.5, 1.5);
+    for (int i = 0; i < kShots; ++i) {
+      input[i] = (i % 4 < 2 ? 1 : -1) * uniform(random);
+      for (int c = 0; c < kChannels; ++c) z(i, c) = gauss(random);
+      z(i, 1) += size(i) * input[i];
+    }
+  }
+  std::optional<Mixture> parted() const {
+    const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, 4), high = Eigen::VectorXd::Constant(1, 50);
+    const Residuals second = [this](const Eigen::VectorXd& size, Eigen::MatrixXd& out) {
+      out = z;
+      out.col(1) -= size[0] * input;
+      return true;
+    };
+    // One population may have the effect too, at the size that fits all.
+    Eigen::MatrixXd fitted = z;
+    fitted.col(1) -= input.dot(z.col(1)) / input.squaredNorm() * input;
+    return mixture(z, second, start, -high, high, std::max(one_population(z), one_population(fitted)));
+  }
+};
+
+TEST(Mixture, ASecondPopulationWithAnEffectIsFoundWhereEveryShotHasItsOwnPlace) {
+  const Made made([](int i) { return i % 2 ? 6.0 : 0.0; });
+  const auto two = made.parted();
+  ASSERT_TRUE(two);
+  EXPECT_GT(two->gain, 20);
+  EXPECT_NEAR(two->share, 0.5, 0.05);
+  EXPECT_NEAR(two->deviation, 1, 0.15);  // of 180 readings
+  int right = 0;
+  for (int i = 0; i < kShots; ++i) right += bool(two->second[std::size_t(i)]) == (i % 2 == 1);
+  EXPECT_GT(right, 0.95 * kShots);
+}
+
+TEST(Mixture, AnEffectOfAllShotsOrOneOfManySizesIsNone) {
+  const auto all = Made([](int) { return 6.0; }).parted();
+  EXPECT_FALSE(all && all->gain > 20);
+  const auto growing = Made([](int i) { return 6.0 * i / kShots; }).parted();
+  EXPECT_FALSE(growing && growing->gain > 20);
+}
+
+}  // namespace
+}  // namespace hosel::loop
