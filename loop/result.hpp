@@ -124,7 +124,8 @@ struct LoopResult {
   Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories
   std::optional<Corrected> corrected;                    ///< of a slow base
-  std::vector<Shot> decisive;                            ///< of a surrogate: shots at the likeliest candidates
+  /// Of a surrogate: shots about which its error is no small part of the noise, and some where it is checked.
+  std::vector<Shot> decisive, checks;
   std::vector<std::pair<std::string, std::vector<std::string>>> without;  ///< doubted column, adopted without it
 };
 

@@ -4,8 +4,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/golf/units.hpp"
+#include "hosel/models/face_strike.hpp"
 #include "hosel/models/fe_full_club.hpp"
 
 namespace hosel::models {
@@ -60,6 +62,15 @@ Shaft changed(Shaft shaft, double share, double stiffness) {
   return shaft;
 }
 
+std::optional<FaceCompliance> changed(std::optional<FaceCompliance> face, double compliance, const Head& head) {
+  if (compliance == 0) return face;
+  if (face) compliance += 1 / face->stiffness;
+  else face = find_face(wants_yielding_face(head) ? "modern-driver" : "steel-iron")->face;
+  if (!(compliance > 0)) throw std::invalid_argument("face: no compliance left");
+  face->stiffness = 1 / compliance;
+  return face;
+}
+
 ChangeableFe::ChangeableFe(FeImpactOptions impact, ShaftMount mount, std::optional<Shaft> shaft, bool full_club)
     : impact_(std::move(impact)), mount_(std::move(mount)), shaft_(std::move(shaft)), full_club_(full_club) {
   if (const auto faults = impact_.faults(); !faults.empty())
@@ -69,6 +80,7 @@ ChangeableFe::ChangeableFe(FeImpactOptions impact, ShaftMount mount, std::option
 Launch ChangeableFe::launch(const Blow& blow, const FeChange& change) const {
   FeImpactOptions impact = impact_;
   impact.ball = changed(impact.ball, change, blow.ball.radius);
+  impact.face = changed(impact.face, change.face_compliance, blow.club.head);
   if (std::isfinite(blow.contact.friction)) impact.friction = blow.contact.friction;
   if (share(change) == 0) return solve_free_body(blow, impact).launch;
   if (!shaft_) throw std::invalid_argument("the club has no shaft");

@@ -14,6 +14,10 @@ FeBall changed(FeBall ball, const FeChange& change, double radius, double contac
 /// `share` of its mass and of its bending and torsional stiffness, these times exp(stiffness); 1 and 0 give it back.
 Shaft changed(Shaft shaft, double share, double stiffness);
 
+/// The face with so much more compliance at its centre [m/N]. A rigid one takes outline, effective mass and damping of
+/// the library's for such a head.
+std::optional<FaceCompliance> changed(std::optional<FaceCompliance> face, double compliance, const Head& head);
+
 class ChangeableFe {
  public:
   /// `full_club`: the shaft hangs on the head unless a change takes it away; else only a change adds it. The blow's own

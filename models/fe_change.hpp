@@ -9,9 +9,10 @@ struct FeChange {
   double cover_stiffness = 0;  ///< logarithm of the factor on all moduli of the outermost layer [-]
   /// Added to the outermost layer [m]; a ball of one piece has a skin of `kSkin` to start from.
   double cover_thickness = 0;
-  double losses = 0;      ///< logarithm of the factor on the branch moduli of every layer [-]
-  double relaxation = 0;  ///< logarithm of the factor on the branch times, see `changed` [-]
-  double shaft = 0;       ///< share of the club's shaft (its mass and its stiffness) added to what the model has [-]
+  double losses = 0;           ///< logarithm of the factor on the branch moduli of every layer [-]
+  double relaxation = 0;       ///< logarithm of the factor on the branch times, see `changed` [-]
+  double face_compliance = 0;  ///< added to that of the face at its centre [m/N]
+  double shaft = 0;  ///< share of the club's shaft (its mass and its stiffness) added to what the model has [-]
   double shaft_stiffness = 0;  ///< logarithm of the factor on its bending and torsional stiffness [-]
 
   bool operator==(const FeChange&) const = default;

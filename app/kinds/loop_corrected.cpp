@@ -52,6 +52,12 @@ void put_common(toml::table& root, const loop::Shot& s, const models::Changeable
   change("branch_moduli_factor", std::exp(c.losses), 1);
   change("branch_times_factor", std::exp(c.relaxation), 1);
   if (!changes.empty()) table(root, "ball").insert_or_assign("changes", std::move(changes));
+  if (const auto face = models::changed(base.impact().face, c.face_compliance, head); face && c.face_compliance != 0)
+    root.insert_or_assign("face", toml::table{{"effective_mass_g", rounded(1e3 * face->mass)},
+                                              {"stiffness_N_per_m", rounded(face->stiffness)},
+                                              {"damping_N_s_per_m", rounded(face->damping)},
+                                              {"half_width_mm", rounded(1e3 * face->half_width)},
+                                              {"half_height_mm", rounded(1e3 * face->half_height)}});
   const double share = base.share(c);
   if (share == 0) {
     for (const char* key : {"shaft", "hosel", "grip"}) root.erase(key);

@@ -384,12 +384,11 @@ NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
     next.text = "a longer record";
   } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const auto placed = std::ranges::find_if(so_far.unexplained, [](const Location& l) { return !l.channel.empty(); });
-    const std::string left =
-        placed == so_far.unexplained.end()
-            ? so_far.unexplained.front().detail
-            : fmt::format("{} holds {} that no candidate explains", placed->channel, placed->detail);
-    next.text = fmt::format(
-        "repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left);
+    const std::string left = placed == so_far.unexplained.end() ? so_far.unexplained.front().detail
+                                                                : fmt::format("{} holds {} that no candidate explains",
+                                                                              placed->channel, placed->detail);
+    next.text =
+        fmt::format("repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left);
   } else if (so_far.verdict == Verdict::ambiguous) {
     std::vector<std::string> names, sensors;
     for (const auto& tie : so_far.ties)

@@ -215,12 +215,12 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   switch (so_far.verdict) {
     case Verdict::unexplained:
       if (so_far.unexplained.empty()) break;
-      if (const auto l = std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
+      if (const auto l =
+              std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
           l != so_far.unexplained.end())
         next.text = fmt::format(
             "vary {} on purpose with everything else held, and repeat each setting: {}", l->regressor,
-            l->channel.empty() ? l->detail
-                               : l->channel + " follows it in a way that no candidate explains");
+            l->channel.empty() ? l->detail : l->channel + " follows it in a way that no candidate explains");
       else
         next.text = fmt::format("repeat one setting ten times, ball, player and instrument noted for every shot: {}",
                                 so_far.unexplained.front().detail);

@@ -88,6 +88,7 @@ const std::array kFeatures = {
     change<&models::FeChange::cover_thickness>("cover thickness"),
     change<&models::FeChange::losses>("losses"),
     change<&models::FeChange::relaxation>("relaxation"),
+    change<&models::FeChange::face_compliance>("face compliance"),
     change<&models::FeChange::shaft>("shaft"),
     change<&models::FeChange::shaft_stiffness>("shaft stiffness"),
 };

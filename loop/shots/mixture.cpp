@@ -143,7 +143,8 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
     const auto distance = [&](const Eigen::MatrixXd& a) -> Eigen::ArrayXd {
       return (a.array().rowwise() / scatter.transpose()).square().rowwise().sum();
     };
-    const Eigen::ArrayXd a = std::log(1 - out.share) - 0.5 * distance(first), b = std::log(out.share) - 0.5 * distance(z);
+    const Eigen::ArrayXd a = std::log(1 - out.share) - 0.5 * distance(first),
+                         b = std::log(out.share) - 0.5 * distance(z);
     const Eigen::ArrayXd top = a.max(b), both = top + ((a - top).exp() + (b - top).exp()).log();
     in = (b - both).exp();
     log_likelihood += both.sum();

@@ -297,10 +297,10 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
   return J;
 }
 
-Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
+ShotModel::Found ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
   const int m = width();
   Shot t;
-  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
+  Found cov{Eigen::MatrixXd::Zero(m, m), Eigen::MatrixXd::Zero(m, m)};
   if (!asked(shot, model, parameters, t)) return cov;
   // What the channels (and, last, the launch angle) show of an error of the answer.
   const auto show = [&](const Shot& s, const Vec6& error) {
@@ -321,7 +321,7 @@ Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const 
       down.blow.delivery.dynamic_loft -= h;
       const Eigen::VectorXd d = show(up, Vec6::Zero()) - show(down, Vec6::Zero());
       by_launch = d.head(m) / d[m];
-      cov += std::pow(seen_->channel.noise, 2) * by_launch * by_launch.transpose();
+      cov.launch = std::pow(seen_->channel.noise, 2) * by_launch * by_launch.transpose();
     }
     if (surrogate_) {
       const double h = 1e-5;
@@ -330,10 +330,17 @@ Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const 
         const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
         J.col(k) = d.head(m) - by_launch * d[m];
       }
-      cov += J * surrogate_->error(t) * J.transpose();
+      cov.surrogate = J * surrogate_->error(t) * J.transpose();
     }
   } catch (const std::invalid_argument&) {}
   return cov;
+}
+
+double ShotModel::surrogate_share(int shot, const Model& model, const double* parameters) const {
+  const Eigen::MatrixXd W = whitening(shot);
+  const auto seen = (W.diagonal().array() > 0).count();
+  if (!surrogate_ || seen == 0) return 0;
+  return (W * found_covariance(shot, model, parameters).surrogate * W.transpose()).trace() / double(seen);
 }
 
 void ShotModel::add_launch_noise(int shot, const models::FlightConditions& conditions,
@@ -393,7 +400,10 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
         cov += J * sx * J.transpose();
       }
     }
-    if (surrogate_ || seen_) cov += found_covariance(i, model, parameters);
+    if (surrogate_ || seen_) {
+      const Found found = found_covariance(i, model, parameters);
+      cov += found.launch + found.surrogate;
+    }
     sigma_.row(i) = cov.diagonal().cwiseSqrt().transpose();
     std::vector<int> seen;
     for (int c = 0; c < m; ++c)

@@ -76,6 +76,8 @@ class ShotModel {
   Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> whitening(int shot) const {
     return {whiten_.data() + std::ptrdiff_t(shot) * width() * width(), width(), width()};
   }
+  /// Share of the surrogate's error in the variance of a shot, about a model: mean over its channels, whitened.
+  double surrogate_share(int shot, const Model& model, const double* parameters) const;
   /// Marginal standard deviation of a channel of a shot (instrument and inputs), header's unit.
   double sigma(int shot, int channel) const { return sigma_(shot, channel); }
 
@@ -96,8 +98,11 @@ class ShotModel {
   /// What the instrument shows of `value` [SI].
   double reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
                  double value) const;
-  /// Covariance by the surrogate's error and by the noise of the launch angle, header's units.
-  Eigen::MatrixXd found_covariance(int shot, const Model& model, const double* parameters) const;
+  /// Covariance by the noise of the launch angle and by the surrogate's error, header's units.
+  struct Found {
+    Eigen::MatrixXd launch, surrogate;
+  };
+  Found found_covariance(int shot, const Model& model, const double* parameters) const;
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
   static void change(const Model& model, const double* parameters, Shot& trial);
   static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);

@@ -37,7 +37,7 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
     const Fit &before = result.selection.base, &after = shown ? result.selection.chosen : before;
     result.balance_before = balance(problem.model(), problem.training(), before.model, before.p.data());
     result.balance_after = balance(problem.model(), problem.training(), after.model, after.p.data());
-    if (c.surrogate) result.decisive = decisive(problem, result);
+    if (c.surrogate) ask_further(problem, result);
     if (c.closing && !doubted) result.corrected = close(c, problem, before, after);
   }
   return result;

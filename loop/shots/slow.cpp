@@ -21,7 +21,8 @@ namespace {
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
 constexpr int kRounds = 4;                         // of asking where the decision hangs
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSurprise = 2;  // chi-squared per output up to which its error was told truly
+constexpr double kSmallShare = 0.05;  // of a shot's variance: an error that is so small decides nothing
+constexpr double kSurprise = 2;       // chi-squared per output up to which its error was told truly
 
 const models::RigidEccentric& closed_form() {
   static const models::RigidEccentric model;
@@ -84,6 +85,12 @@ std::string errors(const Surrogate& surrogate, const std::vector<Shot>& shots, c
   return text;
 }
 
+std::function<void(int)> told(const ShotCase& c, const char* what, std::size_t of) {
+  return [&c, what, of](int done) {
+    if (c.told) c.told(what, double(done) / double(of));
+  };
+}
+
 /// At most so many, from all over.
 std::vector<int> evenly(const std::vector<int>& all, std::size_t most) {
   if (all.size() <= most) return all;
@@ -94,43 +101,54 @@ std::vector<int> evenly(const std::vector<int>& all, std::size_t most) {
 
 }  // namespace
 
-LoopResult run_slow(const ShotCase& c) {
+Learnt learn(const ShotCase& c) {
   const SlowBase& slow = *c.slow;
-  const auto told = [&](const char* what, std::size_t of) {
-    return [&c, what, of](int done) {
-      if (c.told) c.told(what, double(done) / double(of));
-    };
-  };
-  ShotCase quick = without_holdout(c);
-  const std::vector<Shot> shots = recorded(c);
+  std::vector<Shot> shots = recorded(c);
   Surrogate coarse(slow.coarse, first_answer, 3);
-  Surrogate fine(
-      slow.fine ? slow.fine : slow.coarse, [&](const Shot& s) { return coarse.launch(s); }, 2);
+  ShotCase quick = without_holdout(c);
   quick.surrogate = &coarse;
   const std::vector<Parametrisation> effects = ShotProblem(quick, {}, std::set<int>{}, {}).forms();
   const int runs = slow.runs > 0 ? slow.runs : kRuns + kRunsPerQuantity * changed_quantities(shots, effects);
-  Surrogate& exact = slow.fine ? fine : coarse;
   try {
-    coarse.learn(spread(shots, effects, runs, slow.seed), told("surrogate", std::size_t(runs)));
-    if (slow.fine) {
-      fine.learn(spread(shots, {}, slow.fine_runs, slow.seed + 1),
-                 told("the case's own accuracy", std::size_t(slow.fine_runs)));
-      quick.surrogate = &fine;
-    }
+    coarse.learn(spread(shots, effects, runs, slow.seed), told(c, "surrogate", std::size_t(runs)));
+    if (!slow.fine) return {std::move(shots), nullptr, std::move(coarse)};
+    const auto first = std::make_shared<const Surrogate>(std::move(coarse));
+    Surrogate fine(
+        slow.fine, [first](const Shot& s) { return first->launch(s); }, 2);
+    fine.learn(spread(shots, {}, slow.fine_runs, slow.seed + 1),
+               told(c, "the case's own accuracy", std::size_t(slow.fine_runs)));
+    return {std::move(shots), first, std::move(fine)};
   } catch (const std::invalid_argument& e) {
     throw DataError(fmt::format("{}: surrogate of {}: {}", c.shots.file, c.base, e.what()));
   }
+}
+
+LoopResult run_slow(const ShotCase& c) {
+  Learnt learnt = learn(c);
+  return run_slow(c, learnt);
+}
+
+LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
+  const SlowBase& slow = *c.slow;
+  Surrogate& best = learnt.best;
+  ShotCase quick = without_holdout(c);
+  quick.surrogate = &best;
+  const std::string first_error = errors(best, learnt.shots, c.shots);
+  const int first_points = best.points();
 
   // What was found is asked of the base itself; where that moves it, or was not foreseen, once more.
-  const std::string spread_error = errors(*quick.surrogate, shots, c.shots);
-  const int spread_points = exact.points();
   LoopResult result = run(quick);
-  for (int round = 0; round < kRounds && !result.decisive.empty(); ++round) {
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Shot> asked = result.decisive;
+    asked.insert(asked.end(), result.checks.begin(), result.checks.end());
+    if (asked.empty()) break;
+    best.learn(asked, told(c, "where the decision hangs", asked.size()));
+    const bool foreseen = best.surprise() < kSurprise;
+    if (foreseen && result.decisive.empty()) break;
     const std::vector<std::string> adopted = result.adopted;
     const auto ties = result.ties;
-    exact.learn(result.decisive, told("where the decision hangs", result.decisive.size()));
     result = run(quick);
-    if (result.adopted == adopted && result.ties == ties && exact.surprise() < kSurprise) break;
+    if (foreseen && result.adopted == adopted && result.ties == ties) break;
   }
 
   ShotCase last = c;
@@ -139,32 +157,38 @@ LoopResult run_slow(const ShotCase& c) {
   last.surrogate = quick.surrogate;
   last.closing = slow.fine ? slow.fine : slow.coarse;
   last.checked = slow.checked;
+  const Surrogate& coarse = learnt.coarse ? *learnt.coarse : best;
   last.notes.push_back(fmt::format(
       "{} stands behind a sparse polynomial of {} of its answers over {} quantities of blow and effects ({} had none), "
       "its residuals interpolated{}; error of each predicted from the others: {}",
       c.base, coarse.points(), coarse.inputs(), coarse.failed(),
-      slow.fine ? fmt::format(", corrected by {} at the case's own accuracy", fine.points()) : "", spread_error));
-  if (exact.points() > spread_points)
+      learnt.coarse ? fmt::format(", corrected by {} at the case's own accuracy", best.points()) : "", first_error));
+  if (best.points() > first_points)
     last.notes.push_back(fmt::format(
         "where the decision hangs {} was asked {} times more, after which the error is {}; the last of these answers "
         "were {:.2g} of the told errors away from what had been foretold (root mean square)",
-        c.base, exact.points() - spread_points, errors(*quick.surrogate, shots, c.shots), std::sqrt(exact.surprise())));
+        c.base, best.points() - first_points, errors(best, learnt.shots, c.shots), std::sqrt(best.surprise())));
   return run(last);
 }
 
-std::vector<Shot> decisive(const ShotProblem& problem, const LoopResult& result) {
+void ask_further(const ShotProblem& problem, LoopResult& result) {
   constexpr std::size_t rivals = 4, few = 8, many = 40;
-  std::vector<Shot> out;
+  const ShotModel& model = problem.model();
   const auto ask = [&](const Fit& fit, std::size_t most) {
-    for (const int i : evenly(problem.training(), most))
-      if (Shot s; problem.model().asked(i, fit.model, fit.p.data(), s)) out.push_back(std::move(s));
+    std::vector<int> doubtful;
+    for (const int i : problem.training())
+      if (model.surrogate_share(i, fit.model, fit.p.data()) > kSmallShare) doubtful.push_back(i);
+    for (const int i : evenly(doubtful, most))
+      if (Shot s; model.asked(i, fit.model, fit.p.data(), s)) result.decisive.push_back(std::move(s));
   };
   const Selection& found = result.selection;
   ask(found.chosen, many);
-  ask(found.base, few);
+  if (found.chosen.size() > found.base.size()) ask(found.base, few);
   for (std::size_t k = 0; k < std::min(rivals, found.candidates.size()); ++k)
     if (found.candidates[k].fit.size() > 0) ask(found.candidates[k].fit, few);
-  return out;
+  if (result.decisive.size() >= few) return;
+  for (const int i : evenly(problem.training(), few))
+    if (Shot s; model.asked(i, found.chosen.model, found.chosen.p.data(), s)) result.checks.push_back(std::move(s));
 }
 
 Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before, const Fit& after) {

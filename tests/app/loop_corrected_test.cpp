@@ -35,7 +35,7 @@ TEST(LoopCorrected, IsACaseWithTheEffectsInIt) {
     asked.shot.blow.contact.friction = 0.27;
     asked.shot.blow.delivery = {.club_speed = 45, .dynamic_loft = radians(loft), .impact_toe = 0.004};
     asked.shot.blow.delivery.head_angular_velocity = Vec3(0, 0, 12);
-    asked.shot.change = {.cover_stiffness = std::log(1.7), .cover_thickness = 0.2e-3};
+    asked.shot.change = {.cover_stiffness = std::log(1.7), .cover_thickness = 0.2e-3, .face_compliance = 80e-9};
     asked.measured = {
         {hosel::Output::ball_speed, 66.0}, {hosel::Output::backspin, 300.0}, {hosel::Output::sidespin, 400.0}};
     result.corrected->shots.push_back(asked);
@@ -55,6 +55,8 @@ TEST(LoopCorrected, IsACaseWithTheEffectsInIt) {
   EXPECT_NEAR(layers[1].material.instant_shear() / layers[0].material.instant_shear(), 1.7, 1e-8);
   EXPECT_NEAR((1 - layers[0].radius) * 0.0213, models::kSkin + 0.2e-3, 1e-9);
   EXPECT_DOUBLE_EQ(options.fe.friction, 0.27);
+  ASSERT_TRUE(options.fe.face);
+  EXPECT_NEAR(options.fe.face->stiffness, 12.5e6, 1e-2);
   CaseFile second(corrected, corrected.root().tables("variants")[1].texts("set"));
   const Blow blow = read_blow(second.root(), {"fe-free-body"});
   EXPECT_NEAR(blow.delivery.dynamic_loft, radians(15), 1e-9);

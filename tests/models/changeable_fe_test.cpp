@@ -66,6 +66,28 @@ TEST(ChangeableFe, SlowerBranchesKeepTheModuliAtTheContactsFrequencyAndTheBounce
   EXPECT_NEAR(bounce({.relaxation = 1.5}), declared, 0.25 * 4 * (declared - more_loss));
 }
 
+TEST(ChangeableFe, FacesInSeriesAddTheirComplianceAndAStiffOneIsRigid) {
+  const Head iron{
+      .mass = 0.26, .cg = Vec3(-0.001, 0, 0), .inertia = Vec3(2.8e-4, 0.6e-4, 2.9e-4).asDiagonal(), .face = {}};
+  const auto from_rigid = changed(std::optional<FaceCompliance>{}, 50e-9, iron);
+  ASSERT_TRUE(from_rigid);
+  EXPECT_NEAR(1 / changed(from_rigid, 30e-9, iron)->stiffness, 80e-9, 1e-18);
+  EXPECT_FALSE(changed(std::optional<FaceCompliance>{}, 0, iron));
+  EXPECT_THROW(changed(from_rigid, -50e-9, iron), std::invalid_argument);
+
+  FeImpactOptions options;
+  options.resolve(Accuracy::look);
+  const ChangeableFe base(options, {}, {}, false);
+  Blow blow;
+  blow.club.head = iron;
+  blow.delivery = {.club_speed = 36, .dynamic_loft = radians(24)};
+  const double rigid = base.launch(blow, {}).ball_speed(),
+               yielding = base.launch(blow, {.face_compliance = 80e-9}).ball_speed(),
+               stiff = base.launch(blow, {.face_compliance = 1e-13}).ball_speed();
+  ASSERT_GT(yielding - rigid, 0.3);  // a yielding face is felt
+  EXPECT_LT(std::abs(stiff - rigid), 1e-3 * (yielding - rigid));
+}
+
 TEST(ChangeableFe, ASmallShareOfTheShaftIsNearTheFreeHead) {
   FeImpactOptions options;
   options.resolve(Accuracy::look);
