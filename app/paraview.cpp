@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "build_info.hpp"
+#include "hosel/app/command_help.hpp"
 #include "hosel/app/reader.hpp"
 
 namespace hosel::app {
@@ -45,12 +46,16 @@ void open_in_paraview(const fs::path& out) {
     throw InputError(fmt::format("{}: no series for ParaView (vtk/*.pvd) in this run", out.string()));
   if (!installed("paraview")) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) {
-    const auto ball = std::ranges::find_if(folders, [](const auto& f) { return fs::exists(fs::path(f) / "ball.pvd"); });
-    throw InputError("there is no screen here; " +
-                     (ball == folders.end() ? "the figures beside report.html need none"
-                                            : fmt::format("without one: scripts/pvbatch post/paraview/impact.py {} "
-                                                          "impact.png",
-                                                          *ball)));
+    // Each kind of run has a script that draws without a screen, by the series that it is about.
+    for (const auto& [series, maker] : {std::pair{"ball", "impact"}, {"face", "face"}, {"shaft", "swing"}}) {
+      const auto found = std::ranges::find_if(
+          folders, [&](const auto& f) { return fs::exists(fs::path(f) / (std::string(series) + ".pvd")); });
+      if (found != folders.end())
+        throw InputError(
+            fmt::format("there is no screen here; without one: scripts/pvbatch post/paraview/{0}.py {1} {0}.png", maker,
+                        shell_word(*found)));
+    }
+    throw InputError("there is no screen here; the figures beside report.html need none");
   }
   fmt::print("{}\n", fmt::join(folders, "\n"));
   std::fflush(stdout);

@@ -1,4 +1,5 @@
-"""Opens every series of a run: warped by its displacement, the ball coloured by stress and in the middle of the view.
+"""Opens every series of a run: warped by its displacement, the ball coloured by stress and in the middle of the view, the
+face of a map by the ball's speed.
 
 `hosel open OUT` starts ParaView with it. HOSEL_VTK names the folders of series, separated by colons.
 """
@@ -22,6 +23,10 @@ for folder in os.environ["HOSEL_VTK"].split(":"):
         if name == "ball":
             ColorBy(display, ("POINTS", "von_mises"))
             display.RescaleTransferFunctionToDataRangeOverTime()
+            display.SetScalarBarVisibility(view, True)
+        speeds = [a.Name for a in source.PointData if a.Name.endswith("ball_speed")]
+        if name == "face" and speeds:  # a face map: any other quantity is in the list of colours
+            ColorBy(display, ("POINTS", next((s for s in speeds if "-minus-" in s), speeds[0])))
             display.SetScalarBarVisibility(view, True)
         if name == "head":
             display.Opacity = 0.25
