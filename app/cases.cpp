@@ -44,9 +44,12 @@ std::vector<std::pair<std::string, std::string>> shipped_cases() {
 }
 
 fs::path find_case(const std::string& named) {
-  if (fs::exists(named)) return named;
+  // A folder here that is no case (a run's, say, called after its case) hides no shipped one.
+  const bool folder = fs::is_directory(named);
+  if (folder ? fs::exists(fs::path(named) / "case.toml") : fs::exists(named)) return named;
   for (const fs::path& home : case_homes())
     if (fs::is_regular_file(home / named / "case.toml")) return home / named;
+  if (folder) throw InputError(fmt::format("{}: holds no case.toml", named));
   std::vector<std::string> names;
   for (const auto& [name, title] : shipped_cases()) names.push_back(name);
   // `cases/iron7-trackman` is where a shipped case lies in a checkout; its name works everywhere.

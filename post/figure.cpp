@@ -112,7 +112,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     }
     s += fmt::format(
         "set palette defined ({})\nset size {}\n"
-        "set cblabel {}\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\n",
+        "set cblabel {} offset 1.5,0\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange "
+        "[{:.10g}:{:.10g}]\n",
         p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
                         : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
         p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
@@ -121,7 +122,12 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
            "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
-    s += "set pm3d map interpolate 3,3\nsplot $" + name + " with pm3d nocontour notitle";
+    // Cells of one colour each: small enough that a coarse grid looks as smooth as a fine one.
+    const auto parts = [](std::size_t points) {
+      return std::max<std::size_t>(2, 120 / std::max<std::size_t>(1, points));
+    };
+    s += fmt::format("set pm3d map interpolate {},{}\nsplot ${} with pm3d nocontour notitle", parts(p.map_x.size()),
+                     parts(p.map_y.size()), name);
     if (p.map_contours) s += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
     for (std::size_t i = 0; i < p.series.size(); ++i) {
       const std::string mark = fmt::format("s{}_{}", k, i);

@@ -17,6 +17,7 @@
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -249,7 +250,7 @@ class CrossCheckJob final : public Job {
       std::string plain(c.name);
       std::ranges::replace(plain, '_', ' ');
       post::Panel p{.title = plain, .x_label = x.label};
-      const std::string with_unit = fmt::format("difference [{}]", c.unit);
+      const std::string with_unit = fmt::format("difference [{}]", post::symbol(c.unit));
       if (axes_.size() == 1) {
         p.y_label = with_unit;
         post::Series s{.style = "linespoints"};

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "command.hpp"
+#include "hosel/app/cases.hpp"
 
 namespace hosel::test {
 namespace {
@@ -67,6 +68,18 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   const Outcome none = diff("a", "nothing");
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
+}
+
+TEST(CommandLine, AFolderThatIsNoCaseHidesNoShippedOne) {
+  const fs::path dir = fresh_directory("command_shadow"), before = fs::current_path();
+  fs::create_directories(dir / "material-point" / "vtk");
+  fs::current_path(dir);
+  const fs::path found = app::find_case("material-point");
+  write("material-point/case.toml", "kind = \"modes\"\n");
+  const fs::path own = app::find_case("material-point");
+  fs::current_path(before);
+  EXPECT_TRUE(found.is_absolute() && fs::exists(found / "case.toml")) << found;
+  EXPECT_EQ(own, "material-point");
 }
 
 TEST(CommandLine, OpenSaysWhatIsMissing) {
