@@ -25,8 +25,8 @@ struct PatchHistory {
 /// touch, and the next on either side.
 PatchHistory read_patch(const std::filesystem::path& vtk, const Mat3& ball_axes, const Mat3& mesh_axes);
 
-/// Pressure, traction (means over an edge of the ball's mesh) and slip as maps; no panel where nothing was seen to touch,
-/// and none of what is zero throughout.
+/// Pressure, traction (means over an edge of the ball's mesh) and slip as maps; no panel where nothing was seen to
+/// touch, and none of what is zero throughout.
 Figure patch_figure(const PatchHistory& patch, std::string_view model);
 
 }  // namespace hosel::post
