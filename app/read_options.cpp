@@ -105,6 +105,19 @@ void read_grip(Table& t, models::ShaftMount& mount) {
         .moment = t.vector({"moment", "that the hands apply at the grip at first contact, grip frame"}, "N_m")};
 }
 
+post::RecorderOptions read_recorder(Table root) {
+  post::RecorderOptions o;
+  if (auto t = root.optional_table("output")) {
+    o.vtk = t->flag({"vtk", "write series for ParaView"}, o.vtk);
+    o.steps_per_frame =
+        int(t->integer({"steps_per_frame", "time steps from one frame to the next"}, 1, 100000, o.steps_per_frame));
+    o.angles = int(t->integer({"angles", "points around the ball's surface in the files"}, 8, 256, o.angles));
+    o.face_width = t->quantity({"face_width", "of the drawn face"}, "mm", {0.005, 0.5}, o.face_width);
+    o.face_height = t->quantity({"face_height", "of the drawn face"}, "mm", {0.005, 0.5}, o.face_height);
+  }
+  return o;
+}
+
 models::Options read_options(Table root, const std::vector<std::string>& models) {
   models::Options options;
   const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };

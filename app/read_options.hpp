@@ -7,6 +7,7 @@
 
 #include "hosel/app/reader.hpp"
 #include "hosel/models/options.hpp"
+#include "hosel/post/impact_recorder.hpp"
 
 namespace hosel::app {
 
@@ -19,5 +20,8 @@ models::Accuracy accuracy_named(std::string_view name);
 /// `[grip]`: what the hands do during the impact, and the wrench (`force`, `moment`, grip axes) with which they load
 /// the shaft before it; without one the shaft is straight and moves with the head.
 void read_grip(Table& table, models::ShaftMount& mount);
+
+/// `[output]`: what is written of a finite-element impact for ParaView.
+post::RecorderOptions read_recorder(Table root);
 
 }  // namespace hosel::app

@@ -2,11 +2,26 @@
 
 namespace hosel::models {
 
-fem::Wrench hosel_load(const fem::Beam& shaft, const fem::State& s) {
+namespace {
+
+/// What the shaft's own inertia and stresses leave for others to balance.
+fem::Vector residual(const fem::Beam& shaft, const fem::State& s) {
   fem::Vector inertia = fem::Vector::Zero(s.v.size()), force = inertia;
   shaft.residual(s, inertia, force);
+  return inertia + force;
+}
+
+}  // namespace
+
+fem::Wrench grip_load(const fem::Beam& shaft, const fem::State& s) {
+  const fem::Node& butt = shaft.nodes().front();
+  const fem::Vector r = residual(shaft, s);
+  return {r.segment<3>(butt.translation.v), fem::rotation(s, butt.rotation) * Vec3(r.segment<3>(butt.rotation.v))};
+}
+
+fem::Wrench hosel_load(const fem::Beam& shaft, const fem::State& s) {
   const fem::Node& tip = shaft.nodes().back();
-  const fem::Vector r = inertia + force;
+  const fem::Vector r = residual(shaft, s);
   return {-(fem::rotation(s, tip.rotation).conjugate() * Vec3(r.segment<3>(tip.translation.v))),
           -r.segment<3>(tip.rotation.v)};
 }

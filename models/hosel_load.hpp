@@ -1,4 +1,4 @@
-/// What the shaft does to the head at the hosel, during a blow.
+/// What the ends of the shaft transmit during a blow: to the head at the hosel, from the hands at the grip.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,11 @@
 
 namespace hosel::models {
 
-/// Force of the shaft on the head, and moment about the hosel, in the head's (face) axes. `shaft` ends at the
-/// head's node.
+/// Force of the shaft on the head, and moment about the hosel, in the axes of the shaft's tip: the head's (face) axes
+/// where the joint is rigid.
 fem::Wrench hosel_load(const fem::Beam& shaft, const fem::State& s);
+/// Force and moment of the hands on the shaft's butt, whatever holds it, global axes.
+fem::Wrench grip_load(const fem::Beam& shaft, const fem::State& s);
 
 struct HoselHistory {
   std::vector<double> times;  ///< [s]

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hosel/post/shaft_loads.hpp"
+
 namespace hosel::post {
 namespace {
 
@@ -64,29 +66,19 @@ VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& vel
   return mesh;
 }
 
-std::vector<SectionLoad> section_loads(const fem::Beam& beam, const fem::State& state) {
-  const std::vector<fem::Beam::Resultant> at = beam.resultants(state);
-  std::vector<SectionLoad> out;
-  std::size_t k = 0;
-  for (const mesh::LineNode& node : beam.line()) {
-    while (k + 2 < at.size() && at[k + 1].arc_length < node.arc_length) ++k;
-    const double w = (node.arc_length - at[k].arc_length) / (at[k + 1].arc_length - at[k].arc_length);
-    const Vec3 force = (1 - w) * at[k].force + w * at[k + 1].force;
-    const Vec3 moment = (1 - w) * at[k].moment + w * at[k + 1].moment;
-    out.push_back({force.x(), moment.x(), moment.tail<2>().norm()});
-  }
-  return out;
-}
-
 VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& state) {
   VtkMesh m;
-  std::vector<Vec3> displacement, velocity;
+  std::vector<Vec3> displacement, velocity, deflection;
   VtkField radius{"radius", "m", 1, {}};
+  const fem::Node& grip = beam.nodes().front();
+  const Vec3 held = state.q.segment<3>(grip.translation.q), start = beam.line().front().position;
+  const Eigen::Quaterniond turn = fem::rotation(state, grip.rotation);
   for (std::size_t i = 0; i < beam.nodes().size(); ++i) {
     const fem::DofMap::Block& block = beam.nodes()[i].translation;
     m.points.push_back(beam.line()[i].position);
     displacement.push_back(Vec3(state.q.segment<3>(block.q)) - m.points.back());
     velocity.emplace_back(state.v.segment<3>(block.v));
+    deflection.push_back(Vec3(state.q.segment<3>(block.q)) - held - turn * (m.points.back() - start));
     radius.values.push_back(shaft.at(beam.line()[i].arc_length).outer_radius);
     if (i > 0) m.cells.push_back({CellShape::line, {std::int64_t(i) - 1, std::int64_t(i)}});
   }
@@ -98,10 +90,19 @@ VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& 
   }
   m.point_fields = {vector_field("displacement", "m", displacement),
                     vector_field("velocity", "m/s", velocity),
+                    vector_field("deflection", "m", deflection),
                     radius,
                     axial,
                     torque,
                     bending};
+  return m;
+}
+
+VtkMesh hands_mesh(const Vec3& place, const fem::Wrench& wrench) {
+  VtkMesh m;
+  m.points = {place};
+  m.cells = {{CellShape::vertex, {0}}};
+  m.point_fields = {vector_field("force", "N", {wrench.force}), vector_field("moment", "N m", {wrench.moment})};
   return m;
 }
 

@@ -1,7 +1,7 @@
 /// Rigid bodies and the shaft as meshes for looking.
 #pragma once
 
-#include "hosel/fem/beam.hpp"
+#include "hosel/fem/supports.hpp"
 #include "hosel/golf/head.hpp"
 #include "hosel/golf/shaft.hpp"
 #include "hosel/post/vtk_series.hpp"
@@ -23,15 +23,10 @@ VtkMesh head_mesh(const Head& head, double width, double height);
 /// the velocity of the frame's origin [m/s] and the angular velocity [rad/s], global frame.
 VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin);
 
-/// What a section of the shaft carries [N, N m].
-struct SectionLoad {
-  double axial = 0;    ///< tension is positive
-  double torque = 0;   ///< about the line, from its first node to its last
-  double bending = 0;  ///< moment across the line
-};
-/// At each node of a beam: linear in arc length between the Gauss points, and beyond the outermost.
-std::vector<SectionLoad> section_loads(const fem::Beam& beam, const fem::State& state);
-/// The shaft's line with `radius` for ParaView's Tube filter, displacement and velocity, and what its sections carry.
+/// The shaft's line with `radius` for ParaView's Tube filter, displacement and velocity, `deflection` from the straight
+/// shaft that the grip would carry along, and what its sections carry.
 VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& state);
+/// The hands as one point, with their wrench on the club (force [N] and moment [N m], global frame) for arrows.
+VtkMesh hands_mesh(const Vec3& place, const fem::Wrench& wrench);
 
 }  // namespace hosel::post

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "hosel/models/hosel_load.hpp"
 #include "hosel/post/ball_mesh.hpp"
 #include "hosel/post/bodies.hpp"
 #include "hosel/post/checkpoint.hpp"
@@ -111,7 +112,7 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
   s.head_shape = head_mesh(blow.club.head, options.face_width, options.face_height);
   s.run = std::move(run);
-  s.resumed = load_checkpoint(s.checkpoint(), s.run);
+  if (options.checkpoints) s.resumed = load_checkpoint(s.checkpoint(), s.run);
   if (!s.resumed || !s.whole(*s.resumed)) {
     s.resumed.reset();
     fs::remove(s.checkpoint());
@@ -179,8 +180,16 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
     s.write("patch", time, patch_mesh(view.contact.points(view.state)));
     s.write("face", time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
     s.write("head", time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
-    if (view.shaft) s.write("shaft", time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+    if (view.shaft) {
+      s.write("shaft", time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+      const Vec3 start = view.shaft->line().front().position,
+                 grip = view.state.q.segment<3>(view.shaft->nodes().front().translation.q);
+      VtkMesh hands = hands_mesh(start, models::grip_load(*view.shaft, view.state));
+      hands.point_fields.push_back(vector_field("displacement", "m", {grip - start}));
+      s.write("hands", time, hands);
+    }
   }
+  if (!s.options.checkpoints) return;
   if (step / s.options.steps_per_frame % kFramesPerCheckpoint != 0) return;
   SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.history->mark(), {}};
   for (const auto& [body, series] : s.series) saved.series[body] = series.mark();
@@ -189,7 +198,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
 
 std::vector<fs::path> ImpactRecorder::files() const {
   std::vector<fs::path> out;
-  for (const char* body : {"ball", "patch", "face", "head", "shaft"})
+  for (const char* body : {"ball", "patch", "face", "head", "shaft", "hands"})
     if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file))
       out.push_back(file);
   return out;

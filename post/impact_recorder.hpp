@@ -14,6 +14,7 @@ namespace hosel::post {
 struct RecorderOptions {
   bool vtk = true;
   int steps_per_frame = 4;   ///< accepted steps between VTK frames
+  bool checkpoints = true;   ///< leave some on the way, and go on from one
   int angles = 32;           ///< of the revolved ball
   double face_width = 0.08;  ///< of the drawn face, heel to toe [m]
   double face_height = 0.05;
@@ -21,7 +22,7 @@ struct RecorderOptions {
 
 class ImpactRecorder {
  public:
-  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,patch,face,head,shaft}.pvd, and with every eighth frame
+  /// Writes DIRECTORY/history.csv and DIRECTORY/vtk/{ball,patch,face,head,shaft,hands}.pvd, and with every eighth frame
   /// DIRECTORY/checkpoint.cbor. `run` names what is computed and by which build: where a checkpoint of the same run
   /// lies there, whole, and beside it all that had been written, the run goes on with it to the same bytes; where
   /// anything is missing or changed, it begins afresh.

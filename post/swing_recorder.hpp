@@ -7,7 +7,7 @@
 
 #include "hosel/models/swing.hpp"
 #include "hosel/post/bodies.hpp"
-#include "hosel/post/figure.hpp"
+#include "hosel/post/shaft_loads.hpp"
 #include "hosel/post/vtk_series.hpp"
 
 namespace hosel::post {
@@ -42,13 +42,8 @@ class SwingRecorder {
   SwingRecorderOptions options_;
   VtkMesh head_;  // face frame
   std::map<std::string, VtkSeries> series_;
-  struct Frame {
-    double time;
-    std::vector<SectionLoad> loads;  // by node
-  };
-  std::vector<Frame> frames_;
+  ShaftLoads loads_;
   std::vector<Vec3> trail_;  // of the head's centre of gravity, by frame
-  std::string table_;
   long steps_ = 0;
 };
 

@@ -54,17 +54,7 @@ class ImpactJob final : public Job {
       }
     }
     matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
-    if (auto output = root.optional_table("output")) {
-      record_.vtk = output->flag({"vtk", "write series for ParaView"}, record_.vtk);
-      record_.steps_per_frame = int(output->integer({"steps_per_frame", "time steps from one frame to the next"}, 1,
-                                                    100000, record_.steps_per_frame));
-      record_.angles =
-          int(output->integer({"angles", "points around the ball's surface in the files"}, 8, 256, record_.angles));
-      record_.face_width =
-          output->quantity({"face_width", "of the drawn face"}, "mm", {0.005, 0.5}, record_.face_width);
-      record_.face_height =
-          output->quantity({"face_height", "of the drawn face"}, "mm", {0.005, 0.5}, record_.face_height);
-    }
+    record_ = read_recorder(root);
     if (auto measured = root.optional_table("measured"))
       for (const std::string& key : measured->keys()) {
         if (post::Range* range = key == "tangential_restitution" ? &ranges_.tangential_restitution

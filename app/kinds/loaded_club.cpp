@@ -19,7 +19,9 @@
 #include "hosel/models/swing_end.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/impact_recorder.hpp"
 #include "hosel/post/launch_table.hpp"
+#include "hosel/post/shaft_loads.hpp"
 
 namespace hosel::app {
 namespace {
@@ -53,6 +55,8 @@ class LoadedClubJob final : public Job {
     mount.shear = swing_.shear;
     mount.grip_point = swing_.grip_point;
     flight_ = read_optional_flight(root);
+    record_ = read_recorder(root);
+    record_.checkpoints = false;  // seven blows a point, of which one is recorded
     Table points = root.table("points");
     toe_ = points.quantities({"impact_toe", "where the ball meets the face, towards the toe"}, "mm", 0);
     high_ = points.quantities({"impact_high", "where the ball meets the face, up"}, "mm", toe_.size());
@@ -86,7 +90,8 @@ class LoadedClubJob final : public Job {
         ",head_speed_mps,head_rotation_rad_per_s,hosel_impulse_x_N_s,hosel_impulse_y_N_s,hosel_impulse_z_N_s,hosel_"
         "moment_impulse_x_N_m_s,"
         "hosel_moment_impulse_y_N_m_s,hosel_moment_impulse_z_N_m_s\n";
-    post::Figure figure{.columns = 2, .panel_width = 840}, waves{.columns = 2, .panel_width = 840};
+    post::Figure figure{.columns = 2, .panel_width = 840}, waves{.columns = 2, .panel_width = 840}, along{.columns = 3};
+    std::vector<std::filesystem::path> series;
     const double back = axial_return();
     summary["axial_wave_back_from_the_grip_ms"] = 1e3 * back;
     for (std::size_t k = 0; k < toe_.size(); ++k) {
@@ -97,7 +102,19 @@ class LoadedClubJob final : public Job {
       blow.delivery.impact_high = high_[k];
       models::turn_place(lie, blow.delivery);
       const std::string at = fmt::format("toe {:g} mm, high {:g} mm", 1e3 * toe_[k], 1e3 * high_[k]);
-      const std::vector<Prediction> answers = ask(out, blow, end, weightless, at);
+      const std::filesystem::path seen = out.directory() / fmt::format("point_{}", k + 1);
+      post::ImpactRecorder recorder(seen, blow, record_, "");
+      post::ShaftLoads carried;
+      const std::vector<Prediction> answers = ask(out, blow, end, weightless, at, [&](const models::ImpactView& view) {
+        recorder(view);
+        carried.add(view.state.time, *view.shaft, view.state);
+      });
+      out.write(fmt::format("point_{}/shaft.csv", k + 1), carried.table());
+      for (post::Panel& p : carried.panels(1e-3)) {
+        p.title = fmt::format("{}: {}", at, p.title);
+        along.panels.push_back(std::move(p));
+      }
+      std::ranges::copy(recorder.files(), std::back_inserter(series));
       std::vector<post::LaunchColumn> columns;
       nlohmann::json point = {{"impact_toe_mm", 1e3 * toe_[k]}, {"impact_high_mm", 1e3 * high_[k]}};
       for (const Prediction& a : answers) {
@@ -138,6 +155,8 @@ class LoadedClubJob final : public Job {
     out.write("points.csv", table);
     out.draw(figure, "hosel");
     out.draw(waves, "grip");
+    out.draw(along, "shaft");
+    for (const auto& file : series) out.say(fmt::format("ParaView: {}", file.string()));
     out.write_summary(summary);
   }
 
@@ -181,7 +200,7 @@ class LoadedClubJob final : public Job {
   }
 
   std::vector<Prediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
-                              const std::string& at) const {
+                              const std::string& at, const models::ImpactObserver& record) const {
     std::vector<Prediction> answers;
     Progress progress = out.progress(at);
     const auto fe = [&](const std::string& name, const models::ShaftMount* mount) {
@@ -189,6 +208,7 @@ class LoadedClubJob final : public Job {
       Prediction a{.name = name};
       const auto watch = [&](const models::ImpactView& view) {
         if (view.shaft) a.hosel.add(*view.shaft, view.state);
+        if (name == "club loaded") record(view);
       };
       a.launch = mount ? models::solve_full_club(blow, {solve_.fe, *mount}, watch).launch
                        : models::solve_free_body(blow, solve_.fe).launch;
@@ -299,6 +319,7 @@ class LoadedClubJob final : public Job {
   models::Options solve_;
   std::vector<double> toe_, high_;
   std::optional<FlightSetup> flight_;
+  post::RecorderOptions record_;
 };
 
 }  // namespace

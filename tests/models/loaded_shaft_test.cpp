@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hosel/models/fe_full_club.hpp"
+#include "hosel/models/hosel_load.hpp"
 #include "hosel/models/mounted_shaft.hpp"
 #include "tests/support/swing_motion.hpp"
 
@@ -111,6 +112,13 @@ TEST(LoadedShaft, TheSwingGoesOnUnderEveryGrip) {
         << int(grip);
     EXPECT_GT((end.last.head.velocity - end.from.head.velocity).norm(), 0.05);  // and something happened meanwhile
     EXPECT_GT((flight.butt() - before).norm(), 1e-4);
+    // What the hands hold with is the swing's own wrench then, however the grip is driven: the forced one was told it
+    // to first order in time, the clamped one finds it from an acceleration that it holds constant.
+    const fem::Wrench hands = grip_load(*flight.shaft, flight.state);
+    const Vec3 moment = end.last.grip.rotation * end.last.moment;
+    EXPECT_GT(end.last.force.norm(), 100);
+    EXPECT_LT((hands.force - end.last.force).norm(), 0.02 * end.last.force.norm()) << int(grip);
+    EXPECT_LT((hands.moment - moment).norm(), 0.02 * moment.norm()) << int(grip);
   }
   // Straight and rigid instead, the head goes elsewhere.
   Flight straight(end.club, d, {.grip = Grip::free, .elements = kElements, .growth = kGrowth});
