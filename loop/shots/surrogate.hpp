@@ -40,7 +40,7 @@ class Surrogate {
   /// its error truly; not a number before it has learnt twice.
   double surprise() const { return surprise_; }
   /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2], scaled to what
-  /// cross-validation shows: zero before it has learnt.
+  /// cross-validation shows, and then to what every later lesson shows: zero before it has learnt.
   Mat6 error(const Shot& shot) const;
   /// A launch with such an error added.
   static Launch shifted(Launch launch, const Shot& shot, const Vec6& error);
@@ -53,6 +53,7 @@ class Surrogate {
   Answer slow_, quick_;
   int degree_, failed_ = 0;
   double surprise_ = std::numeric_limits<double>::quiet_NaN();
+  double told_scale_ = 1;  ///< of the mean squares
   std::vector<Shot> shots_;
   std::vector<Vec6> beyond_;           ///< what the slow model says beyond the quick one
   std::vector<std::size_t> features_;  ///< that vary over the shots

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
@@ -96,7 +97,7 @@ class Kept {
       std::vector<double> row;
       std::istringstream words(line);
       for (double x = 0; words >> x;) row.push_back(x);
-      if (!words.eof() || row.size() < kNumbers) break;  // of a killed run
+      if (in.eof() || row.size() != std::size_t(kInputs + kChanged + kNumbers)) continue;  // of a killed run
       Launch l;
       auto at = row.end() - kNumbers;
       for (Vec3* v : {&l.velocity, &l.spin, &l.head_velocity, &l.head_spin})
@@ -126,7 +127,9 @@ class Kept {
   std::size_t size() const { return answers_.size(); }
 
  private:
-  static constexpr int kNumbers = 12;
+  static constexpr int kNumbers = 12;  // of a launch
+  inline static const auto kChanged =
+      std::ranges::count_if(loop::features(), [](const loop::Feature& f) { return f.set != nullptr; });
   const models::ChangeableFe& model_;
   std::mutex mutex_;
   std::map<std::vector<double>, Launch> answers_;
