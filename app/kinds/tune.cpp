@@ -91,6 +91,9 @@ class TuneJob final : public Job {
       join_file_ = join->data_file({"file", "CSV with further columns"});
       join_by_ = join->text({"by", "column that both files have"});
     }
+    blow_.delivery.head_angular_velocity =
+        data.vector({"head_angular_velocity", "of the head at first contact in every shot, global frame"}, "rad_per_s",
+                    limits::spin, Vec3::Zero());
     Table noise = data.table("noise");
     for (const std::string& key : noise.keys()) {
       const SplitName split = split_unit(key);
