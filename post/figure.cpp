@@ -112,7 +112,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     }
     s += fmt::format(
         "set palette defined ({})\nset size {}\n"
-        "set cblabel {} offset 1.5,0\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange "
+        "set cblabel {} offset 1,0\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange "
         "[{:.10g}:{:.10g}]\n",
         p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
                         : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
@@ -155,10 +155,19 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + static_cast<int>(i) % 8);
     plot += c.label.empty() ? "notitle" : "title " + literal(c.label);
   }
+  if (!p.y_names.empty()) {
+    std::string names;
+    for (std::size_t i = 0; i < p.y_names.size(); ++i) {
+      std::string name;  // a tic's words are a format
+      for (const char c : p.y_names[i]) name += c == '%' ? std::string("%%") : std::string(1, c);
+      names += fmt::format("{}{} {}", i ? ", " : "", literal(name), -std::ptrdiff_t(i));
+    }
+    s += fmt::format("set ytics ({})\nset yrange [{}:0.5]\n", names, 0.5 - double(p.y_names.size()));
+  }
   // Marks and their bars stay clear of the frame.
   s += marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
                                      : "unset offsets\n";
-  return {data, s + "plot " + plot + "\n"};
+  return {data, s + "plot " + plot + "\n" + (p.y_names.empty() ? "" : "set ytics autofreq\nset autoscale y\n")};
 }
 
 /// What a panel is called: its title, else what stands at its upright axis, without the unit.

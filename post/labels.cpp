@@ -37,8 +37,14 @@ std::string symbol(std::string_view unit) {
 
 std::string label(std::string_view key) {
   if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
+  // One number of a list: "cg_mm[2]".
+  std::string which;
+  if (const auto open = key.find('['); open != key.npos && key.ends_with(']')) {
+    which = " " + std::string(key.substr(open + 1, key.size() - open - 2));
+    key = key.substr(0, open);
+  }
   const SplitName split = split_unit(key);
-  return spoken(split.stem) + (split.unit ? " [" + symbol(split.unit->suffix) + "]" : "");
+  return spoken(split.stem) + which + (split.unit ? " [" + symbol(split.unit->suffix) + "]" : "");
 }
 
 }  // namespace hosel::post

@@ -91,6 +91,11 @@ class CalibrateBallJob final : public Job {
       summary["parameters"].push_back(
           {{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]}, {"relative_sigma", relative}});
       out.say(fmt::format("{:<32} {:12.5g}  +- {:.1f} %", fit.names[p], fit.values[p], 100 * relative));
+      // A name ends with its unit: moduli are read in MPa.
+      const std::string name = fit.names[p].substr(0, fit.names[p].find(" ["));
+      const bool modulus = fit.names[p].ends_with("[Pa]");
+      out.page().answer(name, fmt::format("{:.4g}{}", (modulus ? 1e-6 : 1) * fit.values[p], modulus ? " MPa" : ""),
+                        fmt::format("± {:.1f} %", 100 * relative));
     }
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
       std::vector<double> row;
@@ -105,7 +110,11 @@ class CalibrateBallJob final : public Job {
                                           std::abs(target_.restitution_slope))};
     post::Series time_wanted{.label = "target, one standard deviation"},
         time_got{.label = "ball", .style = "linespoints"};
+    post::TextTable bounce{{{"speed [m/s]", "wanted e", "e", "contact [ms]", "peak force [kN]"}}};
     for (const auto& p : fit.points) {
+      bounce.rows.push_back({fmt::format("{:g}", p.speed), fmt::format("{:.4f}", p.target),
+                             fmt::format("{:.4f}", p.restitution), fmt::format("{:.4f}", 1e3 * p.contact_time),
+                             fmt::format("{:.2f}", 1e-3 * p.peak_force)});
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution,
                           1e3 * p.contact_time, 1e-3 * p.peak_force));
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time,
@@ -125,6 +134,7 @@ class CalibrateBallJob final : public Job {
       time_got.x.push_back(p.speed);
       time_got.y.push_back(1e3 * p.contact_time);
     }
+    out.page().answer(bounce);
     time_wanted.x = {target_.contact_speed};
     time_wanted.y = {1e3 * target_.contact_time};
     time_wanted.error = {1e3 * target_.contact_time_sigma};

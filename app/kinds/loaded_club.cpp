@@ -135,7 +135,7 @@ class LoadedClubJob final : public Job {
               {"moment_N_m_s", {impulse.moment.x(), impulse.moment.y(), impulse.moment.z()}}};
       }
       out.say(at);
-      out.say(post::launch_table(columns).text());
+      out.show(post::launch_table(columns), at);
       for (const auto& [what, with, without] : parts()) {
         const Launch &a = find(answers, with).launch, &b = find(answers, without).launch;
         point["parts"][what] = difference(a, b);

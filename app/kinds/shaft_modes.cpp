@@ -10,6 +10,7 @@
 #include "hosel/fem/supports.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/models/swing.hpp"
+#include "hosel/post/figure.hpp"
 #include "hosel/post/vtk_series.hpp"
 #include "hosel/solvers/modes.hpp"
 
@@ -63,6 +64,7 @@ class ShaftModesJob final : public Job {
     const solvers::Modes modes = solvers::modes(system, rest, count_ + rigid);
 
     nlohmann::json summary;
+    post::Panel shapes{.x_label = "from the butt [mm]", .y_label = "deflection over its largest"};
     std::string csv = "mode,frequency_Hz,frequency_cpm,damping_ratio\n",
                 table = fmt::format("{:>5} {:>12} {:>12} {:>10}\n", "mode", "Hz", "cpm", "damping");
     for (std::size_t i = static_cast<std::size_t>(rigid); i < modes.omega.size(); ++i) {
@@ -72,15 +74,44 @@ class ShaftModesJob final : public Job {
       table += fmt::format("{:>5} {:>12.4f} {:>12.2f} {:>10.5f}\n", number, f, 60 * f, zeta);
       summary["frequency_Hz"].push_back(f);
       summary["damping_ratio"].push_back(zeta);
+      if (post::Series s = deflection(beam, modes.shapes.col(Eigen::Index(i)));
+          !s.x.empty() && shapes.series.size() < 8) {
+        s.label = fmt::format("{}: {:.1f} Hz", number, f);
+        shapes.series.push_back(std::move(s));
+      }
       if (vtk_) write_shape(out, beam, modes.shapes.col(static_cast<Eigen::Index>(i)), number);
     }
     summary["shaft_mass_kg"] = hosel::mass(*club_.shaft);
     out.say(table);
+    out.draw({.panels = {shapes}, .panel_width = 760}, "modes");
     out.write("modes.csv", csv);
     out.write_summary(summary);
   }
 
  private:
+  /// Of a bending mode in its own plane; empty where the shaft turns or stretches alone.
+  post::Series deflection(const fem::Beam& beam, const Eigen::VectorXd& shape) const {
+    Eigen::MatrixX3d across(std::ssize(beam.nodes()), 3);
+    double turned = 0;
+    for (std::size_t n = 0; n < beam.nodes().size(); ++n) {
+      const Mat3& axes = beam.line()[n].frame;
+      across.row(Eigen::Index(n)) = (axes.transpose() * shape.segment<3>(beam.nodes()[n].translation.v)).transpose();
+      turned = std::max(turned, std::abs(axes.col(0).dot(shape.segment<3>(beam.nodes()[n].rotation.v))));
+    }
+    across.col(0).setZero();  // along the shaft
+    Eigen::Index at = 0;
+    const double largest = across.rowwise().norm().maxCoeff(&at);
+    if (!(largest >
+          0.1 * std::max(turned * club_.shaft->stations.front().outer_radius, shape.lpNorm<Eigen::Infinity>() * 0.01)))
+      return {};
+    post::Series s;
+    for (std::size_t n = 0; n < beam.nodes().size(); ++n) {
+      s.x.push_back(1e3 * (beam.line()[n].arc_length + clamped_));
+      s.y.push_back(across.row(Eigen::Index(n)).dot(across.row(at)) / (largest * largest));
+    }
+    return s;
+  }
+
   /// One period of a mode, its largest displacement a tenth of the shaft.
   void write_shape(Output& out, const fem::Beam& beam, const Eigen::VectorXd& shape, std::size_t number) const {
     post::VtkMesh mesh;

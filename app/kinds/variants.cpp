@@ -214,8 +214,40 @@ class VariantsJob final : public Job {
       out.say("");
       out.show(post::launch_table(flights, {}, {}, out.units()));
     }
+    out.draw(figure(answers), "variants");
     out.write("variants.csv", csv);
     out.write_summary(summary);
+  }
+
+  /// Spin and speed of every variant, and launch ratio, beside what was measured.
+  post::Figure figure(const std::vector<Prediction>& answers) const {
+    std::size_t widest = 0;
+    for (const Variant& v : variants_) widest = std::max(widest, v.name.size());
+    post::Figure f{
+        .columns = 3, .panel_width = 400 + 8 * int(widest), .panel_height = 130 + 22 * int(variants_.size())};
+    const auto panel = [&](std::string label, auto value, auto seen) {
+      post::Panel p{.x_label = std::move(label)};
+      post::Series model{.label = "model", .style = "points"}, measured{.label = "measured", .style = "points"};
+      for (std::size_t i = 0; i < variants_.size(); ++i) {
+        p.y_names.push_back(variants_[i].name);
+        if (answers[i].error.empty()) model.x.push_back(value(answers[i])), model.y.push_back(-double(i));
+        for (const double x : seen(variants_[i].seen)) measured.x.push_back(x), measured.y.push_back(-double(i));
+      }
+      p.series = {std::move(model), std::move(measured)};
+      f.panels.push_back(std::move(p));
+    };
+    const auto list = [](const std::optional<double>& x, double unit) {
+      return x ? std::vector<double>{*x / unit} : std::vector<double>{};
+    };
+    panel(
+        "spin [1000 rpm]", [](const Prediction& a) { return 1e-3 * rpm(a.launch.spin_rate()); },
+        [&](const Seen& s) { return list(s.spin_rate, 1e3 / rpm(1)); });
+    panel(
+        "ball speed [m/s]", [](const Prediction& a) { return a.launch.ball_speed(); },
+        [&](const Seen& s) { return list(s.ball_speed, 1); });
+    panel(
+        "launch ratio", [](const Prediction& a) { return a.ratio; }, [](const Seen& s) { return s.launch_ratio; });
+    return f;
   }
 
   std::vector<Variant> variants_;
