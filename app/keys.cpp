@@ -15,12 +15,12 @@ namespace {
 /// A shipped case with changes that lead the reader where no shipped case goes. It may end in an error, of a file that
 /// is not there or of a table left over: what has been asked for until then counts. tests/app/keys_test.cpp says which
 /// declaration is still without one.
-struct Variant {
+struct Sample {
   const char* name;
   std::vector<std::string> set;
 };
 
-std::vector<Variant> variants() {
+std::vector<Sample> samples() {
   const std::string springs =
       "stiffness_N_per_m=[1,1,1], rotational_stiffness_N_m_per_rad=[1,1,1], damping_N_s_per_m=[1,1,1], "
       "rotational_damping_N_m_s_per_rad=[1,1,1]";
@@ -145,13 +145,13 @@ std::vector<AcceptedKey> accepted_keys() {
     read_job(file);
     read.emplace_back(file.root().text("kind", "impact"), file);
   }
-  for (const Variant& v : variants()) {
+  for (const Sample& v : samples()) {
     CaseFile file(find_case(v.name), v.set);
     const std::string wanted = file.root().text("kind", "impact");
     const auto kind = std::ranges::find(kinds(), wanted, &Kind::name);
     try {
       kind->read(file);
-    } catch (const std::exception&) {}  // as Variant says
+    } catch (const std::exception&) {}  // as Sample says
     read.emplace_back(wanted, file);
   }
   std::vector<AcceptedKey> keys;

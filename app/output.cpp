@@ -134,11 +134,15 @@ post::Units Output::page_units() const {
 }
 bool Output::force() const { return state_->options.force; }
 
-void Output::say(std::string_view line) {
+void Output::tell(std::string_view line) {
   if (!quiet()) fmt::print("{}\n", line);
   std::fflush(stdout);
-  state_->page.print(line);
   log(line);
+}
+
+void Output::say(std::string_view line) {
+  tell(line);
+  state_->page.print(line);
 }
 
 void Output::show(const post::TextTable& table, std::string_view heading) {

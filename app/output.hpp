@@ -61,7 +61,9 @@ class Output {
   post::Units page_units() const;  ///< of the page's answer: those asked for, else those that the case speaks
   bool force() const;              ///< what an unfinished run left is to be discarded
 
-  /// A line for the person, the log and the page.
+  /// A line for the person and the log: how the run goes, not what it found.
+  void tell(std::string_view line);
+  /// A line of the answer: for the person, the log and the page.
   void say(std::string_view line);
   /// A table likewise: on the page under this heading, without one among the answers.
   void show(const post::TextTable& table, std::string_view heading = {});

@@ -7,11 +7,10 @@
 #include <cmath>
 
 #include "hosel/app/read_sheet.hpp"
+#include "hosel/golf/units.hpp"
 
 namespace hosel::app {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers of a column; NaN where empty, and where the cell is not a finite number.
 std::vector<double> values(const post::Sheet& sheet, std::size_t c, bool gaps) {

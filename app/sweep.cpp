@@ -42,7 +42,7 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
     if (!finished.contains(p)) todo.push_back(p);
   fs::create_directories(own);
   PointStore store(own, plan.fingerprint);
-  if (!finished.empty()) out.say(fmt::format("{} of {} points are on disk already", finished.size(), plan.points));
+  if (!finished.empty()) out.tell(fmt::format("{} of {} points are on disk already", finished.size(), plan.points));
   if (todo.empty()) return;
 
   Progress progress = out.progress(fmt::format("{} points", todo.size()));
@@ -128,11 +128,10 @@ Planned open_plan(const fs::path& out) {
   std::string named;
   std::vector<std::string> set;
   try {
-    plan = json::parse(post::read_file(out / "plan.json"));
+    plan = unsealed(post::read_file(out / "plan.json"));
     named = plan.at("case");
     set = plan.at("set").get<std::vector<std::string>>();
-    plan.at("version").get<std::string>();
-  } catch (const json::exception&) {
+  } catch (const std::exception&) {
     throw InputError(fmt::format("{}: the plan is damaged; plan again", (out / "plan.json").string()));
   }
   Planned p = read_planned(named, set);
@@ -174,11 +173,11 @@ void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides
   if (fs::exists(root / "shards") && options.force) fs::remove_all(root / "shards");
   read_points(root / "shards", p.plan.fingerprint);  // refuses a directory with other points
   Output out(options, p.file->resolved());
-  out.write_json("plan.json", {{"case", fs::canonical(found).string()},
-                               {"set", overrides},
-                               {"points", p.plan.points},
-                               {"version", p.plan.version},
-                               {"fingerprint", p.plan.fingerprint}});
+  out.write_json("plan.json", sealed({{"case", fs::canonical(found).string()},
+                                      {"set", overrides},
+                                      {"points", p.plan.points},
+                                      {"version", p.plan.version},
+                                      {"fingerprint", p.plan.fingerprint}}));
   out.say(fmt::format("{} points planned in {}", p.plan.points, root.string()));
 }
 

@@ -17,24 +17,18 @@
 
 namespace hosel::app {
 namespace fs = std::filesystem;
-namespace {
-
-/// A line of the store without its digest, and the digest beside it.
-std::string sealed(nlohmann::json entry) {
+nlohmann::json sealed(nlohmann::json entry) {
   entry["check"] = post::digest(entry.dump());
-  return entry.dump();
+  return entry;
 }
 
-/// The entry of a line as it was written; throws InputError where a bit of it has changed since.
-nlohmann::json unsealed(std::string_view line) {
-  nlohmann::json entry = nlohmann::json::parse(line);
+nlohmann::json unsealed(std::string_view text) {
+  nlohmann::json entry = nlohmann::json::parse(text);
   const std::string check = entry.at("check");
   entry.erase("check");
   if (check != post::digest(entry.dump())) throw std::runtime_error("damaged");
   return entry;
 }
-
-}  // namespace
 
 std::string digest_of_files(const std::vector<fs::path>& files) {
   std::string all;
@@ -96,7 +90,7 @@ PointStore::PointStore(const fs::path& directory, const std::string& fingerprint
     const std::size_t whole = last == std::string::npos ? 0 : last + 1;
     if (::ftruncate(descriptor_, off_t(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
       throw std::runtime_error(fmt::format("{}: cannot be written", file_));
-    if (whole == 0) write_line(sealed({{"fingerprint", fingerprint}, {"version", program_version()}}));
+    if (whole == 0) write_line(sealed({{"fingerprint", fingerprint}, {"version", program_version()}}).dump());
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -106,7 +100,7 @@ PointStore::PointStore(const fs::path& directory, const std::string& fingerprint
 PointStore::~PointStore() { ::close(descriptor_); }
 
 void PointStore::append(std::size_t point, double seconds, const nlohmann::json& result) {
-  const std::string line = sealed({{"point", point}, {"seconds", seconds}, {"result", result}});
+  const std::string line = sealed({{"point", point}, {"seconds", seconds}, {"result", result}}).dump();
   const std::lock_guard lock(mutex_);
   write_line(line);
 }

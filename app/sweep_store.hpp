@@ -7,12 +7,18 @@
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hosel::app {
 
 /// Digest of the contents of files; a missing one counts as such.
 std::string digest_of_files(const std::vector<std::filesystem::path>& files);
+
+/// The entry with a digest of itself, under "check".
+nlohmann::json sealed(nlohmann::json entry);
+/// What was sealed, without the digest; throws an exception where a bit of the text has changed since.
+nlohmann::json unsealed(std::string_view text);
 
 /// Every point found in DIRECTORY/*/points.jsonl, by its number. A last line cut short by a kill is
 /// not a point. Throws InputError where a file belongs to another `fingerprint`, or where two files

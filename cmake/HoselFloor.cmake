@@ -15,6 +15,10 @@ function(hosel_floor name)
     target_compile_options(hosel_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict
                            # Designated initialisers leave out what has a default.
                            "$<$<BOOL:${HOSEL_WERROR}>:-Werror;-Wno-missing-field-initializers>")
+    # Files of the upper floors are compiled several at a time where the preset says so (CMAKE_UNITY_BUILD): a third of the time.
+    if(name MATCHES "^(golf|mesh|fem|solvers)$")
+      set_target_properties(hosel_${name} PROPERTIES UNITY_BUILD OFF)
+    endif()
     # Floors with the same flags share one precompiled header, the first one's.
     if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
       target_compile_options(hosel_${name} PRIVATE -Wno-array-bounds)  # false alarms inside Eigen's AVX-512 packets

@@ -43,6 +43,8 @@ enum class Output {
   landing_angle
 };
 inline constexpr int kLaunchOutputs = 7, kOutputs = 12;
+/// Compared on the circle.
+inline bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 inline bool of_flight(Output output) { return int(output) >= kLaunchOutputs; }
 
 struct OutputQuantity {

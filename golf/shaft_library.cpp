@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
+
+#include "hosel/golf/units.hpp"
 
 namespace hosel {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kStations = 401;  // linear between them: relative error below 1e-5 of a smooth property
 
 ShaftStation tube_section(const TubeStation& t, const std::vector<ShaftLayer>& layers, double shear_factor) {

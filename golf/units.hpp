@@ -2,6 +2,7 @@
 /// Everything in the code is SI with radians; suffixes live in files only.
 #pragma once
 
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 namespace hosel {
 
 inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< a number that nobody gave
 inline constexpr double kRadPerDeg = kPi / 180.0;
 inline constexpr double kRadPerSecPerRpm = kPi / 30.0;
 inline constexpr double kMpsPerMph = 0.44704;

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <functional>
 
+#include "hosel/golf/units.hpp"
 #include "hosel/loop/beyond_doubt.hpp"
 #include "hosel/loop/detectable.hpp"
 
 namespace hosel::loop {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean log predictive density per held-out value.
 double score(const Problem& problem, const Fit& f) {

@@ -12,7 +12,7 @@
 namespace hosel::models {
 namespace {
 
-constexpr int kPosition = 0, kVelocity = 3, kSpinLeft = 6, kSize = 7;
+constexpr int kPosition = 0, kVelocity = 3, kSpinLeft = 6, kStates = 7;
 constexpr double kLatest = 60;  // [s]
 
 using Jet = ceres::Jet<double, kLaunchQuantities>;
@@ -123,7 +123,7 @@ class Motion {
 template <class T>
 bool grounded(const Motion<T>& motion, const T* y, const Ground& ground) {
   if (value(motion.clearance(y)) != 0) return false;
-  std::array<T, kSize> dy;
+  std::array<T, kStates> dy;
   motion.rate(y, dy.data());
   const auto climb = [&](const T* of) { return value(of[2]) - std::tan(ground.slope) * value(of[0]); };
   const double speed = climb(y + kVelocity);
@@ -138,7 +138,7 @@ void check_height(const Motion<T>& motion, const T* y) {
 }
 
 template <class T>
-std::array<T, kSize> state_of(const Start<T>& start) {
+std::array<T, kStates> state_of(const Start<T>& start) {
   return {T(0), T(0), T(0), start.velocity[0], start.velocity[1], start.velocity[2], T(1)};
 }
 
@@ -184,12 +184,12 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
   if (y0[kVelocity + 2] < 0) check_height(motion, y0.data());
 
   solvers::Cvode solver(
-      kSize, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 2,
+      kStates, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 2,
       [&](double, const double* y, double* g) {
         g[kLanding] = motion.clearance(y);
         g[kTop] = y[kVelocity + 2];
       },
-      solution(options, kSize));
+      solution(options, kStates));
   double before = 0, unknown = 0;
   const auto watch = [&](double t, const double* y) {
     const auto u = motion.through_air(y);
@@ -199,7 +199,7 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
     before = t;
     if (!(options.sample > 0)) return;
     for (double next; (next = options.sample * double(out.path.size())) < t;) {
-      std::array<double, kSize> between;
+      std::array<double, kStates> between;
       solver.interpolate(next, between);
       out.path.push_back(motion.point(next, between.data()));
     }
@@ -231,25 +231,25 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
     throw std::invalid_argument("flight: without spin the lift has no direction, and the flight no derivative by it");
   const Start<Jet> start = dual_start_of(launch);
   const Motion<Jet> motion(start, ball, conditions);
-  using State = std::array<Jet, kSize>;
+  using State = std::array<Jet, kStates>;
   FlightJacobian out = FlightJacobian::Zero();
   const State first = state_of(start);
   if (grounded(motion, first.data(), conditions.ground)) return out;
   if (first[kVelocity + 2].a < 0) check_height(motion, first.data());
 
   // A dual number is its value, then its derivatives; the values stand first, as in the plain flight.
-  constexpr int kDual = kSize * (1 + kLaunchQuantities);
+  constexpr int kDual = kStates * (1 + kLaunchQuantities);
   const auto pack = [](const State& y, double* flat) {
-    for (int i = 0; i < kSize; ++i) {
+    for (int i = 0; i < kStates; ++i) {
       flat[i] = y[std::size_t(i)].a;
-      for (int k = 0; k < kLaunchQuantities; ++k) flat[kSize + kLaunchQuantities * i + k] = y[std::size_t(i)].v[k];
+      for (int k = 0; k < kLaunchQuantities; ++k) flat[kStates + kLaunchQuantities * i + k] = y[std::size_t(i)].v[k];
     }
   };
   const auto unpack = [](const double* flat) {
     State y;
-    for (int i = 0; i < kSize; ++i) {
+    for (int i = 0; i < kStates; ++i) {
       y[std::size_t(i)].a = flat[i];
-      for (int k = 0; k < kLaunchQuantities; ++k) y[std::size_t(i)].v[k] = flat[kSize + kLaunchQuantities * i + k];
+      for (int k = 0; k < kLaunchQuantities; ++k) y[std::size_t(i)].v[k] = flat[kStates + kLaunchQuantities * i + k];
     }
     return y;
   };
@@ -289,7 +289,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
     const double fall = y[kVelocity + 2].a - std::tan(conditions.ground.slope) * y[kVelocity].a;
     const Jet time = Jet(stop.time) - (miss - miss.a) / fall;
     const Jet late = time - stop.time;
-    for (int i = 0; i < kSize; ++i) y[std::size_t(i)] += dy[std::size_t(i)].a * late;
+    for (int i = 0; i < kStates; ++i) y[std::size_t(i)] += dy[std::size_t(i)].a * late;
     const Jet across = sqrt(y[0] * y[0] + y[1] * y[1]), level = sqrt(y[3] * y[3] + y[4] * y[4]);
     out.row(kCarry) = across.v.transpose();
     out.row(kSide) = -y[1].v.transpose();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "hosel/fem/materials/equivalent_stress.hpp"
+
 namespace hosel::post {
 namespace {
 
@@ -27,11 +29,6 @@ struct Swept {
     return first[size_t(point)] + (axial[size_t(point)] ? 0 : angle % angles);
   }
 };
-
-double von_mises(const fem::Sym& s) {
-  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
 
 }  // namespace
 
@@ -76,7 +73,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
       v.push_back(dv);
       t.push_back(force);
       cauchy.values.insert(cauchy.values.end(), s.data(), s.data() + 6);
-      mises.values.push_back(von_mises(s));
+      mises.values.push_back(fem::von_mises(s));
       pressure.values.push_back(force.norm());
     }
 

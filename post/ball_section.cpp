@@ -6,15 +6,11 @@
 #include <cmath>
 #include <map>
 
+#include "hosel/fem/materials/equivalent_stress.hpp"
 #include "hosel/golf/units.hpp"
 
 namespace hosel::post {
 namespace {
-
-double von_mises(const fem::Sym& s) {
-  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
 
 /// From nothing to the largest: light to dark, in one order for every kind of eye.
 std::string colour(double share) {
@@ -53,7 +49,7 @@ BallSection ball_section(const models::ImpactView& view, const Face& face) {
     for (int n = 0; n < nodes; ++n) {
       place.push_back(ball.reference(n, theta[std::size_t(side)]) +
                       ball.vector_at(displacement, n, theta[std::size_t(side)]));
-      s.von_mises.push_back(von_mises(stress[std::size_t(2 * n + side)]));
+      s.von_mises.push_back(fem::von_mises(stress[std::size_t(2 * n + side)]));
       sum += place.back();
     }
   const Vec3 middle = sum / double(place.size());

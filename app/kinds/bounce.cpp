@@ -19,26 +19,27 @@
 namespace hosel::app {
 namespace {
 
-struct Quantity {
+struct BounceQuantity {
   const char* name;
   const char* unit;  ///< suffix; empty for a pure number
   double si;
   double models::Bounce::*value;
   const char* label;
 };
-constexpr std::array kQuantities = {
-    Quantity{"tangential_ratio", "", 1, &models::Bounce::tangential_ratio, "tangential velocity, after over before"},
-    Quantity{"tangential_restitution", "", 1, &models::Bounce::tangential_restitution, "tangential restitution"},
-    Quantity{"spin", "rad_per_s", 1, &models::Bounce::spin, "spin [rad/s]"},
-    Quantity{"rebound_angle", "deg", kRadPerDeg, &models::Bounce::rebound_angle, "rebound angle [deg]"},
-    Quantity{"normal_restitution", "", 1, &models::Bounce::normal_restitution, "normal restitution"},
+constexpr std::array kBounceQuantities = {
+    BounceQuantity{"tangential_ratio", "", 1, &models::Bounce::tangential_ratio,
+                   "tangential velocity, after over before"},
+    BounceQuantity{"tangential_restitution", "", 1, &models::Bounce::tangential_restitution, "tangential restitution"},
+    BounceQuantity{"spin", "rad_per_s", 1, &models::Bounce::spin, "spin [rad/s]"},
+    BounceQuantity{"rebound_angle", "deg", kRadPerDeg, &models::Bounce::rebound_angle, "rebound angle [deg]"},
+    BounceQuantity{"normal_restitution", "", 1, &models::Bounce::normal_restitution, "normal restitution"},
 };
 
-std::string with_unit(const Quantity& q) { return *q.unit ? fmt::format("{}_{}", q.name, q.unit) : q.name; }
+std::string with_unit(const BounceQuantity& q) { return *q.unit ? fmt::format("{}_{}", q.name, q.unit) : q.name; }
 
 /// One set of measured points of one quantity.
 struct Measured {
-  const Quantity* quantity;
+  const BounceQuantity* quantity;
   std::string label;
   std::vector<double> angles, values, half_ranges;  ///< SI; half_ranges empty where not stated
 };
@@ -86,9 +87,9 @@ class BounceJob final : public Job {
                                 std::vector<double>{});
     for (Table t : root.tables("measured")) {
       std::vector<std::string> known;
-      for (const Quantity& q : kQuantities) known.emplace_back(q.name);
+      for (const BounceQuantity& q : kBounceQuantities) known.emplace_back(q.name);
       const std::string wanted = t.choice({"quantity", "what was measured"}, known);
-      Measured m{.quantity = &*std::ranges::find(kQuantities, wanted, &Quantity::name)};
+      Measured m{.quantity = &*std::ranges::find(kBounceQuantities, wanted, &BounceQuantity::name)};
       m.label = t.text({"label", "who measured"});
       m.angles = t.quantities({"angles", "at which it was measured"}, "deg", 0, {1e-3, 1.5});
       const auto numbers = [&](Key key, std::optional<std::vector<double>> standard) {
@@ -124,11 +125,11 @@ class BounceJob final : public Job {
       progress.finish();
     }
     std::string csv = "ball,speed_mps,angle_deg";
-    for (const Quantity& q : kQuantities) csv += "," + with_unit(q);
+    for (const BounceQuantity& q : kBounceQuantities) csv += "," + with_unit(q);
     csv += '\n';
     for (std::size_t k = 0; k < count; ++k) {
       csv += fmt::format("{},{:.6g},{:.6g}", thrown_[k / grid].name, bounces[k].speed, degrees(bounces[k].angle));
-      for (const Quantity& q : kQuantities) csv += fmt::format(",{:.6g}", bounces[k].*q.value / q.si);
+      for (const BounceQuantity& q : kBounceQuantities) csv += fmt::format(",{:.6g}", bounces[k].*q.value / q.si);
       csv += '\n';
     }
     out.write("bounces.csv", csv);
@@ -173,7 +174,7 @@ class BounceJob final : public Job {
   /// Every measured point beside every model; root mean squares of the error, and of it over the measured value.
   void compare(Output& out, const std::vector<models::Bounce>& all, nlohmann::json& summary) const {
     for (const Measured& m : measured_) {
-      const Quantity& q = *m.quantity;
+      const BounceQuantity& q = *m.quantity;
       std::string head = fmt::format("\n{}: {}\n{:>10} {:>10}", with_unit(q), m.label, "angle", "measured");
       for (std::size_t t = 0; t < thrown_.size(); ++t)
         for (std::size_t s = 0; s < speeds_.size(); ++s) head += fmt::format(" {:>26}", title(t, s));
@@ -205,7 +206,7 @@ class BounceJob final : public Job {
 
   post::Figure figure(const std::vector<models::Bounce>& all) const {
     post::Figure f{.title = title_, .columns = 2};
-    for (const Quantity& q : kQuantities) {
+    for (const BounceQuantity& q : kBounceQuantities) {
       post::Panel p{.x_label = "angle of incidence from the normal [deg]", .y_label = q.label};
       for (std::size_t t = 0; t < thrown_.size(); ++t)
         for (std::size_t s = 0; s < speeds_.size(); ++s) {
@@ -226,7 +227,7 @@ class BounceJob final : public Job {
         }
         p.series.push_back(points);
       }
-      if (&q != &kQuantities.back() ||
+      if (&q != &kBounceQuantities.back() ||
           std::ranges::any_of(measured_, [&](const Measured& m) { return m.quantity == &q; }))
         f.panels.push_back(p);
     }

@@ -27,24 +27,25 @@ constexpr std::array kChannels = {"ball_speed", "launch_angle", "azimuth",     "
                                   "carry",      "side",         "flight_time", "landing_angle"};  // where they fly
 
 /// What a blow consists of, beside the launch: the quantities that can explain a difference.
-struct Quantity {
+struct ComparedQuantity {
   const char* name;
   const char* unit;
   double si;
 };
-constexpr std::array kQuantities = {Quantity{"contact time", "ms", 1e-3}, Quantity{"peak force", "kN", 1e3},
-                                    Quantity{"normal impulse", "N s", 1}, Quantity{"tangential impulse", "N s", 1},
-                                    Quantity{"head rotation", "rad/s", 1}};
+constexpr std::array kComparedQuantities = {
+    ComparedQuantity{"contact time", "ms", 1e-3}, ComparedQuantity{"peak force", "kN", 1e3},
+    ComparedQuantity{"normal impulse", "N s", 1}, ComparedQuantity{"tangential impulse", "N s", 1},
+    ComparedQuantity{"head rotation", "rad/s", 1}};
 
-struct Prediction {
+struct CrossPrediction {
   bool good = false;
   std::string why;
   Launch launch;
-  std::array<double, kQuantities.size()> quantity{};  // NaN where the model has none
+  std::array<double, kComparedQuantities.size()> quantity{};  // NaN where the model has none
 };
 
-Prediction answer(const models::ImpactModel& model, const Blow& blow) {
-  Prediction a;
+CrossPrediction answer(const models::ImpactModel& model, const Blow& blow) {
+  CrossPrediction a;
   try {
     a.launch = models::checked_launch(model, blow);
     const Vec3 n = first_contact(blow).normal, J = blow.ball.mass * a.launch.velocity;
@@ -78,7 +79,7 @@ class CrossCheckJob final : public Job {
   }
 
   void run(Output& out) override {
-    std::vector<std::vector<Prediction>> answers(models_.size(), std::vector<Prediction>(points_));
+    std::vector<std::vector<CrossPrediction>> answers(models_.size(), std::vector<CrossPrediction>(points_));
     {
       Progress progress = out.progress("cross-check");
       std::atomic<std::size_t> done = 0;
@@ -109,13 +110,14 @@ class CrossCheckJob final : public Job {
         "reference, where the channel's difference is largest.\n";
     std::string csv = "model,channel,unit,mean,rms,largest";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
-    for (const Quantity& q : kQuantities) csv += fmt::format(",{} [{}] difference there [%]", q.name, q.unit);
+    for (const ComparedQuantity& q : kComparedQuantities)
+      csv += fmt::format(",{} [{}] difference there [%]", q.name, q.unit);
     csv += '\n';
 
     for (std::size_t m = 0; m < models_.size(); ++m) {
       std::size_t failed = 0;
       std::string first;
-      for (const Prediction& a : answers[m])
+      for (const CrossPrediction& a : answers[m])
         if (!a.good && failed++ == 0) first = a.why;
       if (failed) {
         const std::string text =
@@ -152,15 +154,16 @@ class CrossCheckJob final : public Job {
           csv += fmt::format(",{:.8g}", axes_[a].values[at[a]] / axes_[a].si);
         }
         nlohmann::json quantities;
-        for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+        for (std::size_t q = 0; q < kComparedQuantities.size(); ++q) {
           const double mine = answers[m][where].quantity[q], theirs = answers[reference_][where].quantity[q];
           const double share = 100 * (mine - theirs) / theirs;
           csv += std::isfinite(share) ? fmt::format(",{:.4g}", share) : std::string(",");
-          if (std::isfinite(share)) quantities[kQuantities[q].name] = share;
+          if (std::isfinite(share)) quantities[kComparedQuantities[q].name] = share;
           if (std::isfinite(share) && std::abs(share) > std::abs(most) && std::abs(largest) > 1e-9) {
             most = share;
-            cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g} {})", kQuantities[q].name, share,
-                                mine / kQuantities[q].si, theirs / kQuantities[q].si, kQuantities[q].unit);
+            cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g} {})", kComparedQuantities[q].name, share,
+                                mine / kComparedQuantities[q].si, theirs / kComparedQuantities[q].si,
+                                kComparedQuantities[q].unit);
           }
         }
         csv += '\n';
@@ -201,29 +204,29 @@ class CrossCheckJob final : public Job {
     const std::vector<std::size_t> at = index(k);
     for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].parameter->set(options, blow, axes_[a].values[at[a]]);
   }
-  double difference(const std::vector<std::vector<Prediction>>& answers, std::size_t m, std::size_t k,
+  double difference(const std::vector<std::vector<CrossPrediction>>& answers, std::size_t m, std::size_t k,
                     const ShotChannel& c) const {
-    const Prediction &mine = answers[m][k], &theirs = answers[reference_][k];
+    const CrossPrediction &mine = answers[m][k], &theirs = answers[reference_][k];
     if (!mine.good || !theirs.good) return std::numeric_limits<double>::quiet_NaN();
     return (c.value(mine.launch) - c.value(theirs.launch)) / c.si;
   }
 
-  void write_points(Output& out, const std::vector<std::vector<Prediction>>& answers) const {
+  void write_points(Output& out, const std::vector<std::vector<CrossPrediction>>& answers) const {
     std::string csv = "model";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
     for (const ShotChannel& c : channels_) csv += fmt::format(",{}_{}", c.name, c.unit);
     csv += ",contact_time_ms,peak_force_kN,normal_impulse_N_s,tangential_impulse_N_s,head_rotation_rad_per_s\n";
     for (std::size_t m = 0; m < models_.size(); ++m)
       for (std::size_t k = 0; k < points_; ++k) {
-        const Prediction& a = answers[m][k];
+        const CrossPrediction& a = answers[m][k];
         if (!a.good) continue;
         csv += models_[m];
         const std::vector<std::size_t> at = index(k);
         for (std::size_t i = 0; i < axes_.size(); ++i)
           csv += fmt::format(",{:.8g}", axes_[i].values[at[i]] / axes_[i].si);
         for (const ShotChannel& c : channels_) csv += fmt::format(",{:.8g}", c.value(a.launch) / c.si);
-        for (std::size_t q = 0; q < kQuantities.size(); ++q)
-          csv += std::isfinite(a.quantity[q]) ? fmt::format(",{:.8g}", a.quantity[q] / kQuantities[q].si)
+        for (std::size_t q = 0; q < kComparedQuantities.size(); ++q)
+          csv += std::isfinite(a.quantity[q]) ? fmt::format(",{:.8g}", a.quantity[q] / kComparedQuantities[q].si)
                                               : std::string(",");
         csv += '\n';
       }
@@ -231,7 +234,7 @@ class CrossCheckJob final : public Job {
   }
 
   /// Over the first two axes (or the first), the others at their middle value.
-  post::Figure figure(const std::vector<std::vector<Prediction>>& answers, std::size_t m) const {
+  post::Figure figure(const std::vector<std::vector<CrossPrediction>>& answers, std::size_t m) const {
     std::size_t base = 0, stride = 1;
     std::string rest;
     for (std::size_t a = 0; a < axes_.size(); ++a) {

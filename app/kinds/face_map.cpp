@@ -40,7 +40,7 @@ struct Layer {
   bool refined = false;
 };
 
-struct Variant {
+struct MapVariant {
   std::string title, model;
   std::vector<std::string> set;
   std::string against = {};  ///< the map that it is the counterpart of, where that is not the reference
@@ -61,7 +61,7 @@ class FaceMapJob final : public PointJob {
     claims_ = s.claims;
     figures_ = s.figures;
     // The maps themselves, then the reference with a heavier head, then each again with finer numerics.
-    for (const Variant& v : s.variants) add(file, v, false);
+    for (const MapVariant& v : s.variants) add(file, v, false);
     maps_ = layers_.size();
     pairs_ = s.pairs;
     if (extra_ > 0) {
@@ -72,7 +72,7 @@ class FaceMapJob final : public PointJob {
     bases_ = layers_.size();
     if (!s.refinement.empty())
       for (std::size_t m = 0; m < bases_; ++m) {
-        Variant v = s.variants[m < maps_ ? m : reference_];
+        MapVariant v = s.variants[m < maps_ ? m : reference_];
         v.set.insert(v.set.end(), s.refinement.begin(), s.refinement.end());
         add(file, v, true);
         if (m >= maps_) layers_.back().blow.club.head.mass += extra_;
@@ -153,7 +153,7 @@ class FaceMapJob final : public PointJob {
     Blow blow;
     models::Options options;
     post::FaceGrid grid;
-    std::vector<Variant> variants;
+    std::vector<MapVariant> variants;
     std::size_t reference = 0;
     std::vector<Pair> pairs;
     double extra_mass = 0;
@@ -175,7 +175,7 @@ class FaceMapJob final : public PointJob {
            v.text({"against", "the map that this one is the counterpart of, if not the reference"}, "")});
     }
     std::vector<std::string> names;
-    for (const Variant& v : s.variants) {
+    for (const MapVariant& v : s.variants) {
       if (std::ranges::find(names, v.title) != names.end())
         root.fail("models", fmt::format("'{}' is there twice", v.title));
       names.push_back(v.title);
@@ -184,11 +184,11 @@ class FaceMapJob final : public PointJob {
         root.choice({"reference", "the map that the others are compared with"}, names, names.front());
     s.reference = std::size_t(std::ranges::find(names, reference) - names.begin());
     for (std::size_t m = 0; m < s.variants.size(); ++m) {
-      const Variant& v = s.variants[m];
+      const MapVariant& v = s.variants[m];
       if (v.against.empty()) continue;
       const auto against = std::ranges::find(names, v.against);
       if (against == names.end()) root.fail("variants", fmt::format("no map is called '{}'", v.against));
-      const auto first = std::ranges::find(s.variants, v.model, &Variant::model);
+      const auto first = std::ranges::find(s.variants, v.model, &MapVariant::model);
       s.pairs.push_back({m, std::size_t(against - names.begin()), std::size_t(first - s.variants.begin())});
     }
     s.grid = read_face_grid(root);
@@ -201,7 +201,7 @@ class FaceMapJob final : public PointJob {
     s.claims = read_statements(root, figure_names(s.extra_mass > 0));
     s.figures = root.flag({"figures", "draw the maps; a sweep of many may do without"}, true);
     std::vector<std::string> asked;
-    for (const Variant& v : s.variants) asked.push_back(v.model);
+    for (const MapVariant& v : s.variants) asked.push_back(v.model);
     s.blow = read_blow(root, asked);
     s.options = read_options(root, asked);
     s.flight = read_optional_flight(root);
@@ -228,7 +228,7 @@ class FaceMapJob final : public PointJob {
             {"equivalent_head_mass_max_g", 1e3 * std::ranges::max(mass)}};
   }
 
-  void add(const CaseFile& file, const Variant& variant, bool refined) {
+  void add(const CaseFile& file, const MapVariant& variant, bool refined) {
     std::vector<std::string> overrides = file.overrides();
     overrides.insert(overrides.end(), variant.set.begin(), variant.set.end());
     CaseFile again(file, overrides);

@@ -170,8 +170,8 @@ class ImpactJob final : public Job {
     post::ImpactRecorder recorder(home, blow_, record_,
                                   fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
     if (const models::ImpactCheckpoint* from = recorder.resume())
-      out.say(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
-                          1e3 * from->solver.state.time));
+      out.tell(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
+                           1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
     const StopSignals stop;
     const models::FeOutcome outcome = model.solve(

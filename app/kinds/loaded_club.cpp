@@ -30,7 +30,7 @@ using models::Grip;
 using models::SwingEnd;
 
 /// One answer at one point of the face.
-struct Prediction {
+struct LoadedPrediction {
   std::string name;
   Launch launch;
   models::HoselHistory hosel;  // of finite-element clubs
@@ -105,10 +105,11 @@ class LoadedClubJob final : public Job {
       const std::filesystem::path seen = out.directory() / fmt::format("point_{}", k + 1);
       post::ImpactRecorder recorder(seen, blow, record_, "");
       post::ShaftLoads carried;
-      const std::vector<Prediction> answers = ask(out, blow, end, weightless, at, [&](const models::ImpactView& view) {
-        recorder(view);
-        carried.add(view.state.time, *view.shaft, view.state);
-      });
+      const std::vector<LoadedPrediction> answers =
+          ask(out, blow, end, weightless, at, [&](const models::ImpactView& view) {
+            recorder(view);
+            carried.add(view.state.time, *view.shaft, view.state);
+          });
       out.write(fmt::format("point_{}/shaft.csv", k + 1), carried.table());
       for (post::Panel& p : carried.panels(1e-3)) {
         p.title = fmt::format("{}: {}", at, p.title);
@@ -117,7 +118,7 @@ class LoadedClubJob final : public Job {
       std::ranges::copy(recorder.files(), std::back_inserter(series));
       std::vector<post::LaunchColumn> columns;
       nlohmann::json point = {{"impact_toe_mm", 1e3 * toe_[k]}, {"impact_high_mm", 1e3 * high_[k]}};
-      for (const Prediction& a : answers) {
+      for (const LoadedPrediction& a : answers) {
         columns.push_back({a.name, a.launch});
         if (flight_) columns.back().flight = flight_->follow(a.launch, blow_.ball);
         table += fmt::format("{:g},{:g},{}", 1e3 * toe_[k], 1e3 * high_[k], post::csv_cell(a.name));
@@ -185,8 +186,8 @@ class LoadedClubJob final : public Job {
     j["head_rotation_rad_per_s"] = a.head_spin.norm() - b.head_spin.norm();
     return j;
   }
-  static const Prediction& find(const std::vector<Prediction>& answers, std::string_view name) {
-    for (const Prediction& a : answers)
+  static const LoadedPrediction& find(const std::vector<LoadedPrediction>& answers, std::string_view name) {
+    for (const LoadedPrediction& a : answers)
       if (a.name == name) return a;
     throw std::logic_error("no such club");
   }
@@ -199,13 +200,13 @@ class LoadedClubJob final : public Job {
         blow_.club, options, [&](double t) { return grip.at(t); }, motion_.begin, motion_.end, lie);
   }
 
-  std::vector<Prediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
-                              const std::string& at, const models::ImpactObserver& record) const {
-    std::vector<Prediction> answers;
+  std::vector<LoadedPrediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
+                                    const std::string& at, const models::ImpactObserver& record) const {
+    std::vector<LoadedPrediction> answers;
     Progress progress = out.progress(at);
     const auto fe = [&](const std::string& name, const models::ShaftMount* mount) {
       progress.update(static_cast<double>(answers.size()) / 11, name);
-      Prediction a{.name = name};
+      LoadedPrediction a{.name = name};
       const auto watch = [&](const models::ImpactView& view) {
         if (view.shaft) a.hosel.add(*view.shaft, view.state);
         if (name == "club loaded") record(view);
@@ -249,7 +250,7 @@ class LoadedClubJob final : public Job {
     return answers;
   }
 
-  static std::string history(const Prediction& a) {
+  static std::string history(const LoadedPrediction& a) {
     std::string csv = "time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
     for (std::size_t i = 0; i < a.hosel.times.size(); ++i) {
       const fem::Wrench& w = a.hosel.loads[i];
@@ -259,11 +260,12 @@ class LoadedClubJob final : public Job {
     return csv;
   }
   /// Loaded: lines; at rest: points.
-  static post::Panel panel(const Prediction& loaded, const Prediction& at_rest, const std::string& at, bool force) {
+  static post::Panel panel(const LoadedPrediction& loaded, const LoadedPrediction& at_rest, const std::string& at,
+                           bool force) {
     post::Panel p{.title = at + (force ? ": force of the shaft on the head" : ": its moment about the hosel"),
                   .x_label = "time [ms]",
                   .y_label = force ? "force, face axes [N]" : "moment, face axes [N m]"};
-    for (const Prediction* a : {&loaded, &at_rest})
+    for (const LoadedPrediction* a : {&loaded, &at_rest})
       for (int c = 0; c < 3; ++c) {
         post::Series s{.label = fmt::format("{}{}", "xyz"[c], a == &loaded ? ", loaded" : ", at rest"),
                        .style = a == &loaded ? "lines" : "points"};
@@ -289,7 +291,7 @@ class LoadedClubJob final : public Job {
     return time;
   }
   /// What a clamped or a free grip changes in the hosel's force against the forced one, along the shaft and across.
-  post::Panel grip_panel(const std::vector<Prediction>& answers, const std::string& at, double back) const {
+  post::Panel grip_panel(const std::vector<LoadedPrediction>& answers, const std::string& at, double back) const {
     post::Panel p{.title = fmt::format("{}: grip, push along the shaft back at {:.3f} ms", at, 1e3 * back),
                   .x_label = "time [ms]",
                   .y_label = "force at the hosel, change [N]"};

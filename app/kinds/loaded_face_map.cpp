@@ -65,7 +65,7 @@ struct Setup {
 };
 
 /// The maps of one setup: of each swing on the whole grid; finer, and under each assumption, at nine places.
-struct Layer {
+struct LoadedLayer {
   std::size_t setup;
   Body body;
   bool whole;
@@ -127,7 +127,7 @@ class LoadedFaceMapJob final : public PointJob {
   std::string identity() const override { return identity_; }
 
   json compute(std::size_t point, const std::filesystem::path&) const override {
-    const Layer& layer = layers_[work_[point].layer];
+    const LoadedLayer& layer = layers_[work_[point].layer];
     const Setup& s = setups_[layer.setup];
     const models::SwingEnd& end = swung(s);
     Blow blow{.delivery = end.delivery, .club = end.club, .ball = s.ball};
@@ -251,7 +251,7 @@ class LoadedFaceMapJob final : public PointJob {
   std::vector<std::array<post::FaceMap, 4>> gather(const std::vector<json>& points) const {
     std::vector<std::array<post::FaceMap, 4>> out(setups_.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Layer& layer = layers_[work_[i].layer];
+      const LoadedLayer& layer = layers_[work_[i].layer];
       out[layer.setup][layer.body].launches.push_back(launch_from(points[i]));
     }
     for (std::size_t k = 0; k < out.size(); ++k)
@@ -518,7 +518,7 @@ class LoadedFaceMapJob final : public PointJob {
   std::vector<Setup> setups_;            // the swings, then
   std::vector<std::size_t> refined_;     // the first one on finer numerics, and
   std::vector<Assumption> assumptions_;  // each under each assumption
-  std::vector<Layer> layers_;
+  std::vector<LoadedLayer> layers_;
   std::vector<Work> work_;
   std::string identity_;
 };

@@ -13,6 +13,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/app/read_shaft.hpp"
+#include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
@@ -23,8 +24,6 @@
 
 namespace hosel::app {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A fitted quantity of launch or flight: its column, or made of spin rate and axis where the file has those.
 struct TuneChannel {

@@ -15,8 +15,8 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kStep = 1e-3;  // of a parameter's scale
-constexpr int kFewest = 24;     // training readings that can test anything
+constexpr double kStep = 1e-3;       // of a parameter's scale
+constexpr int kFewestReadings = 24;  // training readings that can test anything
 
 /// Scatter of a channel by third differences, which a smooth motion leaves small: a first idea of the noise.
 double rough_noise(const std::vector<HistoryRecord>& records, int channel) {
@@ -112,8 +112,8 @@ std::vector<std::string> HistoryProblem::notes() const {
 }
 
 std::optional<std::string> HistoryProblem::too_few() const {
-  if (density(Part::train).values < kFewest)
-    return fmt::format("fewer than {} readings to learn from: too few to test anything", kFewest);
+  if (density(Part::train).values < kFewestReadings)
+    return fmt::format("fewer than {} readings to learn from: too few to test anything", kFewestReadings);
   return {};
 }
 

@@ -18,7 +18,7 @@ namespace hosel::loop {
 namespace {
 
 /// One source term of a formula: a column, or a ratio or product of two.
-struct Feature {
+struct Term {
   int a = 0, b = -1;
   char how = ' ';  ///< ' ', '/', '*'
 };
@@ -31,14 +31,14 @@ struct Source {
   bool fine;  ///< enough different values to show a formula with free numbers
 };
 
-double evaluate(const Feature& f, const std::vector<Source>& s, Eigen::Index i) {
+double evaluate(const Term& f, const std::vector<Source>& s, Eigen::Index i) {
   const double x = s[std::size_t(f.a)].x[i];
   if (f.how == '/') return x / s[std::size_t(f.b)].x[i];
   if (f.how == '*') return x * s[std::size_t(f.b)].x[i];
   return x;
 }
 
-std::string name(const Feature& f, const std::vector<Source>& s) {
+std::string name(const Term& f, const std::vector<Source>& s) {
   const std::string& a = s[std::size_t(f.a)].column->name;
   if (f.how == ' ') return a;
   return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
@@ -285,9 +285,9 @@ class Audit {
   bool search(int target, const std::vector<int>& use, Formula& best) const {
     const Source& y = sources_[std::size_t(target)];
     bool found = false;
-    const auto consider = [&](const std::vector<Feature>& features, bool logarithmic) {
+    const auto consider = [&](const std::vector<Term>& features, bool logarithmic) {
       std::set<int> from;
-      for (const Feature& f : features) {
+      for (const Term& f : features) {
         from.insert(f.a);
         if (f.b >= 0) from.insert(f.b);
       }
@@ -341,7 +341,7 @@ class Audit {
       const auto f = [&](const std::vector<double>& x) {
         double sum = c[0];
         for (std::ptrdiff_t j = 1; j < p; ++j) {
-          const Feature& g = features[std::size_t(j - 1)];
+          const Term& g = features[std::size_t(j - 1)];
           double v = x[std::size_t(g.a)];
           if (g.how == '/') v /= x[std::size_t(g.b)];
           if (g.how == '*') v *= x[std::size_t(g.b)];
@@ -380,7 +380,7 @@ class Audit {
       const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) {
                           return sources_[std::size_t(k)].column->role == Role::output;
                         });
-      const auto composite = std::ranges::count_if(features, [](const Feature& g) { return g.b >= 0; });
+      const auto composite = std::ranges::count_if(features, [](const Term& g) { return g.b >= 0; });
       const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
       out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 +
                                           2 * std::log(std::max(1.0, out.residual / own))) +
@@ -390,7 +390,7 @@ class Audit {
       return true;
     };
 
-    std::vector<Feature> raw, all;
+    std::vector<Term> raw, all;
     for (const int k : use) raw.push_back({k, -1, ' '});
     all = raw;
     for (std::size_t i = 0; i < use.size(); ++i)
@@ -400,12 +400,12 @@ class Audit {
         if (i < j) all.push_back({use[i], use[j], '*'});
       }
     // Fewest terms first: a formula found is not improved by more columns.
-    for (const Feature& f : all) consider({f}, false);
-    std::vector<Feature> logs;  // columns that have a logarithm
-    for (const Feature& f : raw)
+    for (const Term& f : all) consider({f}, false);
+    std::vector<Term> logs;  // columns that have a logarithm
+    for (const Term& f : raw)
       if (divides(f.a)) logs.push_back(f);
     if (!divides(target)) logs.clear();
-    for (const Feature& f : logs) consider({f}, true);
+    for (const Term& f : logs) consider({f}, true);
     if (found) return true;
     for (const auto& [f, g] : promising(target, all)) consider({f, g}, false);
     for (std::size_t i = 0; i < raw.size(); ++i)
@@ -423,11 +423,11 @@ class Audit {
   }
 
   /// Pairs of features whose joint correlation with y is near one on the complete rows.
-  std::vector<std::pair<Feature, Feature>> promising(int target, const std::vector<Feature>& all) const {
+  std::vector<std::pair<Term, Term>> promising(int target, const std::vector<Term>& all) const {
     std::vector<Eigen::VectorXd> columns;
-    std::vector<const Feature*> kept;
+    std::vector<const Term*> kept;
     std::set<int> everything;
-    for (const Feature& f : all) everything.insert(f.a);
+    for (const Term& f : all) everything.insert(f.a);
     std::vector<Eigen::Index> rows = complete(target, everything);
     if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
     if (rows.size() > 400) rows.resize(400);
@@ -442,7 +442,7 @@ class Audit {
       v.array() -= v.mean();
       return Eigen::VectorXd(v / std::max(v.norm(), 1e-300));
     };
-    for (const Feature& f : all) {
+    for (const Term& f : all) {
       const Eigen::VectorXd v = ranks([&](Eigen::Index i) { return evaluate(f, sources_, i); });
       if (!v.allFinite()) continue;
       columns.push_back(v);
@@ -468,7 +468,7 @@ class Audit {
       }
     std::ranges::stable_sort(good, std::ranges::greater{}, &Pair::r2);
     if (good.size() > 60) good.resize(60);
-    std::vector<std::pair<Feature, Feature>> out;
+    std::vector<std::pair<Term, Term>> out;
     for (const Pair& p : good) out.emplace_back(*kept[p.i], *kept[p.j]);
     return out;
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "hosel/golf/quantities.hpp"
 #include "hosel/loop/median.hpp"
 #include "hosel/loop/shots/inputs.hpp"
 #include "hosel/loop/shots/scatter.hpp"
@@ -21,8 +22,6 @@ constexpr double kSure = 30;      // least fall of the deviance,
 constexpr double kShare = 0.15;   // and share of it,
 constexpr double kOverRival = 8;  // and lead over the library's best
 constexpr double kClean = 1.7;    // deviance per value that a slip of free size may leave
-
-bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 
 /// Quantities whose sign is a convention.
 bool has_sign(const Column& c) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/golf/quantities.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -32,9 +33,6 @@ Launch plus(Launch a, const Launch& b, double sign) {
   a.head_spin += sign * b.head_spin;
   return a;
 }
-
-/// Angles are compared on the circle.
-bool is_angle(Output o) { return o == Output::launch_angle || o == Output::azimuth || o == Output::spin_axis; }
 
 /// Row of models::FlightAnswers.
 int answer_of(Output o) { return int(o) - kLaunchOutputs; }

@@ -14,7 +14,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewest = 4;  // training rows that can test anything
+constexpr std::size_t kFewestRows = 4;  // training rows that can test anything
 
 constexpr double kMixture = 20;       // least gain of two populations over one
 constexpr double kKnownMixture = 11;  // the same where their scatter is the declared noise
@@ -210,7 +210,7 @@ std::vector<std::string> ShotProblem::notes() const {
 std::optional<std::string> ShotProblem::too_few() const {
   if (width() == 0) return "no launch quantity has a value";
   if (model_->shots() == 0) return "no row can be used";
-  if (rows_.train.size() < kFewest)
+  if (rows_.train.size() < kFewestRows)
     return fmt::format("{} training rows: too few to test anything", rows_.train.size());
   return {};
 }

@@ -14,11 +14,11 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kLeastShare = 0.35;  // of the rows
-constexpr double kContrast = 4;       // of the density within rounding to that beside it
-constexpr std::size_t kMostRows = 300;
+constexpr double kLeastHeld = 0.35;  // of the rows
+constexpr double kContrast = 4;      // of the density within rounding to that beside it
+constexpr std::size_t kMostRelated = 300;
 
-struct Source {
+struct RelationSource {
   const Column* column;
   std::vector<double> x;  ///< header's unit; NaN where missing
   double step;            ///< of the recording
@@ -51,11 +51,11 @@ class Relations {
  public:
   explicit Relations(const Shots& shots) {
     std::vector<std::size_t> rows;
-    const std::size_t n = std::min(shots.rows(), kMostRows);
+    const std::size_t n = std::min(shots.rows(), kMostRelated);
     for (std::size_t k = 0; k < n; ++k) rows.push_back(k * shots.rows() / n);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
-      Source s{&c, {}, c.resolution / c.si, 0, false};
+      RelationSource s{&c, {}, c.resolution / c.si, 0, false};
       std::vector<double> seen;
       for (const std::size_t row : rows) {
         s.x.push_back(c.native(row));
@@ -87,7 +87,7 @@ class Relations {
   double step(int k) const { return sources_[std::size_t(k)].step; }
 
  private:
-  std::vector<Source> sources_;
+  std::vector<RelationSource> sources_;
   std::vector<Relation> found_;
 
   int count() const { return int(sources_.size()); }
@@ -118,7 +118,7 @@ class Relations {
       return int(std::ranges::count_if(residual, [&](const Residual& r) { return inside(std::abs(r.value)); }));
     };
     const auto stands_out = [](int held, int beside, int n) {
-      return n >= 20 && held >= 10 && held >= kLeastShare * n && held >= kContrast * (beside / 4.0 + 1);
+      return n >= 20 && held >= 10 && held >= kLeastHeld * n && held >= kContrast * (beside / 4.0 + 1);
     };
     const auto within = [&](double r) { return r <= t; };
     const auto near = [&](double r) { return r > t && r <= 5 * t; };
@@ -176,7 +176,7 @@ class Relations {
           most = open;
           k = 0.5 * (ends[e].k + ends[e + 1].k);
         }
-      if (most < kLeastShare * double(parts.size())) return;
+      if (most < kLeastHeld * double(parts.size())) return;
     }
     std::vector<Residual> residual;
     for (const auto& [row, a, b] : parts) residual.push_back({row, a - k * b});
@@ -261,7 +261,7 @@ class Relations {
           most = open;
           k = 0.5 * (ends[e].first + ends[e + 1].first);
         }
-      if (most < kLeastShare * double(good.size())) return;
+      if (most < kLeastHeld * double(good.size())) return;
     }
     std::vector<Residual> residual;
     for (const std::size_t i : good) residual.push_back({i, miss(i, k)});

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <set>
 
+#include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/problem.hpp"
 #include "hosel/loop/shots/slow.hpp"
 #include "hosel/loop/verdict.hpp"
 
 namespace hosel::loop {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
                 const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {}) {

@@ -8,10 +8,11 @@
 #include <map>
 #include <set>
 
+#include "hosel/golf/units.hpp"
+
 namespace hosel::loop {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 5> kBookkeeping = {"shot", "club", "ball", "player", "session"};
 
 /// Two names of the same length but for one letter: added, left out, replaced, or swapped with its neighbour.

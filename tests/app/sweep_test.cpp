@@ -348,10 +348,15 @@ TEST(Sweep, AChangedBitOfAStoreIsNotTakenForAResult) {
   }
   EXPECT_GT(refused, 20);
   write(points, good);
-  write(dir / "out/plan.json", content(dir / "out/plan.json").substr(0, 60));
-  const Outcome o = command("sweep merge " + out + " --force");
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("the plan is damaged"), std::string::npos) << o.text;
+  const std::string plan = content(dir / "out/plan.json");
+  std::string flipped = plan;
+  flipped[plan.find("fingerprint")] ^= 1;  // a key, not a value
+  for (const std::string& bad : {plan.substr(0, 60), flipped}) {
+    write(dir / "out/plan.json", bad);
+    const Outcome o = command("sweep merge " + out + " --force");
+    EXPECT_EQ(o.status, 2);
+    EXPECT_NE(o.text.find("the plan is damaged"), std::string::npos) << o.text;
+  }
 }
 
 TEST(Sweep, ASweepThatNamesItselfIsRefused) {

@@ -9,14 +9,14 @@ namespace {
 
 const FaceCompliance kFace{.mass = 0.012, .stiffness = 9e6, .damping = 12, .half_width = 0.05, .half_height = 0.03};
 
-struct Scene {
+struct SpringScene {
   DofMap dof_map;
   SurfaceCarrier carrier{dof_map.add_vector(3), dof_map.add_rotation(), Vec3(0.035, -0.01, 0.02)};
   DofMap::Block travel = dof_map.add_vector(1);
   FaceSpring spring{kFace, carrier, travel};
   State s = dof_map.rest();
 
-  Scene() {
+  SpringScene() {
     set_rotation(s, *carrier.rotation, Eigen::Quaterniond(0.5, 0.1, 0.7, -0.3).normalized());
     s.q[travel.q] = 8e-4;
     s.v = test::random_vector(dof_map.size(), 3, 20);
@@ -25,7 +25,7 @@ struct Scene {
 };
 
 TEST(FaceSpring, Tangent) {
-  Scene scene;
+  SpringScene scene;
   ASSERT_GT(test::total_residual(scene.spring, scene.s).norm(), 100);
   test::check_tangent(scene.spring, scene.dof_map, scene.s, 1e-6, 1e-7);
 }
@@ -33,7 +33,7 @@ TEST(FaceSpring, Tangent) {
 /// What inertia takes is the rate of the kinetic energy, along any motion; what spring and damper take is stored or
 /// lost.
 TEST(FaceSpring, PowerIsTheRateOfTheEnergies) {
-  Scene scene;
+  SpringScene scene;
   const State& s = scene.s;
   Vector inertia = Vector::Zero(scene.dof_map.size()), force = inertia;
   scene.spring.residual(s, inertia, force);

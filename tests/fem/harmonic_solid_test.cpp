@@ -10,11 +10,12 @@
 namespace hosel::fem {
 namespace {
 
-constexpr double kRadius = 0.021335, kMass = 0.04593;
-const double kDensity = kMass / (4.0 / 3 * kPi * std::pow(kRadius, 3));
+constexpr double kSolidRadius = 0.021335, kMass = 0.04593;
+const double kDensity = kMass / (4.0 / 3 * kPi * std::pow(kSolidRadius, 3));
 
 mesh::Meridian ball(int sector, int rings, double pole = 1, double skin = 1) {
-  return mesh::sphere_meridian({kRadius}, {.sector = sector, .rings = rings, .pole = pole, .skin = skin, .core = 0.4});
+  return mesh::sphere_meridian({kSolidRadius},
+                               {.sector = sector, .rings = rings, .pole = pole, .skin = skin, .core = 0.4});
 }
 
 Solid neo_hooke(double nu) {
@@ -69,7 +70,7 @@ TEST(HarmonicSolid, SphereModes) {
   const double torsional[] = {2.50113262, 3.86469978, 5.09461563, 5.76345920};  // T02 T03 T04 T11
   for (const auto& table : tables) {
     const Solid solid = neo_hooke(table.nu);
-    const double unit = std::sqrt(solid.shear() / kDensity) / kRadius;
+    const double unit = std::sqrt(solid.shear() / kDensity) / kSolidRadius;
     for (int m = 0; m <= 3; ++m) {
       System system;
       const FourierBasis basis = cylindrical_basis(m);
@@ -116,7 +117,7 @@ TEST(HarmonicSolid, SphereModesConverge) {
   for (const Row& row :
        {Row{.3, 2.6462170, 2, 1}, Row{.49, 2.6648287, 2, 1}, Row{.4999, 2.6656143, 2, 1}, Row{.49, 2.50113262, 2, 0}}) {
     const Solid solid = neo_hooke(row.nu);
-    const double unit = std::sqrt(solid.shear() / kDensity) / kRadius;
+    const double unit = std::sqrt(solid.shear() / kDensity) / kSolidRadius;
     const auto error = [&](int n) {
       System system;
       system.terms.push_back(std::make_unique<HarmonicSolid>(system.dof_map, ball(n, n), cylindrical_basis(row.m),
@@ -177,7 +178,7 @@ TEST(HarmonicSolid, RigidMotion) {
   const Vec3 v(3, -4, 5), w(100, -200, 50);
   solid.set_velocity(s, v, w);
   const MeanMotion m = solid.motion(s);
-  const double inertia = 0.4 * kMass * kRadius * kRadius;
+  const double inertia = 0.4 * kMass * kSolidRadius * kSolidRadius;
   EXPECT_NEAR(m.mass, kMass, 1e-5 * kMass);
   EXPECT_LT((m.velocity - v).norm(), 1e-12);
   EXPECT_LT((m.centre - placement.origin).norm(), 1e-9);

@@ -9,7 +9,7 @@
 namespace hosel::models {
 namespace {
 
-constexpr double kRadius = 0.021335, kDensity = 1129.0935;
+constexpr double kSphereRadius = 0.021335, kDensity = 1129.0935;
 
 struct Spinning {
   fem::System system;
@@ -21,7 +21,8 @@ struct Spinning {
     const fem::Solid rubber{
         .elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, .49)), .branches = {}, .density = kDensity};
     auto owned = std::make_unique<fem::HarmonicSolid>(
-        system.dof_map, mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = 1, .skin = 1, .core = 0.4}),
+        system.dof_map,
+        mesh::sphere_meridian({kSphereRadius}, {.sector = 2, .rings = 2, .pole = 1, .skin = 1, .core = 0.4}),
         fem::cartesian_basis(3), fem::SolidQuadrature{fem::half_circle(10), 2}, std::vector<fem::Solid>{rubber},
         fem::Placement{});
     ball = owned.get();
@@ -84,7 +85,7 @@ TEST(FreeSpin, CentrifugalEnergyAndAngularMomentum) {
     // The linear centrifugal solution: 7.6e-4 of the kinetic energy at E = 100 MPa, nu = 0.49.
     EXPECT_NEAR(start.strain / start.kinetic, 7.6e-4, 0.1e-4);
     const Vec3 before = spin.ball->motion(spin.state).angular_momentum;
-    const double moment = 8.0 / 15 * kPi * kDensity * std::pow(kRadius, 5) * spin.omega;
+    const double moment = 8.0 / 15 * kPi * kDensity * std::pow(kSphereRadius, 5) * spin.omega;
     EXPECT_NEAR(before.z(), moment, 5e-3 * moment);  // swollen at the equator, and 2 elements a sector
     solvers::GeneralizedAlpha solver(
         spin.system,
@@ -106,7 +107,7 @@ TEST(FreeSpin, CentrifugalEnergyAndAngularMomentum) {
     EXPECT_NEAR(least * start.kinetic / start.strain, 1, 0.01);
     const fem::MeanMotion motion = spin.ball->motion(solver.state());
     drift.push_back((motion.angular_momentum - before).norm() / before.norm());
-    EXPECT_LT(motion.momentum.norm(), 1e-10 * motion.mass * spin.omega * kRadius);
+    EXPECT_LT(motion.momentum.norm(), 1e-10 * motion.mass * spin.omega * kSphereRadius);
     EXPECT_LT(drift.back(), 1e-4);
   }
   EXPECT_NEAR(std::log2(drift[0] / drift[1]), 2, 0.3) << drift[0] << " " << drift[1];

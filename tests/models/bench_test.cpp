@@ -14,11 +14,11 @@
 namespace hosel::models {
 namespace {
 
-Club driver() {
+Club bench_driver() {
   Club club;
   club.shaft = shaft_library().front().make();
   for (const NamedShaft& s : shaft_library())
-    if (s.name == "composite-driver") club.shaft = s.make();
+    if (s.name == "composite-bench_driver") club.shaft = s.make();
   club.head.mass = 0.204;
   club.head.cg = Vec3(-0.0423, 0.001, 0.0029);
   club.head.inertia << 2.843e-4, 0.53e-4, -0.733e-4, 0.53e-4, 4.085e-4, 0.0005e-4, -0.733e-4, 0.0005e-4, 5.679e-4;
@@ -69,7 +69,7 @@ std::vector<double> reference(const Club& declared, const ClubChange& c, int cou
 }
 
 TEST(Bench, ModesOfEveryChangeAreThoseOfTheWholeModel) {
-  const Club club = driver();
+  const Club club = bench_driver();
   const Bench bench(club, true, {}, {});
   const std::vector<ClubChange> changes = {
       {},

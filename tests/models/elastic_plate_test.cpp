@@ -26,7 +26,7 @@ FeImpactOptions sphere(const ElasticSolid& s) {
   o.newton_relative = 1e-5;
   return o;
 }
-constexpr Ball kBall{.mass = 0.2618e-3, .radius = 2.5e-3};
+constexpr Ball kSmallBall{.mass = 0.2618e-3, .radius = 2.5e-3};
 
 TEST(ElasticPlate, StandInKeepsStiffnessCouplingAndPeriod) {
   const ContactPair pair = ContactPair::of(kAlumina, kGlass);
@@ -45,8 +45,8 @@ TEST(ElasticPlate, StandInKeepsStiffnessCouplingAndPeriod) {
 }
 
 TEST(ElasticPlate, OnARigidPlateTheStandInIsTheSphere) {
-  const Bounce plain = bounce(FeFreeBody(sphere(kAlumina)), kBall, 3.9, radians(11));
-  const Bounce pair = bounce(ElasticPlate(sphere(kAlumina), kRigid, kBall), kBall, 3.9, radians(11));
+  const Bounce plain = bounce(FeFreeBody(sphere(kAlumina)), kSmallBall, 3.9, radians(11));
+  const Bounce pair = bounce(ElasticPlate(sphere(kAlumina), kRigid, kSmallBall), kSmallBall, 3.9, radians(11));
   ASSERT_GT(plain.spin, 200);
   // The stand-in has a layer more, and so another mesh inside.
   EXPECT_NEAR(pair.tangential_restitution, plain.tangential_restitution, 0.005);
@@ -57,12 +57,13 @@ TEST(ElasticPlate, OnARigidPlateTheStandInIsTheSphere) {
 /// An alumina sphere on glass is coupled less than one of the same stiffness on a rigid plate and gives back less where
 /// it sticks. Where it slides throughout, coupling does not matter.
 TEST(ElasticPlate, GlassUnderTheSphereTakesTangentialReturn) {
-  const ElasticPlate pair(sphere(kAlumina), kGlass, kBall);
+  const ElasticPlate pair(sphere(kAlumina), kGlass, kSmallBall);
   const FeFreeBody alone(sphere({59.1e9, .247}));
-  const Bounce sticks = bounce(pair, kBall, 3.9, radians(3.7)), before = bounce(alone, kBall, 3.9, radians(3.7));
+  const Bounce sticks = bounce(pair, kSmallBall, 3.9, radians(3.7)),
+               before = bounce(alone, kSmallBall, 3.9, radians(3.7));
   EXPECT_GT(before.tangential_restitution, 0.48);
   EXPECT_LT(sticks.tangential_restitution, 0.40);
-  const Bounce slides = bounce(pair, kBall, 3.9, radians(50));
+  const Bounce slides = bounce(pair, kSmallBall, 3.9, radians(50));
   EXPECT_NEAR(slides.tangential_ratio, 1 - 0.092 * (1 + slides.normal_restitution) / std::tan(radians(50)), 2e-3);
 }
 
@@ -72,19 +73,19 @@ TEST(ElasticPlate, GlassUnderTheSphereTakesTangentialReturn) {
 TEST(ElasticPlate, StaticFrictionHoldsThePatchThatPressureShears) {
   FeImpactOptions held = sphere(kAlumina);
   held.static_friction = {{0.2, 0.5e-6}};
-  const ElasticPlate before(sphere(kAlumina), kGlass, kBall), after(held, kGlass, kBall);
+  const ElasticPlate before(sphere(kAlumina), kGlass, kSmallBall), after(held, kGlass, kSmallBall);
   const double angle = radians(3.7);
-  EXPECT_LT(bounce(before, kBall, 3.9, angle).tangential_ratio, 0.63);
-  EXPECT_NEAR(bounce(after, kBall, 3.9, angle).tangential_ratio, 0.745, 0.045);
-  const Bounce slides = bounce(after, kBall, 3.9, radians(50));
+  EXPECT_LT(bounce(before, kSmallBall, 3.9, angle).tangential_ratio, 0.63);
+  EXPECT_NEAR(bounce(after, kSmallBall, 3.9, angle).tangential_ratio, 0.745, 0.045);
+  const Bounce slides = bounce(after, kSmallBall, 3.9, radians(50));
   EXPECT_NEAR(slides.tangential_ratio, 1 - 0.092 * (1 + slides.normal_restitution) / std::tan(radians(50)), 0.012);
 }
 
 TEST(ElasticPlate, RefusesWhatHasNoStandIn) {
-  EXPECT_THROW(ElasticPlate(sphere(kGlass), kGlass, kBall), std::invalid_argument);
+  EXPECT_THROW(ElasticPlate(sphere(kGlass), kGlass, kSmallBall), std::invalid_argument);
   FeImpactOptions layered = sphere(kAlumina);
   layered.ball = range_ball();
-  EXPECT_THROW(ElasticPlate(layered, kGlass, kBall), std::invalid_argument);
+  EXPECT_THROW(ElasticPlate(layered, kGlass, kSmallBall), std::invalid_argument);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace hosel::models {
 namespace {
 
-constexpr double kRadius = 0.021335, kMass = 0.04593;
+constexpr double kHertzRadius = 0.021335, kHertzMass = 0.04593;
 
 double plane_modulus(double young, double nu) { return young / (1 - nu * nu); }
 
@@ -21,7 +21,7 @@ double plane_modulus(double young, double nu) { return young / (1 - nu * nu); }
 class Squeeze {
  public:
   Squeeze(fem::Solid material, const mesh::MeridianOptions& mesh, double penalty)
-      : meridian_(mesh::sphere_meridian({kRadius}, mesh)), material_(std::move(material)), penalty_(penalty) {}
+      : meridian_(mesh::sphere_meridian({kHertzRadius}, mesh)), material_(std::move(material)), penalty_(penalty) {}
 
   /// Force on each plate [N] at rest `after` the last call [s]; the material's history moves.
   double force(double approach, double after = 0) {
@@ -38,11 +38,11 @@ class Squeeze {
     fem::Contact* plate = nullptr;
     for (const double side : {1.0, -1.0}) {
       fem::SurfaceCarrier carrier;
-      carrier.position = Vec3(side * (kRadius - approach), 0, 0);
+      carrier.position = Vec3(side * (kHertzRadius - approach), 0, 0);
       carrier.attitude = side < 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(kPi, Vec3::UnitZ()).toRotationMatrix();
       auto contact =
           std::make_unique<fem::Contact>(*solid, std::make_unique<fem::FaceSurface>(Face{}), carrier,
-                                         fem::ContactLaws{penalty_ * material_.instant_shear() / kRadius, nullptr},
+                                         fem::ContactLaws{penalty_ * material_.instant_shear() / kHertzRadius, nullptr},
                                          fem::single_angle(), fem::Symmetry::axis);
       contact->start(state);
       plate = contact.get();
@@ -75,8 +75,8 @@ fem::Solid linear(double nu) {
 
 /// Force between two plates over Hertz's at the approach (a/R)^2 R.
 double over_hertz(Squeeze& squeeze, double a, double nu) {
-  const double d = a * a * kRadius;
-  return squeeze.force(d) / (4.0 / 3 * plane_modulus(100e6, nu) * std::sqrt(kRadius) * std::pow(d, 1.5));
+  const double d = a * a * kHertzRadius;
+  return squeeze.force(d) / (4.0 / 3 * plane_modulus(100e6, nu) * std::sqrt(kHertzRadius) * std::pow(d, 1.5));
 }
 
 /// The finite sphere's departure from Hertz against the exact solution of the same problem. A second, independent
@@ -95,7 +95,7 @@ TEST(Hertz, StaticDepartureOfAFiniteSphere) {
         {.sector = 16, .rings = 12, .pole = 0.06, .far = 2.5, .both_poles = true, .skin = 0.05, .core = 0.4}, 1e5);
     for (const Row& row : rows) {
       if (row.nu != nu) continue;
-      const double d = 1e-3 * row.approach / kRadius;
+      const double d = 1e-3 * row.approach / kHertzRadius;
       EXPECT_NEAR(test::squeezed_over_hertz(nu, d), row.reference, 6e-4 * row.reference) << nu << " " << row.approach;
       EXPECT_NEAR(over_hertz(squeeze, std::sqrt(d), nu), row.reference, .005 * row.reference)
           << nu << " " << row.approach << " mm";
@@ -146,9 +146,10 @@ TEST(Hertz, VerySlowImpact) {
   o.rho_inf = 0.5;
   const double E = plane_modulus(100e6, .49);
   const test::Bounce b = test::bounce(o, v, 0);
-  EXPECT_NEAR(b.peak_force / (1.282689390 * std::pow(std::pow(kMass, 3) * kRadius * E * E * std::pow(v, 6), .2)), 1,
-              .01);
-  EXPECT_NEAR(b.contact_time / (2.868265699 * std::pow(kMass * kMass / (kRadius * E * E * v), .2)), 1,
+  EXPECT_NEAR(
+      b.peak_force / (1.282689390 * std::pow(std::pow(kHertzMass, 3) * kHertzRadius * E * E * std::pow(v, 6), .2)), 1,
+      .01);
+  EXPECT_NEAR(b.contact_time / (2.868265699 * std::pow(kHertzMass * kHertzMass / (kHertzRadius * E * E * v), .2)), 1,
               .0125);  // a step
   EXPECT_NEAR(b.v_n, v, 1e-3 * v);
 }
@@ -162,13 +163,15 @@ TEST(Hertz, ImpactOfAFiniteSphere) {
                        {.3, 10, .917, 1.154, .0059}, {.49, 1, .970, 1.046, .00070}, {.49, 10, .931, 1.089, .0107}};
   for (const Row& row : table) {
     const double E = plane_modulus(100e6, row.nu);
-    const double a =
-        std::sqrt(.974514960 * std::pow(kMass * kMass * std::pow(row.v, 4) / (kRadius * E * E), .2) / kRadius);
+    const double a = std::sqrt(.974514960 *
+                               std::pow(kHertzMass * kHertzMass * std::pow(row.v, 4) / (kHertzRadius * E * E), .2) /
+                               kHertzRadius);
     const test::Bounce b = test::bounce(normal(linear(row.nu), std::min(0.3, 1.2 * a)), row.v, 0);
-    EXPECT_NEAR(b.contact_time / (2.868265699 * std::pow(kMass * kMass / (kRadius * E * E * row.v), .2)), row.time,
-                .015 * row.time)
+    EXPECT_NEAR(b.contact_time / (2.868265699 * std::pow(kHertzMass * kHertzMass / (kHertzRadius * E * E * row.v), .2)),
+                row.time, .015 * row.time)
         << row.nu << " " << row.v;
-    EXPECT_NEAR(b.peak_force / (1.282689390 * std::pow(std::pow(kMass, 3) * kRadius * E * E * std::pow(row.v, 6), .2)),
+    EXPECT_NEAR(b.peak_force /
+                    (1.282689390 * std::pow(std::pow(kHertzMass, 3) * kHertzRadius * E * E * std::pow(row.v, 6), .2)),
                 row.force, .015 * row.force)
         << row.nu << " " << row.v;
     // Points touch and let go one by one: the rebound is good to 3e-4 of the speed (at nu = 0.49 and 1 m/s 0.0010, and
@@ -194,7 +197,7 @@ TEST(Hertz, ViscoelasticIndentation) {
       .sector = 8, .rings = 6, .pole = 0.06, .far = 3, .both_poles = true, .skin = 0.06, .core = 0.4};
   constexpr double d = 1e-4, bulk = 1e11, penalty = 1e5;
   Squeeze held(zener(1e-3, bulk), mesh, penalty);
-  const double instant = held.force(d), finite = test::squeezed_over_hertz(.4999, d / kRadius);
+  const double instant = held.force(d), finite = test::squeezed_over_hertz(.4999, d / kHertzRadius);
   EXPECT_NEAR(instant / 31.160545, finite, .015 * finite);
   double force = 0;
   for (int i = 0; i < 10; ++i) force = held.force(d, 1e-4);

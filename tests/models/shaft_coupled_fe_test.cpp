@@ -17,7 +17,7 @@ namespace {
 
 using test::driver_blow;
 
-FeImpactOptions coarse() { return test::coarse_impact(2); }
+FeImpactOptions coarse_free() { return test::coarse_impact(2); }
 
 VolumetricLaw law_of(const Eigen::VectorXd& p) {
   VolumetricLaw law;
@@ -56,11 +56,11 @@ TEST(SlowShaftCoupled, ShaftsPartAgreesWithTheFullClubOverTheFace) {
   std::vector<double> width;
   for (const Blow& b : blows) {
     PulseWidth pulse;
-    free.push_back(solve_free_body(b, coarse(), [&](const ImpactView& v) {
+    free.push_back(solve_free_body(b, coarse_free(), [&](const ImpactView& v) {
                      pulse.add(v.state.time, v.report.normal_force);
                    }).launch);
     width.push_back(pulse.value());
-    full.push_back(solve_full_club(b, {coarse(), {}}).launch);
+    full.push_back(solve_full_club(b, {coarse_free(), {}}).launch);
     ASSERT_GT(*free.back().peak_force, 1e4);
     ASSERT_GT(width.back(), 5e-5);
   }

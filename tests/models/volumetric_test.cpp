@@ -15,7 +15,7 @@
 namespace hosel::models {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteMass = std::numeric_limits<double>::infinity();
 
 /// A central blow: the head's cg on the line of centres, no loft.
 Blow central(double mass, double speed, double face_radius) {
@@ -23,7 +23,7 @@ Blow central(double mass, double speed, double face_radius) {
   b.ball.radius = 0.0213;
   b.club.head.mass = mass;
   b.club.head.cg = {-0.03, 0, 0};
-  b.club.head.inertia = std::isinf(mass) ? Mat3(kInf * Mat3::Identity()) : Mat3(3e-4 * Mat3::Identity());
+  b.club.head.inertia = std::isinf(mass) ? Mat3(kInfiniteMass * Mat3::Identity()) : Mat3(3e-4 * Mat3::Identity());
   b.club.head.face = {face_radius, face_radius};
   b.delivery.club_speed = speed;
   return b;
@@ -52,17 +52,17 @@ Blow eccentric() {
   return b;
 }
 
-struct Row {
+struct VolumetricRow {
   const char* head;
   double mass, speed, e, milliseconds, kilonewtons, millimetres;
 };
-class Published : public testing::TestWithParam<Row> {};
+class Published : public testing::TestWithParam<VolumetricRow> {};
 
 TEST_P(Published, RestitutionTimeForceDepth) {
-  const Row& row = GetParam();
+  const VolumetricRow& row = GetParam();
   const bool driver = row.head[0] == 'd';
   const VolumetricLaw law = driver ? VolumetricLaw::published_driver() : VolumetricLaw::published_iron7();
-  const Blow b = central(row.mass, row.speed, driver ? 0.305 : kInf);
+  const Blow b = central(row.mass, row.speed, driver ? 0.305 : kInfiniteMass);
   for (const Integrator integrator : {Integrator::rosenbrock, Integrator::cvode}) {
     const double tolerance = integrator == Integrator::cvode ? 1e-8 : VolumetricOptions{}.tolerance;
     const Launch l = volumetric_impact(b, law, {integrator, tolerance}).launch;
@@ -77,16 +77,16 @@ TEST_P(Published, RestitutionTimeForceDepth) {
 
 // verification/reduced.md: integrated independently to 1e-8.
 INSTANTIATE_TEST_SUITE_P(Table8, Published,
-                         testing::Values(Row{"driver", 0.204, 20, 0.9211, 0.5583, 5.4017, 3.8078},
-                                         Row{"driver", 0.204, 30, 0.8861, 0.4938, 9.0264, 4.9478},
-                                         Row{"driver", 0.204, 40, 0.8535, 0.4539, 12.943, 5.9439},
-                                         Row{"driver", 0.204, 45, 0.8381, 0.4390, 14.9893, 6.4030},
-                                         Row{"driver", 0.204, 50, 0.8232, 0.4262, 17.0866, 6.8411},
-                                         Row{"driver", kInf, 45, 0.8381, 0.4707, 17.1003, 6.8632},
-                                         Row{"iron", 0.264, 20, 0.8900, 0.5417, 5.745, 3.6298},
-                                         Row{"iron", 0.264, 30, 0.8434, 0.4808, 9.5642, 4.6954},
-                                         Row{"iron", 0.264, 40, 0.8012, 0.4435, 13.6955, 5.6178},
-                                         Row{"iron", 0.264, 50, 0.7628, 0.4178, 18.0854, 6.4418}));
+                         testing::Values(VolumetricRow{"driver", 0.204, 20, 0.9211, 0.5583, 5.4017, 3.8078},
+                                         VolumetricRow{"driver", 0.204, 30, 0.8861, 0.4938, 9.0264, 4.9478},
+                                         VolumetricRow{"driver", 0.204, 40, 0.8535, 0.4539, 12.943, 5.9439},
+                                         VolumetricRow{"driver", 0.204, 45, 0.8381, 0.4390, 14.9893, 6.4030},
+                                         VolumetricRow{"driver", 0.204, 50, 0.8232, 0.4262, 17.0866, 6.8411},
+                                         VolumetricRow{"driver", kInfiniteMass, 45, 0.8381, 0.4707, 17.1003, 6.8632},
+                                         VolumetricRow{"iron", 0.264, 20, 0.8900, 0.5417, 5.745, 3.6298},
+                                         VolumetricRow{"iron", 0.264, 30, 0.8434, 0.4808, 9.5642, 4.6954},
+                                         VolumetricRow{"iron", 0.264, 40, 0.8012, 0.4435, 13.6955, 5.6178},
+                                         VolumetricRow{"iron", 0.264, 50, 0.7628, 0.4178, 18.0854, 6.4418}));
 
 TEST(Volumetric, BothIntegratorsAgree) {
   const Blow b = eccentric();
@@ -163,7 +163,7 @@ TEST(Volumetric, BalancesOnAYieldingFace) {
 /// to depth / radius, 1/300.
 TEST(Volumetric, YieldingFaceAgreesWithTheClosedTwoMassSolution) {
   constexpr double kSpeed = 0.5, kSpring = 2e6;
-  Blow b = central(0.2, kSpeed, kInf);
+  Blow b = central(0.2, kSpeed, kInfiniteMass);
   for (const auto& [mass, stiffness] : {std::pair{0.005, 1e7}, {0.015, 1e7}, {0.02, 7e6}}) {
     VolumetricLaw law{
         .stiffness = kSpring / std::sqrt(1e-6 * kPi * b.ball.radius), .damping = 0, .volume_exponent = 0.5};

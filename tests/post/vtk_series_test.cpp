@@ -34,7 +34,7 @@ VtkMesh one_hexahedron() {
   return m;
 }
 
-fs::path fresh(const char* name) {
+fs::path fresh_folder(const char* name) {
   const fs::path dir = fs::path(testing::TempDir()) / name;
   fs::remove_all(dir);
   return dir;
@@ -48,7 +48,7 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST(VtkSeries, VolumeReadsBack) {
-  const fs::path dir = fresh("hosel_vtk_volume");
+  const fs::path dir = fresh_folder("hosel_vtk_volume");
   VtkSeries series(dir, "ball", VtkSeries::Form::volume);
   series.write(0, one_hexahedron());
   series.write(2.5e-4, one_hexahedron());
@@ -72,7 +72,7 @@ TEST(VtkSeries, VolumeReadsBack) {
 }
 
 TEST(VtkSeries, SurfaceAndLinesReadBack) {
-  const fs::path dir = fresh("hosel_vtk_surface");
+  const fs::path dir = fresh_folder("hosel_vtk_surface");
   VtkMesh m;
   m.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   m.cells = {{CellShape::triangle, {0, 1, 2}}, {CellShape::line, {0, 1}}};
@@ -88,7 +88,7 @@ TEST(VtkSeries, SurfaceAndLinesReadBack) {
 }
 
 TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
-  const fs::path dir = fresh("hosel_vtk_resume");
+  const fs::path dir = fresh_folder("hosel_vtk_resume");
   const auto form = VtkSeries::Form::volume;
   // Times that nine digits do not tell apart: all that is kept is counted, not compared.
   const double t1 = 1.00000000001, t2 = 1.00000000002;
@@ -119,7 +119,7 @@ TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
 }
 
 TEST(VtkSeries, RefusesAnArrayOfTheWrongLength) {
-  VtkSeries series(fresh("hosel_vtk_wrong"), "ball", VtkSeries::Form::volume);
+  VtkSeries series(fresh_folder("hosel_vtk_wrong"), "ball", VtkSeries::Form::volume);
   VtkMesh m = one_hexahedron();
   m.point_fields[0].values.pop_back();
   EXPECT_THROW(series.write(0, m), std::invalid_argument);

@@ -11,7 +11,7 @@ using solvers::solve_static;
 
 solvers::StaticsOptions steps(int n) { return {.newton = tight(), .load_steps = n}; }
 
-fem::SectionLaw constant(const fem::Section& s) {
+fem::SectionLaw constant_section(const fem::Section& s) {
   return [s](double) { return s; };
 }
 
@@ -48,7 +48,7 @@ TEST(StaticCompliance, ForceOffTheCentresBendsAndTwists) {
   const auto tip = [&](const CentreOffsets& centres, const Vec3& force) {
     fem::Section s = plain;
     s.centres = centres;
-    BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()), constant(s));
+    BeamSystem b(mesh::straight(mesh::graded(1, 4), Vec3::Zero(), Mat3::Identity()), constant_section(s));
     b.clamp_first();
     b.load(b.tip(), [force](double) { return fem::Wrench{.force = force}; });
     const auto r = solve_static(b.system, b.rest,
@@ -78,7 +78,7 @@ TEST(Elastica, TipForce) {
         Row{5, 1.2153681176, 0.7137915236, 0.3876283607}, Row{7, 1.3349598575, 0.7673690997, 0.4729274284},
         Row{10, 1.4302855388, 0.8106090249, 0.5549955978}}) {
     BeamSystem b(mesh::straight(mesh::graded(1, 10), Vec3::Zero(), Mat3::Identity()),
-                 constant(uniform(1e6, 1e6, 1, 1, 1, Vec3::Ones())));  // EI/(EA L^2) = 1e-6: worth 1e-5
+                 constant_section(uniform(1e6, 1e6, 1, 1, 1, Vec3::Ones())));  // EI/(EA L^2) = 1e-6: worth 1e-5
     b.clamp_first();
     b.load(b.tip(), [&](double) { return fem::Wrench{.force = {0, row.load, 0}}; });
     const auto r = solve_static(b.system, b.rest, steps(8));
@@ -91,7 +91,7 @@ TEST(Elastica, TipForce) {
 
 TEST(Elastica, ShearAndStretch) {
   BeamSystem b(mesh::straight(mesh::graded(1, 10), Vec3::Zero(), Mat3::Identity()),
-               constant(uniform(1e3, 1e3, 1, 1, 1, Vec3::Ones())));
+               constant_section(uniform(1e3, 1e3, 1, 1, 1, Vec3::Ones())));
   b.clamp_first();
   b.load(b.tip(), [](double) { return fem::Wrench{.force = {0, 10, 0}}; });
   const auto r = solve_static(b.system, b.rest, steps(5));
@@ -162,14 +162,14 @@ struct Bend {
 
 Vec3 bend45(const Bend& c, int elements, int load_steps, const Mat3& turn) {
   BeamSystem b(mesh::arc(mesh::graded(100 * kPi / 4, elements), 100, Vec3::Zero(), turn),
-               constant({.axial = 1e7,
-                         .shear_y = 5e6,
-                         .shear_z = 5e6,
-                         .torsion = c.GJ,
-                         .bending_y = 1e7 / 12,
-                         .bending_z = 1e7 / 12,
-                         .mass = 1,
-                         .rotary = Vec3::Ones()}));
+               constant_section({.axial = 1e7,
+                                 .shear_y = 5e6,
+                                 .shear_z = 5e6,
+                                 .torsion = c.GJ,
+                                 .bending_y = 1e7 / 12,
+                                 .bending_z = 1e7 / 12,
+                                 .mass = 1,
+                                 .rotary = Vec3::Ones()}));
   b.system.prescribed.push_back(
       std::make_unique<fem::ImposedMotion>(b.beam->nodes().front(), fem::at_rest(Vec3::Zero())));
   b.load(b.tip(), [&](double) { return fem::Wrench{.force = turn * Vec3(0, 0, c.P)}; });
@@ -206,7 +206,7 @@ TEST(RollUp, EndMomentMakesACircle) {
   for (int elements : {3, 8}) {
     for (double angle : {kPi / 2, kPi, 2 * kPi}) {
       BeamSystem b(mesh::straight(mesh::graded(1, elements), Vec3::Zero(), Mat3::Identity()),
-                   constant(uniform(1e4, 1e4, 2, 2, 1, Vec3::Ones())));
+                   constant_section(uniform(1e4, 1e4, 2, 2, 1, Vec3::Ones())));
       b.clamp_first();
       b.load(b.tip(), [&](double) { return fem::Wrench{.moment = {0, 0, 2 * angle}}; });
       const auto r = solve_static(b.system, b.rest,
@@ -248,14 +248,14 @@ TEST(PrincetonBeam, TwentyOneLoadCases) {
                              {13.345, 90, -50.40564, 0, 200.69281, 0}}) {
     // y along H, z along T; bending by a force along H is about z.
     BeamSystem b(mesh::straight(mesh::graded(0.508, 10), Vec3::Zero(), Mat3::Identity()),
-                 constant({.axial = 2.84191e6,
-                           .shear_y = 9.22099e5,
-                           .shear_z = 9.22099e5,
-                           .torsion = 3.10334,
-                           .bending_y = 2.42873,
-                           .bending_z = 36.2794,
-                           .mass = 1,
-                           .rotary = Vec3::Ones()}));
+                 constant_section({.axial = 2.84191e6,
+                                   .shear_y = 9.22099e5,
+                                   .shear_z = 9.22099e5,
+                                   .torsion = 3.10334,
+                                   .bending_y = 2.42873,
+                                   .bending_z = 36.2794,
+                                   .mass = 1,
+                                   .rotary = Vec3::Ones()}));
     b.clamp_first();
     const double th = radians(c.theta);
     b.load(b.tip(), [&](double) { return fem::Wrench{.force = c.P * Vec3(0, std::cos(th), std::sin(th))}; });

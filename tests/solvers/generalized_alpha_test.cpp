@@ -54,7 +54,7 @@ fem::State start(const fem::System& system) {
   return s;
 }
 
-GeneralizedAlphaOptions fixed(double rho, double h) {
+GeneralizedAlphaOptions fixed_step(double rho, double h) {
   return {.rho_inf = rho,
           .newton = {.residual_relative = 1e-11,
                      .residual_absolute = 1e-11,
@@ -68,7 +68,7 @@ GeneralizedAlphaOptions fixed(double rho, double h) {
 
 double pendulum_error(double rho, int steps) {
   fem::System system = pendulum();
-  GeneralizedAlpha scheme(system, fixed(rho, 3.0 / steps), start(system));
+  GeneralizedAlpha scheme(system, fixed_step(rho, 3.0 / steps), start(system));
   for (int i = 0; i < steps; ++i) EXPECT_TRUE(scheme.step(3.0 / steps).converged);
   return (Eigen::Vector2d(scheme.state().q) - Eigen::Vector2d(0.02427151, -1.01497073)).norm();
 }
@@ -92,7 +92,7 @@ TEST(GeneralizedAlpha, LedgerClosesWithTheStep) {
   double last = 0;
   for (int steps : {3000, 6000}) {
     fem::System system = pendulum();
-    GeneralizedAlpha scheme(system, fixed(0.5, 3.0 / steps), start(system));
+    GeneralizedAlpha scheme(system, fixed_step(0.5, 3.0 / steps), start(system));
     double worst = 0;
     for (int i = 0; i < steps; ++i) {
       scheme.step(3.0 / steps);
@@ -117,7 +117,7 @@ TEST(GeneralizedAlpha, NumericalDissipationIsTheLossOfEnergy) {
   };
   for (const double h : {1e-3, 5e-4}) {
     fem::System system = pendulum();
-    GeneralizedAlpha scheme(system, fixed(0.0, h), start(system));
+    GeneralizedAlpha scheme(system, fixed_step(0.0, h), start(system));
     const double before = energy(scheme.state());
     for (int i = 0; i < int(std::lround(3 / h)); ++i) scheme.step(h);
     const double lost = before - energy(scheme.state());
@@ -128,7 +128,7 @@ TEST(GeneralizedAlpha, NumericalDissipationIsTheLossOfEnergy) {
 
 TEST(GeneralizedAlpha, RestartGoesOnExactly) {
   fem::System one = pendulum(), two = pendulum();
-  GeneralizedAlphaOptions options = fixed(0.8, 2e-3);
+  GeneralizedAlphaOptions options = fixed_step(0.8, 2e-3);
   options.error_vector = 1e-6;
   GeneralizedAlpha a(one, options, start(one));
   while (a.time() < 0.5) a.advance(1);
@@ -144,7 +144,7 @@ TEST(GeneralizedAlpha, RestartGoesOnExactly) {
 
 TEST(GeneralizedAlpha, ErrorControlMeetsTheEndAndTheTolerance) {
   fem::System system = pendulum();
-  GeneralizedAlphaOptions options = fixed(0.9, 0.05);
+  GeneralizedAlphaOptions options = fixed_step(0.9, 0.05);
   options.step_min = 1e-7;
   options.error_vector = 1e-6;
   GeneralizedAlpha scheme(system, options, start(system));
@@ -156,19 +156,19 @@ TEST(GeneralizedAlpha, ErrorControlMeetsTheEndAndTheTolerance) {
 
 TEST(GeneralizedAlpha, RefusesWhatIsNotStated) {
   fem::System system = pendulum();
-  GeneralizedAlphaOptions options = fixed(0.9, 1e-3);
+  GeneralizedAlphaOptions options = fixed_step(0.9, 1e-3);
   for (double rho : {-0.1, 1.1, std::nan("")}) {
     options.rho_inf = rho;
     EXPECT_THROW(GeneralizedAlpha(system, options, start(system)), std::invalid_argument);
   }
-  options = fixed(0.9, 1e-3);
+  options = fixed_step(0.9, 1e-3);
   options.newton.residual_relative = options.newton.residual_absolute = 0;
   EXPECT_THROW(GeneralizedAlpha(system, options, start(system)), std::invalid_argument);
 }
 
 TEST(GeneralizedAlpha, GivesUpWithOneSentence) {
   fem::System system = pendulum();
-  GeneralizedAlphaOptions options = fixed(0.9, 1e-3);
+  GeneralizedAlphaOptions options = fixed_step(0.9, 1e-3);
   options.newton.max_iterations = 1;  // one iteration can never confirm its own increment
   options.newton.increment_vector = 1e-300;
   GeneralizedAlpha scheme(system, options, start(system));
