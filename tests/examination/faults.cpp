@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "units.hpp"
+
 namespace examination {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double deg = M_PI / 180, mph = 0.44704, kmh = 1 / 3.6;
 
 /// A column wherever it stands: inputs first, then channels.
 struct Place {

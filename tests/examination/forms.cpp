@@ -2,10 +2,11 @@
 
 #include <stdexcept>
 
+#include "units.hpp"
+
 namespace examination {
 namespace {
 
-constexpr double deg = M_PI / 180;
 using P = std::span<const double>;
 
 std::vector<Form> make_natural() {

@@ -10,6 +10,7 @@
 #include "build_info.hpp"
 #include "files.hpp"
 #include "records.hpp"
+#include "units.hpp"
 
 namespace examination {
 namespace {
@@ -44,7 +45,6 @@ int verify() {
       {50, -1, 4, -2, 11, 0, 0, 68.0572782, 8.7779367, -0.8427541, 2958.08862, -1492.09525, -186.91199},
       {42, -3, -3, 3, 14, 12, -6, 56.1572111, 9.4649126, 4.2558819, 3709.46885, 1152.83596, -83.31975}};
   const Row row_b{46, 2, 2, -1, 12, 8, 5, 63.1286855, 10.9169153, 1.3165128, 2502.76664, -884.02101, -228.06872};
-  constexpr double deg = M_PI / 180, rpm = M_PI / 30;
   Head a, b;
   b.cg_m = Vector3d(-0.038, 0.003, 0.004);
   b.inertia_kg_m2 << 2.9e-4, -2e-5, 3e-5, -2e-5, 4.1e-4, 1e-5, 3e-5, 1e-5, 5.6e-4;

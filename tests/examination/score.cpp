@@ -12,6 +12,7 @@
 
 #include "designs.hpp"
 #include "files.hpp"
+#include "units.hpp"
 
 namespace examination {
 namespace fs = std::filesystem;
@@ -127,7 +128,6 @@ std::optional<double> true_value(const Set& set, const std::string& name, const 
   const std::string& effect = set.hidden[0].effect;
   const auto& x = set.value[0];
   const Session& s = set.session;
-  constexpr double deg = M_PI / 180;
   const std::string id = effect + "/" + name + "/" + unit;
   if (id == "ball-tangential-compliance/tangential_restitution/1") return x[0];
   if (id == "friction-limit/friction_coefficient/1") return 1 / x[0];

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "units.hpp"
+
 namespace examination {
 namespace {
 
-constexpr double deg = M_PI / 180, rpm = 2 * M_PI / 60, mph = 0.44704, kmh = 1 / 3.6;
 using Quantity = Channel::Quantity;
 
 double observe(const Flight& f, Quantity q) {
