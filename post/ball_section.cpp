@@ -79,8 +79,8 @@ BallSection ball_section(const models::ImpactView& view, const Face& face) {
         }
       for (const auto& edge :
            {std::array{n[0], n[4], n[1]}, {n[1], n[5], n[2]}, {n[2], n[6], n[3]}, {n[3], n[7], n[0]}})
-        if (const auto [it, first] = seen.try_emplace(std::minmax(edge[0], edge[2]), meridian.layer[e]);
-            !first && it->second != meridian.layer[e])
+        if (const auto [it, fresh] = seen.try_emplace(std::minmax(edge[0], edge[2]), meridian.layer[e]);
+            !fresh && it->second != meridian.layer[e])
           s.seams.push_back(edge);
     }
   for (const auto& edge : meridian.surface)
