@@ -14,12 +14,12 @@ const Vec3 kAxis = Vec3(0.3, -0.5, 0.81).normalized();
 GripTrack reference_track(double noise, unsigned seed) {
   GripTrack track;
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, noise);
+  std::normal_distribution<double> normal;
   for (int i = 0; i <= 72; ++i) {
     const double t = 0.1 - (72 - i) / 723.0;
     track.times.push_back(t);
     track.positions.push_back(Vec3(std::sin(20 * t), std::cos(15 * t), t * t) +
-                              Vec3(normal(random), normal(random), normal(random)));
+                              Vec3(noise * normal(random), noise * normal(random), noise * normal(random)));
     track.attitudes.emplace_back(Eigen::AngleAxisd(40 * t + 200 * t * t, kAxis));
   }
   return track;
