@@ -12,9 +12,9 @@ struct Modes {
   Eigen::MatrixXd shapes;     ///< columns over all equations, phi' M phi = 1; zero on imposed equations
 };
 
-/// The `count` lowest modes at `state` (imposed equations held). Dense symmetric-definite
-/// eigensolution: for systems of up to a few thousand equations. Throws NonConvergence where the mass
-/// matrix is not positive definite.
+/// The `count` lowest modes at `state` (imposed equations held): shift-and-invert Lanczos on CHOLMOD's factors, none
+/// missed among equal ones (their number is counted by the inertia of K - omega^2 M); small systems densely.
+/// Throws NonConvergence where mass is missing at an equation or the state is unstable.
 Modes modes(const fem::System& system, const fem::State& state, int count);
 
 }  // namespace hosel::solvers
