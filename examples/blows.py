@@ -36,8 +36,8 @@ print(f"finite elements: {launch['ball_speed_mps']:.2f} m/s, backspin {launch['b
 # %% Its history: every step of the contact.
 history = run["history.csv"]
 print(", ".join(history))
-peak = history.normal_force_N.argmax()
-print(f"largest force {history.normal_force_N[peak] / 1e3:.2f} kN at {1e3 * history.time_s[peak]:.3f} ms")
+solution = run.summary["models"]["fe-free-body"]["solution"]
+print(f"largest force {solution['peak_force_N'] / 1e3:.2f} kN at {solution['peak_time_ms']:.3f} ms")
 
 # %%
 try:

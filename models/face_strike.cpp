@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "hosel/golf/units.hpp"
+#include "hosel/solvers/peak.hpp"
 #include "hosel/solvers/rosenbrock_w.hpp"
 
 namespace hosel::models {
@@ -105,10 +106,13 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
   y[kHeadVelocity] = speed;
   FaceStrike out;
   // A step of the fastest motion cannot be above a tenth of its period's inverse rate: error control sees to it.
-  out.contact_time = solver.run(y.data(), 1e-7, 0.05, 1e-6, 1e-12, [&](double, const double* now) {
-    out.peak_force = std::max(out.peak_force, system.force(now));
-    out.travel = std::max(out.travel, now[kTravel]);
+  solvers::Peak force, travel;
+  out.contact_time = solver.run(y.data(), 1e-7, 0.05, 1e-6, 1e-12, [&](double t, const double* now) {
+    force.add(t, system.force(now));
+    travel.add(t, now[kTravel]);
   });
+  out.peak_force = force.value;
+  out.travel = travel.value;
   // The head's momentum is what striker and start leave it; its face may still move.
   const double head = speed - striker.mass / head_mass * y[kStrikerVelocity];
   out.restitution = (y[kStrikerVelocity] - head) / speed;

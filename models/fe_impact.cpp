@@ -258,13 +258,10 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     solver.advance(solver.time() + step);
     const fem::ContactReport report = parts.contact->report(solver.state());
     const double now = solver.time();
+    at.force.add(now, report.normal_force);
     if (report.points > 0) {
       at.touched = true;
       at.last_touch = now;
-      if (report.normal_force > out.peak_force) {
-        out.peak_force = report.normal_force;
-        out.peak_time = now;
-      }
     } else if (at.last_nearest < 0) {
       // The last point let go within this step: its gap grows in proportion to time there.
       at.last_touch += (now - at.last_touch) * at.last_nearest / (at.last_nearest - report.nearest);
@@ -273,9 +270,9 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
     const double gap = parts.contact->centre_gap(solver.state());
     const bool leaving = gap > at.last_gap;  // a stiff skin may bounce while the ball still comes nearer
     at.last_gap = gap;
-    out.compression = std::max(out.compression, gap0 - gap);
+    at.compression.add(now, gap0 - gap);
     out.penetration = report.penetration;
-    if (parts.face) out.face_travel = std::max(out.face_travel, parts.face->travel(solver.state()));
+    if (parts.face) at.face_travel.add(now, parts.face->travel(solver.state()));
     out.creep = report.elastic_slip;
     out.counts = before + solver.counts();
     at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + o.after);
@@ -298,6 +295,10 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   out.ball_velocity = motion.velocity;
   out.ball_spin = inertia.inverse() * motion.angular_momentum;
   out.contact_time = at.last_touch;
+  out.peak_force = at.force.value;
+  out.peak_time = at.force.time;
+  out.compression = at.compression.value;
+  out.face_travel = at.face_travel.value;
   out.dissipated = parts.ball->dissipated();
   out.ledger = solver.ledger();
   out.last = solver.state();

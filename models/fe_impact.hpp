@@ -16,6 +16,7 @@
 #include "hosel/models/fe_ball.hpp"
 #include "hosel/models/impact_model.hpp"
 #include "hosel/solvers/generalized_alpha.hpp"
+#include "hosel/solvers/peak.hpp"
 
 namespace hosel::models {
 
@@ -100,7 +101,7 @@ struct FeImpactResult {
   /// vibration has died away, global [rad/s].
   Vec3 ball_spin = Vec3::Zero();
   double contact_time = 0;         ///< from first to last touch [s]
-  double peak_force = 0;           ///< largest normal force [N]
+  double peak_force = 0;           ///< largest normal force, by solvers::Peak as the other largest values [N]
   double peak_time = 0;            ///< when [s]
   double compression = 0;          ///< largest approach of ball centre and face along the normal [m]
   double penetration = 0;          ///< largest of the patch [m]
@@ -116,7 +117,8 @@ struct FeImpactResult {
 /// An impact under way: all that is needed to go on exactly where it was.
 struct ImpactCheckpoint {
   solvers::Checkpoint solver;
-  FeImpactResult so_far;  ///< what grows with the steps: peak, compression
+  FeImpactResult so_far;  ///< what grows with the steps: penetration, creep, counts
+  solvers::Peak force, compression, face_travel;
   bool touched = false, over = false;
   double last_touch = 0;    ///< between the steps, where the last point let go [s]
   double last_nearest = 0;  ///< smallest gap of the patch after the last step [m]

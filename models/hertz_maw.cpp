@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/peak.hpp"
 
 namespace hosel::models {
 namespace {
@@ -118,7 +119,8 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
 
   HertzMawResult out;
   Vec3 impulse = Vec3::Zero();
-  double depth = 0, t = 0, largest_force = 0, largest_depth = 0;
+  double depth = 0, t = 0;
+  solvers::Peak largest_force, largest_depth;
   const auto stored_normal = [&](double d) { return d > 0 ? potential * d * d * std::sqrt(d) : 0.0; };
 
   struct Step {
@@ -178,10 +180,10 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
     impulse += h * s.force;
     out.lost_normal += s.lost_normal;
     out.lost_friction += s.lost_friction;
-    largest_depth = std::max(largest_depth, depth);
+    largest_depth.add(t, depth);
     const double elastic = depth > 0 ? 2.5 * potential * depth * std::sqrt(depth) : 0;
     const double force = elastic * (1 + law.damping * w[0]);
-    largest_force = std::max(largest_force, force);
+    largest_force.add(t, force);
     if (watch) {
       const Eigen::Vector2d f = patch.force();
       watch({t, depth, force, axes.rightCols<2>() * f});
@@ -192,8 +194,8 @@ HertzMawResult hertz_maw_impact(const Blow& blow, const ImpulseProblem& p, const
   out.impulse = axes * impulse;
   out.launch = launch_after(blow, p, out.impulse);
   out.launch.contact_time = t;
-  out.launch.peak_force = largest_force;
-  out.launch.peak_compression = largest_depth;
+  out.launch.peak_force = largest_force.value;
+  out.launch.peak_compression = largest_depth.value;
   out.stored = patch.stored() + stored_normal(depth);
   // Kinetic energy given up by the bodies: impulse times mean relative velocity at the contact.
   const Vec3 w0 = axes.transpose() * p.contact.approach;

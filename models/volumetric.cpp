@@ -11,6 +11,7 @@
 #include "hosel/golf/first_contact.hpp"
 #include "hosel/models/volume.hpp"
 #include "hosel/solvers/cvode.hpp"
+#include "hosel/solvers/peak.hpp"
 #include "hosel/solvers/rosenbrock_w.hpp"
 
 namespace hosel::models {
@@ -428,25 +429,6 @@ class Contact {
   Eigen::Matrix<double, 3, 6> slip_of_head_;
 };
 
-/// Largest force and depth of a history of steps: by the parabola through three of them.
-class Peak {
- public:
-  void add(double t, double value) {
-    t_ = {t_[1], t_[2], t};
-    v_ = {v_[1], v_[2], value};
-    if (++count_ >= 3 && v_[1] >= v_[0] && v_[1] > v_[2] && v_[1] > largest) {
-      const double a = t_[0] - t_[1], b = t_[2] - t_[1], fa = v_[0] - v_[1], fb = v_[2] - v_[1];
-      const double curvature = (fb / b - fa / a) / (b - a), slope = fa / a - curvature * a;
-      largest = v_[1] - slope * slope / (4 * curvature);
-    }
-  }
-  double largest = 0;
-
- private:
-  std::array<double, 3> t_ = {}, v_ = {};
-  int count_ = 0;
-};
-
 }  // namespace
 
 VolumetricResult volumetric_impact(const Blow& blow, const VolumetricLaw& law, const VolumetricOptions& options,
@@ -456,7 +438,7 @@ VolumetricResult volumetric_impact(const Blow& blow, const VolumetricLaw& law, c
   std::vector<double> y = contact.start();
   first_contact(blow).closing_speed();  // a head that moves away strikes nothing
   VolumetricResult out;
-  Peak force, depth;
+  solvers::Peak force, depth;
   const auto record = [&](double t, const double* state) {
     const ContactSample now = contact.sample(t, state);
     force.add(t, now.normal_force);
@@ -490,8 +472,8 @@ VolumetricResult volumetric_impact(const Blow& blow, const VolumetricLaw& law, c
   }
   contact.finish(y.data(), blow, out);
   out.launch.contact_time = end;
-  out.launch.peak_force = force.largest;
-  out.launch.peak_compression = depth.largest;
+  out.launch.peak_force = force.value;
+  out.launch.peak_compression = depth.value;
   return out;
 }
 

@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 3";
+constexpr std::string_view kFormat = "hosel impact checkpoint 4";
 
 template <class Dense>
 json numbers(const Dense& x) {
@@ -40,6 +40,12 @@ void from_json(const json& j, fem::State& s) {
   numbers(j.at("q"), s.q);
   numbers(j.at("v"), s.v);
   numbers(j.at("a"), s.a);
+}
+
+json to_json(const solvers::Peak& p) { return {p.value, p.time, p.times, p.values, p.steps}; }
+
+void from_json(const json& j, solvers::Peak& p) {
+  p = {j.at(0), j.at(1), j.at(2).get<std::array<double, 3>>(), j.at(3).get<std::array<double, 3>>(), j.at(4)};
 }
 
 json to_json(const solvers::Ledger& l) {
@@ -79,14 +85,13 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
               {"external_before", s.external_before},
               {"history", s.history}}},
             {"so_far",
-             {{"peak_force", r.peak_force},
-              {"peak_time", r.peak_time},
-              {"compression", r.compression},
-              {"penetration", r.penetration},
+             {{"penetration", r.penetration},
               {"creep", r.creep},
-              {"face_travel", r.face_travel},
               {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}},
               {"worst_residual", r.counts.worst_residual}}},
+            {"force", to_json(i.force)},
+            {"compression", to_json(i.compression)},
+            {"face_travel", to_json(i.face_travel)},
             {"touched", i.touched},
             {"over", i.over},
             {"last_touch", i.last_touch},
@@ -122,14 +127,13 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.solver.viscous_before = s.at("viscous_before");
   i.solver.external_before = s.at("external_before");
   i.solver.history = s.at("history").get<std::vector<double>>();
-  i.so_far.peak_force = r.at("peak_force");
-  i.so_far.peak_time = r.at("peak_time");
-  i.so_far.compression = r.at("compression");
   i.so_far.penetration = r.at("penetration");
   i.so_far.creep = r.at("creep");
-  i.so_far.face_travel = r.at("face_travel");
   const auto counts = r.at("counts").get<std::array<long, 4>>();
   i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], r.at("worst_residual")};
+  from_json(j.at("force"), i.force);
+  from_json(j.at("compression"), i.compression);
+  from_json(j.at("face_travel"), i.face_travel);
   i.touched = j.at("touched");
   i.over = j.at("over");
   i.last_touch = j.at("last_touch");

@@ -8,6 +8,7 @@
 
 #include "hosel/post/csv.hpp"
 #include "hosel/post/svg.hpp"
+#include "hosel/solvers/peak.hpp"
 
 namespace hosel::post {
 namespace {
@@ -41,11 +42,12 @@ std::string force_svg(const std::filesystem::path& history) {
   const Sheet sheet = read_csv(history);
   const auto time = column(sheet, "time_s", 1e-3), normal = column(sheet, "normal_force_N", 1e3),
              tangential = column(sheet, "tangential_force_N", 1e3);
-  const auto peak = std::size_t(std::ranges::max_element(normal) - normal.begin());
+  solvers::Peak peak;
+  for (std::size_t i = 0; i < time.size(); ++i) peak.add(time[i], normal[i]);
   SvgPlot p{.y_label = "force on the ball [kN]", .told = "normal and tangential force over time"};
   p.series = {{"line-1", time, normal}, {"line-2", time, tangential}};
   p.series[1].label = "along the slip";
-  p.marks = {{time[peak], normal[peak], fmt::format("{:.2f} kN at {:.3f} ms", normal[peak], time[peak])}};
+  p.marks = {{peak.time, peak.value, fmt::format("{:.2f} kN at {:.3f} ms", peak.value, peak.time)}};
   return plot(std::move(p));
 }
 

@@ -126,7 +126,7 @@ ImpactRecorder::~ImpactRecorder() = default;
 
 const BallSection* ImpactRecorder::at_largest_force() const {
   const State& s = *state_;
-  const bool before = s.resumed && s.section && s.resumed->impact.so_far.peak_force > s.section->force;
+  const bool before = s.resumed && s.section && s.resumed->impact.force.value > s.section->force;
   return s.section && !before ? &*s.section : nullptr;
 }
 

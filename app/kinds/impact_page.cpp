@@ -151,7 +151,7 @@ void show_impact(Output& out, const ImpactStory& s) {
     if (r.section)
       page.figure(fmt::format("{}: the ball cut open in the plane of slip at the largest force, {:.2f} kN after "
                               "{:.3f} ms, and the face behind it; the target is to the right.",
-                              r.model, 1e-3 * r.section->force, 1e3 * r.section->time),
+                              r.model, 1e-3 * r.result.peak_force, 1e3 * r.result.peak_time),
                   post::svg(*r.section));
     page.figure(r.model + ": force of the face on the ball", post::force_svg(r.home / "history.csv"));
     page.figure(r.model + ": where the energy is", post::energy_svg(r.home / "history.csv"));

@@ -18,7 +18,7 @@ struct FeRun {
   std::string model;
   std::filesystem::path home;  ///< of history.csv
   models::FeImpactResult result;
-  std::optional<post::BallSection> section = {};  ///< at the largest force
+  std::optional<post::BallSection> section = {};  ///< at the step with the largest force
   std::optional<post::PatchHistory> patch = {};   ///< where series were written
 };
 

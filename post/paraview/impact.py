@@ -38,7 +38,7 @@ with open(os.path.join(directory, "..", "history.csv")) as file:
     rows = list(csv.DictReader(file))
 peak = max(rows, key=lambda row: float(row["normal_force_N"]))
 at = min(ball.TimestepValues, key=lambda time: abs(time - float(peak["time_s"])))
-print("largest force %.2f kN at t = %.3f ms" % (1e-3 * float(peak["normal_force_N"]), 1e3 * float(peak["time_s"])))
+print("largest force at t = %.3f ms" % (1e3 * float(peak["time_s"])))
 
 view = CreateView("RenderView")
 view.ViewSize = [1400, 1000]
