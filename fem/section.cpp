@@ -4,17 +4,11 @@
 
 namespace hosel::fem {
 
-namespace {
-/// Without shear the shear stiffness is this many times the shaft's own. A section held without limit (fem/beam.cpp) is
-/// exact in statics and modes, but the turning of a blow's steps times that stiffness is more than kept factors bear.
-constexpr double kHeldShear = 1e3;
-}  // namespace
-
 SectionLaw shaft_sections(const Shaft& shaft, bool shear) {
   return [shaft, shear](double s) {
     const ShaftStation st = shaft.at(s);
-    const double kga = st.shear_stiffness > 0 ? (shear ? 1 : kHeldShear) * st.shear_stiffness
-                                              : std::numeric_limits<double>::infinity();
+    const bool yields = shear && st.shear_stiffness > 0;
+    const double kga = yields ? st.shear_stiffness : std::numeric_limits<double>::infinity();
     return Section{.axial = st.axial_stiffness,
                    .shear_y = kga,
                    .shear_z = kga,

@@ -21,8 +21,8 @@ struct Section {
 /// The section at an arc length [m].
 using SectionLaw = std::function<Section(double)>;
 
-/// Sections of a shaft from its table. Rayleigh beam theory where `shear` is false: rotary inertia counts, and of what
-/// shear changes a thousandth is left; nothing of it where the table has no shear stiffness.
+/// Sections of a shaft from its table. Rayleigh beam theory where `shear` is false or the table has no shear stiffness:
+/// rotary inertia counts, and sections stay normal to the axis.
 SectionLaw shaft_sections(const Shaft& shaft, bool shear = true);
 
 }  // namespace hosel::fem

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <optional>
 
 #include "tests/support/term_checks.hpp"
@@ -24,13 +25,16 @@ Section thick() {
 
 /// A two-element beam far from its reference, with rotations of up to about a radian between nodes.
 struct Scrambled {
-  explicit Scrambled(double damping_time) {
+  /// `shear` multiplies the section's stiffness against it; inf holds the sections.
+  explicit Scrambled(double damping_time, double shear = 1) {
     const Mat3 frame = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     beam.emplace(
         dof_map, mesh::arc({0, 0.5, 0.8}, 1.3, Vec3(0.2, -0.1, 0.4), frame),
-        [](double s) {
+        [shear](double s) {
           Section q = thick();
           q.bending_y *= 1 + s;
+          q.shear_y *= shear;
+          q.shear_z *= shear;
           return q;
         },
         BeamOptions{.gravity = Vec3(1, 2, -9), .damping_time = damping_time});
@@ -58,6 +62,14 @@ TEST(Beam, ResidualIsTheGradientOfTheEnergyAndTheTangentItsDerivative) {
                         },
                         {});
   test::check_gradient(weightless, dof_map, s.state, 1e-5, 1e-8);
+}
+
+TEST(Beam, HeldSectionsToo) {
+  Scrambled s(0, std::numeric_limits<double>::infinity());
+  ASSERT_GT(s.beam->strains(s.state).front().gamma.tail<2>().norm(), 0.01) << "far from what holding would leave";
+  test::check_tangent(*s.beam, s.dof_map, s.state, 1e-5, 1e-8);
+  for (const Beam::Resultant& at : s.beam->resultants(s.state))
+    EXPECT_GT(at.force.tail<2>().norm(), 1e3 * thick().shear_y * 0.01) << "held by more than the section's own";
 }
 
 TEST(Beam, DampingForceIsPowerOfTheStrainRates) {
