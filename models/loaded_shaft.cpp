@@ -13,13 +13,12 @@ namespace hosel::models {
 
 LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& s, const SwingSample& before,
                             const SwingSample& last) {
-  const fem::Node &tip = swing.shaft().nodes().back(), &butt = swing.shaft().nodes().front();
-  if (!swing.head() || swing.head_node().translation.v != tip.translation.v)
-    throw std::invalid_argument("a loaded start needs a head that is rigid on the shaft");
+  if (!swing.head()) throw std::invalid_argument("a loaded start needs a head on the shaft");
+  const fem::Node &on_head = swing.head_node(), &butt = swing.shaft().nodes().front();
   const Eigen::Quaterniond to_face(Mat3(swing.face_to_grip().transpose()));  // grip axes to face axes, straight club
-  const Eigen::Quaterniond head = fem::rotation(s, tip.rotation);            // grip axes to global
-  const Vec3 x0 = s.q.segment<3>(tip.translation.q), v0 = s.v.segment<3>(tip.translation.v);
-  const Vec3 w0 = head * Vec3(s.v.segment<3>(tip.rotation.v));
+  const Eigen::Quaterniond head = fem::rotation(s, on_head.rotation);        // grip axes to global
+  const Vec3 x0 = s.q.segment<3>(on_head.translation.q), v0 = s.v.segment<3>(on_head.translation.v);
+  const Vec3 w0 = head * Vec3(s.v.segment<3>(on_head.rotation.v));
   const auto local = [&](const Vec3& global) { return Vec3(to_face * (head.conjugate() * global)); };
   LoadedShaft out;
   for (const fem::Node& n : swing.shaft().nodes()) {
@@ -38,10 +37,10 @@ LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& s, const Swing
   out.grip_rate = {local(last.force - before.force) / step, to_face * (last.moment - before.moment) / step};
   out.grip_acceleration = local(s.a.segment<3>(butt.translation.v));
   out.grip_angular_acceleration = to_face * Vec3(s.a.segment<3>(butt.rotation.v));
-  const Vec3 w = s.v.segment<3>(tip.rotation.v), alpha = s.a.segment<3>(tip.rotation.v);
+  const Vec3 w = s.v.segment<3>(on_head.rotation.v), alpha = s.a.segment<3>(on_head.rotation.v);
   const Vec3& c = swing.head()->properties().offset;
   out.head_acceleration =
-      local(Vec3(s.a.segment<3>(tip.translation.v)) + head * (alpha.cross(c) + w.cross(w.cross(c))));
+      local(Vec3(s.a.segment<3>(on_head.translation.v)) + head * (alpha.cross(c) + w.cross(w.cross(c))));
   out.head_angular_acceleration = to_face * alpha;
   return out;
 }

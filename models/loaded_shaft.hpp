@@ -9,7 +9,7 @@
 
 namespace hosel::models {
 
-/// Seen from the head: face axes, origin at the hosel (the shaft's tip).
+/// Seen from the head: face axes, origin at the hosel (the shaft's tip, but for a joint that gives).
 struct LoadedShaft {
   struct Node {
     Vec3 position = Vec3::Zero();                                  ///< [m]
@@ -26,8 +26,8 @@ struct LoadedShaft {
   Vec3 head_acceleration = Vec3::Zero(), head_angular_acceleration = Vec3::Zero();
 };
 
-/// The end of a swing whose head is rigid on the shaft: `state` with the samples at it and one step before,
-/// from which the grip's wrench is extrapolated over the impact. Throws std::invalid_argument on another joint.
+/// The end of a swing: `state`, a joint's turn included, with the samples at it and one step before, from which the
+/// grip's wrench is extrapolated over the impact. Throws std::invalid_argument where the shaft has no head.
 LoadedShaft loaded_by_swing(const Swing& swing, const fem::State& state, const SwingSample& before,
                             const SwingSample& last);
 

@@ -23,8 +23,6 @@ fem::SectionLaw mounted_sections(const Club& club, double grip_point, bool shear
 const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem::Node& head, const Club& club,
                              const ShaftMount& mount) {
   if (mount.joint.kind == HeadJoint::Kind::none) throw std::invalid_argument("a blow needs a head on the shaft");
-  if (mount.loaded && mount.joint.gives())
-    throw std::invalid_argument("a loaded start needs a head that is rigid on the shaft");
   const auto line = shaft_line(club, mount.grip_point, mount.elements, mount.growth);
   LoadedShaft shaft;  // straight and at rest on the head
   if (mount.loaded) shaft = *mount.loaded;

@@ -26,7 +26,7 @@ struct ShaftMount {
   /// and shortest at the tip.
   double growth = 0.9;
   bool shear = true;      ///< Timoshenko; false: Rayleigh
-  HeadJoint joint;        ///< one that gives starts unloaded
+  HeadJoint joint;        ///< as it was in the swing that loaded the shaft
   double grip_point = 0;  ///< arc length from the butt where the grip holds; the shaft above it is the hands' [m]
   /// The shaft at first contact; absent: straight, moving as one rigid body with the head.
   std::optional<LoadedShaft> loaded = {};
@@ -42,8 +42,8 @@ fem::SectionLaw mounted_sections(const Club& club, double grip_point, bool shear
 /// to the face frame; the club's ClubGeometry::shaft_axis is in that frame. The pose and velocity that
 /// `initial` has at the head's node carry the shaft, straight or as `mount.loaded` says; the nodes'
 /// entries of `initial` are written accordingly (`initial` grows with the layout). Returns the beam,
-/// which the system owns. Throws std::invalid_argument where the loaded shaft has another mesh or hangs on a joint that
-/// gives: what it would settle to before the blow is not computed.
+/// which the system owns. Throws std::invalid_argument where the loaded shaft has another mesh. Where the joint gives,
+/// the loaded shaft's last node is its own, turned against the head as the swing left it.
 const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem::Node& head, const Club& club,
                              const ShaftMount& mount);
 

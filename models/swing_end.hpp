@@ -19,8 +19,8 @@ struct SwingEnd {
 };
 
 /// Swings the club from hanging still at `begin` to `end` along the grip's motion. The face frame is turned by `lie`;
-/// where not given, by that with which the head arrives. Throws std::invalid_argument where the head is not rigid on
-/// the shaft, or where a face of unlike bulge and roll would be turned; NonConvergence.
+/// where not given, by that with which the head arrives. Throws std::invalid_argument where the shaft has no head, or
+/// where a face of unlike bulge and roll would be turned; NonConvergence.
 SwingEnd swing_end(const Club& club, const SwingOptions& options, const fem::Motion& motion, double begin, double end,
                    std::optional<double> lie = {});
 

@@ -189,14 +189,16 @@ class LoadedFaceMapJob final : public PointJob {
     if (auto ball = root.optional_table("ball")) setup.ball = read_ball(*ball);
     setup.motion = read_motion(root.table("motion"));
     setup.swing = read_swing_options(root);
-    if (setup.swing.joint.kind != models::HeadJoint::Kind::rigid)
-      root.fail("joint", "a loaded start needs a head that is rigid on the shaft");
+    if (setup.swing.joint.kind == models::HeadJoint::Kind::none) root.fail("joint", "a blow needs a head on the shaft");
+    if (s.reduced && setup.swing.joint.gives())
+      root.fail("joint", "a condensed shaft does not know how far the swing turns a joint: model = \"finite-element\"");
     setup.solve = read_options(root, {s.reduced ? "volumetric" : "fe-free-body"});
     models::ShaftMount& mount = setup.solve.shaft_mount;
     mount.elements = setup.swing.elements;
     mount.growth = setup.swing.growth;
     mount.shear = setup.swing.shear;
     mount.grip_point = setup.swing.grip_point;
+    mount.joint = setup.swing.joint;
     return s;
   }
 
