@@ -65,7 +65,9 @@ class LoadedClubJob final : public Job {
 
   void run(Output& out) override {
     if (!motion_.present) return out.skip(motion_.file);
-    const SwingEnd end = swing_to_end(swing_.gravity), weightless = swing_to_end(Vec3::Zero(), end.lie);
+    const SwingEnd end = swing_to_end(swing_.gravity);
+    std::optional<SwingEnd> weightless;  // without its weight a head on a hinge hangs nowhere before the swing
+    if (!swing_.joint.gives()) weightless = swing_to_end(Vec3::Zero(), end.lie);
     const double lie = end.lie;
     const Delivery& d = end.delivery;
     out.say(
@@ -204,8 +206,9 @@ class LoadedClubJob final : public Job {
         blow_.club, options, [&](double t) { return grip.at(t); }, motion_.begin, motion_.end, lie);
   }
 
-  std::vector<LoadedPrediction> ask(Output& out, const Blow& blow, const SwingEnd& end, const SwingEnd& weightless,
-                                    const std::string& at, const models::ImpactObserver& record) const {
+  std::vector<LoadedPrediction> ask(Output& out, const Blow& blow, const SwingEnd& end,
+                                    const std::optional<SwingEnd>& weightless, const std::string& at,
+                                    const models::ImpactObserver& record) const {
     std::vector<LoadedPrediction> answers;
     Progress progress = out.progress(at);
     const auto fe = [&](const std::string& name, const models::ShaftMount* mount) {
@@ -224,8 +227,10 @@ class LoadedClubJob final : public Job {
     mount.grip = Grip::clamped;  // a club at rest has no hands' wrench to go on with
     fe("club at rest", &mount);
     mount.grip = Grip::forced;
-    mount.loaded = weightless.shaft;
-    fe("club loaded, no gravity", &mount);
+    if (weightless) {
+      mount.loaded = weightless->shaft;
+      fe("club loaded, no gravity", &mount);
+    }
     mount.loaded = end.shaft;
     fe("club loaded", &mount);
     for (const auto& [name, grip] :

@@ -15,6 +15,7 @@
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/shots.hpp"
+#include "hosel/models/loaded_shaft.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/labels.hpp"
@@ -222,6 +223,7 @@ class TuneJob final : public Job {
         continue;
       }
       blows_.push_back(blow);
+      loaded_.push_back(loaded_start(blow));
       measured_.push_back(values);
       id_.push_back(shots.id[row]);
     }
@@ -238,6 +240,13 @@ class TuneJob final : public Job {
     for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
   }
 
+  /// Where the hands load the shaft: found once a shot, for the club as the case has it.
+  std::optional<models::LoadedShaft> loaded_start(const Blow& blow) const {
+    const models::ShaftMount& m = options_.shaft_mount;
+    if (!m.load) return {};
+    return models::loaded_by_grip(blow, *m.load, m.grip_point, m.elements, m.growth, m.shear);
+  }
+
   bool tuned(std::string_view name) const {
     return std::ranges::any_of(free_, [&](const Free& f) { return f.parameter->name == name; });
   }
@@ -245,6 +254,7 @@ class TuneJob final : public Job {
   /// Channel values of the model [SI], NaN where the blow cannot happen.
   std::vector<double> predict(std::size_t row, const Eigen::VectorXd& p) const {
     models::Options options = options_;
+    options.shaft_mount.loaded = loaded_[row];
     Blow blow = blows_[row];
     for (std::size_t i = 0; i < free_.size(); ++i)
       free_[i].parameter->set(options, blow, p[static_cast<Eigen::Index>(i)]);
@@ -416,7 +426,8 @@ class TuneJob final : public Job {
   long rows_ = 0;
 
   std::vector<Blow> blows_;
-  std::vector<std::vector<double>> measured_;  // SI
+  std::vector<std::optional<models::LoadedShaft>> loaded_;  // of each blow
+  std::vector<std::vector<double>> measured_;               // SI
   std::vector<std::string> id_;
   std::vector<std::size_t> train_, test_;
   std::map<std::string, int> left_out_;
