@@ -146,7 +146,7 @@ void Output::say(std::string_view line) {
 }
 
 void Output::show(const post::TextTable& table, std::string_view heading) {
-  say(table.text());
+  tell(table.text());
   if (heading.empty()) state_->page.answer(table);
   else state_->page.section(heading, table.html());
 }

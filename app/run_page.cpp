@@ -123,7 +123,7 @@ std::string RunPage::html(const std::string& resolved, const std::string& comman
   s += tables_;
   const std::string printed = "<pre>" + escape_html(printed_) + "</pre>";
   const bool own = !answers_.empty() || !tables_.empty() || sections_;
-  if (!own) s += printed;
+  if (!own && !printed_.empty()) s += printed;
   if (!doubts_.empty()) s += "<div class='verdict open'><b>In doubt</b><ul>" + doubts_ + "</ul></div>";
   s += whole.body_;
   if (!links_.empty()) s += "<h2>More pictures</h2><ul>" + links_ + "</ul>";

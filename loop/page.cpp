@@ -149,7 +149,7 @@ std::string page(const LoopResult& r, const Shots& table) {
                    escape_html(sentence(r)));
 
   s += "<h2>Before and after</h2>";
-  if (!r.channels.empty()) s += "<figure>" + bars(r.channels) + "</figure>";
+  if (!r.channels.empty()) s += "<figure class='scroll wide'>" + bars(r.channels) + "</figure>";
   s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS "
        "after<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)
@@ -167,28 +167,30 @@ std::string page(const LoopResult& r, const Shots& table) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(
         "<h2>By the base model itself</h2><p>{}, no surrogate between, asked about {} of the held-out shots as it was "
-        "declared and with the adopted effects in it:</p><table><tr><th>channel<th>RMS before<th>RMS after<th>shots "
+        "declared and with the adopted effects in it:</p><div class='scroll'><table><tr><th>channel<th>RMS "
+        "before<th>RMS after<th>shots "
         "with both answers</tr>",
         escape_html(r.base), rows.size());
     for (std::size_t c = 0; c < r.channels.size(); ++c)
       s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(post::label(r.channels[c].name)),
                        number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)),
                        answered(rows, c));
-    s += "</table><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
+    s += "</table></div><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
          "measured.</small></p>";
   }
   if (r.balance_before) {
     const Balance &b = *r.balance_before, &a = *r.balance_after;
     s += "<h2>Contact, or kinematics and inertia?</h2><p>Whatever the contact, one impulse must give the ball both its "
          "velocity and its spin. What some impulse mends is a matter of the "
-         "contact; what none mends contradicts the recorded kinematics or the ball's inertia.</p><table><tr><th>sum of "
+         "contact; what none mends contradicts the recorded kinematics or the ball's inertia.</p><div "
+         "class='scroll'><table><tr><th>sum of "
          "squares over what noise alone gives<th>before<th>after</tr>";
     const auto ratio = [](double x, int n) {
       return n ? fmt::format("{:.2f} <small>({} values)</small>", x / n, n) : std::string("–");
     };
     s += fmt::format(
         "<tr><td>mended by an impulse: contact<td>{}<td>{}</tr><tr><td>mended by none: kinematics, "
-        "inertia<td>{}<td>{}</tr></table>",
+        "inertia<td>{}<td>{}</tr></table></div>",
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
     s += fmt::format("<p>Of the base's excess over the noise, {:.0f} % no contact law can mend.</p>",
@@ -235,9 +237,9 @@ std::string page(const LoopResult& r, const Shots& table) {
     std::string parameters;
     const auto list = c.candidate.fit.model.parameters();
     for (std::size_t k = 0; k < list.size(); ++k)
-      parameters += fmt::format("{}{} = {} ± {} {}", k ? "; " : "", list[k]->name,
+      parameters += fmt::format("{}{} = {} ± {} {}", k ? "; " : "", post::spoken(list[k]->name),
                                 number(c.candidate.fit.p[std::ptrdiff_t(k)] / list[k]->si),
-                                number(c.sd[k] / list[k]->si), list[k]->unit == "1" ? "" : list[k]->unit);
+                                number(c.sd[k] / list[k]->si), list[k]->unit == "1" ? "" : post::symbol(list[k]->unit));
     const bool chosen = !r.adopted.empty() && c.candidate.effects == r.adopted;
     s += fmt::format("<tr{}><td>{}<td class='l'>{}<td>{}<td>{}</tr>", chosen ? " class='chosen'" : "",
                      escape_html(fmt::format("{}", fmt::join(c.candidate.effects, " + "))), escape_html(parameters),
@@ -258,7 +260,7 @@ std::string page(const LoopResult& r, const Shots& table) {
          "what is fitted<th class='l'>most like<th>correlation</tr>";
     for (const Absorption& a : r.likeness.absorption)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td>{:.1f} %<td class='l'>{}<td>{}</tr>", escape_html(a.effect),
-                       escape_html(a.parameter), 100 * a.absorbed, escape_html(a.nearest),
+                       escape_html(post::spoken(a.parameter)), 100 * a.absorbed, escape_html(a.nearest),
                        a.nearest.empty() ? std::string("–") : fmt::format("{:+.3f}", a.likeness));
     s += "</table></div>" + gloss(
                                 "Absorbed: the share of an effect's trace in these data that the fitted effects can "
@@ -323,13 +325,15 @@ std::string page(const LoopResult& r, const Shots& table) {
     s += "</table></div>";
   }
   s += fmt::format(
-      "<h2>Smallest effect that these {} would show</h2><table><tr><th>effect<th class='l'>parameter<th>value</tr>",
+      "<h2>Smallest effect that these {} would show</h2><div class='scroll'><table><tr><th>effect<th "
+      "class='l'>parameter<th>value</tr>",
       thing);
   for (const Detectable& d : r.minimum_detectable)
-    s += fmt::format("<tr><td>{}<td class='l'>{}<td>{} {}</tr>", escape_html(d.effect), escape_html(d.parameter),
+    s += fmt::format("<tr><td>{}<td class='l'>{}<td>{} {}</tr>", escape_html(d.effect),
+                     escape_html(post::spoken(d.parameter)),
                      std::isfinite(d.value) ? number(d.value) : std::string("beyond its plausible range"),
-                     std::isfinite(d.value) && d.unit != "1" ? d.unit : "");
-  s += "</table>" + gloss("An effect of this size would be adopted in nine of ten such data sets.");
+                     std::isfinite(d.value) && d.unit != "1" ? post::symbol(d.unit) : "");
+  s += "</table></div>" + gloss("An effect of this size would be adopted in nine of ten such data sets.");
   if (!r.notes.empty() || !r.unused.empty()) {
     s += "<h2>Notes</h2><ul>";
     for (const auto& [reason, n] : r.unused) s += fmt::format("<li>{} rows not used: {}", n, escape_html(reason));

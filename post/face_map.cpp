@@ -8,6 +8,7 @@
 
 #include "hosel/golf/units.hpp"
 #include "hosel/post/csv.hpp"
+#include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::post {
@@ -154,11 +155,11 @@ VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<
   for (const FaceMap& m : maps)
     for (const MapQuantity& q : map_quantities(m)) {
       if (auto v = values(m, q); !v.empty())
-        mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), q.unit, 1, std::move(v)});
+        mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), symbol(q.unit), 1, std::move(v)});
       if (m.title == reference.title) continue;
       if (auto v = differences(m, reference, q); !v.empty())
         mesh.point_fields.push_back(
-            {fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), q.unit, 1, std::move(v)});
+            {fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), symbol(q.unit), 1, std::move(v)});
     }
   return mesh;
 }

@@ -11,7 +11,7 @@ constexpr const char* kStyle =
     R"(:root{color-scheme:light dark;--page:#fff;--ink:#1d2733;--soft:#5d6b7a;--rule:#e3e8ee;--band:#f4efe1;--gold:#a07c1c;
 --blue:#0072b2;--orange:#d55e00;--green:#008a64;--pink:#b5578f;--sky:#3c9fd8;--grey:#9aa5b1;--chosen:#eef5fb;
 --good:#eaf6ee;--good-ink:#21693f;--open:#fdf5e4;--open-ink:#8a5d07;--bad:#fbecea;--bad-ink:#96281b}
-@media(prefers-color-scheme:dark){:root{--page:#14191f;--ink:#e4e9ee;--soft:#9aa7b4;--rule:#2b343e;--band:#2e2a1c;
+@media screen and (prefers-color-scheme:dark){:root{--page:#14191f;--ink:#e4e9ee;--soft:#9aa7b4;--rule:#2b343e;--band:#2e2a1c;
 --gold:#d3ad4a;--blue:#56b4e9;--orange:#f08a3c;--green:#3cc39b;--pink:#dd8fbd;--sky:#8ccbf0;--grey:#77828d;
 --chosen:#1b2a38;--good:#14291d;--good-ink:#7fd0a0;--open:#2c2412;--open-ink:#e5bd62;--bad:#311b18;--bad-ink:#f0988b}
 img.curves{filter:invert(.92) hue-rotate(180deg)}}
@@ -51,9 +51,11 @@ svg text.line-1{fill:var(--blue)}svg text.line-2{fill:var(--orange)}svg text.lin
 svg text.line-4{fill:var(--pink)}svg text.line-5{fill:var(--sky)}.mark{fill:none;stroke:var(--ink);stroke-width:1.2}
 .face{fill:none;stroke:var(--ink);stroke-width:2.2}.rest{fill:none;stroke:var(--soft);stroke-dasharray:4 3}
 .layer{fill:none;stroke:var(--page);stroke-width:.8}
+@media screen and (max-width:34rem){.figures figure{overflow-x:auto}.figures img,.wide svg{min-width:30rem}}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
 @media print{:root{color-scheme:light}body{padding:0;font-size:11px;max-width:none}h2{break-after:avoid}
-figure,table,.answers,.verdict,tr{break-inside:avoid}.scroll,pre{overflow:visible;white-space:pre-wrap}})";
+.figures{grid-template-columns:1fr 1fr}figure,.answers,.verdict,tr{break-inside:avoid}
+.scroll,pre{overflow:visible;white-space:pre-wrap}pre{font-size:8px}.answers div{padding:.2rem .5rem}})";
 
 }  // namespace
 

@@ -41,6 +41,7 @@ std::string label(std::string_view key) {
   std::string which;
   if (const auto open = key.find('['); open != key.npos && key.ends_with(']')) {
     which = " " + std::string(key.substr(open + 1, key.size() - open - 2));
+    if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");
     key = key.substr(0, open);
   }
   const SplitName split = split_unit(key);

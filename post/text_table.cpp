@@ -8,6 +8,16 @@
 #include "hosel/post/labels.hpp"
 
 namespace hosel::post {
+namespace {
+
+/// A key as people read it; a row's name without underscores; anything else as it stands.
+std::string in_words(const std::string& cell, bool name) {
+  const bool key = cell.size() > 3 && cell.find('_') != cell.npos &&
+                   cell.find_first_not_of("abcdefghijklmnopqrstuvwxyzN0123456789_") == cell.npos;
+  return key ? label(cell) : name ? spoken(cell) : cell;
+}
+
+}  // namespace
 
 std::string TextTable::text() const {
   std::vector<std::size_t> width;
@@ -27,12 +37,13 @@ std::string TextTable::text() const {
 
 std::string TextTable::html() const {
   std::vector<std::vector<std::string>> shown = rows;
-  for (auto& row : shown) row[0] = spoken(row[0]);
+  for (auto& row : shown)
+    for (std::string& cell : row) cell = in_words(cell, &cell == row.data());
   const std::size_t columns = rows.front().size();
   if (columns > 6 && columns > rows.size()) {
     shown.assign(columns, std::vector<std::string>(rows.size()));
     for (std::size_t r = 0; r < rows.size(); ++r)
-      for (std::size_t c = 0; c < rows[r].size(); ++c) shown[c][r] = c || !r ? rows[r][c] : spoken(rows[r][0]);
+      for (std::size_t c = 0; c < rows[r].size(); ++c) shown[c][r] = in_words(rows[r][c], c == 0);
   }
   std::string out = "<div class='scroll'><table>";
   for (std::size_t r = 0; r < shown.size(); ++r) {

@@ -79,10 +79,15 @@ class BallRuleJob final : public Job {
         "of {}\nnew test: {:.1f} mph of ball speed; the same ball reaches {:.1f} yd: {:.1f} too many",
         machine(old_, today).ball_speed() / kMpsPerMph, limit_ / yard(), today.drag, setup_.conditions.law.name,
         machine(new_, today).ball_speed() / kMpsPerMph, reach / yard(), (reach - limit_) / yard()));
+    out.page().answer("a ball at the old limit, in the new test", fmt::format("{:.1f} yd", reach / yard()),
+                      fmt::format("{:.1f} too many for {:.0f}", (reach - limit_) / yard(), limit_ / yard()));
     summary["drag_at_the_limit"] = today.drag;
     summary["new_test_total_yd"] = reach / yard();
-    std::string head = fmt::format("{:<28}{:>12}{:>12}{:>12}{:>12}", "loss of total distance [yd]", "club [mph]",
-                                   "ball [mph]", "carry [yd]", "total [yd]");
+    post::TextTable losses{
+        .rows = {{"loss of total distance [yd]", "club [mph]", "ball [mph]", "carry [yd]", "total [yd]"}},
+        .first_width = 28,
+        .least_width = 12,
+        .even = false};
     std::string csv = "player,club_speed_mph,ball_speed_mph,carry_yd,total_yd";
     std::vector<Change> changed;
     for (const Remedy& r : kRemedies) {
@@ -90,11 +95,11 @@ class BallRuleJob final : public Job {
       c.*r.factor = solve(r, today, new_);
       changed.push_back(c);
       const double factor = c.*r.factor / (today.*r.factor);
-      head += fmt::format("{:>14}", fmt::format("{} x {:.3f}", r.name, factor));
+      losses.rows[0].push_back(fmt::format("{} x {:.3f}", r.name, factor));
       csv += fmt::format(",loss_by_{}_yd", r.name);
       summary["factors"][r.name] = factor;
     }
-    out.say("\n" + head + "     published");
+    losses.rows[0].emplace_back("published");
     csv += ",published_low_yd,published_high_yd\n";
     post::Figure figure{
         .title = fmt::format("a ball at {:.0f} yd under the old test, changed to be so under the new", limit_ / yard()),
@@ -107,14 +112,16 @@ class BallRuleJob final : public Job {
     for (const Player& p : players_) {
       const Launch launch = drive(p, today);
       const post::ShotFlight shot = follow(today, launch);
-      std::string line = fmt::format("{:<28}{:>12.0f}{:>12.1f}{:>12.1f}{:>12.1f}", p.name, p.club_speed / kMpsPerMph,
-                                     launch.ball_speed() / kMpsPerMph, shot.flight.carry / yard(),
-                                     shot.run->total / yard());
+      losses.rows.push_back({p.name, fmt::format("{:.0f}", p.club_speed / kMpsPerMph),
+                             fmt::format("{:.1f}", launch.ball_speed() / kMpsPerMph),
+                             fmt::format("{:.1f}", shot.flight.carry / yard()),
+                             fmt::format("{:.1f}", shot.run->total / yard())});
+      std::vector<std::string>& line = losses.rows.back();
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}", p.name, p.club_speed / kMpsPerMph,
                          launch.ball_speed() / kMpsPerMph, shot.flight.carry / yard(), shot.run->total / yard());
       for (std::size_t k = 0; k < changed.size(); ++k) {
         const double loss = (shot.run->total - total(changed[k], drive(p, changed[k]))) / yard();
-        line += fmt::format("{:>14.1f}", loss);
+        line.push_back(fmt::format("{:.1f}", loss));
         csv += fmt::format(",{:.4g}", loss);
         summary["players"][p.name][fmt::format("loss_by_{}_yd", kRemedies[k].name)] = loss;
         panel.series[k].x.push_back(p.club_speed / kMpsPerMph);
@@ -122,16 +129,18 @@ class BallRuleJob final : public Job {
       }
       if (p.published.empty()) {
         csv += ",,\n";
+        line.emplace_back();
       } else {
         const double low = p.published[0] / yard(), high = p.published[1] / yard();
-        line += fmt::format("{:>14}", fmt::format("{:g} to {:g}", low, high));
+        line.push_back(fmt::format("{:g} to {:g}", low, high));
         csv += fmt::format(",{:g},{:g}\n", low, high);
         published.x.push_back(p.club_speed / kMpsPerMph);
         published.y.push_back((low + high) / 2);
         published.error.push_back((high - low) / 2);
       }
-      out.say(line);
     }
+    out.tell("");
+    out.show(losses);
     if (!published.x.empty()) panel.series.push_back(published);
     figure.panels = {panel};
     out.write("losses.csv", csv);

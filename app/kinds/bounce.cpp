@@ -15,6 +15,7 @@
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -160,14 +161,24 @@ class BounceJob final : public Job {
   void table(Output& out, const std::vector<models::Bounce>& all) const {
     for (std::size_t t = 0; t < thrown_.size(); ++t)
       for (std::size_t s = 0; s < speeds_.size(); ++s) {
-        out.say(fmt::format("\n{}\n{:>10} {:>10} {:>10} {:>14} {:>16} {:>10}", title(t, s), "angle", "e_t", "ratio",
-                            "spin [rad/s]", "rebound [deg]", "e"));
+        post::TextTable rows{.rows = {{"angle", "e_t", "ratio", "spin [rad/s]", "rebound [deg]", "e"}},
+                             .first_width = 10,
+                             .least_width = 10};
+        double least = INFINITY, most = -INFINITY;
         for (const double angle : angles_) {
           const models::Bounce& b = at(all, t, s, angle);
-          out.say(fmt::format("{:>10.2f} {:>10.3f} {:>10.3f} {:>14.1f} {:>16.2f} {:>10.4f}", degrees(angle),
-                              b.tangential_restitution, b.tangential_ratio, b.spin, degrees(b.rebound_angle),
-                              b.normal_restitution));
+          rows.rows.push_back({fmt::format("{:.2f}", degrees(angle)), fmt::format("{:.3f}", b.tangential_restitution),
+                               fmt::format("{:.3f}", b.tangential_ratio), fmt::format("{:.1f}", b.spin),
+                               fmt::format("{:.2f}", degrees(b.rebound_angle)),
+                               fmt::format("{:.4f}", b.normal_restitution)});
+          least = std::min(least, b.tangential_restitution);
+          most = std::max(most, b.tangential_restitution);
         }
+        out.tell("\n" + title(t, s));
+        out.show(rows, title(t, s));
+        out.page().answer(title(t, s),
+                          least < most ? fmt::format("{:.3f} to {:.3f}", least, most) : fmt::format("{:.3f}", most),
+                          "tangential restitution");
       }
   }
 
@@ -175,32 +186,37 @@ class BounceJob final : public Job {
   void compare(Output& out, const std::vector<models::Bounce>& all, nlohmann::json& summary) const {
     for (const Measured& m : measured_) {
       const BounceQuantity& q = *m.quantity;
-      std::string head = fmt::format("\n{}: {}\n{:>10} {:>10}", with_unit(q), m.label, "angle", "measured");
+      post::TextTable rows{.rows = {{"angle", "measured"}}, .first_width = 10, .least_width = 11, .even = false};
       for (std::size_t t = 0; t < thrown_.size(); ++t)
-        for (std::size_t s = 0; s < speeds_.size(); ++s) head += fmt::format(" {:>26}", title(t, s));
-      out.say(head);
+        for (std::size_t s = 0; s < speeds_.size(); ++s) rows.rows[0].push_back(title(t, s));
       std::vector<double> square(thrown_.size() * speeds_.size()), relative = square;
       for (std::size_t i = 0; i < m.angles.size(); ++i) {
-        std::string line = fmt::format("{:>10.2f} {:>10.4g}", degrees(m.angles[i]), m.values[i] / q.si);
+        auto& line = rows.rows.emplace_back();
+        line = {fmt::format("{:.2f}", degrees(m.angles[i])), fmt::format("{:.4g}", m.values[i] / q.si)};
         for (std::size_t k = 0; k < square.size(); ++k) {
           const double value = at(all, k / speeds_.size(), k % speeds_.size(), m.angles[i]).*q.value;
           const double off = value - m.values[i];
           square[k] += off * off / double(m.angles.size());
           relative[k] += std::pow(off / m.values[i], 2) / double(m.angles.size());
-          line += fmt::format(" {:>12.4g} ({:>+11.3g})", value / q.si, off / q.si);
+          line.push_back(fmt::format("{:.4g} ({:+.3g})", value / q.si, off / q.si));
         }
-        out.say(line);
       }
-      std::string line = fmt::format("{:>21}", "rms");
+      auto& line = rows.rows.emplace_back();
+      line = {"rms", ""};
       for (std::size_t k = 0; k < square.size(); ++k) {
-        line += fmt::format(" {:>14.3g} {:>9.1f} %", std::sqrt(square[k]) / q.si, 100 * std::sqrt(relative[k]));
+        line.push_back(fmt::format("{:.3g} {:.1f} %", std::sqrt(square[k]) / q.si, 100 * std::sqrt(relative[k])));
+        out.page().answer(
+            fmt::format("{}, {}", post::spoken(q.name), title(k / speeds_.size(), k % speeds_.size())),
+            fmt::format("{:.3g}{}{}", std::sqrt(square[k]) / q.si, *q.unit ? " " : "", post::symbol(q.unit)),
+            fmt::format("rms off {}, {:.1f} %", m.label, 100 * std::sqrt(relative[k])));
         summary["measured"].push_back({{"quantity", with_unit(q)},
                                        {"label", m.label},
                                        {"ball", title(k / speeds_.size(), k % speeds_.size())},
                                        {"rms", std::sqrt(square[k]) / q.si},
                                        {"rms_relative", std::sqrt(relative[k])}});
       }
-      out.say(line);
+      out.tell(fmt::format("\n{}: {}", with_unit(q), m.label));
+      out.show(rows, fmt::format("{}: {}", q.label, m.label));
     }
   }
 

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/models/face_calibration.hpp"
+#include "hosel/post/figure.hpp"
+#include "hosel/post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -53,16 +57,54 @@ class CalibrateFaceJob final : public Job {
     std::string toml = "[face]\n";
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto& [name, value, unit] = rows[i];
+      const SplitName split = split_unit(name);
+      const std::string symbol = post::symbol(split.unit->suffix);
+      out.page().answer(post::spoken(split.stem), fmt::format("{:.4g} {}", unit * value, symbol),
+                        fmt::format("± {:.2g}", unit * fit.sd[i]));
       out.say(fmt::format("{:<20} {:12.5g} +- {:.2g}", name, unit * value, unit * fit.sd[i]));
       toml += fmt::format("{} = {:.5g}\n", name, unit * value);
       summary["parameters"].push_back({{"name", name}, {"value", unit * value}, {"sd", unit * fit.sd[i]}});
     }
     out.say(fmt::format("half the sum of squares: {:.3g} over {} data", fit.cost, target_.taps.size() + 2));
+    out.draw(figure(f), "times");
     out.write("face.toml", toml);
     out.write_summary(summary);
   }
 
  private:
+  /// Characteristic times along the face's two middle lines beside the taps on them.
+  post::Figure figure(const FaceCompliance& face) const {
+    const models::Striker sphere = models::steel_sphere(radius_);
+    const std::vector<double> speeds = models::pendulum_speeds();
+    post::Figure out{.columns = 2};
+    for (const bool toe : {true, false}) {
+      using Tap = models::FaceTarget::Tap;
+      double Tap::*along = toe ? &Tap::toe : &Tap::high, Tap::*across = toe ? &Tap::high : &Tap::toe;
+      post::Series taps{.label = "measured, one standard error"}, line{.label = "the fitted face"};
+      double reach = 0;
+      for (const Tap& tap : target_.taps) {
+        if (tap.*across != 0) continue;
+        reach = std::max(reach, std::abs(tap.*along));
+        taps.x.push_back(1e3 * tap.*along);
+        taps.y.push_back(1e6 * tap.time);
+        taps.error.push_back(1e6 * target_.tap_sigma);
+      }
+      if (reach == 0) continue;
+      for (int i = -12; i <= 12; ++i) {
+        Tap at;
+        at.*along = 1.2 * reach * i / 12;
+        line.x.push_back(1e3 * at.*along);
+        line.y.push_back(1e6 * models::characteristic_time(sphere, models::mass_at(head_, -at.toe, at.high), face,
+                                                           face.shape(-at.toe, at.high).value, speeds)
+                                   .time);
+      }
+      out.panels.push_back({.x_label = toe ? "towards the toe [mm]" : "up the face [mm]",
+                            .y_label = "characteristic time [µs]",
+                            .series = {taps, line}});
+    }
+    return out;
+  }
+
   Ball ball_;
   Head head_;
   double radius_ = 0;

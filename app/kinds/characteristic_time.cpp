@@ -54,6 +54,9 @@ class CharacteristicTimeJob final : public Job {
         fmt::format("characteristic time {:.1f} us, slope {:.1f} us (m/s)^0.329, largest departure from the line "
                     "{:.3f} us",
                     1e6 * ct.time, 1e6 * ct.slope, 1e6 * ct.departure));
+    RunPage& page = out.page();
+    page.answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * ct.time),
+                fmt::format("slope {:.1f} µs (m/s)^0.329", 1e6 * ct.slope));
     post::Panel tap{
         .title = "the pendulum test", .x_label = "(speed in m/s) to the power -0.329", .y_label = "contact time [us]"};
     post::Series points{.label = "taps", .style = "points"}, line{.label = "straight line"};
@@ -75,6 +78,8 @@ class CharacteristicTimeJob final : public Job {
                            {"largest_departure_us", 1e6 * ct.departure}};
     const models::Striker ball = models::golf_ball({});
     summary["restitution"] = models::strike(ball, mass, face_, shape, restitution_speed_).restitution;
+    page.answer("restitution", fmt::format("{:.4f}", summary["restitution"].get<double>()),
+                fmt::format("the rules' line says {:.4f}", rules_line(1e6 * ct.time)));
     summary["restitution_rigid"] = models::strike(ball, mass, {}, 0, restitution_speed_).restitution;
     post::Panel rules{
         .title = "faces from stiff to soft", .x_label = "characteristic time [us]", .y_label = "restitution"};
@@ -97,6 +102,8 @@ class CharacteristicTimeJob final : public Job {
       }
       out.say(fmt::format("faces of {:4.1f} g, {:.0f} to {:.0f} us: within {:.4f} of the rules' line", 1e3 * face_mass,
                           series.x.back(), series.x.front(), worst));
+      page.answer(fmt::format("faces of {:g} g", 1e3 * face_mass), fmt::format("within {:.4f}", worst),
+                  fmt::format("of the rules' line, {:.0f} to {:.0f} µs", series.x.back(), series.x.front()));
       summary["line"].push_back({{"effective_mass_g", 1e3 * face_mass}, {"largest_departure", worst}});
       if (wanted.x.empty())
         for (const double time : {series.x.back(), series.x.front()}) {

@@ -133,8 +133,11 @@ class ClubsJob final : public Job {
                          {"launch_peak_at_deg", peak_at}};
 
     // Club by club.
-    out.say(fmt::format("\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8}", "club", "loft", "spin",
-                        "measured", "", "launch", "measured", "", "speed", "measured", ""));
+    post::TextTable table{
+        .rows = {{"club", "loft", "spin", "measured", "", "launch", "measured", "", "speed", "measured", ""}},
+        .first_width = 5,
+        .least_width = 9,
+        .even = false};
     csv =
         "club,dynamic_loft_deg,model_spin_rpm,measured_spin_rpm,model_launch_deg,measured_launch_deg,model_ball_speed_"
         "mph,measured_ball_speed_mph\n";
@@ -150,10 +153,11 @@ class ClubsJob final : public Job {
       c.launch = degrees(l.launch_angle());
       c.speed = l.ball_speed() / kMpsPerMph;
       const std::array<double, 3> m = {c.spin, c.launch, c.speed};
-      out.say(fmt::format(
-          "{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}%",
-          c.name, c.mean[0], m[0], c.mean[1], 100 * (m[0] / c.mean[1] - 1), m[1], c.mean[2], m[1] - c.mean[2], m[2],
-          c.mean[3], 100 * (m[2] / c.mean[3] - 1)));
+      table.rows.push_back({c.name, fmt::format("{:.3f}", c.mean[0]), fmt::format("{:.1f}", m[0]),
+                            fmt::format("{:.1f}", c.mean[1]), fmt::format("{:+.1f}%", 100 * (m[0] / c.mean[1] - 1)),
+                            fmt::format("{:.3f}", m[1]), fmt::format("{:.3f}", c.mean[2]),
+                            fmt::format("{:+.2f}", m[1] - c.mean[2]), fmt::format("{:.2f}", m[2]),
+                            fmt::format("{:.2f}", c.mean[3]), fmt::format("{:+.2f}%", 100 * (m[2] / c.mean[3] - 1))});
       csv += fmt::format("{},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", post::csv_cell(c.name), c.mean[0],
                          m[0], c.mean[1], m[1], c.mean[2], m[2], c.mean[3]);
       ratio += m[0] / c.mean[1] / static_cast<double>(clubs.size());
@@ -176,6 +180,15 @@ class ClubsJob final : public Job {
       }
     }
     out.write("clubs.csv", csv);
+    out.tell("");
+    out.show(table, fmt::format("Club by club: {}, measured, and the difference", model_));
+    out.page().answer("spin, model over measured", fmt::format("{:.3f}", ratio), model_);
+    out.page().answer("spin, rms", fmt::format("{:.0f} rpm", std::sqrt(square[0])),
+                      fmt::format("bias {:+.0f}", bias[0]));
+    out.page().answer("launch angle, rms", fmt::format("{:.2f}°", std::sqrt(square[1])),
+                      fmt::format("bias {:+.2f}", bias[1]));
+    out.page().answer("ball speed, rms", fmt::format("{:.2f} mph", std::sqrt(square[2])),
+                      fmt::format("bias {:+.2f}", bias[2]));
     out.say(fmt::format(
         "\nmodel / measured spin {:.4f}; bias {:+.0f} rpm, {:+.3f} deg, {:+.3f} mph; rms {:.0f} rpm, {:.3f} deg, "
         "{:.3f} mph",
@@ -286,9 +299,11 @@ class ClubsJob final : public Job {
     progress.finish();
     for (const auto& [how, answers] :
          {std::pair{"at the recorded loft", &recorded}, {"at the launch angle measured", &matched}}) {
-      out.say(fmt::format("\n{} {}\n{:<5} {:>7} {:>10} {:>10} {:>8} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8} {:>7} {:>8}",
-                          name, how, "club", "loft", "spin", "measured", "", "launch", "measured", "", "speed",
-                          "measured", "", "e_t", "ratio"));
+      post::TextTable table{.rows = {{"club", "loft", "spin", "measured", "", "launch", "measured", "", "speed",
+                                      "measured", "", "e_t", "ratio", ""}},
+                            .first_width = 5,
+                            .least_width = 9,
+                            .even = false};
       nlohmann::json& rows = summary["beside"][name][answers == &matched ? "matched_launch" : "recorded_loft"];
       std::array<double, 2> square{}, unseen{};  // of the relative errors of spin and speed
       int left = 0;
@@ -302,11 +317,12 @@ class ClubsJob final : public Job {
         const bool seen = std::ranges::find(calibrated_on_, c.name) != calibrated_on_.end();
         left += !seen;
         for (std::size_t k = 0; k < 2; ++k) square[k] += off[k] * off[k], unseen[k] += seen ? 0 : off[k] * off[k];
-        out.say(fmt::format(
-            "{:<5} {:>7.3f} {:>10.1f} {:>10.1f} {:>+7.1f}% {:>9.3f} {:>9.3f} {:>+7.2f} {:>9.2f} {:>9.2f} {:>+7.2f}% "
-            "{:>7.3f} {:>8.3f}{}",
-            c.name, degrees(blow.delivery.dynamic_loft), spin, c.mean[1], 100 * off[0], launch, c.mean[2],
-            launch - c.mean[2], speed, c.mean[3], 100 * off[1], e_t, ratio, seen ? "  (seen by the calibration)" : ""));
+        table.rows.push_back(
+            {c.name, fmt::format("{:.3f}", degrees(blow.delivery.dynamic_loft)), fmt::format("{:.1f}", spin),
+             fmt::format("{:.1f}", c.mean[1]), fmt::format("{:+.1f}%", 100 * off[0]), fmt::format("{:.3f}", launch),
+             fmt::format("{:.3f}", c.mean[2]), fmt::format("{:+.2f}", launch - c.mean[2]), fmt::format("{:.2f}", speed),
+             fmt::format("{:.2f}", c.mean[3]), fmt::format("{:+.2f}%", 100 * off[1]), fmt::format("{:.3f}", e_t),
+             fmt::format("{:.3f}", ratio), seen ? "(seen by the calibration)" : ""});
         rows[c.name] = {{"dynamic_loft_deg", degrees(blow.delivery.dynamic_loft)},
                         {"spin_rate_rpm", spin},
                         {"launch_angle_deg", launch},
@@ -315,9 +331,13 @@ class ClubsJob final : public Job {
                         {"launch_ratio", ratio},
                         {"seen_by_calibration", seen}};
       }
+      out.tell(fmt::format("\n{} {}", name, how));
+      out.show(table, fmt::format("{} {}", name, how));
       const auto percent = [](double sum, std::size_t n) { return 100 * std::sqrt(sum / double(n)); };
       out.say(fmt::format("rms error: spin {:.2f} %, ball speed {:.2f} %", percent(square[0], clubs.size()),
                           percent(square[1], clubs.size())));
+      out.page().answer(fmt::format("{} {}", name, how), fmt::format("{:.1f} %", percent(square[0], clubs.size())),
+                        fmt::format("rms of spin; ball speed {:.1f} %", percent(square[1], clubs.size())));
       std::vector<Launch> launches;
       for (const Prediction& p : *answers) launches.push_back(p.launch);
       if (flight_) follow(clubs, launches, out, rows["flights"]);

@@ -127,6 +127,7 @@ class CrossCheckJob final : public Job {
         summary["failed"][models_[m]] = failed;
       }
       if (m == reference_) continue;
+      post::TextTable table{.rows = {{"channel", "mean", "rms", "largest", "where", "differs most"}}};
       page += fmt::format(
           "\n## {}\n\n| channel | mean | rms | largest | where | reference there | differs most "
           "|\n|---|---|---|---|---|---|---|\n",
@@ -169,6 +170,13 @@ class CrossCheckJob final : public Job {
         csv += '\n';
         page += fmt::format("| {} [{}] | {:+.4g} | {:.4g} | {:+.4g} | {} | {:.5g} | {} |\n", c.name, c.unit, mean,
                             square, largest, place, c.value(answers[reference_][where].launch) / c.si, cause);
+        table.rows.push_back({fmt::format("{} [{}]", post::spoken(c.name), post::symbol(c.unit)),
+                              fmt::format("{:+.3g}", mean), fmt::format("{:.3g}", square),
+                              fmt::format("{:+.3g}", largest), place, cause});
+        if (c.name == "ball_speed" || c.name == "spin_rate" || c.name == "backspin")
+          out.page().answer(fmt::format("{}, {}", post::spoken(c.name), models_[m]),
+                            fmt::format("{:.3g} {}", square, post::symbol(c.unit)),
+                            fmt::format("rms off {}; at most {:+.3g}", models_[reference_], largest));
         out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit,
                             place, cause));
         summary["differences"].push_back({{"model", models_[m]},
@@ -182,12 +190,13 @@ class CrossCheckJob final : public Job {
                                           {"quantities_pct", quantities}});
       }
       const std::string stem = "map-" + models_[m];
+      out.page().section(fmt::format("{} minus {}", models_[m], models_[reference_]), table.html());
       out.draw(figure(answers, m), stem);
       page += fmt::format("\n![{} minus {}]({}.png)\n", models_[m], models_[reference_], stem);
     }
     out.write("differences.csv", csv);
     out.write("index.md", page);
-    out.say("wrote index.md, differences.csv, points.csv and the maps");
+    out.tell("wrote index.md, differences.csv, points.csv and the maps");
     out.write_summary(summary);
   }
 

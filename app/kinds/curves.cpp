@@ -69,6 +69,9 @@ class CurvesJob final : public Job {
         figure.panels.push_back(
             {.title = m, .x_label = x_.label, .y_label = fmt::format("{} [{}]", name, post::symbol(c.unit))});
       }
+    post::TextTable table{.rows = {{family_.label, "model"}}};
+    for (const ShotChannel& c : channels_)
+      table.rows[0].push_back(fmt::format("{} [{}]", post::spoken(c.name), post::symbol(c.unit)));
     nlohmann::json failed = nlohmann::json::array();
     for (std::size_t m = 0; m < models_.size(); ++m)
       for (const double f : family_.values) {
@@ -95,9 +98,15 @@ class CurvesJob final : public Job {
           }
           csv += '\n';
         }
-        for (std::size_t c = 0; c < channels_.size(); ++c)
+        auto& row = table.rows.emplace_back();
+        row = {member(f), models_[m]};
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+          const auto [low, high] = std::ranges::minmax_element(lines[c].y);
+          row.push_back(lines[c].y.empty() ? "-" : fmt::format("{:.4g} to {:.4g}", *low, *high));
           figure.panels[c * models_.size() + m].series.push_back(lines[c]);
+        }
       }
+    out.page().answer(table);
     finish(out, csv, figure, failed);
   }
 
@@ -151,6 +160,8 @@ class CurvesJob final : public Job {
                            {"contact_ms", *launch.contact_time * 1e3}});
         out.say(fmt::format("{:<11} {:<34} force {:7.0f} to {:7.0f} N   spin / rolling {:.3f}", m, member(f), least,
                             most, launch.spin_rate() / spin));
+        out.page().answer(fmt::format("{}, {}", m, member(f)), fmt::format("{:.3f}", launch.spin_rate() / spin),
+                          fmt::format("spin over rolling; {:.1f} to {:.1f} kN", 1e-3 * least, 1e-3 * most));
         tangential.series.push_back(line);
         ratio.series.push_back(share);
       }
@@ -165,7 +176,7 @@ class CurvesJob final : public Job {
     out.draw(figure, "curves");
     if (!history_)
       for (const auto& n : notes) out.say(n.get<std::string>());
-    out.say("wrote curves.csv and curves.png");
+    out.tell("wrote curves.csv and curves.png");
     out.write_summary({{history_ ? "histories" : "failed", notes}});
   }
 

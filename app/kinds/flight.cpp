@@ -90,7 +90,7 @@ class FlightJob final : public Job {
         row(law.name, other.follow(s.launch, ball_));
       }
     }
-    out.say("");
+    out.tell("");
     out.show(post::launch_table(columns, {}, {}, out.units()));
     out.write("flights.csv", csv);
     if (shots_.size() > 1) out.draw(post::trajectory_figure(setup_.conditions.law.name, flights), "figures/flights");

@@ -88,6 +88,15 @@ class IdentifyJob final : public Job {
                     "deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
                     r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before,
                     1e3 * r.train_after, 1e3 * r.holdout_before, 1e3 * r.holdout_after));
+    RunPage& page = out.page();
+    page.answer("bending stiffness", fmt::format("× {:.3f}", r.bending_scale),
+                fmt::format("95 %: {:.3f} to {:.3f}", scale[0], scale[1]));
+    page.answer("damping time", fmt::format("{:.3g} s", r.damping_time),
+                fmt::format("95 %: {:.3g} to {:.3g}", damping[0], damping[1]));
+    page.answer("deflection, held out", fmt::format("{:.2f} mm", 1e3 * r.holdout_after),
+                fmt::format("RMS; {:.2f} before", 1e3 * r.holdout_before));
+    page.answer("deflection, fitted", fmt::format("{:.2f} mm", 1e3 * r.train_after),
+                fmt::format("RMS; {:.2f} before", 1e3 * r.train_before));
     if (r.shortened_steps > 0)
       out.say(fmt::format(
           "{} steps did not converge at their full length: shorten solution.step, or the interval says too little",
@@ -95,6 +104,7 @@ class IdentifyJob final : public Job {
   }
   static nlohmann::json tell_rigid(Output& out, const std::vector<models::MeasuredSwing>& swings) {
     const double train = 1e3 * rigid_rms(swings, true), holdout = 1e3 * rigid_rms(swings, false);
+    out.page().answer("a rigid club, held out", fmt::format("{:.2f} mm", holdout), "RMS");
     out.say(fmt::format("a rigid club: deflection RMS train {:.2f} mm, holdout {:.2f} mm", train, holdout));
     return {{"train", train}, {"holdout", holdout}};
   }

@@ -137,7 +137,7 @@ class LoadedClubJob final : public Job {
               {"force_N_s", {impulse.force.x(), impulse.force.y(), impulse.force.z()}},
               {"moment_N_m_s", {impulse.moment.x(), impulse.moment.y(), impulse.moment.z()}}};
       }
-      out.say(at);
+      out.tell(at);
       out.show(post::launch_table(columns), at);
       for (const auto& [what, with, without] : parts()) {
         if (!asked(answers, with) || !asked(answers, without)) continue;

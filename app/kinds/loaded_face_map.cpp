@@ -402,6 +402,7 @@ class LoadedFaceMapJob final : public PointJob {
 
   void tell_part(Output& out, const std::vector<std::array<post::FaceMap, 4>>& maps, const Part& part,
                  json& said) const {
+    post::TextTable table{{{"", "place", "mean", "over the swings", "numerics", "over the assumptions"}}};
     for (const post::MapQuantity* q : shown(maps))
       for (std::size_t place = 0; place < kPlaces.size(); ++place) {
         const Band b = over_swings(maps, part, *q, [&](const std::vector<double>& v) { return of_grid(v, place); });
@@ -421,11 +422,18 @@ class LoadedFaceMapJob final : public PointJob {
           const Band all = assumed(maps, part, *q, place);
           assumption = fmt::format("{:+.3g} to {:+.3g}", all.low, all.high);
         }
+        const std::string range = fmt::format("{:+.4g} to {:+.4g}", b.low, b.high);
+        table.rows.push_back({fmt::format("{} [{}]", words(q->name), unit_text(*q)), kPlaces[place],
+                              fmt::format("{:+.4g}", b.mean), range, numerics, assumption});
+        if (place == 0 && std::string_view(part.name) == parts().back().name)
+          out.page().answer(fmt::format("{}, {}", words(q->name), kPlaces[place]),
+                            fmt::format("{:+.3g} {}", b.mean, unit_text(*q)), range + " over the swings");
         out.say(fmt::format("{:<18} {:<21} {:<7} {:>+10.4g} {:>22} {:>10} {:>22}",
                             q == shown(maps).front() && place == 0 ? part.name : "",
                             place == 0 ? fmt::format("{} [{}]", words(q->name), unit_text(*q)) : "", kPlaces[place],
-                            b.mean, fmt::format("{:+.4g} to {:+.4g}", b.low, b.high), numerics, assumption));
+                            b.mean, range, numerics, assumption));
       }
+    out.page().section(fmt::format("What the loaded club changes: {}", part.name), table.html());
   }
 
   void draw(Output& out, const std::vector<std::array<post::FaceMap, 4>>& maps) const {
@@ -503,11 +511,14 @@ class LoadedFaceMapJob final : public PointJob {
       for (const post::NamedFigure& f : figures.back()) summary["swings"][k]["all"][f.name] = f.value;
     }
     out.say("\nstatements about the loaded club against the free head, and in how many of the swings they hold");
+    post::TextTable borne{{{"published statement", "swings in which it holds"}}};
     for (const post::Claim& claim : claims_) {
       const auto holds = std::ranges::count_if(figures, [&](const auto& f) { return claim.holds(f); });
       out.say(fmt::format("  {} of {}  {}", holds, swings_.size(), claim.text));
+      borne.rows.push_back({claim.text, fmt::format("{} of {}", holds, swings_.size())});
       summary["statements"].push_back({{"text", claim.text}, {"swings", holds}});
     }
+    out.page().section("Published statements borne out here", borne.html());
   }
 
   struct Work {

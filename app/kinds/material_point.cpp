@@ -93,11 +93,13 @@ class MaterialPointJob final : public Job {
     }
     out.write("history.csv", csv);
     post::Figure figure;
-    figure.title = "material point";
     figure.panels.push_back(panel);
     out.draw(figure, "curve");
     nlohmann::json summary{
         {"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}, {"work_J_per_m3", work}};
+    out.page().answer("stress at the end", fmt::format("{:.4g} MPa", 1e-6 * last),
+                      what_ == "uniaxial" ? "nominal, in tension" : "of shear");
+    out.page().answer("turned into heat", fmt::format("{:.4g} kJ/m³", 1e-3 * dissipated), "per volume");
     out.say(fmt::format("{}: final stress {:.6g} Pa, dissipated {:.6g} J/m^3", what_, last, dissipated));
     out.write_summary(summary);
   }

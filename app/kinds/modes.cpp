@@ -15,6 +15,8 @@ namespace {
 
 /// Frequencies of the free ball by harmonic (m = 0...), spheroidal and torsional families apart where
 /// m = 0; eta = omega R / c_s beside each, c_s of the outermost layer at an instant.
+constexpr const char* kTorsion = "torsion";
+
 class ModesJob final : public Job {
  public:
   explicit ModesJob(CaseFile& file) {
@@ -53,7 +55,8 @@ class ModesJob final : public Job {
     const double unit = std::sqrt(materials.back().instant_shear() / materials.back().density) / ball_.radius;
     summary["nodes"] = mesh.nodes.size();
     out.say(fmt::format("{} nodes; eta = omega R / c_s with c_s = {:.5f} m/s", mesh.nodes.size(), unit * ball_.radius));
-    out.say("family            frequency [Hz]          eta");
+    post::TextTable table{.rows = {{"family", "frequency [Hz]", "eta"}}};
+    post::Series ring{.label = "other", .style = "points"}, twist{.label = "torsion", .style = "points"};
     std::string csv = "family,harmonic,frequency_Hz,eta\n";
     const auto solve = [&](const std::string& name, int m, const fem::FourierBasis& basis) {
       fem::System system;
@@ -66,15 +69,25 @@ class ModesJob final : public Job {
       for (const double omega : modes.omega) {
         if (omega < 1e-4 * unit || long(list.size()) == count_) continue;  // rigid motions
         list.push_back({{"frequency_Hz", omega / (2 * kPi)}, {"eta", omega / unit}});
-        out.say(fmt::format("{:<16} {:15.3f} {:12.6f}", name, omega / (2 * kPi), omega / unit));
+        table.rows.push_back({name, fmt::format("{:.3f}", omega / (2 * kPi)), fmt::format("{:.6f}", omega / unit)});
+        post::Series& level = name == kTorsion ? twist : ring;
+        level.x.push_back(m);
+        level.y.push_back(1e-3 * omega / (2 * kPi));
         csv += fmt::format("{},{},{:.9g},{:.9g}\n", name, m, omega / (2 * kPi), omega / unit);
       }
+      if (!list.empty())
+        out.page().answer("lowest, " + name, fmt::format("{:.0f} Hz", list[0]["frequency_Hz"].get<double>()),
+                          fmt::format("η = {:.4f}", list[0]["eta"].get<double>()));
       summary["modes"][name] = list;
     };
     for (const int m : harmonics_) {
       solve(fmt::format("harmonic {}", m), m, fem::cylindrical_basis(m));
-      if (m == 0) solve("torsion", 0, fem::torsion_basis());
+      if (m == 0) solve(kTorsion, 0, fem::torsion_basis());
     }
+    out.draw(
+        {.panels = {{.x_label = "harmonic around the axis", .y_label = "frequency [kHz]", .series = {ring, twist}}}},
+        "modes");
+    out.show(table, "Frequencies, and η = ω R / c_s");
     out.write("modes.csv", csv);
     out.write_summary(summary);
   }

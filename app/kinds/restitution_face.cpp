@@ -45,6 +45,9 @@ class RestitutionFaceJob final : public Job {
           out.say(
               fmt::format("centre: restitution {:.4f} (rigid {:.4f}), ball speed {:.4f} of the head's (rigid {:.4f})",
                           e, rigid, ratio(e), ratio(rigid)));
+          out.page().answer("restitution at the centre", fmt::format("{:.4f}", e), fmt::format("rigid {:.4f}", rigid));
+          out.page().answer("ball speed over head speed", fmt::format("{:.4f}", ratio(e)),
+                            fmt::format("rigid {:.4f}", ratio(rigid)));
           summary = {{"restitution", e},
                      {"restitution_rigid", rigid},
                      {"ball_speed_ratio", ratio(e)},
@@ -65,8 +68,10 @@ class RestitutionFaceJob final : public Job {
         .panels = {panel("restitution", e_map, "[-]"), panel("ball speed over head speed", gain_map, "[-]")},
         .columns = 2};
     out.draw(figure, "restitution-face");
-    summary["largest_restitution"] = *std::ranges::max_element(e_map);
-    summary["least_restitution"] = *std::ranges::min_element(e_map);
+    const auto [least, largest] = std::ranges::minmax(e_map);
+    out.page().answer("over the face", fmt::format("{:.4f} to {:.4f}", least, largest), "restitution");
+    summary["largest_restitution"] = largest;
+    summary["least_restitution"] = least;
     out.write_summary(summary);
   }
 

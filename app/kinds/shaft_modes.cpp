@@ -65,13 +65,17 @@ class ShaftModesJob final : public Job {
 
     nlohmann::json summary;
     post::Panel shapes{.x_label = "from the butt [mm]", .y_label = "deflection over its largest"};
-    std::string csv = "mode,frequency_Hz,frequency_cpm,damping_ratio\n",
-                table = fmt::format("{:>5} {:>12} {:>12} {:>10}\n", "mode", "Hz", "cpm", "damping");
+    std::string csv = "mode,frequency_Hz,frequency_cpm,damping_ratio\n";
+    post::TextTable table{.rows = {{"mode", "Hz", "cpm", "damping"}}, .first_width = 6, .least_width = 12};
     for (std::size_t i = static_cast<std::size_t>(rigid); i < modes.omega.size(); ++i) {
       const double f = modes.omega[i] / (2 * kPi), zeta = 0.5 * modes.omega[i] * club_.shaft->damping_time;
       const std::size_t number = i - static_cast<std::size_t>(rigid) + 1;
       csv += fmt::format("{},{:.9g},{:.9g},{:.6g}\n", number, f, 60 * f, zeta);
-      table += fmt::format("{:>5} {:>12.4f} {:>12.2f} {:>10.5f}\n", number, f, 60 * f, zeta);
+      table.rows.push_back({fmt::format("{}", number), fmt::format("{:.4f}", f), fmt::format("{:.2f}", 60 * f),
+                            fmt::format("{:.5f}", zeta)});
+      if (number < 4)
+        out.page().answer(fmt::format("mode {}", number), fmt::format("{:.2f} Hz", f),
+                          fmt::format("{:.1f} cpm", 60 * f));
       summary["frequency_Hz"].push_back(f);
       summary["damping_ratio"].push_back(zeta);
       if (post::Series s = deflection(beam, modes.shapes.col(Eigen::Index(i)));
@@ -82,7 +86,7 @@ class ShaftModesJob final : public Job {
       if (vtk_) write_shape(out, beam, modes.shapes.col(static_cast<Eigen::Index>(i)), number);
     }
     summary["shaft_mass_kg"] = hosel::mass(*club_.shaft);
-    out.say(table);
+    out.show(table, "Frequencies");
     out.draw({.panels = {shapes}, .panel_width = 760}, "modes");
     out.write("modes.csv", csv);
     out.write_summary(summary);

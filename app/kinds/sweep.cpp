@@ -186,8 +186,12 @@ class SweepJob final : public PointJob {
       summary["range"][c] = {low, high};
       summary["mean"][c] = sum / count;
     }
-    if (sampled_ && !record_.empty()) tell_correlations(out, points, summary);
-    if (!record_.empty()) draw(out, points);
+    if (!record_.empty()) {
+      const std::vector<std::size_t> with = sampled_ ? tell_correlations(out, points, summary)
+                                                     : std::vector<std::size_t>{};
+      answer(out, summary, with);
+      draw(out, points, with);
+    }
     out.write_summary(summary);
     out.say(fmt::format("{} points, {} without an answer; the table is {}", size_, summary["failed"].get<int>(),
                         (out.directory() / "sweep.csv").string()));
@@ -237,8 +241,45 @@ class SweepJob final : public PointJob {
     return out;
   }
 
-  /// What a sample says: each recorded number's spread, and the key with which it goes most (Pearson's r).
-  void tell_correlations(Output& out, const std::vector<json>& points, json& summary) const {
+  /// A record in words. Which of several of one name is meant stands in the tables before it: "holds" of what?
+  std::string spoken_entry(const std::string& record) const {
+    const auto own = [](std::string entry) {
+      if (entry.ends_with(".value")) entry.resize(entry.size() - 6);
+      if (const auto at = entry.rfind("statements."); at != entry.npos && entry.ends_with(".holds"))
+        return fmt::format("statement {} holds", 1 + std::atoi(entry.c_str() + at + 11));
+      return post::label(entry);
+    };
+    const std::string name = own(record);
+    if (std::ranges::count(record_, name, own) == 1) return name;
+    std::string tables = record.substr(0, std::min(record.find(".figures."), record.find(".statements.")));
+    if (tables == record) tables = record.substr(0, record.rfind('.'));
+    return fmt::format("{}: {}", post::spoken(tables), name);
+  }
+
+  void answer(Output& out, const json& summary, const std::vector<std::size_t>& with) const {
+    RunPage& page = out.page();
+    page.answer("points", fmt::format("{}", size_), fmt::format("{} without an answer", summary["failed"].get<int>()));
+    post::TextTable table{{{"recorded", "lowest", "mean", "highest"}}};
+    if (sampled_) table.rows[0].insert(table.rows[0].end(), {"goes most with", "r"});
+    for (std::size_t c = 0; c < record_.size(); ++c) {
+      if (!summary["range"].contains(record_[c])) continue;
+      const auto text = [](const json& x) { return fmt::format("{:.4g}", x.get<double>()); };
+      const json& range = summary["range"][record_[c]];
+      auto& row = table.rows.emplace_back();
+      row = {spoken_entry(record_[c]), text(range[0]), text(summary["mean"][record_[c]]), text(range[1])};
+      if (!sampled_) continue;
+      const std::string& key = parameters_[with[c]].key;
+      const double r = summary["correlation"][record_[c]].value(key, 0.0);
+      row.push_back(r != 0 ? post::label(key) : "-");
+      row.push_back(r != 0 ? fmt::format("{:+.2f}", r) : "-");
+    }
+    page.answer(table);
+  }
+
+  /// What a sample says: each recorded number's spread, and the key with which it goes most (Pearson's r), whose
+  /// parameter is returned.
+  std::vector<std::size_t> tell_correlations(Output& out, const std::vector<json>& points, json& summary) const {
+    std::vector<std::size_t> all;
     const auto correlation = [](const std::vector<double>& x, const std::vector<double>& y) {
       const double n = double(x.size()), mx = std::accumulate(x.begin(), x.end(), 0.0) / n,
                    my = std::accumulate(y.begin(), y.end(), 0.0) / n;
@@ -252,6 +293,7 @@ class SweepJob final : public PointJob {
     };
     out.say(fmt::format("{:>10} {:>10} {:>10}  {}", "lowest", "mean", "highest", "recorded; goes most with (r)"));
     for (const std::string& c : record_) {
+      all.push_back(0);
       if (!summary["range"].contains(c)) continue;
       double most = 0;
       std::string with;
@@ -263,32 +305,95 @@ class SweepJob final : public PointJob {
         if (x.empty()) continue;
         const double r = correlation(x, y);
         summary["correlation"][c][parameters_[p].key] = r;
-        if (std::abs(r) > std::abs(most)) most = r, with = parameters_[p].key;
+        if (std::abs(r) > std::abs(most)) most = r, with = parameters_[p].key, all.back() = p;
       }
       out.say(fmt::format("{:>10.4g} {:>10.4g} {:>10.4g}  {}{}", summary["range"][c][0].get<double>(),
                           summary["mean"][c].get<double>(), summary["range"][c][1].get<double>(), c,
                           with.empty() ? "" : fmt::format("; {} ({:+.2f})", with, most)));
     }
+    return all;
   }
 
-  /// Each recorded number against the first parameter that is a number.
-  void draw(Output& out, const std::vector<json>& points) const {
-    std::size_t across = 0;
-    while (across < parameters_.size() && numbers(across).empty()) ++across;
+  /// Of a sample each recorded number against the parameter with which it goes most; of a grid against the parameter of
+  /// most values, a line for every choice of the others, or a map where a second one has many.
+  void draw(Output& out, const std::vector<json>& points, const std::vector<std::size_t>& with) const {
+    std::vector<std::vector<double>> values;
+    for (std::size_t p = 0; p < parameters_.size(); ++p) values.push_back(numbers(p));
+    std::size_t across = parameters_.size();
+    for (std::size_t p = parameters_.size(); p-- > 0;)
+      if (!values[p].empty() &&
+          (across == parameters_.size() || parameters_[p].values.size() >= parameters_[across].values.size()))
+        across = p;
     if (across == parameters_.size()) return;
-    const std::vector<double> x = numbers(across);
     post::Figure figure{.title = title_, .columns = 2};
-    for (const std::string& c : record_) {
-      post::Series series{.style = sampled_ || parameters_.size() > 1 ? "points" : "linespoints"};
-      for (std::size_t i = 0; i < points.size(); ++i)
-        if (points[i].contains(c)) {
-          series.x.push_back(x[i]);
-          series.y.push_back(points[i][c].get<double>());
-        }
-      const std::string shown = post::label(c.ends_with(".value") ? c.substr(0, c.size() - 6) : c);
-      figure.panels.push_back({.x_label = post::label(parameters_[across].key), .y_label = shown, .series = {series}});
+    for (std::size_t c = 0; c < record_.size(); ++c) {
+      const std::string shown = spoken_entry(record_[c]);
+      const std::size_t x = sampled_ ? with[c] : across;
+      if (values[x].empty() || (sampled_ && still(points, record_[c]))) continue;
+      if (!sampled_ && maps(values)) {
+        figure.panels.push_back(map(points, values, record_[c]));
+        continue;
+      }
+      post::Panel panel{.x_label = post::label(parameters_[x].key), .y_label = shown};
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!points[i].contains(record_[c])) continue;
+        const std::string name = sampled_ ? "" : others(x, i);
+        auto line = std::ranges::find(panel.series, name, &post::Series::label);
+        if (line == panel.series.end())
+          line = panel.series.insert(line, {.label = name, .style = sampled_ ? "points" : "linespoints"});
+        line->x.push_back(values[x][i]);
+        line->y.push_back(points[i][record_[c]].get<double>());
+      }
+      figure.panels.push_back(std::move(panel));
     }
     out.draw(figure, "figures/sweep");
+  }
+
+  /// Whether a recorded number is the same at every point: its table says so, a picture of it would say no more.
+  static bool still(const std::vector<json>& points, const std::string& record) {
+    double low = INFINITY, high = -INFINITY;
+    for (const json& p : points)
+      if (p.contains(record))
+        low = std::min(low, p[record].get<double>()), high = std::max(high, p[record].get<double>());
+    return !(low < high);
+  }
+
+  /// The other parameters' values at a point, in words.
+  std::string others(std::size_t but, std::size_t point) const {
+    std::string text;
+    for (std::size_t p = 0; p < parameters_.size(); ++p) {
+      if (p == but || parameters_[p].values.size() == 1) continue;
+      const SplitName split = split_unit(parameters_[p].key);
+      const std::string name = post::label(parameters_[p].key);
+      text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", name.substr(0, name.find(" [")),
+                          plain(value(p, point)), split.unit ? " " + post::symbol(split.unit->suffix) : "");
+    }
+    return text;
+  }
+
+  /// More lines than eyes can part: two parameters alone, both numbers that rise.
+  bool maps(const std::vector<std::vector<double>>& values) const {
+    if (parameters_.size() != 2 || values[0].empty() || values[1].empty()) return false;
+    const std::size_t columns = parameters_[0].values.size(), rows = parameters_[1].values.size();
+    bool rising = std::min(columns, rows) > 8;
+    for (std::size_t i = 1; i < columns; ++i) rising = rising && values[0][i * rows] > values[0][(i - 1) * rows];
+    for (std::size_t j = 1; j < rows; ++j) rising = rising && values[1][j] > values[1][j - 1];
+    return rising;
+  }
+  post::Panel map(const std::vector<json>& points, const std::vector<std::vector<double>>& values,
+                  const std::string& record) const {
+    const std::size_t columns = parameters_[0].values.size(), rows = parameters_[1].values.size();
+    post::Panel panel{.title = spoken_entry(record),
+                      .x_label = post::label(parameters_[0].key),
+                      .y_label = post::label(parameters_[1].key)};
+    for (std::size_t i = 0; i < columns; ++i) panel.map_x.push_back(values[0][i * rows]);
+    for (std::size_t j = 0; j < rows; ++j) panel.map_y.push_back(values[1][j]);
+    for (std::size_t j = 0; j < rows; ++j)
+      for (std::size_t i = 0; i < columns; ++i) {
+        const json& p = points[i * rows + j];
+        panel.map.push_back(p.contains(record) ? p[record].get<double>() : NAN);
+      }
+    return panel;
   }
 
   std::string title_;

@@ -110,6 +110,19 @@ class SwingJob final : public Job {
                              {"numerical", l.numerical}, {"external", l.external},     {"initial", l.initial},
                              {"closure", l.closure}};
     summary["steps"] = swing.counts().steps;
+    RunPage& page = out.page();
+    const bool mph = out.page_units() == post::Units::golf;
+    page.answer("club speed",
+                mph ? fmt::format("{:.1f} mph", d.club_speed / kMpsPerMph) : fmt::format("{:.2f} m/s", d.club_speed),
+                summary.contains("rigid_club_speed_mps") ? fmt::format("a club that does not bend: {:.2f} m/s",
+                                                                       summary["rigid_club_speed_mps"].get<double>())
+                                                         : "");
+    page.answer("lead", fmt::format("{:.1f} mm", 1e3 * last.lead), fmt::format("largest {:.1f}", 1e3 * peak_lead));
+    page.answer("droop", fmt::format("{:.1f} mm", 1e3 * last.droop), fmt::format("largest {:.1f}", 1e3 * peak_droop));
+    page.answer("attack angle", fmt::format("{:.2f}°", degrees(d.attack_angle)));
+    page.answer("club path", fmt::format("{:.2f}°", degrees(d.club_path)));
+    page.answer("dynamic loft", fmt::format("{:.2f}°", degrees(d.dynamic_loft)));
+    page.answer("face angle", fmt::format("{:.2f}°", degrees(d.face_angle)));
     out.say(
         fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} "
                     "deg, loft {:.2f} deg, face {:.2f} deg",

@@ -295,16 +295,23 @@ class TuneJob final : public Job {
     const double scatter = std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - n)));
     summary["scatter_over_declared_noise"] = scatter;
     summary["costs_of_the_starts"] = fit.costs;
-    out.say(fmt::format("\n{:<28} {:>14} {:>14} {:>12} {:>12}", "parameter", "start", "tuned", "sd (noise)",
-                        "sd (scatter)"));
+    post::TextTable found{.rows = {{"parameter", "start", "tuned", "sd (noise)", "sd (scatter)", ""}},
+                          .first_width = 28,
+                          .least_width = 14,
+                          .even = false};
     std::string csv = "parameter,unit,start,tuned,sd_by_noise,sd_by_scatter,min,max\n";
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[static_cast<std::size_t>(i)];
       const double si = unit_of(*f.parameter), value = fit.parameters[i] / si, sd = known.sd[i] / si;
       const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
       const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
-      out.say(fmt::format("{:<28} {:>14.6g} {:>14.6g} {:>12.3g} {:>12.3g}{}", column(*f.parameter), start[i] / si,
-                          value, sd, sd * std::max(1.0, scatter), edge ? "  at its bound" : ""));
+      found.rows.push_back({column(*f.parameter), fmt::format("{:.6g}", start[i] / si), fmt::format("{:.6g}", value),
+                            fmt::format("{:.3g}", sd), fmt::format("{:.3g}", sd * std::max(1.0, scatter)),
+                            edge ? "at its bound" : ""});
+      const SplitName split = split_unit(column(*f.parameter));
+      out.page().answer(post::spoken(split.stem),
+                        fmt::format("{:.4g}{}", value, split.unit ? " " + post::symbol(split.unit->suffix) : ""),
+                        edge ? "at its bound" : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
       csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit,
                          start[i] / si, value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
       summary["parameters"].push_back({{"name", column(*f.parameter)},
@@ -314,6 +321,8 @@ class TuneJob final : public Job {
                                        {"sd_by_scatter", sd * std::max(1.0, scatter)},
                                        {"at_bound", edge}});
     }
+    out.tell("");
+    out.show(found, "What was tuned");
     out.write("parameters.csv", csv);
 
     csv = "parameter";
@@ -338,7 +347,10 @@ class TuneJob final : public Job {
     out.say(fmt::format(
         "\ncondition number of the whitened, column-scaled Jacobian {:.3g}; scatter {:.2f} times the declared noise",
         known.condition, scatter));
-    for (const std::string& t : tied) out.say("the data cannot separate " + t);
+    for (const std::string& t : tied) {
+      out.say("the data cannot separate " + t);
+      out.page().doubt("the data cannot separate " + t);
+    }
     for (const Eigen::VectorXd& v : known.blind) {
       std::string text;
       for (Eigen::Index i = 0; i < n; ++i)
@@ -358,8 +370,11 @@ class TuneJob final : public Job {
       rows_csv += fmt::format(",{}__measured,{}__before,{}__after", c.name, c.name, c.name);
     rows_csv += '\n';
     csv = "set,channel,rows,before_mean,before_sd,before_mae,after_mean,after_sd,after_mae\n";
-    out.say(fmt::format("\n{:<6} {:<18} {:>5} {:>24} {:>24} {:>10} {:>10}", "set", "channel", "rows",
-                        "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"));
+    post::TextTable table{
+        .rows = {{"set", "channel", "rows", "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"}},
+        .first_width = 6,
+        .least_width = 6,
+        .even = false};
     for (const TuneChannel& c : channels_)
       figure.panels.push_back({.x_label = "measured " + post::label(c.name), .y_label = "model - measured"});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
@@ -385,8 +400,10 @@ class TuneJob final : public Job {
       if (lost) out.say(fmt::format("{} {} rows have no answer from the model and are not counted below", lost, set));
       for (std::size_t c = 0; c < channels_.size(); ++c) {
         const Errors b = errors(before[c]), a = errors(after[c]);
-        out.say(fmt::format("{:<6} {:<18} {:>5} {:>12.4g} +- {:<8.4g} {:>12.4g} +- {:<8.4g} {:>10.4g} {:>10.4g}", set,
-                            channels_[c].name, a.count, b.mean, b.sd, a.mean, a.sd, b.absolute, a.absolute));
+        table.rows.push_back({set, channels_[c].name, fmt::format("{}", a.count),
+                              fmt::format("{:.4g} +- {:.4g}", b.mean, b.sd),
+                              fmt::format("{:.4g} +- {:.4g}", a.mean, a.sd), fmt::format("{:.4g}", b.absolute),
+                              fmt::format("{:.4g}", a.absolute)});
         csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", set, channels_[c].name, a.count,
                            b.mean, b.sd, b.absolute, a.mean, a.sd, a.absolute);
         summary["errors"].push_back({{"set", set},
@@ -402,6 +419,8 @@ class TuneJob final : public Job {
         figure.panels[c].series.push_back(cloud);
       }
     }
+    out.tell("");
+    out.show(table, "Model minus measured");
     out.write("errors.csv", csv);
     out.write("residuals.csv", rows_csv);
     out.draw(figure, "errors");

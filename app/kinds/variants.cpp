@@ -169,8 +169,11 @@ class VariantsJob final : public Job {
   void report(Output& out, const std::vector<Prediction>& answers) const {
     std::size_t width = 8;
     for (const Variant& v : variants_) width = std::max(width, v.name.size() + 1);
-    out.say(fmt::format("\n{:<{}} {:>7} {:>7} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {}", "variant", width, "loft",
-                        "launch", "speed", "off [%]", "spin", "off [%]", "e_t", "ratio", "measured ratios"));
+    post::TextTable table{.rows = {{"variant", "loft", "launch", "speed", "off [%]", "spin", "off [%]", "e_t", "ratio",
+                                    "measured ratios"}},
+                          .first_width = width,
+                          .least_width = 9,
+                          .even = false};
     std::string csv =
         "variant,dynamic_loft_deg,launch_angle_deg,ball_speed_mps,spin_rate_rpm,tangential_restitution,"
         "launch_ratio,contact_ms,normal_restitution,contact_time_ms,elastic_factor,viscous_factor,range,error\n";
@@ -186,14 +189,15 @@ class VariantsJob final : public Job {
         continue;
       }
       const auto off = [](double value, const std::optional<double>& seen) {
-        return seen ? fmt::format("{:>+8.2f}", 100 * (value / *seen - 1)) : fmt::format("{:>8}", "-");
+        return seen ? fmt::format("{:+.2f}", 100 * (value / *seen - 1)) : std::string("-");
       };
       const double speed = a.launch.ball_speed(), spin = a.launch.spin_rate();
       std::string ratios;
       for (const double r : v.seen.launch_ratio) ratios += fmt::format("{:g} ", r);
-      out.say(fmt::format("{:<{}} {:>7.2f} {:>7.2f} {:>8.2f} {} {:>8.0f} {} {:>7.3f} {:>7.3f}  {}", v.name, width,
-                          degrees(a.loft), degrees(a.launch.launch_angle()), speed, off(speed, v.seen.ball_speed),
-                          rpm(spin), off(spin, v.seen.spin_rate), a.e_t, a.ratio, ratios));
+      table.rows.push_back(
+          {v.name, fmt::format("{:.2f}", degrees(a.loft)), fmt::format("{:.2f}", degrees(a.launch.launch_angle())),
+           fmt::format("{:.2f}", speed), off(speed, v.seen.ball_speed), fmt::format("{:.0f}", rpm(spin)),
+           off(spin, v.seen.spin_rate), fmt::format("{:.3f}", a.e_t), fmt::format("{:.3f}", a.ratio), ratios});
       csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},\n",
                          post::csv_cell(v.name), degrees(a.loft), degrees(a.launch.launch_angle()), speed, rpm(spin),
                          a.e_t, a.ratio, 1e3 * a.launch.contact_time.value_or(NAN), a.normal_restitution,
@@ -210,8 +214,10 @@ class VariantsJob final : public Job {
         summary["variants"][v.name]["flight"] = post::to_json(*a.flight);
       }
     }
+    out.tell("");
+    out.show(table);
     if (!flights.empty()) {
-      out.say("");
+      out.tell("");
       out.show(post::launch_table(flights, {}, {}, out.units()));
     }
     out.draw(figure(answers), "variants");
