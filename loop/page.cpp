@@ -149,7 +149,7 @@ std::string page(const LoopResult& r, const Shots& table) {
                    escape_html(sentence(r)));
 
   s += "<h2>Before and after</h2>";
-  if (!r.channels.empty()) s += "<figure class='scroll wide'>" + bars(r.channels) + "</figure>";
+  if (!r.channels.empty()) s += "<figure class='wide'>" + bars(r.channels) + "</figure>";
   s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS "
        "after<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)

@@ -38,7 +38,7 @@ overflow-wrap:anywhere;max-width:14rem}
 pre{overflow-x:auto;font:13px/1.45 ui-monospace,'DejaVu Sans Mono',monospace;margin:.5rem 0}
 pre.command{border-left:3px solid var(--rule);padding-left:.8rem;white-space:pre-wrap;overflow-wrap:anywhere}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(26rem,100%),1fr));gap:1rem}figure{margin:.4rem 0}
-.figures figure.alone{grid-column:1/-1;max-width:44rem}figcaption{font-size:.85rem;color:var(--soft)}
+.wide{max-width:44rem}.figures figure.alone{grid-column:1/-1;max-width:44rem}figcaption{font-size:.85rem;color:var(--soft)}
 svg,img{width:100%;height:auto;display:block}img{border-radius:4px}svg text{font-size:12px;fill:var(--ink)}
 .grid{stroke:var(--rule)}.band{fill:var(--band)}.before{fill:var(--grey);opacity:.65}
 .after{fill:var(--blue);opacity:.85}.holdout{fill:var(--orange);opacity:.9}.one{stroke:var(--gold);stroke-dasharray:4 3}
@@ -51,7 +51,8 @@ svg text.line-1{fill:var(--blue)}svg text.line-2{fill:var(--orange)}svg text.lin
 svg text.line-4{fill:var(--pink)}svg text.line-5{fill:var(--sky)}.mark{fill:none;stroke:var(--ink);stroke-width:1.2}
 .face{fill:none;stroke:var(--ink);stroke-width:2.2}.rest{fill:none;stroke:var(--soft);stroke-dasharray:4 3}
 .layer{fill:none;stroke:var(--page);stroke-width:.8}
-@media screen and (max-width:34rem){.figures figure{overflow-x:auto}.figures img,.wide svg{min-width:30rem}}
+@media screen and (max-width:34rem){.figures figure{margin:.4rem -1.2rem}.wide svg text{font-size:16px}
+td,th{padding:.25rem .5rem .25rem 0;font-size:.86rem}}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
 @media print{:root{color-scheme:light}body{padding:0;font-size:11px;max-width:none}h2{break-after:avoid}
 .figures{grid-template-columns:1fr 1fr}figure,.answers,.verdict,tr{break-inside:avoid}

@@ -13,8 +13,8 @@ std::string escape_html(const std::string& text);
 std::string data_uri(const std::filesystem::path& picture);
 
 /// The whole document around a body, for a light and a dark screen and for paper. Classes: `verdict` with `good`,
-/// `open` or `bad`; `answers`, `figures`, `inputs`, `scroll`, `key`; `l` sets a cell left; `command` of a `pre`;
-/// `curves` of a picture that may be inverted in the dark; those of the pictures in svg.
+/// `open` or `bad`; `answers`, `figures`, `inputs`, `scroll`, `key`, `wide`; `l` sets a cell left; `command` of a
+/// `pre`; `curves` of a picture that may be inverted in the dark; those of the pictures in svg.
 std::string html_page(const std::string& title, const std::string& body);
 
 }  // namespace hosel::post

@@ -87,7 +87,7 @@ std::string svg(const SvgPlot& p) {
 }
 
 std::string svg(const SvgBars& b) {
-  constexpr double width = 960, left = 170, right = 120, bar = 14, top = 22;
+  constexpr double width = 640, left = 160, right = 80, bar = 14, top = 22;
   double most = 2, height = top + 26;
   for (const auto& row : b.rows) {
     height += 10 + 18 * double(row.bars.size());

@@ -152,7 +152,7 @@ TEST_F(FaceMapRun, FaceSurfaceCarriesEveryChannelWithItsUnit) {
     vtkDataArray* a = face->GetPointData()->GetArray(("rigid-eccentric." + name).c_str());
     vtkDataArray* d = face->GetPointData()->GetArray(("heavier-minus-rigid-eccentric." + name).c_str());
     ASSERT_TRUE(a && d) << name;
-    EXPECT_STREQ(a->GetInformation()->Get(vtkDataArray::UNITS_LABEL()), post::symbol(unit).c_str());
+    EXPECT_STREQ(a->GetInformation()->Get(vtkDataArray::UNITS_LABEL()), hosel::post::symbol(unit).c_str());
     for (const std::size_t p : {0u, 67u, 134u}) {
       const double value = rows.number(p, name + "_" + unit), difference = differences.number(p, name + "_" + unit);
       EXPECT_NEAR(a->GetTuple1(vtkIdType(p)), value, 1e-8 * std::abs(value) + 1e-9) << name;

@@ -81,5 +81,22 @@ TEST(RunPage, ShowsTheLargestForceAndTheLedger) {
   EXPECT_TRUE(holds(page, "data:image/png;base64,")) << "the patch";
 }
 
+TEST(RunPage, AnswersBeforeItPrintsAndShowsAFigure) {
+  for (const std::string run : {"ball-modes --set count=1", "calibrate-face", "characteristic-time", "material-point",
+                                "restitution-face", "rollback", "shaft-modes --set count=2", "tangential-stiffness"}) {
+    const fs::path out = fresh_directory("page_answers") / "out";
+    const Outcome o = command("run " + run + " --quiet --out " + out.string());
+    ASSERT_EQ(o.status, 0) << o.text;
+    const std::string page = content(out / "report.html");
+    expect_alone(page);
+    const std::size_t answer = std::min(page.find("<div class='answers'>"), page.find("<table>"));
+    const std::size_t question = page.find("<p class='lead'>"), figure = page.find("data:image/svg");
+    ASSERT_NE(question, std::string::npos) << run;
+    EXPECT_TRUE(question < answer && answer < page.find("<pre")) << run;
+    EXPECT_TRUE(answer < figure || run == "restitution-face") << run << ": its maps are points";
+    EXPECT_LT(std::min(figure, page.find("data:image/png")), page.find("<h2>Inputs</h2>")) << run;
+  }
+}
+
 }  // namespace
 }  // namespace hosel::test

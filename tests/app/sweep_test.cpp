@@ -245,6 +245,10 @@ range = [44.0, 46.0]
   EXPECT_DOUBLE_EQ(summary["mean"]["effect.heavier.statements.0.holds"], 0.75);  // one point in each stratum
   EXPECT_LT(summary["correlation"]["effect.heavier.figures.fastest_club_toe_mm.value"]["head.cg_mm[2]"], -0.999);
   EXPECT_NE(run.text.find("fastest_club_toe_mm.value; head.cg_mm[2] (-1.00)"), std::string::npos) << run.text;
+  const std::string page = content(dir / "out" / "report.html"), drawn = content(dir / "out" / "figures" / "sweep.gp");
+  EXPECT_NE(page.find("<td>statement 1 holds<td>0<td>0.75<td>1<td>cg 2 [mm]"), std::string::npos);
+  EXPECT_NE(drawn.find("set xlabel 'cg 2 [mm]'"), std::string::npos) << "against what it goes with";
+  EXPECT_EQ(drawn.find("set xlabel 'club speed"), std::string::npos);
   const Outcome bad =
       command("run " + (dir / "blow").string() + " --out " + (dir / "bad").string() + " --set 'head.cg_mm[4]=1'");
   EXPECT_EQ(bad.status, 2);
@@ -284,6 +288,10 @@ values = [0.0, 20.0, 40.0]
       << content(dir / "out" / "sweep.csv");
   EXPECT_TRUE(fs::exists(dir / "out" / "shards" / "1-of-1" / "point-000003" / "summary.json"));
   EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "sweep.png"));
+  const std::string drawn = content(dir / "out" / "figures" / "sweep.gp");
+  EXPECT_NE(drawn.find("set xlabel 'dynamic loft [deg]'"), std::string::npos) << "across: what has most values";
+  for (const char* line : {"title 'club speed 90 mph'", "title 'club speed 100.5 mph'"})
+    EXPECT_NE(drawn.find(line), std::string::npos) << "a line for each value of the other";
 }
 
 TEST(Sweep, APointWithoutAnAnswerIsSaid) {
