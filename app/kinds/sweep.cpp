@@ -137,13 +137,17 @@ class SweepJob final : public PointJob {
     }
     std::ifstream in(scratch / "summary.json");
     json result = json::object();
-    flatten(json::parse(in), "", result);
+    const json said = json::parse(in);
+    flatten(said, "", result);
+    if (said.contains("skipped")) result["skipped"] = said["skipped"];
     in.close();
     if (!keep_outputs_) fs::remove_all(scratch);
     return result;
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
+    for (const json& p : points)
+      if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
     std::vector<std::string> columns = record_;
     if (columns.empty()) {
       json all = json::object();

@@ -311,6 +311,15 @@ values = [0.0, -60.0]
   EXPECT_NE(content(dir / "out" / "sweep.csv").find("the head moves away from the ball"), std::string::npos);
 }
 
+TEST(Sweep, OverMeasuredDataThatAreNotHereIsSkipped) {
+  const fs::path dir = fresh_directory("sweep_not_here");
+  setenv("HOSEL_DATA", (dir / "nowhere").c_str(), 1);
+  const Outcome o = command("run swing-speed --out " + (dir / "out").string());
+  unsetenv("HOSEL_DATA");
+  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
+}
+
 TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
   const std::map<std::string, std::string> wrong = {
       {"key = \"delivery.club_sped_mps\"\nvalues = [1.0]", "did you mean 'club_speed_mps'"},
