@@ -117,7 +117,7 @@ std::string bars(const std::vector<ChannelResult>& channels) {
       if (std::isfinite(e->holdout_rmse) && c.noise > 0)
         picture.rows.back().bars.push_back({style, e->holdout_rmse / c.noise,
                                             e->holdout > 2 ? 1.96 / std::sqrt(2.0 * e->holdout) : 0,
-                                            fmt::format("{:.3g}", e->holdout_rmse)});
+                                            fmt::format("{:.4g}", e->holdout_rmse)});
   }
   return svg(picture);
 }

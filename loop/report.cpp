@@ -209,7 +209,7 @@ std::string sentence(const LoopResult& r) {
       return s;
     }
     case Verdict::insufficient:
-      return "Too little to name anything: minimum_detectable says what these shots could have shown.";
+      return "Too little to name anything: the smallest effects that these data would have shown are listed.";
     case Verdict::noise_contradicted: {
       std::string which;
       for (const ChannelResult& c : r.channels)

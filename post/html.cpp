@@ -55,7 +55,7 @@ svg text.line-4{fill:var(--pink)}svg text.line-5{fill:var(--sky)}.mark{fill:none
 td,th{padding:.25rem .5rem .25rem 0;font-size:.86rem}}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
 @media print{:root{color-scheme:light}body{padding:0;font-size:11px;max-width:none}h2{break-after:avoid}
-.figures{grid-template-columns:1fr 1fr}figure,.answers,.verdict,tr{break-inside:avoid}
+.figures{grid-template-columns:1fr 1fr}figure,table,.answers,.verdict,tr{break-inside:avoid}
 .scroll,pre{overflow:visible;white-space:pre-wrap}pre{font-size:8px}.answers div{padding:.2rem .5rem}})";
 
 }  // namespace

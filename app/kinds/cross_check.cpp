@@ -171,12 +171,12 @@ class CrossCheckJob final : public Job {
         page += fmt::format("| {} [{}] | {:+.4g} | {:.4g} | {:+.4g} | {} | {:.5g} | {} |\n", c.name, c.unit, mean,
                             square, largest, place, c.value(answers[reference_][where].launch) / c.si, cause);
         table.rows.push_back({fmt::format("{} [{}]", post::spoken(c.name), post::symbol(c.unit)),
-                              fmt::format("{:+.3g}", mean), fmt::format("{:.3g}", square),
-                              fmt::format("{:+.3g}", largest), place, cause});
+                              fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", square),
+                              fmt::format("{:+.4g}", largest), place, cause});
         if (c.name == "ball_speed" || c.name == "spin_rate" || c.name == "backspin")
           out.page().answer(fmt::format("{}, {}", post::spoken(c.name), models_[m]),
-                            fmt::format("{:.3g} {}", square, post::symbol(c.unit)),
-                            fmt::format("rms off {}; at most {:+.3g}", models_[reference_], largest));
+                            fmt::format("{:.4g} {}", square, post::symbol(c.unit)),
+                            fmt::format("rms off {}; at most {:+.4g}", models_[reference_], largest));
         out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit,
                             place, cause));
         summary["differences"].push_back({{"model", models_[m]},
@@ -282,6 +282,9 @@ class CrossCheckJob final : public Job {
           for (std::size_t i = 0; i < x.values.size(); ++i)
             p.map.push_back(difference(answers, m, base + j * x.values.size() + i, c));
       }
+      // Where both say the same everywhere there is nothing to see: the table says so.
+      const auto nothing = [](double d) { return !(std::abs(d) > 1e-9); };
+      if (std::ranges::all_of(p.map.empty() ? p.series.front().y : p.map, nothing)) continue;
       f.panels.push_back(p);
     }
     return f;

@@ -402,7 +402,7 @@ NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
         "shorter free length",
         fmt::join(names, ", "), *next.sensor);
   } else if (so_far.verdict == Verdict::insufficient) {
-    next.text = "a longer or stronger record: minimum_detectable says how large an effect this one could have shown";
+    next.text = "a longer or stronger record: the list of smallest effects says what this one could have shown";
   } else if (so_far.verdict == Verdict::noise_contradicted) {
     next.text = "a record at rest, to find the instrument's own scatter";
   } else {

@@ -226,7 +226,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
                                 so_far.unexplained.front().detail);
       return next;
     case Verdict::insufficient:
-      next.text = "more shots of the same kind: minimum_detectable says how large an effect these could have shown";
+      next.text = "more shots of the same kind: the list of smallest effects says what these could have shown";
       return next;
     case Verdict::noise_contradicted:
       next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
