@@ -126,8 +126,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     const auto parts = [](std::size_t points) {
       return std::max<std::size_t>(2, 120 / std::max<std::size_t>(1, points));
     };
-    // Wide numbers at the axis would push its label out of the picture.
-    s += "set lmargin 12\n";
+    // Wide numbers at the axis and at the colours would push their labels out of the picture.
+    s += "set lmargin 12\nset rmargin 10\n";
     s += fmt::format("set pm3d map interpolate {},{}\nsplot ${} with pm3d nocontour notitle", parts(p.map_x.size()),
                      parts(p.map_y.size()), name);
     if (p.map_contours) s += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
@@ -138,7 +138,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
            (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
     }
     if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
-    return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nset size noratio\nset autoscale xy\n"};
+    return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nset size noratio\nset autoscale xy\n"};
   }
   std::string plot;
   bool marks = false;
