@@ -138,7 +138,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
            (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
     }
     if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
-    return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nset size noratio\nset autoscale xy\n"};
+    return {data,
+            s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nset size noratio\nset autoscale xy\n"};
   }
   std::string plot;
   bool marks = false;
