@@ -24,13 +24,13 @@ double value(const Jet& x) { return x.a; }
 
 /// The launch as the flight's start, in the quantities by which it is differentiated.
 template <class T>
-struct Start {
+struct Departure {
   Vector<T> velocity, spin;
 };
 
-Start<double> start_of(const Launch& launch) { return {launch.velocity, launch.spin}; }
+Departure<double> start_of(const Launch& launch) { return {launch.velocity, launch.spin}; }
 
-Start<Jet> dual_start_of(const Launch& launch) {
+Departure<Jet> dual_start_of(const Launch& launch) {
   const Jet speed(launch.ball_speed(), kBallSpeed), angle(launch.launch_angle(), kLaunchAngle),
       azimuth(launch.azimuth(), kAzimuth);
   return {Vector<Jet>(speed * cos(angle) * cos(azimuth), -speed * cos(angle) * sin(azimuth), speed * sin(angle)),
@@ -41,7 +41,7 @@ Start<Jet> dual_start_of(const Launch& launch) {
 template <class T>
 class Motion {
  public:
-  Motion(const Start<T>& start, const Ball& ball, const FlightConditions& c)
+  Motion(const Departure<T>& start, const Ball& ball, const FlightConditions& c)
       : c_(c), ball_(ball), spin_(start.spin), spin_rate_(0), axis_(Vector<T>::Zero()) {
     const double area = kPi * ball.radius * ball.radius;
     pressure_ = 0.5 * c.air.density * area / ball.mass;
@@ -138,7 +138,7 @@ void check_height(const Motion<T>& motion, const T* y) {
 }
 
 template <class T>
-std::array<T, kStates> state_of(const Start<T>& start) {
+std::array<T, kStates> state_of(const Departure<T>& start) {
   return {T(0), T(0), T(0), start.velocity[0], start.velocity[1], start.velocity[2], T(1)};
 }
 
@@ -164,7 +164,7 @@ void check(const Launch& launch) {
 
 Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& conditions, const FlightOptions& options) {
   check(launch);
-  const Start<double> start = start_of(launch);
+  const Departure<double> start = start_of(launch);
   const Motion<double> motion(start, ball, conditions);
   const auto y0 = state_of(start);
   Flight out;
@@ -229,7 +229,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
   check(launch);
   if (!(launch.spin_rate() > 0))
     throw std::invalid_argument("flight: without spin the lift has no direction, and the flight no derivative by it");
-  const Start<Jet> start = dual_start_of(launch);
+  const Departure<Jet> start = dual_start_of(launch);
   const Motion<Jet> motion(start, ball, conditions);
   using State = std::array<Jet, kStates>;
   FlightJacobian out = FlightJacobian::Zero();
