@@ -376,7 +376,9 @@ class TuneJob final : public Job {
         .least_width = 6,
         .even = false};
     for (const TuneChannel& c : channels_)
-      figure.panels.push_back({.x_label = "measured " + post::label(c.name), .y_label = "model - measured"});
+      figure.panels.push_back(
+          {.x_label = "measured " + post::label(c.name),
+           .y_label = fmt::format("model - measured [{}]", post::symbol(split_unit(c.name).unit->suffix))});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
       std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
       std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
