@@ -19,9 +19,8 @@ FullClubImpact assemble_full_club(const Blow& blow, const FeFullClubOptions& opt
   ShaftMount mount = options.mount;
   if (mount.load && mount.joint.gives())
     throw std::invalid_argument(
-        "fe full club: how far a joint that gives has turned does not follow from the hands' wrench, but from the "
-        "swing "
-        "before: use a loaded-club case, or a head that is rigid on the shaft");
+        "fe full club: how far a joint that gives has turned follows from the swing, not from the hands' wrench: use a "
+        "loaded-club case, or a head that is rigid on the shaft");
   if (mount.load && !mount.loaded)
     mount.loaded = loaded_by_grip(blow, *mount.load, mount.grip_point, mount.elements, mount.growth, mount.shear);
   FullClubImpact out;

@@ -26,7 +26,7 @@ struct ShaftMount {
   /// and shortest at the tip.
   double growth = 0.9;
   bool shear = true;      ///< Timoshenko; false: Rayleigh
-  HeadJoint joint;        ///< as it was in the swing that loaded the shaft
+  HeadJoint joint;        ///< of a loaded shaft: as in its swing
   double grip_point = 0;  ///< arc length from the butt where the grip holds; the shaft above it is the hands' [m]
   /// The shaft at first contact; absent: straight, moving as one rigid body with the head.
   std::optional<LoadedShaft> loaded = {};

@@ -47,9 +47,8 @@ Launch ShaftCoupled::launch(const Blow& blow) const {
   const auto shaft = condensed(blow.club, beam_);
   if (beam_.hinged && (mount_.loaded || mount_.load))
     throw std::invalid_argument(
-        "shaft-coupled: the condensed shaft stands on the head as the club was built, and a swing turns a hinge by "
-        "tens "
-        "of degrees: use fe-full-club for a loaded start with a hinge");
+        "shaft-coupled: the condensed shaft stands on the head as the club was built, and a swing turns a hinge far: "
+        "use fe-full-club for a loaded start with a hinge");
   std::optional<LoadedShaft> loaded = mount_.loaded;
   if (!loaded && mount_.load)
     loaded = loaded_by_grip(blow, *mount_.load, mount_.grip_point, mount_.elements, mount_.growth, mount_.shear);
