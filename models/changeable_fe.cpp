@@ -35,11 +35,11 @@ void relax(fem::Solid& m, double factor, double frequency) {
 }  // namespace
 
 FeBall changed(FeBall ball, const FeChange& c, double radius, double contact_time) {
+  if (ball.layers.size() == 1) {  // whatever changes: a mesh that comes with the first change would be a change itself
+    ball.layers.push_back(ball.layers.front());
+    ball.layers.front().radius = 1 - kSkin / radius;
+  }
   if (c.cover_stiffness != 0 || c.cover_thickness != 0) {
-    if (ball.layers.size() == 1) {
-      ball.layers.push_back(ball.layers.front());
-      ball.layers.front().radius = 1 - kSkin / radius;
-    }
     BallLayer& core = *(ball.layers.end() - 2);
     core.radius -= c.cover_thickness / radius;
     if (!(core.radius < 1)) throw std::invalid_argument("cover: no thickness left");

@@ -3,11 +3,11 @@
 
 namespace hosel::models {
 
-/// Changes of what a case declares of ball and shaft; zeros change nothing. (What the blow holds - head, delivery,
-/// hosel, Coulomb's coefficient in `contact.friction` - is changed there.)
+/// Changes of what a case declares of ball and shaft; zeros change nothing but the mesh of a ball of one piece. (What
+/// the blow holds - head, delivery, hosel, Coulomb's coefficient in `contact.friction` - is changed there.)
 struct FeChange {
   double cover_stiffness = 0;  ///< logarithm of the factor on all moduli of the outermost layer [-]
-  /// Added to the outermost layer [m]; a ball of one piece has a skin of `kSkin` to start from.
+  /// Added to the outermost layer [m]; a ball of one piece has one of `kSkin`.
   double cover_thickness = 0;
   double losses = 0;           ///< logarithm of the factor on the branch moduli of every layer [-]
   double relaxation = 0;       ///< logarithm of the factor on the branch times, see `changed` [-]
@@ -18,6 +18,6 @@ struct FeChange {
   bool operator==(const FeChange&) const = default;
 };
 
-inline constexpr double kSkin = 1.9e-3;  ///< of a ball of one piece whose skin an effect stiffens [m]
+inline constexpr double kSkin = 1.9e-3;  ///< of a ball of one piece, of its own material until an effect changes it [m]
 
 }  // namespace hosel::models

@@ -71,4 +71,17 @@ Eigen::MatrixXd Kriging::error(const Eigen::VectorXd& x) const {
   return (1 + nugget_ - k.dot(inverse_ * k)) * process_;
 }
 
+Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {
+  const Eigen::Index n = x.rows();
+  if (!interpolates()) return Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd there = scale_.asDiagonal() * x.transpose();
+  Eigen::MatrixXd of_points(points_.cols(), n), shared(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    of_points.col(i) = covariances(x.row(i).transpose());
+    shared.col(i) = (there.colwise() - there.col(i)).colwise().norm().unaryExpr(&matern).transpose();
+  }
+  shared.diagonal().array() += nugget_;
+  return shared - of_points.transpose() * inverse_ * of_points;
+}
+
 }  // namespace hosel::solvers

@@ -19,6 +19,11 @@ class Kriging {
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   /// Mean square of the error to be expected there, outputs x outputs.
   Eigen::MatrixXd error(const Eigen::VectorXd& x) const;
+  /// How the errors of many points (a row each) go together: times `process` the covariance of two points' errors; its
+  /// diagonal times that is `error`.
+  Eigen::MatrixXd errors_together(const Eigen::MatrixXd& x) const;
+  /// Covariance of the outputs where nothing is known near.
+  const Eigen::MatrixXd& process() const { return process_; }
   bool interpolates() const { return weight_.size() > 0; }
   /// What was left of every point's honest residual once the others had predicted it: points x outputs.
   const Eigen::MatrixXd& left_out() const { return left_out_; }
@@ -32,7 +37,7 @@ class Kriging {
   Eigen::MatrixXd inverse_;  ///< of the points' correlation with the nugget
   Eigen::MatrixXd weight_;   ///< points x outputs
   double nugget_ = 0;
-  Eigen::MatrixXd process_;  ///< covariance of outputs where nothing is known near
+  Eigen::MatrixXd process_;
   Eigen::MatrixXd left_out_;
 };
 

@@ -295,11 +295,8 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
   return J;
 }
 
-ShotModel::Found ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
+ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, const double* parameters) const {
   const int m = width();
-  Shot t;
-  Found cov{Eigen::MatrixXd::Zero(m, m), Eigen::MatrixXd::Zero(m, m)};
-  if (!asked(shot, model, parameters, t)) return cov;
   // What the channels (and, last, the launch angle) show of an error of the answer.
   const auto show = [&](const Shot& s, const Vec6& error) {
     Launch l = Surrogate::shifted(answer(s, shot), s, error);
@@ -310,35 +307,57 @@ ShotModel::Found ShotModel::found_covariance(int shot, const Model& model, const
                    : 0;
     return out;
   };
+  Shown out{Eigen::VectorXd::Zero(m), Eigen::MatrixXd::Zero(m, 6)};
+  if (seen_) {
+    const double h = 1e-4;
+    Shot up = t, down = t;
+    up.blow.delivery.dynamic_loft += h;
+    down.blow.delivery.dynamic_loft -= h;
+    const Eigen::VectorXd d = show(up, Vec6::Zero()) - show(down, Vec6::Zero());
+    out.by_launch = d.head(m) / d[m];
+  }
+  const double h = 1e-5;
+  for (int k = 0; surrogate_ && k < 6; ++k) {
+    const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
+    out.by_error.col(k) = d.head(m) - out.by_launch * d[m];
+  }
+  return out;
+}
+
+ShotModel::Found ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
+  const int m = width();
+  Shot t;
+  Found cov{Eigen::MatrixXd::Zero(m, m), Eigen::MatrixXd::Zero(m, m)};
+  if (!asked(shot, model, parameters, t)) return cov;
   try {
-    Eigen::VectorXd by_launch = Eigen::VectorXd::Zero(m);  // of the channels, per launch angle that the loft follows
-    if (seen_) {
-      const double h = 1e-4;
-      Shot up = t, down = t;
-      up.blow.delivery.dynamic_loft += h;
-      down.blow.delivery.dynamic_loft -= h;
-      const Eigen::VectorXd d = show(up, Vec6::Zero()) - show(down, Vec6::Zero());
-      by_launch = d.head(m) / d[m];
-      cov.launch = std::pow(seen_->channel.noise, 2) * by_launch * by_launch.transpose();
-    }
-    if (surrogate_) {
-      const double h = 1e-5;
-      Eigen::MatrixXd J(m, 6);
-      for (int k = 0; k < 6; ++k) {
-        const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
-        J.col(k) = d.head(m) - by_launch * d[m];
-      }
-      cov.surrogate = J * surrogate_->error(t) * J.transpose();
-    }
+    const Shown see = shown(shot, t, model, parameters);
+    if (seen_) cov.launch = std::pow(seen_->channel.noise, 2) * see.by_launch * see.by_launch.transpose();
+    if (surrogate_) cov.surrogate = see.by_error * surrogate_->error(t) * see.by_error.transpose();
   } catch (const std::invalid_argument&) {}
   return cov;
 }
 
-double ShotModel::surrogate_share(int shot, const Model& model, const double* parameters) const {
-  const Eigen::MatrixXd W = whitening(shot);
-  const auto seen = (W.diagonal().array() > 0).count();
-  if (!surrogate_ || seen == 0) return 0;
-  return (W * found_covariance(shot, model, parameters).surrogate * W.transpose()).trace() / double(seen);
+Eigen::MatrixXd ShotModel::surrogate_errors(const std::vector<int>& shots, const Model& model,
+                                            const double* parameters) const {
+  const int m = width();
+  const auto n = Eigen::Index(shots.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n * m, n * m);
+  if (!surrogate_) return out;
+  std::vector<Shot> asks(shots.size());
+  Eigen::MatrixXd show = Eigen::MatrixXd::Zero(n * m, 6);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int shot = shots[std::size_t(i)];
+    Shot& t = asks[std::size_t(i)];
+    if (!asked(shot, model, parameters, t)) t = trial(shot);  // shows nothing
+    else show.middleRows(i * m, m) = whitening(shot) * shown(shot, t, model, parameters).by_error;
+  }
+  const Eigen::MatrixXd together = surrogate_->errors_together(asks);
+  const Mat6 scale = surrogate_->error_scale();
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      out.block(i * m, j * m, m, m) = together(i, j) *
+                                      (show.middleRows(i * m, m) * scale * show.middleRows(j * m, m).transpose());
+  return out;
 }
 
 void ShotModel::add_launch_noise(int shot, const models::FlightConditions& conditions,

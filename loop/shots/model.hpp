@@ -76,8 +76,9 @@ class ShotModel {
   Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> whitening(int shot) const {
     return {whiten_.data() + std::ptrdiff_t(shot) * width() * width(), width(), width()};
   }
-  /// Share of the surrogate's error in the variance of a shot, about a model: mean over its channels, whitened.
-  double surrogate_share(int shot, const Model& model, const double* parameters) const;
+  /// The surrogate's error in some shots together, whitened, about a model: (shots * width) squared. Neighbours err
+  /// alike, which the covariance of every shot for itself does not say.
+  Eigen::MatrixXd surrogate_errors(const std::vector<int>& shots, const Model& model, const double* parameters) const;
   /// Marginal standard deviation of a channel of a shot (instrument and inputs), header's unit.
   double sigma(int shot, int channel) const { return sigma_(shot, channel); }
 
@@ -103,6 +104,13 @@ class ShotModel {
     Eigen::MatrixXd launch, surrogate;
   };
   Found found_covariance(int shot, const Model& model, const double* parameters) const;
+  /// What the channels show of the launch angle that the loft follows (per its unit), and of an error of the answer
+  /// about a shot as it is asked: width and width x 6, header's units. Throws as the base does.
+  struct Shown {
+    Eigen::VectorXd by_launch;
+    Eigen::MatrixXd by_error;
+  };
+  Shown shown(int shot, const Shot& asked, const Model& model, const double* parameters) const;
   /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
   static void change(const Model& model, const double* parameters, Shot& trial);
   static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);

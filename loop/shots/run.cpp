@@ -36,7 +36,7 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
     const Fit &before = result.selection.base, &after = shown ? result.selection.chosen : before;
     result.balance_before = balance(problem.model(), problem.training(), before.model, before.p.data());
     result.balance_after = balance(problem.model(), problem.training(), after.model, after.p.data());
-    if (c.surrogate) ask_further(problem, result);
+    if (c.surrogate && !c.closing) ask_further(problem, c.rules, result);
     if (c.closing && !doubted) result.corrected = close(c, problem, before, after);
   }
   return result;

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
 
+#include "hosel/loop/shots/features.hpp"
 #include "hosel/loop/shots/inputs.hpp"
 #include "hosel/loop/shots/problem.hpp"
 #include "hosel/loop/shots/run.hpp"
@@ -19,10 +22,10 @@ namespace hosel::loop {
 namespace {
 
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
-constexpr int kRounds = 4;                         // of asking where the decision hangs
+constexpr int kRounds = 6;                         // of asking where the decision hangs
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSmallShare = 0.05;  // of a shot's variance: an error that is so small decides nothing
-constexpr double kSurprise = 2;       // chi-squared per output up to which its error was told truly
+constexpr double kSmallDoubt = 3;  // of deviance: an error that moves it by less decides nothing
+constexpr double kSurprise = 2;    // chi-squared per output up to which its error was told truly
 
 const models::RigidEccentric& closed_form() {
   static const models::RigidEccentric model;
@@ -99,6 +102,32 @@ std::vector<int> evenly(const std::vector<int>& all, std::size_t most) {
   return some;
 }
 
+bool same_question(const Shot& a, const Shot& b) {
+  return std::ranges::all_of(features(), [&](const Feature& f) {
+    const double x = f.get(a), y = f.get(b);
+    return x == y || std::abs(x - y) < 1e-12;
+  });
+}
+
+/// By how much the deviance of a fit would fall if the surrogate's error there, alike in neighbours as it is, were in
+/// its favour (its parameters free to follow), and not counted for every shot by itself.
+double in_doubt(const ShotProblem& problem, const Fit& fit) {
+  constexpr std::size_t together = 40;
+  constexpr double free = 100;  // a parameter may follow by so many of its scales
+  const std::vector<int>& all = problem.training();
+  const std::vector<int> some = evenly(all, together);
+  const Eigen::VectorXd z = problem.model().whitened(some, fit.model, fit.p);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(z.size(), z.size());
+  if (fit.size() > 0) {
+    const Eigen::MatrixXd J = free * problem.model().jacobian(some, fit.model, fit.p);
+    covariance += J * J.transpose();
+  }
+  const auto deviance = [&] { return z.dot(covariance.llt().solve(z)); };
+  const double alone = deviance();
+  covariance += problem.model().surrogate_errors(some, fit.model, fit.p.data());
+  return (alone - deviance()) * double(all.size()) / double(some.size());
+}
+
 }  // namespace
 
 Learnt learn(const ShotCase& c) {
@@ -148,7 +177,7 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
     const std::vector<std::string> adopted = result.adopted;
     const auto ties = result.ties;
     result = run(quick);
-    if (foreseen && result.adopted == adopted && result.ties == ties) break;
+    if (foreseen && result.decisive.empty() && result.adopted == adopted && result.ties == ties) break;
   }
 
   ShotCase last = c;
@@ -171,24 +200,33 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
   return run(last);
 }
 
-void ask_further(const ShotProblem& problem, LoopResult& result) {
-  constexpr std::size_t rivals = 4, few = 8, many = 40;
-  const ShotModel& model = problem.model();
-  const auto ask = [&](const Fit& fit, std::size_t most) {
-    std::vector<int> doubtful;
-    for (const int i : problem.training())
-      if (model.surrogate_share(i, fit.model, fit.p.data()) > kSmallShare) doubtful.push_back(i);
-    for (const int i : evenly(doubtful, most))
-      if (Shot s; model.asked(i, fit.model, fit.p.data(), s)) result.decisive.push_back(std::move(s));
-  };
+void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& result) {
+  constexpr std::size_t likeliest = 4, rivals = 6, few = 8, many = 40;
   const Selection& found = result.selection;
-  ask(found.chosen, many);
-  if (found.chosen.size() > found.base.size()) ask(found.base, few);
-  for (std::size_t k = 0; k < std::min(rivals, found.candidates.size()); ++k)
-    if (found.candidates[k].fit.size() > 0) ask(found.candidates[k].fit, few);
-  if (result.decisive.size() >= few) return;
-  for (const int i : evenly(problem.training(), few))
-    if (Shot s; model.asked(i, found.chosen.model, found.chosen.p.data(), s)) result.checks.push_back(std::move(s));
+  const auto ask = [&](const Fit& fit, std::size_t most, std::vector<Shot>& into) {
+    for (const int i : evenly(problem.training(), most))
+      if (Shot s; problem.model().asked(i, fit.model, fit.p.data(), s) &&
+                  std::ranges::none_of(into, [&](const Shot& other) { return same_question(s, other); }))
+        into.push_back(std::move(s));
+  };
+  if (in_doubt(problem, found.chosen) > kSmallDoubt) ask(found.chosen, many, result.decisive);
+  // A rival that the surrogate makes unlikely may be likely: the base and every single effect are asked about as far
+  // as its error reaches.
+  struct Rival {
+    const Fit* fit;
+    double rank;
+  };
+  std::vector<Rival> all{{&found.base, found.base.deviance + rules.parameter_cost * found.base.size()}}, possible;
+  for (std::size_t k = 0; k < found.candidates.size(); ++k)
+    if (const Candidate& c = found.candidates[k]; k < likeliest || c.effects.size() == 1)
+      all.push_back({&c.fit, c.criterion + rules.further_gain * double(c.effects.size())});
+  const double best = std::ranges::min(all, {}, &Rival::rank).rank;
+  for (const Rival& r : all)
+    if (const double doubt = in_doubt(problem, *r.fit); doubt > kSmallDoubt && r.rank - doubt < best + rules.tie)
+      possible.push_back({r.fit, r.rank - doubt});
+  std::ranges::sort(possible, {}, &Rival::rank);
+  for (std::size_t k = 0; k < std::min(rivals, possible.size()); ++k) ask(*possible[k].fit, few, result.decisive);
+  if (result.decisive.size() < few) ask(found.chosen, few, result.checks);
 }
 
 Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before, const Fit& after) {

@@ -25,8 +25,8 @@ Learnt learn(const ShotCase& c);
 LoopResult run_slow(const ShotCase& c, Learnt& learnt);
 
 /// What a pass on a surrogate would have the base asked about, of training shots at what it chose, at the base and at
-/// the likeliest candidates: `decisive` and `checks` of the result.
-void ask_further(const ShotProblem& problem, LoopResult& result);
+/// rivals that the surrogate's error may hide: `decisive` and `checks` of the result.
+void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& result);
 /// The base itself (`c.closing`) on held-out shots, at the fits before and after.
 Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before, const Fit& after);
 

@@ -122,6 +122,12 @@ Mat6 Surrogate::error(const Shot& shot) const {
   return told_scale_ * residual_.error(coordinates(shot));
 }
 
+Eigen::MatrixXd Surrogate::errors_together(const std::vector<Shot>& shots) const {
+  Eigen::MatrixXd x(Eigen::Index(shots.size()), Eigen::Index(features_.size()));
+  for (std::size_t i = 0; i < shots.size(); ++i) x.row(Eigen::Index(i)) = coordinates(shots[i]).transpose();
+  return residual_.errors_together(x);
+}
+
 Launch Surrogate::shifted(Launch l, const Shot& s, const Vec6& error) {
   const Mat3 R = s.blow.delivery.face_to_global();
   l.velocity += s.blow.delivery.club_speed * (R * error.head<3>());

@@ -42,6 +42,10 @@ class Surrogate {
   /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2], scaled to what
   /// cross-validation shows, and then to what every later lesson shows: zero before it has learnt.
   Mat6 error(const Shot& shot) const;
+  /// How the errors of many answers go together: entry (i, j) times `error_scale` is the covariance of the errors of
+  /// shots i and j. Neighbours err alike.
+  Eigen::MatrixXd errors_together(const std::vector<Shot>& shots) const;
+  Mat6 error_scale() const { return told_scale_ * residual_.process(); }
   /// A launch with such an error added.
   static Launch shifted(Launch launch, const Shot& shot, const Vec6& error);
 

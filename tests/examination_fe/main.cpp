@@ -37,25 +37,26 @@ double gauss(std::mt19937_64& random) {
   return r * std::cos(2 * kPi * solvers::uniform(random));
 }
 
-/// What is hidden: the name under which the loop should find it, and its size from a number in [-1, -0.5] or [0.5, 1].
+/// What is hidden: the name under which the loop should find it, and the ends of its size.
 struct Truth {
   const char* name;
   bool full_club;  ///< of the base
+  double low, high;
   void (*hide)(double size, Shot& s);
 };
 
 const std::array kTruths = {
-    Truth{"ball-cover-stiffness", false, [](double u, Shot& s) { s.change.cover_stiffness = 0.9 * u; }},
-    Truth{"friction-limit", false, [](double u, Shot& s) { s.blow.contact.friction *= std::exp(-0.9 * std::abs(u)); }},
-    Truth{"restitution-law", false, [](double u, Shot& s) { s.change.losses = 0.25 * u; }},
-    Truth{"ball-relaxation", false, [](double u, Shot& s) { s.change.relaxation = 2.2 * std::abs(u); }},
-    Truth{"cg-shift", false, [](double u, Shot& s) { s.blow.club.head.cg[2] += 6e-3 * u; }},
-    Truth{"head-closure", false,
-          [](double u, Shot& s) { s.blow.delivery.head_angular_velocity += Vec3(0, 0, 40 * u); }},
-    Truth{"face-compliance", false, [](double u, Shot& s) { s.change.face_compliance = 200e-9 * std::abs(u); }},
-    Truth{"shaft-coupling", false, [](double, Shot& s) { s.change.shaft = 1; }},
-    Truth{"shaft-stiffness", true, [](double u, Shot& s) { s.change.shaft_stiffness = 0.9 * u; }},
-    Truth{"hosel-place", true, [](double u, Shot& s) { s.blow.club.geometry.hosel[1] += 20e-3 * u; }},
+    Truth{"ball-cover-stiffness", false, -1.4, 1.4, [](double x, Shot& s) { s.change.cover_stiffness = x; }},
+    Truth{"friction-limit", false, -1.4, 0, [](double x, Shot& s) { s.blow.contact.friction *= std::exp(x); }},
+    Truth{"restitution-law", false, -1, 0.7, [](double x, Shot& s) { s.change.losses = x; }},
+    Truth{"ball-relaxation", false, -1.4, 2.3, [](double x, Shot& s) { s.change.relaxation = x; }},
+    Truth{"cg-shift", false, -18e-3, 18e-3, [](double x, Shot& s) { s.blow.club.head.cg[2] += x; }},
+    Truth{"head-closure", false, -80, 80,
+          [](double x, Shot& s) { s.blow.delivery.head_angular_velocity += Vec3(0, 0, x); }},
+    Truth{"face-compliance", false, 0, 250e-9, [](double x, Shot& s) { s.change.face_compliance = x; }},
+    Truth{"shaft-coupling", false, 0, 1, [](double x, Shot& s) { s.change.shaft = x; }},
+    Truth{"shaft-stiffness", true, -1.1, 1.1, [](double x, Shot& s) { s.change.shaft_stiffness = x; }},
+    Truth{"hosel-place", true, -35e-3, 35e-3, [](double x, Shot& s) { s.blow.club.geometry.hosel[1] += x; }},
 };
 
 /// A driver, and a ball of the library.
@@ -92,12 +93,15 @@ std::vector<Shot> blows(int shots, unsigned long seed) {
 class Kept {
  public:
   Kept(const models::ChangeableFe& model, const std::filesystem::path& file) : model_(model) {
+    const auto changed =
+        std::ranges::count_if(loop::features(), [](const loop::Feature& f) { return f.set != nullptr; });
+    const auto width = std::size_t(kInputs + changed + kNumbers);
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {
       std::vector<double> row;
       std::istringstream words(line);
       for (double x = 0; words >> x;) row.push_back(x);
-      if (in.eof() || row.size() != std::size_t(kInputs + kChanged + kNumbers)) continue;  // of a killed run
+      if (in.eof() || row.size() != width) continue;  // of a killed run
       Launch l;
       auto at = row.end() - kNumbers;
       for (Vec3* v : {&l.velocity, &l.spin, &l.head_velocity, &l.head_spin})
@@ -128,8 +132,6 @@ class Kept {
 
  private:
   static constexpr int kNumbers = 12;  // of a launch
-  inline static const auto kChanged =
-      std::ranges::count_if(loop::features(), [](const loop::Feature& f) { return f.set != nullptr; });
   const models::ChangeableFe& model_;
   std::mutex mutex_;
   std::map<std::vector<double>, Launch> answers_;
@@ -139,6 +141,33 @@ class Kept {
 const std::array kNoise = {std::pair{"ball_speed_mps", 0.25}, std::pair{"launch_angle_deg", 0.2},
                            std::pair{"azimuth_deg", 0.25}, std::pair{"backspin_rpm", 60.0},
                            std::pair{"sidespin_rpm", 60.0}};
+
+using Reading = std::array<double, kNoise.size()>;
+Reading reading(const Launch& l) {
+  return {l.ball_speed(), degrees(l.launch_angle()), degrees(l.azimuth()), rpm(l.backspin()), rpm(l.sidespin())};
+}
+
+/// Whitened norm of what is hidden over two thirds of so many shots, seen on some of them; and of what of it is no
+/// constant of a channel.
+struct Signal {
+  double all = 0, beyond = 0;
+
+  Signal(const std::vector<Launch>& hidden, const std::vector<Launch>& plain, std::size_t shots) {
+    for (std::size_t k = 0; k < kNoise.size(); ++k) {
+      double sum = 0, squares = 0;
+      for (std::size_t i = 0; i < hidden.size(); ++i) {
+        const double x = (reading(hidden[i])[k] - reading(plain[i])[k]) / kNoise[k].second;
+        sum += x;
+        squares += x * x;
+      }
+      all += squares;
+      beyond += squares - sum * sum / double(hidden.size());
+    }
+    const double share = 2.0 / 3.0 * double(shots) / double(hidden.size());
+    all = std::sqrt(share * all);
+    beyond = std::sqrt(share * beyond);
+  }
+};
 
 /// The table that a monitor would write of these launches.
 loop::Shots table(const std::vector<Shot>& shots, const std::vector<Launch>& launches, std::mt19937_64& random) {
@@ -150,12 +179,10 @@ loop::Shots table(const std::vector<Shot>& shots, const std::vector<Launch>& lau
   sheet.columns.resize(sheet.names.size());
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const Delivery& d = shots[i].blow.delivery;
-    const Launch& l = launches[i];
     std::vector<double> row{
         double(i + 1),           d.club_speed,          degrees(d.attack_angle), degrees(d.club_path),
         degrees(d.dynamic_loft), degrees(d.face_angle), 1e3 * d.impact_toe,      1e3 * d.impact_high};
-    const double truth[] = {l.ball_speed(), degrees(l.launch_angle()), degrees(l.azimuth()), rpm(l.backspin()),
-                            rpm(l.sidespin())};
+    const Reading truth = reading(launches[i]);
     for (std::size_t k = 0; k < kNoise.size(); ++k) row.push_back(truth[k] + kNoise[k].second * gauss(random));
     for (std::size_t k = 0; k < row.size(); ++k)
       sheet.columns[k].push_back(k ? fmt::format("{:.10g}", row[k]) : std::to_string(i + 1));
@@ -167,12 +194,11 @@ loop::Shots table(const std::vector<Shot>& shots, const std::vector<Launch>& lau
 /// What the loop said of one set.
 struct Examined {
   std::string truth;
-  double size = 0;
   bool alone = false, tied = false, wrong = false, anything = false;
 };
 
-Examined judged(const loop::LoopResult& r, const Truth* truth, double size) {
-  Examined e{truth ? truth->name : "nothing", size};
+Examined judged(const loop::LoopResult& r, const Truth* truth) {
+  Examined e{truth ? truth->name : "nothing"};
   const bool in = std::ranges::count(r.adopted, e.truth) > 0;
   e.anything = !r.adopted.empty() || !r.ties.empty();
   e.alone = in && r.adopted.size() == 1 && r.ties.empty();
@@ -180,8 +206,8 @@ Examined judged(const loop::LoopResult& r, const Truth* truth, double size) {
   e.wrong = truth && !in && !e.tied && e.anything;
   std::vector<std::string> ties;
   for (const auto& t : r.ties) ties.push_back(fmt::format("{}", fmt::join(t, " or ")));
-  fmt::print("{:<22} {:+.2f}  {:<18} adopted [{}] tied [{}]", e.truth, size, std::string(loop::name(r.verdict)),
-             fmt::join(r.adopted, ", "), fmt::join(ties, "; "));
+  fmt::print("{:<18} adopted [{}] tied [{}]", std::string(loop::name(r.verdict)), fmt::join(r.adopted, ", "),
+             fmt::join(ties, "; "));
   return e;
 }
 
@@ -195,7 +221,7 @@ int main(int argc, char** argv) {
   std::filesystem::path answers;
   CLI::App app("shots made by finite elements with a hidden effect: does the loop name it?");
   app.add_option("--shots", shots, "of a set");
-  app.add_option("--sizes", sizes, "of each effect");
+  app.add_option("--sizes", sizes, "of each effect, by the signal");
   app.add_option("--draws", draws, "of the noise, for each size");
   app.add_option("--nulls", nulls, "sets without an effect");
   app.add_option("--effect", only, "hidden ones; all of the base unless named");
@@ -226,23 +252,42 @@ int main(int argc, char** argv) {
   c.slow = &base;
 
   const std::vector<Shot> plain = blows(shots, seed);
-  std::optional<loop::Learnt> common;
   std::vector<Examined> all;
+  const auto made = [&](std::vector<Shot> of, const Truth* truth, double size) {
+    if (truth)
+      for (Shot& s : of) truth->hide(size, s);
+    std::vector<Launch> out(of.size());
+    tbb::parallel_for(std::size_t(0), of.size(), [&](std::size_t i) { out[i] = answer(of[i]); });
+    return out;
+  };
+  // A size by its signal, which is drawn between 8 and 40: as near as the range allows.
+  const auto drawn = [&](const Truth& t, std::mt19937_64& random) {
+    std::vector<Shot> some;
+    for (std::size_t i = 0; i < plain.size(); i += std::max<std::size_t>(1, plain.size() / 12))
+      some.push_back(plain[i]);
+    const std::vector<Launch> bare = made(some, nullptr, 0);
+    const double side = random() % 2 ? t.high : t.low, end = side != 0 ? side : t.low + t.high;
+    const double wanted = 8 * std::pow(5, solvers::uniform(random));
+    double size = end;
+    for (int k = 0; k < 3; ++k)
+      size = end * std::min(1.0, size / end * wanted / Signal(made(some, &t, size), bare, plain.size()).all);
+    return size;
+  };
+  std::mt19937_64 first(1000 * seed);
+  c.shots = table(plain, made(plain, nullptr, 0), first);
+  const loop::Learnt common = loop::learn(c);
   const auto examine = [&](const Truth* truth, unsigned long number, int times) {
     std::mt19937_64 random(1000 * seed + number);
-    const double size = truth ? (random() % 2 ? 1 : -1) * (0.5 + 0.5 * solvers::uniform(random)) : 0;
-    std::vector<Shot> hidden = plain;
-    if (truth)
-      for (Shot& s : hidden) truth->hide(size, s);
-    std::vector<Launch> launches(hidden.size());
-    tbb::parallel_for(std::size_t(0), hidden.size(), [&](std::size_t i) { launches[i] = answer(hidden[i]); });
-    std::optional<loop::Learnt> learnt;
+    const double size = truth ? drawn(*truth, random) : 0;
+    const std::vector<Launch> launches = made(plain, truth, size);
+    const Signal signal(launches, made(plain, nullptr, 0), plain.size());
+    loop::Learnt learnt = common;
     for (int k = 0; k < times; ++k) {
       c.shots = table(plain, launches, random);
-      if (!common) common = loop::learn(c);
-      if (!learnt) learnt = common;
-      const loop::LoopResult r = loop::run_slow(c, *learnt);
-      all.push_back(judged(r, truth, size));
+      const loop::LoopResult r = loop::run_slow(c, learnt);
+      fmt::print("{:<22} {:+9.3g} s {:4.1f} ({:4.1f})  ", truth ? truth->name : "nothing", size, signal.all,
+                 signal.beyond);
+      all.push_back(judged(r, truth));
       fmt::print("  ({} answers, {:.0f} CPU s)\n", answer.size(), double(std::clock()) / CLOCKS_PER_SEC);
       for (const std::string& note : r.notes)
         if (verbose) fmt::print("    {}\n", note);

@@ -31,6 +31,22 @@ TEST(ChangeableFe, AOnePieceBallGetsTheSkinThatItsCoverEffectStiffens) {
   EXPECT_THROW(changed(range_ball(), {.cover_thickness = -2e-3}, kRadius), std::invalid_argument);
 }
 
+TEST(ChangeableFe, ABallOfOnePieceChangesAsSmoothlyAsItsSkinDoes) {
+  FeImpactOptions options;
+  options.resolve(Accuracy::look);
+  options.ball = range_ball();
+  const ChangeableFe base(options, {}, {}, false);
+  Blow blow;
+  blow.club.head = {
+      .mass = 0.27, .cg = Vec3(-1e-3, 0, 0), .inertia = Vec3(2.8e-4, 1e-4, 2.9e-4).asDiagonal(), .face = {}};
+  blow.delivery = {.club_speed = 36, .dynamic_loft = radians(24)};
+  const double declared = base.launch(blow, {}).backspin(),
+               hardly = base.launch(blow, {.cover_stiffness = 1e-6}).backspin(),
+               stiffer = base.launch(blow, {.cover_stiffness = 0.1}).backspin();
+  ASSERT_GT(rpm(declared - stiffer), 50);
+  EXPECT_LT(std::abs(hardly - declared), 1e-3 * (declared - stiffer));  // no change comes with a mesh of its own
+}
+
 /// Storage and loss modulus of small shear at an angular frequency.
 std::pair<double, double> dynamic(const fem::Solid& m, double frequency) {
   double storage = m.shear(), loss = 0;

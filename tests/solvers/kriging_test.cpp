@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "hosel/solvers/random.hpp"
@@ -52,6 +53,22 @@ TEST(Kriging, FarFromAllItSaysZeroAndTheWholeProcess) {
   const Eigen::Vector3d far(1e3, 0, 0);
   EXPECT_LT(fit(far).norm(), 1e-9);
   EXPECT_GT(fit.error(far)(0, 0), 10 * fit.error(x.row(0).transpose())(0, 0));
+}
+
+TEST(Kriging, NeighboursErrAlike) {
+  std::mt19937_64 random(4);
+  const Eigen::MatrixXd x = anywhere(60, 3, random), y = bumps(x);
+  const Kriging fit(x, kLength, y, y);
+  ASSERT_TRUE(fit.interpolates());
+  Eigen::MatrixXd at(4, 3);
+  at << 0.31, 0.12, 0, 0.315, 0.12, 0, -0.8, 0.7, 0, x.row(0);
+  const Eigen::MatrixXd together = fit.errors_together(at);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_NEAR(together(i, i) * fit.process()(0, 0), fit.error(at.row(i).transpose())(0, 0), 1e-9);
+  const auto correlation = [&](int i, int j) { return together(i, j) / std::sqrt(together(i, i) * together(j, j)); };
+  EXPECT_GT(correlation(0, 1), 0.5);  // the nugget is their own
+  EXPECT_LT(std::abs(correlation(0, 2)), 0.1);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(together).eigenvalues()[0], 0);
 }
 
 TEST(Kriging, NoiseIsNotInterpolated) {
