@@ -298,8 +298,7 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
 ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, const double* parameters) const {
   const int m = width();
   // What the channels (and, last, the launch angle) show of an error of the answer.
-  const auto show = [&](const Shot& s, const Vec6& error) {
-    Launch l = Surrogate::shifted(answer(s, shot), s, error);
+  const auto show = [&](const Shot& s, Launch l) {
     change(model, parameters, s, l);
     Eigen::VectorXd out(m + 1);
     read(s, shot, model, parameters, l, out.data());
@@ -313,12 +312,15 @@ ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, c
     Shot up = t, down = t;
     up.blow.delivery.dynamic_loft += h;
     down.blow.delivery.dynamic_loft -= h;
-    const Eigen::VectorXd d = show(up, Vec6::Zero()) - show(down, Vec6::Zero());
+    const Eigen::VectorXd d = show(up, answer(up, shot)) - show(down, answer(down, shot));
     out.by_launch = d.head(m) / d[m];
   }
+  if (!surrogate_) return out;
   const double h = 1e-5;
-  for (int k = 0; surrogate_ && k < 6; ++k) {
-    const Eigen::VectorXd d = (show(t, h * Vec6::Unit(k)) - show(t, -h * Vec6::Unit(k))) / (2 * h);
+  const Launch told = answer(t, shot);
+  const auto off = [&](const Vec6& error) { return show(t, Surrogate::shifted(told, t, error)); };
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::VectorXd d = (off(h * Vec6::Unit(k)) - off(-h * Vec6::Unit(k))) / (2 * h);
     out.by_error.col(k) = d.head(m) - out.by_launch * d[m];
   }
   return out;

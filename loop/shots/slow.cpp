@@ -109,23 +109,48 @@ bool same_question(const Shot& a, const Shot& b) {
   });
 }
 
-/// By how much the deviance of a fit would fall if the surrogate's error there, alike in neighbours as it is, were in
-/// its favour (its parameters free to follow), and not counted for every shot by itself.
-double in_doubt(const ShotProblem& problem, const Fit& fit) {
+/// Deviance of a fit whose parameters may still follow by a little, as it is told and with the surrogate's error there,
+/// alike in neighbours as it is, in its favour.
+struct Doubt {
+  double alone = 0, favoured = 0;
+  bool matters() const { return alone - favoured > kSmallDoubt; }
+};
+
+constexpr int kPlaces = 8;  // of an effect's range where it is looked at
+
+/// Half the way from one of them to the next, in scales.
+double way(const Parameter& q) { return (q.max - q.min) / (2 * kPlaces * q.scale); }
+
+Doubt in_doubt(const ShotProblem& problem, const Fit& fit) {
   constexpr std::size_t together = 40;
-  constexpr double free = 100;  // a parameter may follow by so many of its scales
   const std::vector<int>& all = problem.training();
   const std::vector<int> some = evenly(all, together);
   const Eigen::VectorXd z = problem.model().whitened(some, fit.model, fit.p);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(z.size(), z.size());
   if (fit.size() > 0) {
-    const Eigen::MatrixXd J = free * problem.model().jacobian(some, fit.model, fit.p);
+    Eigen::MatrixXd J = problem.model().jacobian(some, fit.model, fit.p);
+    const std::vector<const Parameter*> parameters = fit.model.parameters();
+    for (Eigen::Index k = 0; k < J.cols(); ++k) J.col(k) *= way(*parameters[std::size_t(k)]);
     covariance += J * J.transpose();
   }
-  const auto deviance = [&] { return z.dot(covariance.llt().solve(z)); };
-  const double alone = deviance();
+  const auto deviance = [&] { return z.dot(covariance.llt().solve(z)) * double(all.size()) / double(some.size()); };
+  Doubt out;
+  out.alone = deviance();
   covariance += problem.model().surrogate_errors(some, fit.model, fit.p.data());
-  return (alone - deviance()) * double(all.size()) / double(some.size());
+  out.favoured = deviance();
+  return out;
+}
+
+/// A single effect where its fit is, and, of one parameter, all over its range: a poor surrogate leads a fit astray.
+std::vector<Fit> places(const Fit& fit, Eigen::Index parameters) {
+  std::vector<Fit> out{fit};
+  if (parameters != 1) return out;
+  const Parameter& q = fit.model.forms.back()->parameters.front();
+  for (int k = 0; k < kPlaces; ++k) {
+    out.push_back(fit);
+    out.back().p[fit.p.size() - 1] = q.min + (k + 0.5) / kPlaces * (q.max - q.min);
+  }
+  return out;
 }
 
 }  // namespace
@@ -209,23 +234,31 @@ void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& res
                   std::ranges::none_of(into, [&](const Shot& other) { return same_question(s, other); }))
         into.push_back(std::move(s));
   };
-  if (in_doubt(problem, found.chosen) > kSmallDoubt) ask(found.chosen, many, result.decisive);
+  if (in_doubt(problem, found.chosen).matters()) ask(found.chosen, many, result.decisive);
   // A rival that the surrogate makes unlikely may be likely: the base and every single effect are asked about as far
   // as its error reaches.
   struct Rival {
-    const Fit* fit;
-    double rank;
+    Fit fit;
+    double cost, rank;
   };
-  std::vector<Rival> all{{&found.base, found.base.deviance + rules.parameter_cost * found.base.size()}}, possible;
-  for (std::size_t k = 0; k < found.candidates.size(); ++k)
-    if (const Candidate& c = found.candidates[k]; k < likeliest || c.effects.size() == 1)
-      all.push_back({&c.fit, c.criterion + rules.further_gain * double(c.effects.size())});
+  const double free = rules.parameter_cost * found.base.size();
+  std::vector<Rival> all{{found.base, free, found.base.deviance + free}}, possible;
+  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
+    const Candidate& c = found.candidates[k];
+    if (c.fit.size() == 0 || (k >= likeliest && c.effects.size() > 1)) continue;
+    const double cost = c.criterion - c.fit.deviance + rules.further_gain * double(c.effects.size());
+    const bool single = c.effects.size() == 1 && c.fit.model.forms.back()->before;
+    for (Fit& fit : places(c.fit, single ? c.fit.size() - found.base.size() : 0))
+      all.push_back({std::move(fit), cost, c.fit.deviance + cost});
+  }
   const double best = std::ranges::min(all, {}, &Rival::rank).rank;
-  for (const Rival& r : all)
-    if (const double doubt = in_doubt(problem, *r.fit); doubt > kSmallDoubt && r.rank - doubt < best + rules.tie)
-      possible.push_back({r.fit, r.rank - doubt});
+  for (Rival& r : all) {
+    const Doubt doubt = in_doubt(problem, r.fit);
+    r.rank = doubt.favoured + r.cost;
+    if (doubt.matters() && r.rank < best + rules.tie) possible.push_back(std::move(r));
+  }
   std::ranges::sort(possible, {}, &Rival::rank);
-  for (std::size_t k = 0; k < std::min(rivals, possible.size()); ++k) ask(*possible[k].fit, few, result.decisive);
+  for (std::size_t k = 0; k < std::min(rivals, possible.size()); ++k) ask(possible[k].fit, few, result.decisive);
   if (result.decisive.size() < few) ask(found.chosen, few, result.checks);
 }
 
