@@ -136,14 +136,15 @@ class FaceMapJob final : public PointJob {
         const auto& flight = map.flights[post::coarse_points(grid_)[4]];
         if (flight) m["centre"].update(post::to_json(*flight));
       }
-      // The page shows the reference, and what the first of the others makes different.
-      draw(out, map, nullptr, &map == &maps[reference_]);
+      // The page shows what the first of the others makes different, and beneath it the reference.
+      if (&map != &maps[reference_]) draw(out, map, nullptr, false);
       hosel(out, points, std::size_t(&map - maps.data()));
       if (&map == &maps[reference_]) continue;
       draw(out, map, &reference, &map == &maps[reference_ == 0 ? 1 : 0]);
       if (whole && std::ranges::all_of(reference.launches, [](const auto& l) { return l.has_value(); }))
         summary["effect"][map.title] = effect(out, all, std::size_t(&map - maps.data()));
     }
+    draw(out, reference, nullptr, true);
     for (const Pair& pair : pairs_) summary["kept"][maps[pair.map].title] = kept(out, maps, pair);
     out.write_summary(summary);
   }
