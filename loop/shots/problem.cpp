@@ -519,7 +519,7 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
 /// A fifth of the rows is flagged or so far off that the loss is flat there, or half of them are off by many noise
 /// scales.
 std::vector<Location> ShotProblem::doubts(const Selection& s) const {
-  constexpr double lost_share = 0.2, many = 3;
+  constexpr double lost_share = 0.2, many = 3, wide = 1.75;
   std::vector<int> used = rows_.train;
   used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
   const std::size_t flagged = flags().size();
@@ -534,6 +534,11 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
     for (int c = 0; c < width(); ++c)
       if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(of[c]));
   }
+  // Too few shots to refute the declared noise are too few to call what goes beyond it noise.
+  const Eigen::MatrixXd residuals = this->residuals(s.chosen.model, s.chosen.p);
+  for (int c = 0; c < width(); ++c)
+    if (const double ratio = scatter(c, residuals, s.chosen.size()).ratio; channel(c).trusted() && ratio > wide)
+      told.push_back({channel(c).name, "", fmt::format("scatters {:.1f} times as much as the noise declared", ratio)});
   for (int c = 0; c < width(); ++c)
     if (const double middle = median(size[std::size_t(c)]); middle > many)
       told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});

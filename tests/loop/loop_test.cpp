@@ -233,6 +233,26 @@ TEST_F(Loop, RowsSortedByAColumnAreNoSession) {
             r.notes.end());
 }
 
+TEST_F(Loop, ScatterThatTooFewShotsCannotRefuteIsNotCalledNoise) {
+  for (const double over : {1.3, 2.6}) {
+    ShotCase c = case_of(csv({.shots = 30}));
+    c.noise["azimuth_deg"] = 0.25 / over;
+    const LoopResult r = run(c);
+    const ChannelResult& azimuth = r.channels.at(2);
+    ASSERT_EQ(azimuth.name, "azimuth_deg");
+    ASSERT_FALSE(azimuth.refuted);
+    if (over < 1.75) {
+      EXPECT_LT(azimuth.scatter, 1.75);
+      EXPECT_EQ(name(r.verdict), "no-residual");
+    } else {
+      ASSERT_GT(azimuth.scatter, 1.75);
+      EXPECT_EQ(name(r.verdict), "unexplained");
+      ASSERT_EQ(r.unexplained.size(), 1U);
+      EXPECT_EQ(r.unexplained[0].channel, "azimuth_deg");
+    }
+  }
+}
+
 TEST_F(Loop, TwoBallsAreAMixture) {
   const LoopResult r = run(case_of(csv({.second = 1.5})));  // six times the noise
   ASSERT_EQ(name(r.verdict), "unexplained");
