@@ -138,26 +138,25 @@ std::vector<Section> by_table(const std::vector<AcceptedKey>& keys) {
 
 }  // namespace
 
-std::vector<AcceptedKey> accepted_keys() {
-  std::vector<std::pair<std::string, CaseFile>> read;
-  for (const auto& [name, title] : shipped_cases()) {
-    CaseFile file(find_case(name));
-    read_job(file);
-    read.emplace_back(file.root().text("kind", "impact"), file);
-  }
+std::vector<CaseFile> cases_with_every_key() {
+  std::vector<CaseFile> read;
+  for (const auto& [name, title] : shipped_cases()) read_job(read.emplace_back(find_case(name)));
   for (const Sample& v : samples()) {
-    CaseFile file(find_case(v.name), v.set);
-    const std::string wanted = file.root().text("kind", "impact");
-    const auto kind = std::ranges::find(kinds(), wanted, &Kind::name);
+    CaseFile& file = read.emplace_back(find_case(v.name), v.set);
+    const auto kind = std::ranges::find(kinds(), file.root().text("kind", "impact"), &Kind::name);
     try {
       kind->read(file);
     } catch (const std::exception&) {}  // as Sample says
-    read.emplace_back(wanted, file);
   }
+  return read;
+}
+
+std::vector<AcceptedKey> accepted_keys() {
+  std::vector<CaseFile> read = cases_with_every_key();
   std::vector<AcceptedKey> keys;
   for (const Kind& kind : kinds())
-    for (const auto& [name, file] : read)
-      if (name == kind.name) add(keys, name, file.declared());
+    for (CaseFile& file : read)
+      if (file.root().text("kind", "impact") == kind.name) add(keys, std::string(kind.name), file.declared());
   return keys;
 }
 

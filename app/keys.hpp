@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "hosel/app/reader.hpp"
+
 namespace hosel::app {
 
 /// One key of one table. Where declarations differ from case to case (a default that depends on a model), each of the
@@ -23,8 +25,10 @@ struct AcceptedKey {
   bool optional = false;            ///< read in some case only where it is there
 };
 
-/// Every key that the reader accepts, in the order in which it asks: what it declares while it reads the shipped cases,
-/// and variants of them that say what none of them says. Throws InputError where one of these cannot be read.
+/// The shipped cases, then variants of them that say what none of them says, each as far as it could be read: among
+/// them every declaration of the reader is met. Throws InputError where a shipped one cannot be read.
+std::vector<CaseFile> cases_with_every_key();
+/// Every key that the reader accepts, in the order in which it asks: what it declares while it reads the above.
 std::vector<AcceptedKey> accepted_keys();
 
 /// As text for a terminal; of one kind or one table alone where `of` names it. Throws InputError with the nearest name.

@@ -135,8 +135,8 @@ class LoopJob final : public Job {
       result = loop::run(case_);
     } catch (const DataError& e) { throw InputError(e.what()); }
     case_.told = {};
-    report_loop(out, result, case_.shots, "rows");
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
+    report_loop(out, result, case_.shots, "rows");
   }
 
  private:

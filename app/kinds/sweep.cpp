@@ -121,20 +121,19 @@ class SweepJob final : public PointJob {
   }
 
   json compute(std::size_t point, const fs::path& scratch) const override {
-    // A summary is the last thing a run writes: one that lies here was finished by a killed process.
-    if (!fs::exists(scratch / "summary.json")) {
-      CaseFile file(*swept_, overrides(point));
-      const auto job = read_job(file);
+    // A killed process may have finished the point, but only what is in the store is sealed: computed again.
+    fs::remove(scratch / "summary.json");
+    CaseFile file(*swept_, overrides(point));
+    const auto job = read_job(file);
+    {
       Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file.resolved());
       job->run(out);
-      if (identity_of(file) != identities_[point]) {
-        fs::remove(scratch / "summary.json");
-        throw InputError(
-            fmt::format("{}: a file that this case names has changed since the sweep began: its points "
-                        "would not belong together; run the sweep again",
-                        file.file().string()));
-      }
     }
+    if (identity_of(file) != identities_[point])
+      throw InputError(
+          fmt::format("{}: a file that this case names has changed since the sweep began: its points "
+                      "would not belong together; run the sweep again",
+                      file.file().string()));
     std::ifstream in(scratch / "summary.json");
     json result = json::object();
     const json said = json::parse(in);

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "hosel/app/output.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/hertz_maw.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 #include "hosel/models/rigid_planar.hpp"
+#include "hosel/models/stick_slip.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace {
@@ -102,6 +105,33 @@ TEST(Plausible, TheGateKeepsOutWhatCreatesEnergy) {
   launch = models::checked_launch(models::RigidEccentric(), blow);
   launch.velocity *= 1.3;
   EXPECT_THROW(models::check_launch(blow, launch), solvers::NonConvergence);
+}
+
+TEST(Plausible, NoReducedModelTakesARestitutionThatNoContactHas) {
+  Blow blow;
+  blow.delivery = {.club_speed = 50, .dynamic_loft = 0.2};
+  blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal()};
+  const models::RigidPlanar planar;
+  const models::RigidEccentric eccentric;
+  const models::StickSlip stick_slip;
+  for (const models::ImpactModel* model :
+       std::initializer_list<const models::ImpactModel*>{&planar, &eccentric, &stick_slip}) {
+    blow.contact = {};
+    EXPECT_GT(model->launch(blow).ball_speed(), 50);
+    for (const double slope : {-0.1, 0.05}) {  // below nought, where Coulomb's limits cross, and above one
+      blow.contact.restitution_slope = slope;
+      EXPECT_THROW(model->launch(blow), std::invalid_argument) << slope;
+    }
+  }
+}
+
+TEST(Plausible, ASummaryHoldsFiniteNumbersOrIsNotWritten) {
+  const fs::path dir = fresh_directory("not_finite") / "out";
+  app::Output out({.directory = dir, .quiet = true}, "");
+  EXPECT_THROW(out.write_summary({{"launch", {{"speeds", {1.0, INFINITY}}}}}), solvers::NonConvergence);
+  EXPECT_FALSE(fs::exists(dir / "summary.json"));
+  out.write_summary({{"launch", {{"speeds", {1.0, 2.0}}}}});
+  EXPECT_TRUE(fs::exists(dir / "summary.json"));
 }
 
 TEST(Plausible, ExtremeLawsEndInALaunchOrASentence) {

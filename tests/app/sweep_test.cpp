@@ -118,6 +118,17 @@ TEST(Sweep, ALineCutShortIsComputedAgain) {
   EXPECT_EQ(recorded(dir / "out").size(), 400u);
 }
 
+TEST(Sweep, AnAnswerThatLiesAboutUnsealedIsNotBelieved) {
+  const fs::path dir = sweep_case("sweep_unsealed", kSample);
+  const std::string sweep = (dir / "sweep").string(), set = " --set sample.points=4 --quiet --out ";
+  ASSERT_EQ(command("run " + sweep + set + (dir / "whole").string()).status, 0);
+  // As a killed process leaves it, finished but not yet in the store; and a number in it has changed since.
+  write(dir / "out/shards/1-of-1/point-000002/summary.json",
+        R"({"models": {"rigid-eccentric": {"ball_speed_mps": 99.0}}})");
+  ASSERT_EQ(command("run " + sweep + set + (dir / "out").string()).status, 0);
+  EXPECT_EQ(content(dir / "out/sweep.csv"), content(dir / "whole/sweep.csv"));
+}
+
 TEST(Sweep, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
   const fs::path dir = sweep_case("sweep_shards", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
