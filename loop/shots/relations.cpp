@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
 constexpr double kContrast = 4;      // of the density within rounding to that beside it
+constexpr int kLeastRows = 10;       // that hold,
+constexpr int kFurtherRows = 2;      // and more for each further column of a formula: there are so many to agree by chance
 constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {
@@ -112,13 +114,14 @@ class Relations {
   };
   /// Do more of the residuals lie within rounding than beside it? Rows that repeat (one value per cluster, zeros where
   /// nothing was read) count once.
-  void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
+  void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual,
+             int least = kLeastRows) {
     const double t = 0.5 * sources_[std::size_t(y)].step * 1.02 + 1e-9 * sources_[std::size_t(y)].spread;
     const auto count = [&](auto&& inside) {
       return int(std::ranges::count_if(residual, [&](const Residual& r) { return inside(std::abs(r.value)); }));
     };
-    const auto stands_out = [](int held, int beside, int n) {
-      return n >= 20 && held >= 10 && held >= kLeastHeld * n && held >= kContrast * (beside / 4.0 + 1);
+    const auto stands_out = [least](int held, int beside, int n) {
+      return n >= 20 && held >= least && held >= kLeastHeld * n && held >= kContrast * (beside / 4.0 + 1);
     };
     const auto within = [&](double r) { return r <= t; };
     const auto near = [&](double r) { return r > t && r <= 5 * t; };
@@ -180,7 +183,7 @@ class Relations {
     }
     std::vector<Residual> residual;
     for (const auto& [row, a, b] : parts) residual.push_back({row, a - k * b});
-    judge(y, from, text(k), residual);
+    judge(y, from, text(k), residual, kLeastRows + kFurtherRows * int(from.size() - 1));
   }
 
   void scalars(int y) {

@@ -320,6 +320,29 @@ TEST_F(Loop, ARelationIsSolvedForTheColumnThatWasComputed) {
   }
 }
 
+TEST_F(Loop, AFormulaOfManyColumnsMustHoldOnMoreRows) {
+  // One searched for among so many holds on a third of thirty rows by chance, whatever the columns.
+  for (const int computed : {12, 18}) {
+    std::mt19937 random(17);
+    std::normal_distribution<double> gauss;
+    std::string text =
+        "club_speed_mps,attack_angle_deg,club_path_deg,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,backspin_rpm\n";
+    for (int i = 0; i < 30; ++i) {
+      const double club = 45 + 3 * gauss(random), attack = std::round(20 * gauss(random)) / 10;
+      const double speed = std::round(10 * club) / 10, spin = std::round(2500 + 300 * gauss(random));
+      const double loft = i < computed ? attack + 0.25 * spin / speed : 14 + 2 * gauss(random);
+      text += fmt::format("{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.0f}\n", speed, attack, 2 * gauss(random), loft,
+                          1.45 * club + 0.3 * gauss(random), 11 + 2 * gauss(random), spin);
+    }
+    const std::vector<DerivedColumn> found = audit(shots(text), {});
+    ASSERT_EQ(found.size(), computed == 18 ? 1U : 0U) << computed;
+    if (computed == 18) {
+      EXPECT_EQ(std::set<std::string>(found[0].from.begin(), found[0].from.end()),
+                (std::set<std::string>{"attack_angle_deg", "backspin_rpm", "club_speed_mps"}));
+    }
+  }
+}
+
 TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
   // Loft rises from club to club, and the last club alone slides.
   std::string text = "club," + csv({.shots = 0});
