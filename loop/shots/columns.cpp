@@ -243,6 +243,10 @@ Eigen::MatrixXd Columns::corrected(const Slip& s) const {
 
 void Columns::attempt(Slip slip) {
   slip.deviance = deviance(corrected(slip), {}, {});
+  // The density of the written numbers: declared noise is scaled with them, estimated noise is that of what is written.
+  for (const int k : {slip.column, slip.second})
+    if (slip.member.empty() && k >= int(inputs_.size()) && case_.noise.contains(columns_[std::size_t(k)]->name))
+      slip.deviance -= 2 * double(values_.col(k).array().isFinite().count()) * std::log(std::abs(slip.factor));
   slips_.push_back(std::move(slip));
 }
 

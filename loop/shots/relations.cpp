@@ -17,7 +17,7 @@ namespace {
 constexpr double kLeastHeld = 0.35;  // of the rows
 constexpr double kContrast = 4;      // of the density within rounding to that beside it
 constexpr int kLeastRows = 10;       // that hold,
-constexpr int kFurtherRows = 2;      // and more for each further column of a formula: there are so many to agree by chance
+constexpr int kFurtherRows = 2;      // and more for each further column of a formula: so many agree by chance
 constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {

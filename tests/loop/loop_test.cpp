@@ -213,6 +213,35 @@ TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
   }
 }
 
+TEST_F(Loop, AScaledColumnIsNotTwoEffectsThatDoTheSame) {
+  // Another inertia and a tangential restitution scale the spin alone where the blow is planar; noise and all.
+  std::mt19937 random(4);
+  std::normal_distribution<double> gauss;
+  const auto planar = models::find("rigid-planar")->make({});
+  ShotCase c = case_of(csv({}));
+  std::string text = "club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,backspin_rpm\n";
+  for (int i = 0; i < 240; ++i) {
+    Blow b = c.blow;
+    b.delivery.club_speed = 38 + 4 * gauss(random);
+    b.delivery.attack_angle = radians(-3 + 2 * gauss(random));
+    b.delivery.dynamic_loft = radians(25 + 6 * gauss(random));
+    const Launch l = planar->launch(b);
+    text += fmt::format("{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.0f}\n", b.delivery.club_speed,
+                        degrees(b.delivery.attack_angle), degrees(b.delivery.dynamic_loft),
+                        l.ball_speed() + 0.25 * gauss(random), degrees(l.launch_angle()) + 0.2 * gauss(random),
+                        0.7 * (rpm(l.backspin()) + 60 * gauss(random)));
+  }
+  c.shots = shots(text);
+  c.base = "rigid-planar";
+  c.model = planar.get();
+  c.noise = {{"ball_speed_mps", 0.25}, {"launch_angle_deg", 0.2}, {"backspin_rpm", 60}};
+  const LoopResult r = run(c);
+  ASSERT_EQ(r.columns.size(), 1U) << sentence(r);
+  EXPECT_EQ(r.columns[0].column, "backspin_rpm");
+  EXPECT_EQ(r.columns[0].finding, "scale");
+  EXPECT_EQ(name(r.verdict), "unexplained");
+}
+
 TEST_F(Loop, ADriftIsNoLevelShiftOfAColumn) {
   const LoopResult r = run(case_of(csv({.drift = 2})));
   EXPECT_TRUE(r.columns.empty());
