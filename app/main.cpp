@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, said in words
   CLI::App cli{"hosel: what does the ball do after this blow, and how much of it is the shaft's doing?"};
   cli.name("hosel");
-  cli.set_version_flag("--version", "hosel " + app::program_version());
+  cli.set_version_flag("--version", [] { return "hosel " + app::program_version(); });  // not at every start
   cli.require_subcommand(1);
   Arguments a;
   a.command = app::typed(argc, argv);
