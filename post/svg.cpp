@@ -30,8 +30,13 @@ std::string opened(double width, double height, const std::string& told) {
 std::string svg(const SvgPlot& p) {
   const double w = p.width - kLeft - kRight, h = p.height - kTop - kBottom;
   const auto X = [&](double x) { return kLeft + (x - p.x0) / (p.x1 - p.x0) * w; };
-  const auto Y = [&](double y) { return kTop + (p.y1 - std::clamp(y, p.y0, p.y1)) / (p.y1 - p.y0) * h; };
-  std::string s = opened(p.width, p.height, p.told);
+  const auto beyond = [&](double y) { return kTop + (p.y1 - y) / (p.y1 - p.y0) * h; };
+  const auto Y = [&](double y) { return beyond(std::clamp(y, p.y0, p.y1)); };
+  // Frames of one size have one name, which pictures of a page may share.
+  const std::string frame = fmt::format("frame-{:g}-{:g}", p.width, p.height);
+  std::string s = opened(p.width, p.height, p.told) +
+                  fmt::format("<clipPath id='{}'><rect x='{}' y='{}' width='{}' height='{}'/></clipPath>", frame, kLeft,
+                              kTop, w, h);
   for (const SvgBand& b : p.bands)
     s += fmt::format("<rect class='band' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>", X(b.x0), Y(b.y1),
                      X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
@@ -52,9 +57,10 @@ std::string svg(const SvgPlot& p) {
       if (one.radius > 0)
         s += fmt::format("<circle class='{}' cx='{:.1f}' cy='{:.1f}' r='{}'/>", one.style, X(one.x[i]), Y(one.y[i]),
                          one.radius);
-      else points += fmt::format("{:.1f},{:.1f} ", X(one.x[i]), Y(one.y[i]));
+      else points += fmt::format("{:.1f},{:.1f} ", X(one.x[i]), beyond(one.y[i]));
     }
-    if (!points.empty()) s += fmt::format("<polyline class='{}' points='{}'/>", one.style, points);
+    if (!points.empty())
+      s += fmt::format("<polyline class='{}' clip-path='url(#{})' points='{}'/>", one.style, frame, points);
     if (one.label.empty() || one.y.empty()) continue;
     // Above or below the line, where the words are farthest from every line.
     const double half = 3.3 * double(one.label.size());

@@ -23,7 +23,8 @@ struct SvgBand {
   double x0, x1, y0, y1;
 };
 
-/// Values over a frame with round ticks; what lies beyond the frame is drawn at its edge. Long series are thinned.
+/// Values over a frame with round ticks; dots beyond the frame are drawn at its edge, lines leave it. Long series are
+/// thinned.
 struct SvgPlot {
   double width, height;  ///< of the picture
   double x0, x1, y0, y1;
