@@ -12,8 +12,6 @@ namespace {
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 using Mat12x18 = Eigen::Matrix<double, 12, 18>;
 using Mat18 = Eigen::Matrix<double, 18, 18>;
-using Vec12 = Eigen::Matrix<double, 12, 1>;
-using Vec18 = Eigen::Matrix<double, 18, 1>;
 
 Vec3 shape(double x) { return {0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)}; }
 Vec3 shape_derivative(double x) { return {x - 0.5, -2 * x, x + 0.5}; }
@@ -62,11 +60,10 @@ std::vector<Index> dofs(const Node& node) {
 
 /// An element relative to its middle node: p = (y1, psi1, y3, psi3).
 struct Beam::Kinematics {
-  Mat3 R2;                       // of the middle node
-  std::array<Vec3, 2> y, psi;    // nodes 1 and 3: R2^T (x - x2), log(R2^T R)
-  std::array<Mat3, 2> relative;  // R2^T R
-  std::array<RotationForm, 2> log_form;
-  std::array<Mat3, 2> log_tangent;  // T(psi)^-1
+  Mat3 R2;                               // of the middle node
+  std::array<Vec3, 2> y, psi;            // nodes 1 and 3: R2^T (x - x2), log(R2^T R)
+  std::array<Mat3, 2> relative;          // R2^T R
+  std::array<RotationForm, 2> log_form;  // T(psi)^-1
 
   /// Derivative of p by the nodes' increments (translations global, rotations body frame).
   Mat12x18 jacobian() const {
@@ -76,21 +73,26 @@ struct Beam::Kinematics {
       J.block<3, 3>(row, column) = R2.transpose();
       J.block<3, 3>(row, 6) = -R2.transpose();
       J.block<3, 3>(row, 9) = skew(y[k]);
-      J.block<3, 3>(row + 3, column + 3) = log_tangent[k];
-      J.block<3, 3>(row + 3, 9) = -log_tangent[k] * relative[k].transpose();
+      const Mat3 log_tangent = log_form[k].matrix(psi[k]);
+      J.block<3, 3>(row + 3, column + 3) = log_tangent;
+      J.block<3, 3>(row + 3, 9) = -log_tangent * relative[k].transpose();
     }
     return J;
   }
 };
 
+/// d/dt of p.
+struct Beam::Rates {
+  std::array<Vec3, 2> y{Vec3::Zero(), Vec3::Zero()}, psi = y;
+};
+
 namespace {
 
-/// One Gauss point: strains and their derivative B by p.
+/// One Gauss point: strains and what their derivatives by p are made of.
 struct PointStrain {
   Vec3 psi, dpsi, dy;
   Vec6 strain;  // gamma, kappa
   RotationForm turn, curve;
-  Mat3 Vc, Vt, Dc, Dt;
 };
 
 template <class Kinematics, class Point>
@@ -99,25 +101,34 @@ PointStrain point_strain(const Kinematics& k, const Point& g) {
   s.psi = g.N[0] * k.psi[0] + g.N[2] * k.psi[1];
   s.dpsi = g.dN[0] * k.psi[0] + g.dN[2] * k.psi[1];
   s.dy = g.dN[0] * k.y[0] + g.dN[2] * k.y[1];
-  const double z = s.psi.squaredNorm();
-  s.turn = exp_transposed(z);
-  s.curve = exp_tangent(z);
-  s.Vc = s.turn.matrix(s.psi);
-  s.Vt = s.curve.matrix(s.psi);
-  s.Dc = s.turn.derivative(s.psi, s.dy);
-  s.Dt = s.curve.derivative(s.psi, s.dpsi);
-  s.strain << s.Vc * s.dy - g.tangent, s.Vt * s.dpsi;
+  const ExponentialForms forms = exponential_forms(s.psi.squaredNorm());
+  s.turn = forms.transposed;
+  s.curve = forms.tangent;
+  s.strain << s.turn.times(s.psi, s.dy) - g.tangent, s.curve.times(s.psi, s.dpsi);
   return s;
 }
 
+template <class Rates, class Point>
+Vec6 strain_rate(const PointStrain& s, const Point& g, const Rates& r) {
+  const Vec3 psi = g.N[0] * r.psi[0] + g.N[2] * r.psi[1], dpsi = g.dN[0] * r.psi[0] + g.dN[2] * r.psi[1],
+             dy = g.dN[0] * r.y[0] + g.dN[2] * r.y[1];
+  Vec6 rate;
+  rate << s.turn.times(s.psi, dy) + s.turn.change(s.psi, s.dy, psi),
+      s.curve.times(s.psi, dpsi) + s.curve.change(s.psi, s.dpsi, psi);
+  return rate;
+}
+
+/// Derivative of the strains by p.
 template <class Point>
 Eigen::Matrix<double, 6, 12> strain_matrix(const PointStrain& s, const Point& g) {
+  const Mat3 Vc = s.turn.matrix(s.psi), Vt = s.curve.matrix(s.psi), Dc = s.turn.derivative(s.psi, s.dy),
+             Dt = s.curve.derivative(s.psi, s.dpsi);
   Eigen::Matrix<double, 6, 12> B = Eigen::Matrix<double, 6, 12>::Zero();
   for (int k = 0; k < 2; ++k) {
     const double N = g.N[2 * k], dN = g.dN[2 * k];
-    B.block<3, 3>(0, 6 * k) = dN * s.Vc;
-    B.block<3, 3>(0, 6 * k + 3) = N * s.Dc;
-    B.block<3, 3>(3, 6 * k + 3) = N * s.Dt + dN * s.Vt;
+    B.block<3, 3>(0, 6 * k) = dN * Vc;
+    B.block<3, 3>(0, 6 * k + 3) = N * Dc;
+    B.block<3, 3>(3, 6 * k + 3) = N * Dt + dN * Vt;
   }
   return B;
 }
@@ -217,36 +228,36 @@ Beam::Kinematics Beam::kinematics(const State& s, const Element& e) const {
     k.psi[i] = rotation_log(relative);
     k.relative[i] = relative.toRotationMatrix();
     k.log_form[i] = exp_tangent_inverse(k.psi[i].squaredNorm());
-    k.log_tangent[i] = k.log_form[i].matrix(k.psi[i]);
   }
   return k;
 }
 
-namespace {
-
-Vec18 velocities(const State& s, const std::vector<Index>& dofs) {
-  Vec18 v;
-  for (int i = 0; i < 18; ++i) v[i] = s.v[dofs[static_cast<std::size_t>(i)]];
-  return v;
+Beam::Rates Beam::rates(const State& s, const Element& e, const Kinematics& k) const {
+  const Vec3 v2 = s.v.segment<3>(e.dofs[6]), w2 = s.v.segment<3>(e.dofs[9]);
+  Rates r;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Index at = e.dofs[12 * i], turn = e.dofs[12 * i + 3];
+    r.y[i] = k.R2.transpose() * (s.v.segment<3>(at) - v2) + k.y[i].cross(w2);
+    r.psi[i] = k.log_form[i].times(k.psi[i], s.v.segment<3>(turn) - k.relative[i].transpose() * w2);
+  }
+  return r;
 }
-
-}  // namespace
 
 void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
   const double tau = options_.damping_time;
   for (const Element& e : elements_) {
     const Kinematics k = kinematics(s, e);
-    Vec12 rate = Vec12::Zero();
-    if (tau > 0) rate = k.jacobian() * velocities(s, e.dofs);
+    Rates rate;
+    if (tau > 0) rate = rates(s, e, k);
     std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
       Vec6 strain = p.strain;
-      if (tau > 0) strain += tau * strain_matrix(p, g) * rate;
+      if (tau > 0) strain += tau * strain_rate(p, g, rate);
       const Vec6 stress = g.stiffness * strain;
       const Vec3 n = stress.head<3>(), m = stress.tail<3>();
-      const Vec3 along = p.Vc.transpose() * n, curve = p.Vt.transpose() * m;
-      const Vec3 turn = p.Dc.transpose() * n + p.Dt.transpose() * m;
+      const Vec3 along = p.turn.transposed_times(p.psi, n), curve = p.curve.transposed_times(p.psi, m);
+      const Vec3 turn = p.turn.gradient(p.psi, p.dy, n) + p.curve.gradient(p.psi, p.dpsi, m);
       for (std::size_t i = 0; i < 2; ++i) {
         const auto node = static_cast<Index>(2 * i);
         gy[i] += g.weight * g.dN[node] * along;
@@ -255,15 +266,11 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
     }
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t at = 12 * i;
-      const Vec3 f = k.R2 * gy[i], m = k.log_tangent[i].transpose() * gpsi[i];
-      const Vec3 m2 = gy[i].cross(k.y[i]) - k.relative[i] * m;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto d = static_cast<Index>(c);
-        force[e.dofs[at + c]] += f[d];
-        force[e.dofs[6 + c]] -= f[d];
-        force[e.dofs[at + 3 + c]] += m[d];
-        force[e.dofs[9 + c]] += m2[d];
-      }
+      const Vec3 f = k.R2 * gy[i], m = k.log_form[i].transposed_times(k.psi[i], gpsi[i]);
+      force.segment<3>(e.dofs[at]) += f;
+      force.segment<3>(e.dofs[6]) -= f;
+      force.segment<3>(e.dofs[at + 3]) += m;
+      force.segment<3>(e.dofs[9]) += gy[i].cross(k.y[i]) - k.relative[i] * m;
     }
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
@@ -291,15 +298,15 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
     if (material != 0) {
       const Kinematics k = kinematics(s, e);
       const Mat12x18 J = k.jacobian();
-      Vec12 rate = Vec12::Zero();
-      if (tau > 0) rate = J * velocities(s, e.dofs);
+      Rates rate;
+      if (tau > 0) rate = rates(s, e, k);
       Mat12 H = Mat12::Zero();
       std::array<Vec3, 2> gy{Vec3::Zero(), Vec3::Zero()}, gpsi = gy;
       for (const Point& g : e.points) {
         const PointStrain p = point_strain(k, g);
         const Eigen::Matrix<double, 6, 12> B = strain_matrix(p, g);
         Vec6 strain = p.strain;
-        if (tau > 0) strain += tau * B * rate;
+        if (tau > 0) strain += tau * strain_rate(p, g, rate);
         const Vec6 stress = g.stiffness * strain;
         const Vec3 n = stress.head<3>(), m = stress.tail<3>();
         H.noalias() += (g.weight * material) * B.transpose() * (g.stiffness * B);
@@ -307,8 +314,8 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
         const double w = g.weight * weights.stiffness;
         const Mat3 turn = p.turn.hessian(p.psi, n, p.dy) + p.curve.hessian(p.psi, m, p.dpsi);
         const Mat3 stretch = p.turn.dual_derivative(p.psi, n), curve = p.curve.dual_derivative(p.psi, m);
-        const Vec3 along = p.Vc.transpose() * n, bend = p.Vt.transpose() * m;
-        const Vec3 moment = p.Dc.transpose() * n + p.Dt.transpose() * m;
+        const Vec3 along = p.turn.transposed_times(p.psi, n), bend = p.curve.transposed_times(p.psi, m);
+        const Vec3 moment = p.turn.gradient(p.psi, p.dy, n) + p.curve.gradient(p.psi, p.dpsi, m);
         for (int a = 0; a < 2; ++a) {
           const double Na = g.N[2 * a], dNa = g.dN[2 * a];
           gy[static_cast<std::size_t>(a)] += w * dNa * along;
@@ -334,7 +341,7 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
           K.block<3, 3>(6, 9) += f;
           K.middleRows<3>(9).noalias() += skew(gy[i]) * J.middleRows<3>(6 * a);
           const Mat3 bend = k.log_form[i].dual_derivative(k.psi[i], gpsi[i]);
-          const Vec3 m = k.log_tangent[i].transpose() * gpsi[i];
+          const Vec3 m = k.log_form[i].transposed_times(k.psi[i], gpsi[i]);
           const Eigen::Matrix<double, 3, 18> change = bend * J.middleRows<3>(6 * a + 3);
           K.middleRows<3>(at + 3) += change;
           K.middleRows<3>(9).noalias() -= k.relative[i] * change;
@@ -398,9 +405,9 @@ void Beam::commit(const State& s) {
   if (options_.damping_time > 0)
     for (const Element& e : elements_) {
       const Kinematics k = kinematics(s, e);
-      const Vec12 rate = k.jacobian() * velocities(s, e.dofs);
+      const Rates rate = rates(s, e, k);
       for (const Point& g : e.points) {
-        const Vec6 r = strain_matrix(point_strain(k, g), g) * rate;
+        const Vec6 r = strain_rate(point_strain(k, g), g, rate);
         power += options_.damping_time * g.weight * r.dot(g.stiffness * r);
       }
     }
@@ -445,12 +452,12 @@ std::vector<Beam::Resultant> Beam::resultants(const State& s) const {
   std::vector<Resultant> out;
   for (const Element& e : elements_) {
     const Kinematics k = kinematics(s, e);
-    Vec12 rate = Vec12::Zero();
-    if (options_.damping_time > 0) rate = k.jacobian() * velocities(s, e.dofs);
+    Rates rate;
+    if (options_.damping_time > 0) rate = rates(s, e, k);
     for (const Point& g : e.points) {
       const PointStrain p = point_strain(k, g);
       Vec6 strain = p.strain;
-      if (options_.damping_time > 0) strain += options_.damping_time * strain_matrix(p, g) * rate;
+      if (options_.damping_time > 0) strain += options_.damping_time * strain_rate(p, g, rate);
       const Vec6 stress = g.stiffness * strain;
       out.push_back({g.arc_length, g.frame.transpose() * stress.head<3>(), g.frame.transpose() * stress.tail<3>()});
     }

@@ -90,7 +90,9 @@ class Beam final : public Term {
     Mat3 mass;  // consistent, per direction
   };
   struct Kinematics;
+  struct Rates;
   Kinematics kinematics(const State& s, const Element& e) const;
+  Rates rates(const State& s, const Element& e, const Kinematics& k) const;
   Mat3 attitude(const State& s, std::size_t node) const;
 
   BeamOptions options_;

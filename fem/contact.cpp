@@ -54,6 +54,7 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
   carried_ = static_cast<Index>(carried.size());
 
   const Index K = solid.unknowns();
+  to_q_ = solid.offset(solid.mesh().surface.front()[2], 0) - solid.dof(solid.mesh().surface.front()[2], 0);
   functions_.resize(3 * static_cast<Index>(angles_.size()), K);
   for (std::size_t a = 0; a < angles_.size(); ++a)
     for (Index k = 0; k < K; ++k)
@@ -61,13 +62,15 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
                                                              solid.basis()[static_cast<std::size_t>(k)].at(angles_[a]);
   const auto rule = gauss(edge_points);
   for (const auto& nodes : solid.mesh().surface) {
-    Edge edge{nodes, {}, {}};
+    Edge edge{nodes, {}, {}, {}};
     for (int i = 0; i < 3; ++i)
       for (Index k = 0; k < K; ++k)
         if (const Index e = solid.dof(nodes[static_cast<std::size_t>(i)], k); e >= 0) {
           edge.dofs.push_back(e);
           edge.places.push_back(static_cast<int>(i * K + k));
         }
+    edge.places_and_carried = edge.places;
+    for (Index i = 0; i < carried_; ++i) edge.places_and_carried.push_back(static_cast<int>(3 * K + i));
     edge.dofs.insert(edge.dofs.end(), carried.begin(), carried.end());
     edges_.push_back(std::move(edge));
     for (const auto& [x, w] : rule) {
@@ -123,13 +126,14 @@ Eigen::Ref<const Contact::Directions, 0, Eigen::OuterStride<>> Contact::function
 }
 
 template <class Visit>
-void Contact::visit(const State& s, Visit&& visit) const {
+void Contact::visit(const State& s, Points which, Visit&& visit) const {
   const Moved m = moved(s);
   const Mat3 to_body = m.R.transpose();
   const Index K = solid_.unknowns(), angles = static_cast<Index>(angles_.size());
-  Directions U(3, K), V(3, K);  // one row a node of the edge
+  const double reach = carrier_.centre.x() + surface_->reach(m.own);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> U(K, 3), V(K, 3);  // one column a node of the edge
   Vector u(K), v(K);
-  Directions arms(3, angles);
+  Directions arms(3, angles), velocities(3, angles);
   const Edge* edge = nullptr;
   Kinematics k;
   for (const Station& station : stations_) {
@@ -138,23 +142,27 @@ void Contact::visit(const State& s, Visit&& visit) const {
       U.setZero();
       V.setZero();
       for (std::size_t i = 0; i < edge->places.size(); ++i) {
-        const int node = edge->places[i] / static_cast<int>(K), unknown = edge->places[i] % static_cast<int>(K);
-        U(node, unknown) = s.q[solid_.offset(edge->nodes[static_cast<std::size_t>(node)], unknown)];
-        V(node, unknown) = s.v[edge->dofs[i]];
+        U.data()[edge->places[i]] = s.q[edge->dofs[i] + to_q_];
+        V.data()[edge->places[i]] = s.v[edge->dofs[i]];
       }
     }
-    u.noalias() = U.transpose() * station.shape;
-    v.noalias() = V.transpose() * station.shape;
+    u.noalias() = U * station.shape;
     arms.colwise() = -m.node;
     arms += reference_.middleCols(static_cast<Index>(k.number), angles);
     arms.reshaped().noalias() += functions_ * u;
+    if (which == Points::near && (to_body.row(0) * arms).minCoeff() > reach) {
+      k.number += angles_.size();
+      continue;
+    }
+    v.noalias() = V * station.shape;
+    velocities.reshaped().noalias() = functions_ * v;
     k.station = &station;
     for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
       k.arm.noalias() = to_body * arms.col(static_cast<Index>(k.angle));
       k.place = place(m, k.arm);
       k.gap = surface_->gap(k.place);
       if (k.gap < 0) {  // elsewhere nothing acts
-        k.relative.noalias() = to_body * (functions(k.angle) * v - m.node_velocity);
+        k.relative.noalias() = to_body * (velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
         k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
         if (own_) {
           k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
@@ -196,7 +204,7 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
 }
 
 void Contact::start(const State& s) {
-  visit(s, [&](const Moved&, const Kinematics& k) {
+  visit(s, Points::all, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     past = {};
     past.place = past.anchor = k.place;
@@ -215,20 +223,29 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
   const Index K = solid_.unknowns();
   Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
   SurfaceUnknowns own = SurfaceUnknowns::Zero();
-  Vector r(K);
+  Directions forces(3, static_cast<Index>(angles_.size()));  // of a station's points, global
+  Eigen::Matrix<double, Eigen::Dynamic, 3> spread(K, 3);     // over the nodes of its edge
   Mat3 R = Mat3::Identity();
-  visit(s, [&](const Moved& m, const Kinematics& k) {
-    R = m.R;
-    if (k.gap >= 0) return;
+  bool touched = false;
+  visit(s, Points::near, [&](const Moved& m, const Kinematics& k) {
+    if (k.angle == 0) {
+      forces.setZero();
+      touched = false;
+    }
     const Station& station = *k.station;
-    const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
-    r.noalias() = functions(k.angle).transpose() * (m.R * f);
+    if (k.gap < 0) {
+      R = m.R;
+      touched = true;
+      const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
+      forces.col(static_cast<Index>(k.angle)).noalias() = m.R * f;
+      total += f;
+      moment += k.arm.cross(f);
+      own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
+    }
+    if (k.angle + 1 < angles_.size() || !touched) return;
+    spread.noalias() = (functions_.transpose() * forces.reshaped()) * station.shape.transpose();
     const Edge& edge = edges_[station.edge];
-    for (std::size_t i = 0; i < edge.places.size(); ++i)
-      force[edge.dofs[i]] -= station.shape[edge.places[i] / K] * r[edge.places[i] % K];
-    total += f;
-    moment += k.arm.cross(f);
-    own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
+    for (std::size_t i = 0; i < edge.places.size(); ++i) force[edge.dofs[i]] -= spread.data()[edge.places[i]];
   });
   if (carrier_.translation) {
     force.segment<3>(carrier_.translation->v) += free_translation() * R * total;
@@ -237,7 +254,7 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
   if (own_) force.segment(own_->v, own_->size) += own.head(own_->size);
 }
 
-void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const {
+void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const {
   const Index K = solid_.unknowns(), size = K + carried_, own = own_ ? own_->size : 0;
   const bool moving = carrier_.translation.has_value();
   const Local local = evaluate(k, true);
@@ -247,25 +264,30 @@ void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& we
 
   // Change of the arm by each unknown but the surface's own: these change nothing but the place.
   const Index others = size - own;
-  Directions arm = Directions::Zero(3, others);
+  auto arm = out.changes.block(out.rows, 0, 3, others);
   arm.leftCols(K).noalias() = m.R.transpose() * functions(k.angle);
   if (moving) {
     arm.middleCols<3>(K) = -m.R.transpose() * free_translation();
     arm.middleCols<3>(K + 3) = skew(k.arm) * turn;
   }
+  if (own > 0) {
+    out.changes.block(out.rows, others, 3, own).setZero();
+    out.changes.block(out.rows + 3, 0, own, others).setZero();
+    out.changes.block(out.rows + 3, others, own, own).setIdentity();
+  }
   using Square = Eigen::Matrix<double, Travel::size, Travel::size>;
   Square by = Square::Zero();  // derivatives of -force by arm and own unknowns
-  by.topLeftCorner<3, 3>() = weights.stiffness * local.stiffness + weights.damping * local.damping;
+  by.topLeftCorner<3, 3>() = area * (weights.stiffness * local.stiffness + weights.damping * local.damping);
   Eigen::Matrix<double, 3, Travel::size> place = Eigen::Matrix<double, 3, Travel::size>::Identity();
   if (own > 0) {
     place.row(0) += k.travel.slope.transpose();
     const Mat3 stiffness = by.topLeftCorner<3, 3>();
     by.noalias() = place.transpose() * stiffness * place;
-    by -= weights.stiffness * local.force.x() * k.travel.second;
+    by -= area * weights.stiffness * local.force.x() * k.travel.second;
   }
-  Eigen::MatrixXd right(3 + own, size);
-  right.leftCols(others).noalias() = by.topLeftCorner(3 + own, 3) * arm;
-  right.rightCols(own) = by.block(0, 3, 3 + own, own);
+  auto forces = out.forces.middleRows(out.rows, 3 + own);
+  forces.leftCols(others).noalias() = by.topLeftCorner(3 + own, 3) * arm;
+  forces.rightCols(own) = by.block(0, 3, 3 + own, own);
   if (laws_.friction && laws_.friction->rate_dependent()) {
     Directions rate = Directions::Zero(3, size);  // of the velocity by each unknown
     if (moving) {
@@ -280,64 +302,60 @@ void Contact::add_tangent(const Moved& m, const Kinematics& k, const Weights& we
       rate.row(0).head(others) += change.head<3>() * arm;
       rate.row(0).tail(own) += change.segment(3, own);
     }
-    right += place.leftCols(3 + own).transpose() * (weights.stiffness * local.damping * rate);
+    forces += place.leftCols(3 + own).transpose() * (area * weights.stiffness * local.damping * rate);
   }
-  sum.topRows(others).noalias() += area * arm.transpose() * right.topRows<3>();
-  sum.bottomRows(own) += area * right.bottomRows(own);
+  out.rows += 3 + own;
   if (!moving) return;
   // The force turns with the body, the carrier's own moment excepted; and its arm moves, d(arm x f) = -f x d(arm).
   const Mat3 turning = area * weights.stiffness * skew(force) * turn;
-  sum.topRows(K + 3).middleCols<3>(K + 3).noalias() += arm.leftCols(K + 3).transpose() * turning;
-  sum.middleRows<3>(K + 3).leftCols(others).noalias() += turning.transpose() * arm;
+  out.turned.topRows(K + 3).noalias() += arm.leftCols(K + 3).transpose() * turning;
+  out.moment.leftCols(others).noalias() += turning.transpose() * arm;
 }
 
 void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
   if (weights.stiffness == 0 && weights.damping == 0) return;
-  const Index K = solid_.unknowns();
-  const auto angles = angles_.size();
+  const Index K = solid_.unknowns(), size = K + carried_, own = own_ ? own_->size : 0;
   // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
-  Eigen::MatrixXd sum, block;
-  Eigen::Matrix<Index, Eigen::Dynamic, 1> source;  // of each row of the block in the sum, and what it gets of it
-  Vector share;
+  Linearised at(static_cast<Index>(angles_.size()) * (3 + own), size);
+  Eigen::MatrixXd sum(size, size), wide(3 * K + carried_, 3 * K + carried_);  // of a station; of its edge
   const Edge* edge = nullptr;
-  bool touched = false;
+  bool edge_touched = false;
   const auto finish_edge = [&] {
-    if (edge && block.size() > 0) sink.add(edge->dofs, edge->dofs, block);
-    block.resize(0, 0);
+    if (edge_touched) sink.add(edge->dofs, edge->dofs, wide(edge->places_and_carried, edge->places_and_carried));
+    edge_touched = false;
   };
-  visit(s, [&](const Moved& m, const Kinematics& k) {
+  visit(s, Points::near, [&](const Moved& m, const Kinematics& k) {
     const Station& station = *k.station;
     if (k.angle == 0) {
       if (edge != &edges_[station.edge]) {
         finish_edge();
         edge = &edges_[station.edge];
       }
-      touched = false;
+      at.clear();
     }
-    if (k.gap < 0) {
-      if (!touched) sum.setZero(K + carried_, K + carried_);
-      touched = true;
-      add_tangent(m, k, weights, sum);
+    if (k.gap < 0) linearise(m, k, weights, at);
+    if (k.angle + 1 < angles_.size() || at.rows == 0) return;
+    sum.noalias() = at.changes.topRows(at.rows).transpose() * at.forces.topRows(at.rows);
+    if (carrier_.translation) {
+      sum.middleCols<3>(K + 3) += at.turned;
+      sum.middleRows<3>(K + 3) += at.moment;
     }
-    if (k.angle + 1 < angles || !touched) return;
-    const auto own = static_cast<Index>(edge->places.size()), size = own + carried_;
-    if (block.size() == 0) block = Eigen::MatrixXd::Zero(size, size);
-    source.resize(size);
-    share.setOnes(size);
-    for (Index i = 0; i < own; ++i) {
-      source[i] = edge->places[static_cast<std::size_t>(i)] % K;
-      share[i] = station.shape[edge->places[static_cast<std::size_t>(i)] / K];
+    if (!edge_touched) wide.setZero();
+    edge_touched = true;
+    for (Index j = 0; j < 3; ++j) {
+      for (Index i = 0; i < 3; ++i)
+        wide.block(i * K, j * K, K, K) += station.shape[i] * station.shape[j] * sum.topLeftCorner(K, K);
+      wide.block(j * K, 3 * K, K, carried_) += station.shape[j] * sum.topRightCorner(K, carried_);
+      wide.block(3 * K, j * K, carried_, K) += station.shape[j] * sum.bottomLeftCorner(carried_, K);
     }
-    for (Index i = own; i < size; ++i) source[i] = K + (i - own);
-    for (Index j = 0; j < size; ++j)
-      for (Index i = 0; i < size; ++i) block(i, j) += share[i] * share[j] * sum(source[i], source[j]);
+    wide.bottomRightCorner(carried_, carried_) += sum.bottomRightCorner(carried_, carried_);
   });
   finish_edge();
 }
 
 Energies Contact::energies(const State& s) const {
   Energies out;
-  visit(s, [&](const Moved&, const Kinematics& k) {
+  visit(s, Points::near, [&](const Moved&, const Kinematics& k) {
     if (k.gap >= 0) return;
     out.contact += k.station->area *
                    (0.5 * laws_.normal_stiffness * k.gap * k.gap + evaluate(k, false).friction.stored);
@@ -347,7 +365,7 @@ Energies Contact::energies(const State& s) const {
 }
 
 void Contact::commit(const State& s) {
-  visit(s, [&](const Moved&, const Kinematics& k) {
+  visit(s, Points::all, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     const double area = k.station->area;
     if (k.gap >= 0) {
@@ -408,7 +426,7 @@ ContactReport Contact::report(const State& s) const {
   ContactReport out;
   double weight = 0;
   Vec3 centre = Vec3::Zero();
-  visit(s, [&](const Moved& m, const Kinematics& k) {
+  visit(s, Points::all, [&](const Moved& m, const Kinematics& k) {
     out.nearest = std::min(out.nearest, k.gap);
     if (k.gap >= 0) return;
     const Local local = evaluate(k, false);
@@ -431,7 +449,7 @@ ContactReport Contact::report(const State& s) const {
 
 std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
-  visit(s, [&](const Moved& m, const Kinematics& k) {
+  visit(s, Points::all, [&](const Moved& m, const Kinematics& k) {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),

@@ -83,6 +83,7 @@ class Contact final : public Term {
     std::array<int, 3> nodes;
     std::vector<Index> dofs;  // free ones of the three nodes, then the carrier's six, then the surface's own
     std::vector<int> places;  // i * K + k of the solid's part
+    std::vector<int> places_and_carried;  // and 3 K + i of the others
   };
   struct Station {  // a Gauss point of an edge; `angles` points follow each other
     std::size_t edge = 0;
@@ -130,10 +131,20 @@ class Contact final : public Term {
   Mat3 free_rotation(const Mat3& R) const;
   Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
   Local evaluate(const Kinematics& k, bool derivatives) const;
-  /// Derivatives of -force by the solid's functions at a station, carrier and own unknowns, added up in `sum`.
-  void add_tangent(const Moved& m, const Kinematics& k, const Weights& weights, Eigen::MatrixXd& sum) const;
+  /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point
+  /// and one for each unknown of the surface's own; columns are the solid's functions, carrier and own unknowns.
+  struct Linearised {
+    Linearised(Index most, Index size) : changes(most, size), forces(most, size), turned(size, 3), moment(3, size) {}
+    void clear() { rows = 0, turned.setZero(), moment.setZero(); }
+    Index rows = 0;
+    Eigen::MatrixXd changes, forces;
+    Eigen::Matrix<double, Eigen::Dynamic, 3> turned;  // columns of the carrier's rotation
+    Directions moment;                                // and its rows
+  };
+  void linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const;
+  enum class Points { all, near };  // near: at stations with a point that the surface reaches
   template <class Visit>
-  void visit(const State& s, Visit&& visit) const;  // visit(moved, kinematics)
+  void visit(const State& s, Points which, Visit&& visit) const;  // visit(moved, kinematics)
 
   const HarmonicSolid& solid_;
   std::unique_ptr<const ContactSurface> surface_;
@@ -142,6 +153,7 @@ class Contact final : public Term {
   Symmetry symmetry_;
   std::optional<DofMap::Block> own_;
   Index carried_ = 0;  // equations of carrier and surface
+  Index to_q_ = 0;     // from an equation of the solid to its entry in State::q
   std::vector<Edge> edges_;
   std::vector<Station> stations_;
   std::vector<double> angles_;

@@ -1,6 +1,7 @@
 /// A surface that a solid may touch: a shape in axes of its own, carried by a rigid node or standing still.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "hosel/fem/state.hpp"
@@ -35,6 +36,8 @@ class ContactSurface {
   virtual ~ContactSurface() = default;
   virtual double gap(const Vec3& place) const = 0;
   virtual SurfacePoint at(const Vec3& place) const = 0;
+  /// No point of the surface lies further along its first axis than this [m]; infinity where that is not known.
+  virtual double reach(const SurfaceUnknowns&) const { return std::numeric_limits<double>::infinity(); }
 
   /// A block of at most kSurfaceUnknowns plain numbers in the system's layout. What they weigh and what holds
   /// them is a term of its own.

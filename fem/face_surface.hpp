@@ -12,6 +12,7 @@ class FaceSurface : public ContactSurface {
   explicit FaceSurface(const Face& face) : face_(face) {}
   double gap(const Vec3& place) const override;
   SurfacePoint at(const Vec3& place) const override;
+  double reach(const SurfaceUnknowns&) const override { return 0; }
 
  private:
   Face face_;

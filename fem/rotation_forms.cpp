@@ -6,9 +6,9 @@
 namespace hosel::fem {
 namespace {
 
-constexpr int kTerms = 15;
+constexpr int kHighest = 7, kTerms = 12;
 
-/// (-1)^k / (2k + m)!
+/// Coefficients (-1)^k / (2k + m)!.
 template <int m>
 constexpr std::array<double, kTerms> coefficients() {
   std::array<double, kTerms> c{};
@@ -21,18 +21,20 @@ constexpr std::array<double, kTerms> coefficients() {
   return c;
 }
 
-/// S_m(z) = sum_k (-z)^k / (2k + m)!, and two derivatives: S_1 = sin x / x, S_2 = (1 - cos x)/x^2,
-/// S_3 = (x - sin x)/x^3 with x^2 = z. Full precision up to |w| = pi.
-template <int m>
-std::array<double, 3> series(double z) {
-  static constexpr auto c = coefficients<m>();
-  std::array<double, 3> s{};
-  const int last = z < 1e-3 ? 5 : z < 0.05 ? 7 : kTerms - 1;
-  for (int k = last; k >= 0; --k) {
-    s[2] = s[2] * z + 2 * s[1];
-    s[1] = s[1] * z + s[0];
-    s[0] = s[0] * z + c[static_cast<std::size_t>(k)];
+/// S_m(z) = sum_k (-z)^k / (2k + m)!: S_1 = sin x / x, S_2 = (1 - cos x)/x^2, S_3 = (x - sin x)/x^3 with x^2 = z. The
+/// two highest by their series, the others from S_m = 1/m! - z S_{m+2}.
+std::array<double, kHighest + 1> series(double z) {
+  static constexpr auto six = coefficients<kHighest - 1>(), seven = coefficients<kHighest>();
+  std::array<double, kHighest + 1> s{};
+  for (std::size_t k = z < 1e-3 ? 4 : kTerms; k-- > 0;) {
+    s[6] = s[6] * z + six[k];
+    s[7] = s[7] * z + seven[k];
   }
+  s[5] = 1.0 / 120 - z * s[7];
+  s[4] = 1.0 / 24 - z * s[6];
+  s[3] = 1.0 / 6 - z * s[5];
+  s[2] = 0.5 - z * s[4];
+  s[1] = 1 - z * s[3];
   return s;
 }
 
@@ -70,14 +72,13 @@ Mat3 RotationForm::hessian(const Vec3& w, const Vec3& p, const Vec3& q) const {
   return m;
 }
 
-RotationForm exp_transposed(double z) {
-  const auto f = series<1>(z), g = series<2>(z);
-  return {f[0], f[1], f[2], g[0], g[1], g[2]};
-}
-
-RotationForm exp_tangent(double z) {
-  const auto f = series<2>(z), g = series<3>(z);
-  return {f[0], f[1], f[2], g[0], g[1], g[2]};
+ExponentialForms exponential_forms(double z) {
+  const auto s = series(z);
+  std::array<double, 6> d{};  // derivatives by z: 2 S_m' = m S_{m+2} - S_{m+1}, without loss where z is small
+  for (std::size_t m = 1; m < d.size(); ++m) d[m] = 0.5 * (static_cast<double>(m) * s[m + 2] - s[m + 1]);
+  const double second1 = 0.5 * (d[3] - d[2]), second2 = d[4] - 0.5 * d[3], second3 = 0.5 * (3 * d[5] - d[4]);
+  return {.transposed = {s[1], d[1], second1, s[2], d[2], second2},
+          .tangent = {s[2], d[2], second2, s[3], d[3], second3}};
 }
 
 RotationForm exp_tangent_inverse(double z) {

@@ -1,6 +1,8 @@
 /// The club face that yields as a contact surface: the curved face, moved inwards by one unknown times a shape.
 #pragma once
 
+#include <algorithm>
+
 #include "hosel/fem/face_surface.hpp"
 #include "hosel/golf/face_compliance.hpp"
 
@@ -13,6 +15,7 @@ class YieldingFace final : public FaceSurface {
   YieldingFace(const Face& face, const FaceCompliance& compliance, const DofMap::Block& travel)
       : FaceSurface(face), compliance_(compliance), travel_(travel) {}
   std::optional<DofMap::Block> unknowns() const override { return travel_; }
+  double reach(const SurfaceUnknowns& unknowns) const override { return std::max(0.0, -unknowns[0]); }
   double travel(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
   Travel travel_at(const Vec3& place, const SurfaceUnknowns& unknowns) const override;
 

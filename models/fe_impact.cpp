@@ -225,7 +225,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.newton.increment_vector = 1e-4 * approach_speed * step;
   options.newton.increment_rotation = 1e-4 * approach_speed * step / radius;
   options.newton.max_iterations = 60;
-  options.newton.renew_above = 0.07;
+  options.newton.renew_above = 0.12;
   options.step_max = step;
   options.step_first = step / 16;  // the first touch is the roughest part
   options.step_min = step / 1024;

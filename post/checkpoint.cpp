@@ -87,7 +87,9 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
             {"so_far",
              {{"penetration", r.penetration},
               {"creep", r.creep},
-              {"counts", {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations}},
+              {"counts",
+               {r.counts.steps, r.counts.rejected, r.counts.iterations, r.counts.factorisations,
+                r.counts.dense_factorisations}},
               {"worst_residual", r.counts.worst_residual}}},
             {"force", to_json(i.force)},
             {"compression", to_json(i.compression)},
@@ -129,8 +131,8 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   i.solver.history = s.at("history").get<std::vector<double>>();
   i.so_far.penetration = r.at("penetration");
   i.so_far.creep = r.at("creep");
-  const auto counts = r.at("counts").get<std::array<long, 4>>();
-  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], r.at("worst_residual")};
+  const auto counts = r.at("counts").get<std::array<long, 5>>();
+  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], counts[4], r.at("worst_residual")};
   from_json(j.at("force"), i.force);
   from_json(j.at("compression"), i.compression);
   from_json(j.at("face_travel"), i.face_travel);

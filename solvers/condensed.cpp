@@ -8,6 +8,10 @@
 
 #include "hosel/solvers/errors.hpp"
 
+// CHOLMOD opens a team of four threads for every front, whatever the machine has: on fronts as small as ours their
+// waking costs more than they do. Absent where CHOLMOD is built without OpenMP.
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+
 namespace hosel::solvers {
 
 void DenseTangent::add(const std::vector<Index>& rows, const std::vector<Index>& columns,
@@ -199,6 +203,7 @@ bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector
       s.places[static_cast<std::size_t>(s.order[s.order.size() - kept.size() + i])] = static_cast<int>(i);
   }
   s.read_values(a);
+  if (omp_set_max_active_levels) omp_set_max_active_levels(0);
   cholmod_factorize(s.lower, s.factor, &s.common);
   if (s.common.status == CHOLMOD_OUT_OF_MEMORY)
     throw NonConvergence("not enough memory to factorise the tangent matrix");

@@ -1,7 +1,5 @@
 #include "hosel/solvers/contact_newton.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -11,29 +9,37 @@
 namespace hosel::solvers {
 namespace {
 
-/// Pairs of moves and of what they changed in the increment that is asked next.
+constexpr double kDenseShrinks = 0.3;  // factors of the dense problem that do less are renewed
+
+/// Moves, and by how much each changed the increment that was asked next; the changes are kept orthonormal.
 class Secants {
  public:
-  void clear() { moved_.clear(), changed_.clear(); }
-  void add(const Vector& moved, const Vector& changed) {
-    moved_.push_back(moved);
-    changed_.push_back(changed);
-    if (moved_.size() > 10) moved_.pop_front(), changed_.pop_front();
+  void clear() { pairs_.clear(); }
+  void add(Vector moved, Vector changed) {
+    const double size = changed.norm();
+    for (const Pair& p : pairs_) {
+      const double share = p.changed.dot(changed);
+      changed -= share * p.changed;
+      moved -= share * p.moved;
+    }
+    const double own = changed.norm();
+    if (!(own > 1e-3 * size)) return;  // nothing new
+    if (pairs_.size() == kMost) pairs_.pop_front();
+    pairs_.push_back({moved / own, changed / own});
   }
   /// The move that would make the next increment vanish as far as the pairs can tell.
   Vector accelerate(const Vector& increment) const {
-    if (moved_.empty()) return increment;
-    const auto m = static_cast<Index>(moved_.size());
-    Eigen::MatrixXd Z(increment.size(), m);
-    for (Index i = 0; i < m; ++i) Z.col(i) = changed_[static_cast<std::size_t>(i)];
-    const Vector weight = Z.colPivHouseholderQr().solve(increment);
-    Vector move = increment - Z * weight;
-    for (Index i = 0; i < m; ++i) move -= weight[i] * moved_[static_cast<std::size_t>(i)];
+    Vector move = increment;
+    for (const Pair& p : pairs_) move -= p.changed.dot(increment) * (p.changed + p.moved);
     return move;
   }
 
  private:
-  std::deque<Vector> moved_, changed_;
+  static constexpr std::size_t kMost = 10;
+  struct Pair {
+    Vector moved, changed;
+  };
+  std::deque<Pair> pairs_;
 };
 
 }  // namespace
@@ -55,6 +61,8 @@ ContactNewton::ContactNewton(const fem::System& system, SparseTangent& smooth, N
     : smooth_(smooth), abrupt_(smooth), options_(options), increments_(system, smooth, options) {}
 
 void ContactNewton::renew(const ContactProblem& problem) {
+  dense_ready_ = false;
+  refresh(problem);
   for (double inertia = 1;; inertia *= 4) {
     round_off_ = problem.assemble_smooth(inertia);
     if (factors_.factorise(smooth_, abrupt_.touched())) return;
@@ -67,12 +75,14 @@ void ContactNewton::refresh(const ContactProblem& problem) {
   problem.assemble_abrupt(abrupt_);
 }
 
-bool ContactNewton::covered() const {
-  return std::ranges::all_of(abrupt_.touched(),
-                             [&](int row) { return factors_.places()[static_cast<std::size_t>(row)] >= 0; });
+bool ContactNewton::covered(const Vector& abrupt) const {
+  for (Index i = 0; i < abrupt.size(); ++i)
+    if (abrupt[i] != 0 && factors_.places()[static_cast<std::size_t>(i)] < 0) return false;
+  return true;
 }
 
-Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, double tolerance) {
+Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, const Vector& abrupt, double tolerance,
+                                NewtonReport& report) {
   const Vector eliminated = factors_.eliminate(-r);
   const Vector start = factors_.condensed(eliminated);
   const auto kept = factors_.kept();
@@ -88,24 +98,34 @@ Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, 
     problem.advance(move);
     x += step;
   };
-  const Vector before = m > 0 ? on_kept(problem.abrupt_residual()) : Vector();
+  const Vector before = on_kept(abrupt);
   Vector rest = -start;  // schur x + (abrupt - before) - start
   const double enough = std::max(0.1 * tolerance, 1e-3 * rest.norm());
-  for (int i = 0; m > 0 && i < 15 && !(rest.norm() <= enough); ++i) {
-    if (i > 0) {
+  bool inside = true;  // else the next iterate keeps more rows
+  for (int i = 0; m > 0 && inside && i < 30 && !(rest.norm() <= enough); ++i) {
+    const bool fresh = !dense_ready_;
+    if (fresh) {
       refresh(problem);
-      if (!covered()) break;  // the next iterate keeps more rows
+      dense_.compute(factors_.schur() + abrupt_.on(factors_.places(), m));
+      ++report.dense_factorisations;
     }
-    Vector step = -(factors_.schur() + abrupt_.on(factors_.places(), m)).partialPivLu().solve(rest);
-    if (!step.allFinite()) break;
+    const Vector there = rest;
     const double size = rest.norm();
+    Vector step = -dense_.solve(rest);
+    if (!step.allFinite()) break;
     for (int halvings = 0;; ++halvings) {
       go(step);
-      rest = factors_.schur() * x + on_kept(problem.abrupt_residual()) - before - start;
+      const Vector now = problem.abrupt_residual();
+      rest = factors_.schur() * x + on_kept(now) - before - start;
+      inside = covered(now);
       if (rest.norm() < size || halvings == 8) break;
       go(-step);
       step *= 0.5;
+      rest = there;
+      inside = true;
+      if (!fresh) break;  // old factors that lead away are not worth following
     }
+    dense_ready_ = rest.norm() < kDenseShrinks * size;
   }
   const Vector found = x;
   go(-x);
@@ -114,12 +134,12 @@ Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, 
 
 NewtonReport ContactNewton::solve(const ContactProblem& problem) {
   NewtonReport report;
-  double size = INFINITY;  // of the last move
-  Vector r, last, wanted;  // the last move, and the increment that it was made of
+  double size = INFINITY;          // of the last move
+  Vector r, abrupt, last, wanted;  // of r what is abrupt; the last move, and the increment that it was made of
   Secants secants;
   std::vector<double> shrinking;  // |r| since the factor was made or the solve began
   const auto evaluate = [&] {
-    r = problem.residual(report.scale);
+    r = problem.residual(report.scale, abrupt);
     report.residual = r.norm();
   };
   const auto tolerance = [&] {
@@ -148,9 +168,8 @@ NewtonReport ContactNewton::solve(const ContactProblem& problem) {
         report.reason = "Newton's method did not converge in the iterations allowed";
         break;
       }
-      refresh(problem);
       // A small residual needs no better factor: only the increment is still to be confirmed.
-      bool fresh = !factors_.ready() || !covered() || (slow() && report.residual > tolerance());
+      bool fresh = !factors_.ready() || !covered(abrupt) || (slow() && report.residual > tolerance());
       const double before = report.residual;
       for (;;) {
         if (fresh) {
@@ -162,18 +181,18 @@ NewtonReport ContactNewton::solve(const ContactProblem& problem) {
           shrinking = {before};
         }
         const Vector asked = wanted;
-        wanted = increment(problem, r, tolerance());
+        wanted = increment(problem, r, abrupt, tolerance(), report);
         if (last.size() > 0) secants.add(last, wanted - asked);
         last = secants.accelerate(wanted);
         size = increments_.measure(last);
         problem.advance(last);
-        const Vector there = r;
+        const Vector there = r, abrupt_there = abrupt;
         evaluate();
         if (++age_ <= old || report.residual <= std::max(before, tolerance())) break;
         // An old factor that leads away is not worth following.
         problem.advance(-last);
         r = there;
-        refresh(problem);
+        abrupt = abrupt_there;
         fresh = true;
       }
       shrinking.push_back(report.residual);

@@ -1,6 +1,7 @@
 /// Newton's method for systems with contact: what is smooth keeps its factors, contact is always up to date.
 #pragma once
 
+#include <Eigen/LU>
 #include <functional>
 #include <vector>
 
@@ -16,13 +17,13 @@ void abrupt_tangent(const fem::System& system, const fem::State& trial, const fe
 
 /// What the method asks of a problem; vectors are on the free equations.
 struct ContactProblem {
-  /// The residual at the present iterate; writes the scale that it is small against.
-  std::function<Vector(double& scale)> residual;
+  /// The residual at the present iterate; writes the scale that it is small against, and the share of the abrupt terms.
+  std::function<Vector(double& scale, Vector& abrupt)> residual;
   /// The tangent of the smooth terms at the present iterate, its mass (in statics: what stands for it) `inertia` times
   /// as heavy where 1 is not positive definite; returns the residual that round-off alone may leave.
   std::function<double(double inertia)> assemble_smooth;
-  std::function<Vector()> abrupt_residual;             ///< the other terms' share of the residual
-  std::function<void(DenseTangent&)> assemble_abrupt;  ///< and their tangent
+  std::function<Vector()> abrupt_residual;             ///< that share alone
+  std::function<void(DenseTangent&)> assemble_abrupt;  ///< and its tangent
   std::function<void(const Vector&)> advance;          ///< moves the iterate by an increment
 };
 
@@ -40,15 +41,19 @@ class ContactNewton {
  private:
   void renew(const ContactProblem& problem);
   void refresh(const ContactProblem& problem);
-  bool covered() const;  ///< whether the kept rows hold all that is abrupt
-  /// The increment from an iterate with residual `r`; the iterate is where it was.
-  Vector increment(const ContactProblem& problem, const Vector& r, double tolerance);
+  /// Whether the kept rows hold all of an abrupt residual.
+  bool covered(const Vector& abrupt) const;
+  /// The increment from an iterate with residual `r`, of it `abrupt`; the iterate is where it was.
+  Vector increment(const ContactProblem& problem, const Vector& r, const Vector& abrupt, double tolerance,
+                   NewtonReport& report);
 
   SparseTangent& smooth_;
   DenseTangent abrupt_;
   NewtonOptions options_;
   IncrementTest increments_;
   CondensedFactorisation factors_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> dense_;  // of the kept rows, contact included
+  bool dense_ready_ = false;
   double round_off_ = 0;
   int age_ = 0;  // iterations that the smooth factors have served
 };

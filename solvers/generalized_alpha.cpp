@@ -66,9 +66,16 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
   evaluate(state_, trial_inertia_, trial_force_);
   if (tangent_.size() > 0) {
     tangent_.assemble(system_, state_, {0, 0, 1});
-    Factorisation mass;
-    mass.factorise(tangent_);
-    tangent_.scatter(-mass.solve(tangent_.gather(trial_inertia_ + trial_force_)), state_.a);
+    const Vector right = -tangent_.gather(trial_inertia_ + trial_force_);
+    if (contact_) {
+      CondensedFactorisation mass;
+      if (!mass.factorise(tangent_, {})) throw NonConvergence("the mass matrix is singular: some body weighs nothing");
+      tangent_.scatter(mass.recover(mass.eliminate(right), {}), state_.a);
+    } else {
+      Factorisation mass;
+      mass.factorise(tangent_);
+      tangent_.scatter(mass.solve(right), state_.a);
+    }
   }
   auxiliary_ = state_.a;
   evaluate(state_, inertia_, trial_force_);
@@ -86,10 +93,14 @@ void GeneralizedAlpha::impose(fem::State& s) const {
   for (const auto& p : system_.prescribed) p->impose(s);
 }
 
-void GeneralizedAlpha::evaluate(const fem::State& s, Vector& inertia, Vector& force) const {
+void GeneralizedAlpha::evaluate(const fem::State& s, Vector& inertia, Vector& force, Vector* abrupt) const {
   inertia.setZero(system_.dof_map.size());
   force.setZero(system_.dof_map.size());
-  for (const auto& term : system_.terms) term->residual(s, inertia, force);
+  for (const auto& term : system_.terms)
+    if (!abrupt || !term->abrupt()) term->residual(s, inertia, force);
+  if (!abrupt) return;
+  *abrupt = abrupt_residual(system_, s);
+  force += *abrupt;
 }
 
 NewtonReport GeneralizedAlpha::attempt(double h) {
@@ -100,8 +111,11 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   const double to_v = gamma_ / (beta_ * h), to_a = (1 - am_) / (beta_ * h * h * (1 - af_));
   trial_ = state_;
   trial_.time = state_.time + h;
-  Vector a1 = (state_.a - am_ * a0) / (1 - am_);  // vdot_{n+1} = vdot_n to begin with
-  if (!options_.predict_acceleration) {
+  Vector a1;
+  if (options_.predict_acceleration) {
+    if (earlier_a_.size() > 0) trial_.a += (h / last_step_) * (state_.a - earlier_a_);
+    a1 = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
+  } else {
     a1 = (1 - 0.5 / beta_) * a0;  // increment h v_n
     trial_.a = ((1 - am_) * a1 + am_ * a0 - af_ * state_.a) / (1 - af_);
   }
@@ -115,8 +129,9 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
 
   Vector full = Vector::Zero(system_.dof_map.size());
-  const auto residual = [&](double& scale) {
-    evaluate(trial_, trial_inertia_, trial_force_);
+  const auto residual = [&](double& scale, Vector* abrupt = nullptr) {
+    evaluate(trial_, trial_inertia_, trial_force_, abrupt);
+    if (abrupt) *abrupt = tangent_.gather(*abrupt);
     scale = trial_inertia_.norm() + trial_force_.norm();
     return tangent_.gather(trial_inertia_ + trial_force_);
   };
@@ -141,17 +156,18 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
   NewtonReport report;
   if (contact_) {
-    report =
-        contact_newton_.solve({residual, assemble, [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
-                               [&](DenseTangent& sink) {
-                                 abrupt_tangent(system_, trial_, {1, to_v, to_a}, sink);
-                               },
-                               advance});
+    report = contact_newton_.solve({[&](double& scale, Vector& abrupt) { return residual(scale, &abrupt); }, assemble,
+                                    [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
+                                    [&](DenseTangent& sink) {
+                                      abrupt_tangent(system_, trial_, {1, to_v, to_a}, sink);
+                                    },
+                                    advance});
   } else {
-    report = newton_.solve({residual, [&] { return assemble(1); }, advance});
+    report = newton_.solve({[&](double& scale) { return residual(scale); }, [&] { return assemble(1); }, advance});
   }
   counts_.iterations += report.iterations;
   counts_.factorisations += report.factorisations;
+  counts_.dense_factorisations += report.dense_factorisations;
   if (!report.converged) return report;
 
   trial_auxiliary_ = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
@@ -170,6 +186,7 @@ void GeneralizedAlpha::accept(double h, const NewtonReport& report) {
   for (Index e : imposed_) imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
   const double inertial_work = 0.5 * (inertia_ + trial_inertia_).dot(increment_);
   std::swap(state_, trial_);
+  std::swap(earlier_a_, trial_.a);
   auxiliary_ = trial_auxiliary_;
   residual_ = trial_inertia_ + trial_force_;
   std::swap(inertia_, trial_inertia_);
@@ -266,6 +283,7 @@ void GeneralizedAlpha::restore(const Checkpoint& saved) {
   viscous_before_ = saved.viscous_before;
   external_before_ = saved.external_before;
   imposed_work_ = 0;
+  earlier_a_.resize(0);
   std::span<const double> history = saved.history;
   for (const auto& term : system_.terms) term->restore(history);
   if (!history.empty()) throw std::invalid_argument("the checkpoint is of another system");

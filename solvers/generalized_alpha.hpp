@@ -25,8 +25,8 @@ struct GeneralizedAlphaOptions {
   double step_max = 0;    ///< the fixed step where no error tolerance is set [s]
   double step_min = 0;    ///< below this a failing step gives up [s]
   double step_first = 0;  ///< 0: step_max [s]
-  /// First guess of a step: the last acceleration goes on, or (false) none does: the better guess where
-  /// contact makes accelerations jump.
+  /// First guess of a step: accelerations go on as they changed in the last one, or (false) there are none: the better
+  /// guess where contact makes them jump.
   bool predict_acceleration = true;
   double error_vector = 0;    ///< error allowed per step of a plain number [m]; inf: fixed steps
   double error_rotation = 0;  ///< of a rotation [rad]; inf: fixed steps
@@ -84,11 +84,15 @@ class GeneralizedAlpha {
   double error() const { return error_; }  ///< of the last step, 1 at the tolerance
 
   struct Counts {
-    long steps = 0, rejected = 0, iterations = 0, factorisations = 0;
+    long steps = 0, rejected = 0, iterations = 0, factorisations = 0, dense_factorisations = 0;
     double worst_residual = 0;  ///< that an accepted step left, over the scale of the forces [-]
     friend Counts operator+(const Counts& a, const Counts& b) {
-      return {a.steps + b.steps, a.rejected + b.rejected, a.iterations + b.iterations,
-              a.factorisations + b.factorisations, std::max(a.worst_residual, b.worst_residual)};
+      return {a.steps + b.steps,
+              a.rejected + b.rejected,
+              a.iterations + b.iterations,
+              a.factorisations + b.factorisations,
+              a.dense_factorisations + b.dense_factorisations,
+              std::max(a.worst_residual, b.worst_residual)};
     }
   };
   const Counts& counts() const { return counts_; }
@@ -97,7 +101,8 @@ class GeneralizedAlpha {
   void restore(const Checkpoint& saved);
 
  private:
-  void evaluate(const fem::State& s, Vector& inertia, Vector& force) const;
+  /// `abrupt`, where given: the share of the abrupt terms, already in `force`.
+  void evaluate(const fem::State& s, Vector& inertia, Vector& force, Vector* abrupt = nullptr) const;
   void impose(fem::State& s) const;
   NewtonReport attempt(double h);
   void accept(double h, const NewtonReport& report);
@@ -112,6 +117,7 @@ class GeneralizedAlpha {
   ContactNewton contact_newton_;  // instead, where some term is
   fem::State state_, trial_;
   Vector auxiliary_, trial_auxiliary_, increment_;
+  Vector earlier_a_;  // of the state before; empty at the start
   Vector inertia_, trial_inertia_, trial_force_, residual_;
   std::vector<Index> imposed_;
   double step_ = 0, last_step_ = 0, tangent_step_ = 0, error_ = 0;

@@ -26,6 +26,7 @@ struct NewtonOptions {
 struct NewtonReport {
   bool converged = false;
   int iterations = 0, factorisations = 0;
+  int dense_factorisations = 0;    ///< of the small problem of what is abrupt (contact_newton.hpp)
   double residual = 0, scale = 0;  ///< at the last iterate
   std::string reason;              ///< why not, in one sentence
 };

@@ -65,8 +65,11 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
       trial.q = system.dof_map.advanced(trial.q, full);
     };
     const NewtonReport report =
-        contact ? contact_newton.solve({residual, assemble_held,
-                                        [&] { return tangent.gather(abrupt_residual(system, trial)); },
+        contact ? contact_newton.solve({[&](double& scale, Vector& abrupt) {
+                                          abrupt = tangent.gather(abrupt_residual(system, trial));
+                                          return residual(scale);
+                                        },
+                                        assemble_held, [&] { return tangent.gather(abrupt_residual(system, trial)); },
                                         [&](DenseTangent& sink) {
                                           abrupt_tangent(system, trial, {1, 0, 0}, sink);
                                         },

@@ -26,8 +26,8 @@ struct MaxwellBranch {
            double* scale = nullptr) const {
     const double c = contract(C0, inverse(B0, 1.0)) / 3;
     const double h = c * dt / time;
-    const double decay = std::exp(-h);
-    const double mean = h < 1e-6 ? 1 - h / 2 : -std::expm1(-h) / h;  // (1 - e^-h) / h
+    const double lost = -std::expm1(-h), decay = 1 - lost;
+    const double mean = h < 1e-6 ? 1 - h / 2 : lost / h;
     const Sym X = decay * B0 + ((mean - decay) / c) * C0 + ((1 - mean) / c) * C1;
     const double s = 1 / std::cbrt(determinant(X));
     if (gain) *gain = (1 - mean) / c;

@@ -120,6 +120,26 @@ TEST(Contact, ForceIsTheGradientOfTheEnergy) {
   }
 }
 
+/// What lies beyond the reach of a surface does not touch it, whether it gives or stands out; what does touch comes
+/// near.
+TEST(Contact, NothingTouchesBeyondTheReach) {
+  const YieldingFace face({.bulge = 0.3, .roll = 0.25}, {.mass = 0.01, .stiffness = 1e7, .half_width = 0.05},
+                          {0, 0, 1});
+  for (const double travel : {-1e-3, 1e-3}) {
+    const SurfaceUnknowns unknowns(travel, 0, 0, 0);
+    double highest = -INFINITY;
+    for (unsigned i = 0; i < 1000; ++i) {
+      Vec3 place = test::random_vector(3, i, 1);
+      place = Vec3(2e-3 * place.x(), 0.02 * place.y(), 0.02 * place.z());
+      Vec3 seen = place;
+      seen.x() += face.travel(place, unknowns);
+      if (face.gap(seen) < 0) highest = std::max(highest, place.x());
+    }
+    EXPECT_LE(highest, face.reach(unknowns));
+    EXPECT_GT(highest, face.reach(unknowns) - (travel > 0 ? 1.1e-3 : 2e-4));
+  }
+}
+
 /// What pushes the ball pushes the head back along the same line: no net force, no net moment.
 TEST(Contact, ForcesBalance) {
   int sliding = 0, sticking = 0;
