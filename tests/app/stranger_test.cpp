@@ -20,7 +20,8 @@ TEST(Stranger, NamesOfVariantsAreNoGnuplot) {
   std::string text = kEccentricBlow;
   text.replace(text.find("\"impact\""), 8, "\"face-map\"");
   text += "[grid]\ncolumns = 3\nrows = 3\n[[variants]]\nmodel = \"rigid-eccentric\"\nset = [\"head.mass_kg=0.25\"]\n";
-  text += "name = \"\"\"heavy\nsystem('touch " + mark.string() + "')\n\"\"\"\n";
+  // A quote alone is doubled, so that what follows the line break must do without.
+  text += "name = \"\"\"heavy\nsystem(\\\"touch " + mark.string() + "\\\")\n#\"\"\"\n";
   write(dir / "case.toml", text);
   const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 0) << o.text;
