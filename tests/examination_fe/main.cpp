@@ -260,7 +260,7 @@ int main(int argc, char** argv) {
     tbb::parallel_for(std::size_t(0), of.size(), [&](std::size_t i) { out[i] = answer(of[i]); });
     return out;
   };
-  // A size by its signal, which is drawn between 8 and 40: as near as the range allows.
+  // A size by its signal, which is drawn between 8 and 40 and met on some shots: as near as the range allows.
   const auto drawn = [&](const Truth& t, std::mt19937_64& random) {
     std::vector<Shot> some;
     for (std::size_t i = 0; i < plain.size(); i += std::max<std::size_t>(1, plain.size() / 12))
@@ -271,6 +271,10 @@ int main(int argc, char** argv) {
     double size = end;
     for (int k = 0; k < 3; ++k)
       size = end * std::min(1.0, size / end * wanted / Signal(made(some, &t, size), bare, plain.size()).all);
+    // Of some shots none may slide: what all of them together hardly show is drawn larger.
+    const std::vector<Launch> all_bare = made(plain, nullptr, 0);
+    for (int k = 0; k < 4 && Signal(made(plain, &t, size), all_bare, plain.size()).all < 6; ++k)
+      size += (end - size) / 2;
     return size;
   };
   std::mt19937_64 first(1000 * seed);
