@@ -10,7 +10,7 @@
 #include "hosel/golf/face_library.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/models/fe_impact.hpp"
-#include "hosel/solvers/condensed.hpp"
+#include "hosel/solvers/contact_newton.hpp"
 
 namespace {
 using namespace hosel;
@@ -70,7 +70,8 @@ void Shares(benchmark::State& state) {
     touch();
     smooth.assemble(impact.system, peak, weights);
     all.assemble(impact.system, peak, weights);
-    if (!factors.factorise(smooth, abrupt.touched())) {
+    const std::vector<char> apart = solvers::weakly_coupled(impact.system, smooth);
+    if (!factors.factorise(smooth, abrupt.touched(), apart)) {
       state.SkipWithError("the ball's tangent is not positive definite");
       return;
     }
@@ -78,7 +79,7 @@ void Shares(benchmark::State& state) {
     const double ball = seconds(20, [&] { impact.parts.ball->residual(peak, inertia, internal); });
     const double contact = seconds(20, [&] { impact.parts.contact->residual(peak, inertia, internal); });
     const double assembly = seconds(5, [&] { smooth.assemble(impact.system, peak, weights); });
-    const double factorisation = seconds(5, [&] { factors.factorise(smooth, abrupt.touched()); });
+    const double factorisation = seconds(5, [&] { factors.factorise(smooth, abrupt.touched(), apart); });
     const double dense = seconds(20, [&] {
       touch();
       const auto m = static_cast<Eigen::Index>(factors.kept().size());

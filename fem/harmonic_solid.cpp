@@ -206,6 +206,11 @@ void HarmonicSolid::pattern(std::vector<std::vector<Index>>& blocks) const {
   blocks.insert(blocks.end(), element_equations_.begin(), element_equations_.end());
 }
 
+void HarmonicSolid::weakly_coupled(std::vector<Index>& equations) const {
+  for (std::size_t i = 0; i < dof_.size(); ++i)
+    if (dof_[i] >= 0 && basis_[i % basis_.size()].odd()) equations.push_back(dof_[i]);
+}
+
 Eigen::MatrixXd HarmonicSolid::element_fields(const Vector& numbers, Index shift, std::size_t e) const {
   const Index K = unknowns();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(8, K);

@@ -49,6 +49,9 @@ class HarmonicSolid final : public Term {
 
   std::string body() const override { return body_; }
   void pattern(std::vector<std::vector<Index>>& blocks) const override;
+  /// The functions that are odd: none of a solid that is struck in its plane of symmetry, little moved in any other
+  /// blow.
+  void weakly_coupled(std::vector<Index>& equations) const override;
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;

@@ -17,6 +17,8 @@ struct AngularFunction {
 
   Vec3 at(double theta) const;
   Vec3 derivative(double theta) const;
+  /// Whether it changes sign with the mirror about the plane of axes 1 and 2.
+  bool odd() const { return sine.x() != 0 || sine.y() != 0 || cosine.z() != 0; }
 };
 
 /// The displacement of a meridian point is sum_k U_k f_k(theta).

@@ -53,6 +53,9 @@ class Term {
   /// Whether the tangent changes at once as points touch, stick or slide, and is unsymmetric: solvers keep
   /// what is smooth and symmetric apart.
   virtual bool abrupt() const { return false; }
+  /// Equations, appended, that the others feel little through this term's stiffness and not at all through its mass:
+  /// factors that a solver iterates with may leave their coupling out.
+  virtual void weakly_coupled(std::vector<Index>& equations) const { (void)equations; }
   /// At the accepted state (cumulative figures as of the last commit()).
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.

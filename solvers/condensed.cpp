@@ -1,9 +1,11 @@
 #include "hosel/solvers/condensed.hpp"
 
 #include <cholmod.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <numeric>
+#include <atomic>
 #include <utility>
 
 #include "hosel/solvers/errors.hpp"
@@ -48,57 +50,55 @@ Eigen::MatrixXd DenseTangent::on(const std::vector<int>& places, Index kept) con
   return out;
 }
 
-struct CondensedFactorisation::State {
-  cholmod_common common;
-  cholmod_sparse* lower = nullptr;
-  cholmod_factor* factor = nullptr;
-  std::vector<int> kept, order;  // order: row of each pivot
-  std::vector<int> place;        // entry of the tangent's values of each entry of `lower`
-  bool ready = false;
-  std::vector<int> places;      // of each row among the kept, in the order of the pivots
-  Eigen::MatrixXd root, schur;  // L of the kept rows; L L^T
+namespace {
 
-  State() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_NATURAL;
-    common.postorder = 0;  // the kept rows stay last
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.quick_return_if_not_posdef = 1;
+/// Factors of some rows of the matrix among themselves.
+class Part {
+ public:
+  Part() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_NATURAL;
+    common_.postorder = 0;  // the kept rows stay last
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    common_.quick_return_if_not_posdef = 1;
   }
-  ~State() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_free_sparse(&lower, &common);
-    cholmod_finish(&common);
+  ~Part() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_free_sparse(&lower_, &common_);
+    cholmod_finish(&common_);
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
 
-  /// Ordering by constrained minimum degree of groups of rows with one pattern, the kept ones last.
-  void analyse(const SparseTangent& a) {
+  /// Ordering by constrained minimum degree of groups of rows with one pattern, those of `kept` last. `members` and
+  /// `kept` mark rows of `a`.
+  void analyse(const SparseTangent& a, const std::vector<char>& members, const std::vector<char>& kept) {
     const auto n = static_cast<int>(a.size());
     const int *start = a.column_starts().data(), *row = a.row_indices().data();
-    std::vector<char> last(static_cast<std::size_t>(n), 0);
-    for (int k : kept) last[static_cast<std::size_t>(k)] = 1;
-    std::vector<int> group, first;  // of each row; of each group
+    const auto marked = [](const std::vector<char>& marks, int i) { return marks[static_cast<std::size_t>(i)] != 0; };
+    std::vector<int> group(static_cast<std::size_t>(n), -1);  // of each row
+    std::vector<std::pair<int, int>> range;                   // of each group
     for (int j = 0; j < n; ++j) {
-      const bool same = j > 0 && last[static_cast<std::size_t>(j)] == last[static_cast<std::size_t>(j) - 1] &&
+      if (!marked(members, j)) continue;
+      const bool same = !range.empty() && range.back().second == j && marked(kept, j) == marked(kept, j - 1) &&
                         std::equal(row + start[j], row + start[j + 1], row + start[j - 1], row + start[j]);
-      if (!same) first.push_back(j);
-      group.push_back(static_cast<int>(first.size()) - 1);
+      if (!same) range.emplace_back(j, j);
+      range.back().second = j + 1;
+      group[static_cast<std::size_t>(j)] = static_cast<int>(range.size()) - 1;
     }
-    const std::size_t groups = first.size();
+    const std::size_t groups = range.size();
     std::vector<std::pair<int, int>> edges;
     for (std::size_t g = 0; g < groups; ++g) {
-      const int j = first[g];
+      const int j = range[g].first;
       for (int k = start[j]; k < start[j + 1]; ++k) {
         const int other = group[static_cast<std::size_t>(row[k])];
-        if (edges.empty() || edges.back() != std::pair(static_cast<int>(g), other))
+        if (other >= 0 && (edges.empty() || edges.back() != std::pair(static_cast<int>(g), other)))
           edges.emplace_back(static_cast<int>(g), other);
       }
     }
-    cholmod_sparse* graph = cholmod_allocate_sparse(groups, groups, edges.size(), 1, 1, 0, CHOLMOD_PATTERN, &common);
+    cholmod_sparse* graph = cholmod_allocate_sparse(groups, groups, edges.size(), 1, 1, 0, CHOLMOD_PATTERN, &common_);
     auto *gp = static_cast<int*>(graph->p), *gi = static_cast<int*>(graph->i);
     std::size_t e = 0;
     for (std::size_t g = 0; g < groups; ++g) {
@@ -106,78 +106,137 @@ struct CondensedFactorisation::State {
       for (; e < edges.size() && edges[e].first == static_cast<int>(g); ++e) gi[e] = edges[e].second;
     }
     gp[groups] = static_cast<int>(e);
-    std::vector<int> member(groups), permuted(groups);
-    for (std::size_t g = 0; g < groups; ++g) member[g] = last[static_cast<std::size_t>(first[g])];
-    cholmod_camd(graph, nullptr, 0, member.data(), permuted.data(), &common);
-    cholmod_free_sparse(&graph, &common);
-    first.push_back(n);
-    order.clear();
-    for (int g : permuted)
-      for (int j = first[static_cast<std::size_t>(g)]; j < first[static_cast<std::size_t>(g) + 1]; ++j)
-        order.push_back(j);
-
+    std::vector<int> last(groups), permuted(groups);
+    for (std::size_t g = 0; g < groups; ++g) last[g] = marked(kept, range[g].first);
+    cholmod_camd(graph, nullptr, 0, last.data(), permuted.data(), &common_);
+    cholmod_free_sparse(&graph, &common_);
+    order_.clear();
+    kept_ = 0;
+    for (int g : permuted) {
+      const auto [from, to] = range[static_cast<std::size_t>(g)];
+      for (int j = from; j < to; ++j) order_.push_back(j);
+      if (last[static_cast<std::size_t>(g)]) kept_ += to - from;
+    }
     permute(a);
-    cholmod_free_factor(&factor, &common);
-    factor = cholmod_analyze(lower, &common);
+    cholmod_free_factor(&factor_, &common_);
+    factor_ = cholmod_analyze(lower_, &common_);
   }
 
+  /// False where the part is not positive definite. Throws NonConvergence where memory is short.
+  bool factorise(const SparseTangent& a) {
+    auto* x = static_cast<double*>(lower_->x);
+    for (std::size_t q = 0; q < place_.size(); ++q) x[q] = a.values()[static_cast<std::size_t>(place_[q])];
+    if (omp_set_max_active_levels) omp_set_max_active_levels(0);
+    cholmod_factorize(lower_, factor_, &common_);
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY)
+      throw NonConvergence("not enough memory to factorise the tangent matrix");
+    if (common_.status != CHOLMOD_OK) return false;
+    read_root();
+    return true;
+  }
+
+  const std::vector<int>& order() const { return order_; }  ///< row of each pivot
+  Index size() const { return static_cast<Index>(order_.size()); }
+  Index kept() const { return kept_; }
+  const Eigen::MatrixXd& root() const { return root_; }  ///< the factor's last rows and columns
+
+  /// Half of a solution, in place and in the order of the pivots.
+  void half_solve(int system, Eigen::Ref<Vector> x) const {
+    cholmod_dense b{};
+    b.nrow = b.d = b.nzmax = static_cast<std::size_t>(x.size());
+    b.ncol = 1;
+    b.x = x.data();
+    b.xtype = CHOLMOD_REAL;
+    b.dtype = CHOLMOD_DOUBLE;
+    auto* shared = const_cast<cholmod_common*>(&common_);  // holds workspace and counts
+    cholmod_dense* found = cholmod_solve(system, factor_, &b, shared);
+    x = Eigen::Map<const Vector>(static_cast<const double*>(found->x), x.size());
+    cholmod_free_dense(&found, shared);
+  }
+
+ private:
   /// The lower triangle in the order of the pivots, so that CHOLMOD need not copy it again and again.
   void permute(const SparseTangent& a) {
-    const auto n = order.size();
+    const auto n = order_.size();
     const auto start = a.column_starts(), row = a.row_indices();
-    std::vector<int> pivot(n);
-    for (std::size_t j = 0; j < n; ++j) pivot[static_cast<std::size_t>(order[j])] = static_cast<int>(j);
-    place.clear();
-    cholmod_free_sparse(&lower, &common);
-    lower = cholmod_allocate_sparse(n, n, (row.size() + n) / 2, 0, 1, -1, CHOLMOD_REAL, &common);
-    auto *p = static_cast<int*>(lower->p), *i = static_cast<int*>(lower->i);
+    std::vector<int> pivot(static_cast<std::size_t>(a.size()), -1);
+    for (std::size_t j = 0; j < n; ++j) pivot[static_cast<std::size_t>(order_[j])] = static_cast<int>(j);
+    place_.clear();
+    cholmod_free_sparse(&lower_, &common_);
+    lower_ = cholmod_allocate_sparse(n, n, (row.size() + n) / 2, 0, 1, -1, CHOLMOD_REAL, &common_);
+    auto *p = static_cast<int*>(lower_->p), *i = static_cast<int*>(lower_->i);
     for (std::size_t j = 0; j < n; ++j) {
-      p[j] = static_cast<int>(place.size());
-      const auto column = static_cast<std::size_t>(order[j]);
+      p[j] = static_cast<int>(place_.size());
+      const auto column = static_cast<std::size_t>(order_[j]);
       for (int k = start[column]; k < start[column + 1]; ++k)
         if (const int at = pivot[static_cast<std::size_t>(row[static_cast<std::size_t>(k)])];
             at >= static_cast<int>(j)) {
-          i[place.size()] = at;
-          place.push_back(k);
+          i[place_.size()] = at;
+          place_.push_back(k);
         }
     }
-    p[n] = static_cast<int>(place.size());
+    p[n] = static_cast<int>(place_.size());
   }
 
-  void read_values(const SparseTangent& a) {
-    auto* x = static_cast<double*>(lower->x);
-    for (std::size_t q = 0; q < place.size(); ++q) x[q] = a.values()[static_cast<std::size_t>(place[q])];
-  }
-
-  /// The factor's last rows and columns.
   void read_root() {
-    const auto n = static_cast<int>(factor->n), m = static_cast<int>(kept.size());
-    root.setZero(m, m);
-    const auto *super = static_cast<const int*>(factor->super), *pi = static_cast<const int*>(factor->pi),
-               *px = static_cast<const int*>(factor->px), *rows = static_cast<const int*>(factor->s);
-    const auto* x = static_cast<const double*>(factor->x);
-    for (std::size_t s = 0; s < factor->nsuper; ++s)
+    const auto n = static_cast<int>(factor_->n), m = static_cast<int>(kept_);
+    root_.setZero(m, m);
+    const auto *super = static_cast<const int*>(factor_->super), *pi = static_cast<const int*>(factor_->pi),
+               *px = static_cast<const int*>(factor_->px), *rows = static_cast<const int*>(factor_->s);
+    const auto* x = static_cast<const double*>(factor_->x);
+    for (std::size_t s = 0; s < factor_->nsuper; ++s)
       for (int j = std::max(super[s], n - m); j < super[s + 1]; ++j) {
         const int height = pi[s + 1] - pi[s];
         const double* column = x + px[s] + (j - super[s]) * height;
-        for (int i = j - super[s]; i < height; ++i) root(rows[pi[s] + i] - (n - m), j - (n - m)) = column[i];
+        for (int i = j - super[s]; i < height; ++i) root_(rows[pi[s] + i] - (n - m), j - (n - m)) = column[i];
       }
-    schur.setZero(m, m);
-    schur.noalias() = root.triangularView<Eigen::Lower>() * root.transpose();
   }
 
-  Vector half_solve(int system, Vector right) const {
-    cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = static_cast<std::size_t>(right.size());
-    b.ncol = 1;
-    b.x = right.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    auto* shared = const_cast<cholmod_common*>(&common);  // holds workspace and counts
-    cholmod_dense* x = cholmod_solve(system, factor, &b, shared);
-    right = Eigen::Map<const Vector>(static_cast<const double*>(x->x), right.size());
-    cholmod_free_dense(&x, shared);
-    return right;
+  cholmod_common common_;
+  cholmod_sparse* lower_ = nullptr;
+  cholmod_factor* factor_ = nullptr;
+  std::vector<int> order_, place_;  // place: entry of the tangent's values of each entry of `lower`
+  Index kept_ = 0;
+  Eigen::MatrixXd root_;
+};
+
+}  // namespace
+
+struct CondensedFactorisation::State {
+  std::vector<std::unique_ptr<Part>> parts;
+  std::vector<int> asked;         // the kept rows as they were asked for
+  std::vector<int> kept, places;  // part after part; of each row among them
+  Eigen::MatrixXd schur;
+  bool ready = false;
+
+  /// Works on each part, with the first of its places among all rows and among the kept ones; at once where cores are
+  /// free, and no other blow meanwhile.
+  template <class Work>
+  void each(const Work& work) const {
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        Index row = 0, kept_row = 0;
+        for (std::size_t k = 0; k < i; ++k) row += parts[k]->size(), kept_row += parts[k]->kept();
+        work(*parts[i], row, kept_row);
+      });
+    });
+  }
+
+  void analyse(const SparseTangent& a, const std::vector<char>& apart) {
+    const auto n = static_cast<std::size_t>(a.size());
+    std::vector<char> last(n, 0), members(n, 0);
+    for (int k : asked) last[static_cast<std::size_t>(k)] = 1;
+    parts.clear();
+    for (const char which : {0, 1}) {
+      for (std::size_t i = 0; i < n; ++i) members[i] = (apart.empty() ? 0 : apart[i]) == which;
+      if (std::ranges::find(members, 1) == members.end()) continue;
+      parts.push_back(std::make_unique<Part>());
+      parts.back()->analyse(a, members, last);
+    }
+    kept.clear();
+    for (const auto& part : parts) kept.insert(kept.end(), part->order().end() - part->kept(), part->order().end());
+    places.assign(n, -1);
+    for (std::size_t i = 0; i < kept.size(); ++i) places[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
   }
 };
 
@@ -188,48 +247,60 @@ CondensedFactorisation& CondensedFactorisation::operator=(CondensedFactorisation
 
 bool CondensedFactorisation::ready() const { return state_->ready; }
 void CondensedFactorisation::forget() { state_->ready = false; }
-std::span<const int> CondensedFactorisation::kept() const { return std::span(state_->order).last(state_->kept.size()); }
+std::span<const int> CondensedFactorisation::kept() const { return state_->kept; }
 const std::vector<int>& CondensedFactorisation::places() const { return state_->places; }
 const Eigen::MatrixXd& CondensedFactorisation::schur() const { return state_->schur; }
 
-bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector<int>& kept) {
+bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector<int>& kept,
+                                       const std::vector<char>& apart) {
   State& s = *state_;
   s.ready = false;
-  if (!s.factor || kept != s.kept) {
-    s.kept = kept;
-    s.analyse(a);
-    s.places.assign(s.order.size(), -1);
-    for (std::size_t i = 0; i < kept.size(); ++i)
-      s.places[static_cast<std::size_t>(s.order[s.order.size() - kept.size() + i])] = static_cast<int>(i);
+  if (s.parts.empty() || kept != s.asked) {
+    s.asked = kept;
+    s.analyse(a, apart);
   }
-  s.read_values(a);
-  if (omp_set_max_active_levels) omp_set_max_active_levels(0);
-  cholmod_factorize(s.lower, s.factor, &s.common);
-  if (s.common.status == CHOLMOD_OUT_OF_MEMORY)
-    throw NonConvergence("not enough memory to factorise the tangent matrix");
-  if (s.common.status != CHOLMOD_OK) return false;
-  s.read_root();
-  s.ready = true;
-  return true;
+  const auto m = static_cast<Index>(kept.size());
+  s.schur.setZero(m, m);
+  std::atomic<bool> good = true;
+  s.each([&](Part& part, Index, Index at) {
+    if (!part.factorise(a)) {
+      good = false;
+      return;
+    }
+    const Eigen::MatrixXd& root = part.root();
+    s.schur.block(at, at, root.rows(), root.rows()).noalias() = root.triangularView<Eigen::Lower>() * root.transpose();
+  });
+  s.ready = good;
+  return good;
 }
 
 Vector CondensedFactorisation::eliminate(const Vector& right) const {
-  const State& s = *state_;
   Vector y(right.size());
-  for (Index i = 0; i < y.size(); ++i) y[i] = right[s.order[static_cast<std::size_t>(i)]];
-  return s.half_solve(CHOLMOD_L, std::move(y));
+  state_->each([&](const Part& part, Index row, Index) {
+    auto own = y.segment(row, part.size());
+    for (Index i = 0; i < own.size(); ++i) own[i] = right[part.order()[static_cast<std::size_t>(i)]];
+    part.half_solve(CHOLMOD_L, own);
+  });
+  return y;
 }
 
 Vector CondensedFactorisation::condensed(const Vector& eliminated) const {
-  return state_->root.triangularView<Eigen::Lower>() * eliminated.tail(state_->root.rows());
+  Vector out(static_cast<Index>(state_->kept.size()));
+  state_->each([&](const Part& part, Index row, Index at) {
+    out.segment(at, part.kept()) = part.root().triangularView<Eigen::Lower>() *
+                                   eliminated.segment(row + part.size() - part.kept(), part.kept());
+  });
+  return out;
 }
 
 Vector CondensedFactorisation::recover(Vector eliminated, const Vector& kept) const {
-  const State& s = *state_;
-  eliminated.tail(kept.size()) = s.root.triangularView<Eigen::Lower>().transpose() * kept;
-  const Vector y = s.half_solve(CHOLMOD_Lt, std::move(eliminated));
-  Vector x(y.size());
-  for (Index i = 0; i < y.size(); ++i) x[s.order[static_cast<std::size_t>(i)]] = y[i];
+  Vector x(eliminated.size());
+  state_->each([&](const Part& part, Index row, Index at) {
+    auto own = eliminated.segment(row, part.size());
+    own.tail(part.kept()) = part.root().triangularView<Eigen::Lower>().transpose() * kept.segment(at, part.kept());
+    part.half_solve(CHOLMOD_Lt, own);
+    for (Index i = 0; i < own.size(); ++i) x[part.order()[static_cast<std::size_t>(i)]] = own[i];
+  });
   if (!x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");
   return x;
 }

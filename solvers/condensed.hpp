@@ -41,8 +41,9 @@ class CondensedFactorisation {
   CondensedFactorisation(CondensedFactorisation&&) noexcept;
   CondensedFactorisation& operator=(CondensedFactorisation&&) noexcept;
 
-  /// Takes `a` for symmetric; `kept` ascending. False where it is not positive definite.
-  bool factorise(const SparseTangent& a, const std::vector<int>& kept);
+  /// Takes `a` for symmetric; `kept` ascending. What couples the rows marked in `apart` with the others is left out:
+  /// two factors half as large, at once where a second core is free. False where it is not positive definite.
+  bool factorise(const SparseTangent& a, const std::vector<int>& kept, const std::vector<char>& apart);
   bool ready() const;
   void forget();  ///< the factors, not the ordering
   /// Rows in the order of the dense problem, and the place there of each row of A (-1: not kept).

@@ -57,15 +57,28 @@ void abrupt_tangent(const fem::System& system, const fem::State& trial, const fe
     if (term->abrupt()) term->tangent(trial, weights, sink);
 }
 
+std::vector<char> weakly_coupled(const fem::System& system, const SparseTangent& rows) {
+  std::vector<Index> equations;
+  for (const auto& term : system.terms) term->weakly_coupled(equations);
+  std::vector<char> out(static_cast<std::size_t>(rows.size()), 0);
+  for (Index e : equations)
+    if (const int row = rows.row(e); row >= 0) out[static_cast<std::size_t>(row)] = 1;
+  return out;
+}
+
 ContactNewton::ContactNewton(const fem::System& system, SparseTangent& smooth, NewtonOptions options)
-    : smooth_(smooth), abrupt_(smooth), options_(options), increments_(system, smooth, options) {}
+    : smooth_(smooth),
+      abrupt_(smooth),
+      options_(options),
+      increments_(system, smooth, options),
+      apart_(weakly_coupled(system, smooth)) {}
 
 void ContactNewton::renew(const ContactProblem& problem) {
   dense_ready_ = false;
   refresh(problem);
   for (double inertia = 1;; inertia *= 4) {
     round_off_ = problem.assemble_smooth(inertia);
-    if (factors_.factorise(smooth_, abrupt_.touched())) return;
+    if (factors_.factorise(smooth_, abrupt_.touched(), apart_)) return;
     if (inertia > 1e3) throw NonConvergence("the tangent of the bodies is far from positive definite");
   }
 }

@@ -27,9 +27,13 @@ struct ContactProblem {
   std::function<void(const Vector&)> advance;          ///< moves the iterate by an increment
 };
 
+/// Marks the rows of the equations that terms say are weakly coupled to the others.
+std::vector<char> weakly_coupled(const fem::System& system, const SparseTangent& rows);
+
 /// Solves residual = 0. The smooth terms' factors come from earlier calls and are kept while they work. Each increment
 /// solves contact exactly against the smooth terms so linearised: a dense problem on the few equations that it touches,
-/// by Newton's method with a line search, so that its kinks trouble nothing else. Increments are accelerated by what
+/// by Newton's method with a line search, so that its kinks trouble nothing else. What is weakly coupled is factorised
+/// apart. Increments are accelerated by what
 /// the last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)). Never throws
 /// on failure to converge: the report says so.
 class ContactNewton {
@@ -51,6 +55,7 @@ class ContactNewton {
   DenseTangent abrupt_;
   NewtonOptions options_;
   IncrementTest increments_;
+  std::vector<char> apart_;  // rows of weakly coupled equations
   CondensedFactorisation factors_;
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_;  // of the kept rows, contact included
   bool dense_ready_ = false;

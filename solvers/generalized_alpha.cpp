@@ -69,7 +69,8 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
     const Vector right = -tangent_.gather(trial_inertia_ + trial_force_);
     if (contact_) {
       CondensedFactorisation mass;
-      if (!mass.factorise(tangent_, {})) throw NonConvergence("the mass matrix is singular: some body weighs nothing");
+      if (!mass.factorise(tangent_, {}, weakly_coupled(system, tangent_)))
+        throw NonConvergence("the mass matrix is singular: some body weighs nothing");
       tangent_.scatter(mass.recover(mass.eliminate(right), {}), state_.a);
     } else {
       Factorisation mass;
