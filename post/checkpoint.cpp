@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 4";
+constexpr std::string_view kFormat = "hosel impact checkpoint 5";
 
 template <class Dense>
 json numbers(const Dense& x) {

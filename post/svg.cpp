@@ -32,11 +32,7 @@ std::string svg(const SvgPlot& p) {
   const auto X = [&](double x) { return kLeft + (x - p.x0) / (p.x1 - p.x0) * w; };
   const auto beyond = [&](double y) { return kTop + (p.y1 - y) / (p.y1 - p.y0) * h; };
   const auto Y = [&](double y) { return beyond(std::clamp(y, p.y0, p.y1)); };
-  // Frames of one size have one name, which pictures of a page may share.
-  const std::string frame = fmt::format("frame-{:g}-{:g}", p.width, p.height);
-  std::string s = opened(p.width, p.height, p.told) +
-                  fmt::format("<clipPath id='{}'><rect x='{}' y='{}' width='{}' height='{}'/></clipPath>", frame, kLeft,
-                              kTop, w, h);
+  std::string s = opened(p.width, p.height, p.told);
   for (const SvgBand& b : p.bands)
     s += fmt::format("<rect class='band' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>", X(b.x0), Y(b.y1),
                      X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
@@ -59,8 +55,11 @@ std::string svg(const SvgPlot& p) {
                          one.radius);
       else points += fmt::format("{:.1f},{:.1f} ", X(one.x[i]), beyond(one.y[i]));
     }
-    if (!points.empty())
-      s += fmt::format("<polyline class='{}' clip-path='url(#{})' points='{}'/>", one.style, frame, points);
+    if (!points.empty())  // a picture in the picture ends at its frame
+      s += fmt::format(
+          "<svg x='{0}' y='{1}' viewBox='{0} {1} {2} {3}' style='width:{2}px;height:{3}px'><polyline class='{4}' "
+          "points='{5}'/></svg>",
+          kLeft, kTop, w, h, one.style, points);
     if (one.label.empty() || one.y.empty()) continue;
     // Above or below the line, where the words are farthest from every line.
     const double half = 3.3 * double(one.label.size());

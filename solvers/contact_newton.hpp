@@ -33,9 +33,8 @@ std::vector<char> weakly_coupled(const fem::System& system, const SparseTangent&
 /// Solves residual = 0. The smooth terms' factors come from earlier calls and are kept while they work. Each increment
 /// solves contact exactly against the smooth terms so linearised: a dense problem on the few equations that it touches,
 /// by Newton's method with a line search, so that its kinks trouble nothing else. What is weakly coupled is factorised
-/// apart. Increments are accelerated by what
-/// the last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves, J. Struct. Eng. 136 (2010)). Never throws
-/// on failure to converge: the report says so.
+/// apart. Increments are accelerated by what the last ones brought about (Anderson's mixing; M.H. Scott, G.L. Fenves,
+/// J. Struct. Eng. 136 (2010)). Never throws on failure to converge: the report says so.
 class ContactNewton {
  public:
   ContactNewton(const fem::System& system, SparseTangent& smooth, NewtonOptions options);

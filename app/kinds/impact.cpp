@@ -128,9 +128,9 @@ class ImpactJob final : public Job {
         said["budget"] = report_flight(out, *flight_, c.title, c.launch, blow_.ball);
       }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
-    for (const Entry& entry : models_)
-      if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
     out.write_summary(summary);
+    for (const Entry& entry : models_)  // only now: a disk too full for the summary must not cost the run
+      if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
   }
 
  private:
