@@ -184,9 +184,9 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   if (asked("fe-full-club") || asked("shaft-coupled"))
     if (auto t = root.optional_table("joint")) {
       const models::HeadJoint joint = options.shaft_mount.joint = read_head_joint(*t);
-      using Kind = models::HeadJoint::Kind;
-      if (joint.kind == Kind::none) t->fail("kind", "a blow needs a head on the shaft");
-      if (asked("shaft-coupled") && joint.kind != Kind::rigid && !joint.hinge_across())
+      using Joint = models::HeadJoint::Kind;
+      if (joint.kind == Joint::none) t->fail("kind", "a blow needs a head on the shaft");
+      if (asked("shaft-coupled") && joint.kind != Joint::rigid && !joint.hinge_across())
         t->fail("kind", "shaft-coupled knows a rigid joint and a hinge about YG; for others use fe-full-club");
       options.shaft_beam.hinged = joint.hinge_across();
     }

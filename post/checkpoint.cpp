@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 5";
+constexpr std::string_view kFormat = "hosel impact checkpoint 6";
 
 template <class Dense>
 json numbers(const Dense& x) {
@@ -67,6 +67,35 @@ void from_json(const json& j, solvers::Ledger& l) {
   l.closure = j.at("closure");
 }
 
+std::vector<double> flat(const std::vector<BallSection::Point>& points) {
+  std::vector<double> out;
+  for (const auto& p : points) out.insert(out.end(), p.begin(), p.end());
+  return out;
+}
+
+std::vector<BallSection::Point> points(const json& j) {
+  const auto values = j.get<std::vector<double>>();
+  if (values.size() % 2 != 0) throw std::length_error("checkpoint");
+  std::vector<BallSection::Point> out;
+  for (std::size_t i = 0; i < values.size(); i += 2) out.emplace_back(values[i], values[i + 1]);
+  return out;
+}
+
+json to_json(const BallSection& s) {
+  return {{"time", s.time},   {"force", s.force}, {"points", flat(s.points)}, {"von_mises", s.von_mises},
+          {"cells", s.cells}, {"seams", s.seams}, {"face", flat(s.face)}};
+}
+
+void from_json(const json& j, BallSection& s) {
+  s.time = j.at("time");
+  s.force = j.at("force");
+  s.points = points(j.at("points"));
+  s.von_mises = j.at("von_mises").get<std::vector<double>>();
+  s.cells = j.at("cells").get<std::vector<std::array<int, 4>>>();
+  s.seams = j.at("seams").get<std::vector<std::array<int, 3>>>();
+  s.face = points(j.at("face"));
+}
+
 }  // namespace
 
 void save_checkpoint(const fs::path& file, const std::string& run, const SavedImpact& saved) {
@@ -102,6 +131,7 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
             {"face_centre", numbers(saved.face_centre)},
             {"face_axes", numbers(saved.face_axes)},
             {"history", {saved.history.rows, saved.history.digest}}};
+  if (saved.section) j["section"] = to_json(*saved.section);
   for (const auto& [body, mark] : saved.series) j["series"][body] = {mark.times, mark.digest};
   std::string bytes;
   json::to_cbor(j, bytes);
@@ -144,6 +174,7 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
   out.history = {j.at("history").at(0), j.at("history").at(1)};
+  if (j.contains("section")) from_json(j.at("section"), out.section.emplace());
   if (j.contains("series"))
     for (const auto& [body, mark] : j.at("series").items())
       out.series[body] = {mark.at(0).get<std::vector<double>>(), mark.at(1)};

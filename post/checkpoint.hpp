@@ -7,6 +7,7 @@
 #include <string>
 
 #include "hosel/models/fe_impact.hpp"
+#include "hosel/post/ball_section.hpp"
 #include "hosel/post/history.hpp"
 #include "hosel/post/vtk_series.hpp"
 
@@ -16,6 +17,7 @@ struct SavedImpact {
   models::ImpactCheckpoint impact;
   Vec3 face_centre = Vec3::Zero();                ///< at the start, global [m]
   Mat3 face_axes = Mat3::Identity();              ///< at the start: columns, face frame in the global one
+  std::optional<BallSection> section;             ///< at the largest force so far
   History::Mark history;                          ///< one row a recorded step
   std::map<std::string, VtkSeries::Mark> series;  ///< by body
 };

@@ -119,16 +119,13 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
     return;
   }
   s.start = Pose{s.resumed->face_centre, s.resumed->face_axes};
+  s.section = s.resumed->section;
   s.steps = s.resumed->history.rows;
 }
 
 ImpactRecorder::~ImpactRecorder() = default;
 
-const BallSection* ImpactRecorder::at_largest_force() const {
-  const State& s = *state_;
-  const bool before = s.resumed && s.section && s.resumed->impact.force.value > s.section->force;
-  return s.section && !before ? &*s.section : nullptr;
-}
+const std::optional<BallSection>& ImpactRecorder::at_largest_force() const { return state_->section; }
 
 const models::ImpactCheckpoint* ImpactRecorder::resume() const {
   return state_->resumed ? &state_->resumed->impact : nullptr;
@@ -191,7 +188,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   }
   if (!s.options.checkpoints) return;
   if (step / s.options.steps_per_frame % kFramesPerCheckpoint != 0) return;
-  SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.history->mark(), {}};
+  SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.section, s.history->mark(), {}};
   for (const auto& [body, series] : s.series) saved.series[body] = series.mark();
   save_checkpoint(s.checkpoint(), s.run, saved);
 }

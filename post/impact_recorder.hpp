@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "hosel/golf/blow.hpp"
 #include "hosel/models/fe_impact.hpp"
@@ -29,8 +30,8 @@ class ImpactRecorder {
   ImpactRecorder(std::filesystem::path directory, const Blow& blow, RecorderOptions options, std::string run);
   ~ImpactRecorder();
   void operator()(const models::ImpactView& view);
-  /// The ball when the force was largest; null where that was before the run was stopped and gone on with.
-  const BallSection* at_largest_force() const;
+  /// The ball when the force was largest; nothing where there was none.
+  const std::optional<BallSection>& at_largest_force() const;
   /// Where the impact goes on from; null: from the start.
   const models::ImpactCheckpoint* resume() const;
   /// The series written, for a person to open.

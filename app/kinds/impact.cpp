@@ -187,7 +187,7 @@ class ImpactJob final : public Job {
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
     runs.push_back({name, home, outcome.result});
-    if (const post::BallSection* section = recorder.at_largest_force()) runs.back().section = *section;
+    runs.back().section = recorder.at_largest_force();
     if (record_.vtk)
       runs.back().patch =
           post::read_patch(home / "vtk", models::encounter(blow_).ball_axes, models::mesh_axes(blow_, fe_));

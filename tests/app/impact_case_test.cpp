@@ -194,6 +194,13 @@ std::map<std::string, std::string> files(const fs::path& out) {
   return all;
 }
 
+/// The picture of the ball at the largest force, in the page of a finished run; empty where it has none.
+std::string cut_open(const fs::path& out) {
+  const std::string page = content(out / "report.html");
+  const std::size_t begin = page.find("aria-label='the ball cut open at the largest force");
+  return begin == std::string::npos ? "" : page.substr(begin, page.find("</svg>", begin) - begin);
+}
+
 void expect_same_files(const fs::path& out, const std::map<std::string, std::string>& whole) {
   const auto mine = files(out);
   for (const auto& [name, bytes] : whole) {
@@ -276,7 +283,14 @@ TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
   const fs::path without = fresh_directory("no_history") / "out";
   fs::copy(out, without, fs::copy_options::recursive);
   ASSERT_EQ(command(coarse_full_club() + out.string()).status, 0);
-  EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
+  const std::string log = content(out / "log.txt"), words = "goes on from t = ";
+  ASSERT_NE(log.rfind(words), std::string::npos);
+  // It went on when the largest force was over: the page shows it all the same.
+  const auto summary = nlohmann::json::parse(content(out / "summary.json"));
+  ASSERT_GT(std::stod(log.substr(log.rfind(words) + words.size())),
+            double(summary.at("models").at("fe-full-club").at("solution").at("peak_time_ms")));
+  EXPECT_GT(cut_open(whole).size(), 1000u);
+  EXPECT_EQ(cut_open(out), cut_open(whole));
   expect_same_files(out, expected);
 
   // A history that is gone, a frame that is cut: nothing to go on from, the run begins afresh.

@@ -97,6 +97,8 @@ SavedImpact some_impact() {
   s.impact.solver.state.v = s.impact.solver.state.a = s.impact.solver.auxiliary = Eigen::VectorXd::Random(40);
   s.impact.solver.ledger.strain = {{"ball", 1.5}};
   s.impact.solver.history = {1, 2, 3};
+  s.section =
+      BallSection{2e-4, 9e3, {{0.01, -0.02}, {0, 0.02}}, {1e6, 2e6}, {{0, 1, 2, 3}}, {{0, 1, 2}}, {{0.03, 0.04}}};
   s.history = {12, "history"};
   s.series["ball"] = {{0, 1e-5}, "ball"};
   return s;
@@ -109,6 +111,8 @@ TEST(Checkpoint, ReadsBackToTheLastBit) {
   const auto back = load_checkpoint(file, "run");
   ASSERT_TRUE(back);
   EXPECT_EQ(back->impact.solver.state.q, saved.impact.solver.state.q);
+  ASSERT_TRUE(back->section);
+  EXPECT_EQ(svg(*back->section), svg(*saved.section));
   EXPECT_EQ(back->history.rows, 12);
   EXPECT_EQ(back->series.at("ball").times, saved.series.at("ball").times);
   EXPECT_FALSE(load_checkpoint(file, "another case")) << "of another case or another build";
