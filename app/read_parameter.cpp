@@ -28,6 +28,11 @@ std::string column(const models::NamedParameter& p) {
   return p.unit.empty() ? std::string(p.name) : fmt::format("{}_{}", p.name, p.unit);
 }
 
+std::string Axis::said(std::size_t i) const {
+  const std::string number = fmt::format("{} {:g}", post::spoken(parameter->name), values[i] / si);
+  return parameter->unit.empty() ? number : fmt::format("{} {}", number, post::symbol(parameter->unit));
+}
+
 Axis read_axis(Table table) {
   Axis axis;
   axis.parameter = &read_parameter(table, {"name", "the parameter that varies"});

@@ -19,6 +19,8 @@ struct Axis {
   double si = 1;               ///< one of the unit in SI
   std::string label;           ///< "dynamic loft [deg]"
   std::vector<double> values;  ///< SI
+  /// "dynamic loft 30 deg": where its i-th value stands in a sentence.
+  std::string said(std::size_t i) const;
 };
 Axis read_axis(Table table);
 

@@ -10,6 +10,9 @@
 namespace hosel::post {
 namespace {
 
+/// Of a longer cell the words matter, not where its digits stand.
+constexpr std::size_t kSentence = 30;
+
 /// A key as people read it; a row's name without underscores; anything else as it stands.
 std::string in_words(const std::string& cell, bool name) {
   const bool key = cell.size() > 3 && cell.find('_') != cell.npos &&
@@ -45,12 +48,18 @@ std::string TextTable::html() const {
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (std::size_t c = 0; c < rows[r].size(); ++c) shown[c][r] = in_words(rows[r][c], c == 0);
   }
+  // A column of sentences reads from the left, one of numbers stands by its last digit.
+  std::vector<bool> sentence(shown.front().size());
+  for (const auto& row : shown)
+    for (std::size_t c = 0; c < row.size(); ++c) sentence[c] = sentence[c] || row[c].size() > kSentence;
   std::string out = "<div class='scroll'><table>";
   for (std::size_t r = 0; r < shown.size(); ++r) {
     out += "<tr>";
     for (std::string& cell : shown[r]) {
       if (const auto sign = cell.find("+-"); sign != cell.npos) cell.replace(sign, 2, "±");
-      out += (r ? "<td>" : "<th>") + escape_html(cell);
+      out +=
+          fmt::format("<{}{}>", r ? "td" : "th", sentence[std::size_t(&cell - shown[r].data())] ? " class='l'" : "") +
+          escape_html(cell);
     }
     out += "</tr>";
   }

@@ -151,7 +151,7 @@ class CrossCheckJob final : public Job {
         csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g}", models_[m], c.name, c.unit, mean, square, largest);
         const std::vector<std::size_t> at = index(where);
         for (std::size_t a = 0; a < axes_.size(); ++a) {
-          place += fmt::format("{}{} {:g}", a ? ", " : "", axes_[a].label, axes_[a].values[at[a]] / axes_[a].si);
+          place += (a ? ", " : "") + axes_[a].said(at[a]);
           csv += fmt::format(",{:.8g}", axes_[a].values[at[a]] / axes_[a].si);
         }
         nlohmann::json quantities;
@@ -174,9 +174,10 @@ class CrossCheckJob final : public Job {
                               fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", square),
                               fmt::format("{:+.4g}", largest), place, cause});
         if (c.name == "ball_speed" || c.name == "spin_rate" || c.name == "backspin")
-          out.page().answer(fmt::format("{}, {}", post::spoken(c.name), models_[m]),
-                            fmt::format("{:.4g} {}", square, post::symbol(c.unit)),
-                            fmt::format("rms off {}; at most {:+.4g}", models_[reference_], largest));
+          out.page().answer(
+              fmt::format("{}, {}", post::spoken(c.name), models_[m]),
+              fmt::format("{:.4g} {}", square, post::symbol(c.unit)),
+              fmt::format("rms off {}; at most {:+.4g} {}", models_[reference_], largest, post::symbol(c.unit)));
         out.say(fmt::format("{:<16} {:<13} largest {:+10.4g} {:<4} at {:<60} {}", models_[m], c.name, largest, c.unit,
                             place, cause));
         summary["differences"].push_back({{"model", models_[m]},
@@ -249,7 +250,7 @@ class CrossCheckJob final : public Job {
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       if (a >= 2) {
         base += stride * (axes_[a].values.size() / 2);
-        rest += fmt::format(", {} {:g}", axes_[a].label, axes_[a].values[axes_[a].values.size() / 2] / axes_[a].si);
+        rest += ", " + axes_[a].said(axes_[a].values.size() / 2);
       }
       stride *= axes_[a].values.size();
     }
