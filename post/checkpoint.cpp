@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -94,6 +95,11 @@ void from_json(const json& j, BallSection& s) {
   s.cells = j.at("cells").get<std::vector<std::array<int, 4>>>();
   s.seams = j.at("seams").get<std::vector<std::array<int, 3>>>();
   s.face = points(j.at("face"));
+  const auto known = [&](int i) { return i >= 0 && std::size_t(i) < s.points.size(); };
+  const auto all_known = [&](const auto& corners) { return std::ranges::all_of(corners, known); };
+  if (s.von_mises.size() != s.points.size() || !std::ranges::all_of(s.cells, all_known) ||
+      !std::ranges::all_of(s.seams, all_known))
+    throw std::length_error("checkpoint");
 }
 
 }  // namespace

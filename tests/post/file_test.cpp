@@ -97,8 +97,10 @@ SavedImpact some_impact() {
   s.impact.solver.state.v = s.impact.solver.state.a = s.impact.solver.auxiliary = Eigen::VectorXd::Random(40);
   s.impact.solver.ledger.strain = {{"ball", 1.5}};
   s.impact.solver.history = {1, 2, 3};
-  s.section =
-      BallSection{2e-4, 9e3, {{0.01, -0.02}, {0, 0.02}}, {1e6, 2e6}, {{0, 1, 2, 3}}, {{0, 1, 2}}, {{0.03, 0.04}}};
+  s.section = BallSection{.time = 2e-4, .force = 9e3, .points = {{0.01, -0.02}, {0, 0.02}}, .von_mises = {1e6, 2e6}};
+  s.section->cells = {{0, 1, 1, 0}};
+  s.section->seams = {{1, 0, 1}};
+  s.section->face = {{0.03, 0.04}};
   s.history = {12, "history"};
   s.series["ball"] = {{0, 1e-5}, "ball"};
   return s;
