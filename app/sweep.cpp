@@ -12,10 +12,8 @@
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/app/version.hpp"
 #include "hosel/post/file.hpp"
+#include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
-
-// Present where OpenBLAS is the BLAS; its own threads would fight with one thread a point.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -34,7 +32,7 @@ Plan plan_of(const PointJob& job, const std::string& resolved_case) {
 
 /// The points of this shard that no shard has finished yet, on all cores.
 void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root, Shard shard, Output& out) {
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  solvers::keep_blas_in_one_thread();  // one thread a point
   const fs::path shards = root / "shards", own = shards / fmt::format("{}-of-{}", shard.index, shard.count);
   const auto finished = read_points(shards, plan.fingerprint);
   std::vector<std::size_t> todo;

@@ -9,8 +9,7 @@
 
 #include "hosel/app/cases.hpp"
 #include "hosel/app/sweep.hpp"
-
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+#include "hosel/solvers/blas.hpp"
 
 namespace {
 
@@ -26,7 +25,7 @@ struct Study {
 
 const Study& study() {
   static const Study s;
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  solvers::keep_blas_in_one_thread();
   return s;
 }
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <utility>
 
+#include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
 
 // CHOLMOD opens a team of four threads for every front, whatever the machine has: on fronts as small as ours their
@@ -56,6 +57,7 @@ namespace {
 class Part {
  public:
   Part() {
+    keep_blas_in_one_thread();
     cholmod_start(&common_);
     common_.print = 0;
     common_.nmethods = 1;

@@ -9,11 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
-
-// Fronts are small and runs go in parallel: threads of the BLAS cost more than they bring. Absent
-// where the BLAS is not OpenBLAS.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace hosel::solvers {
 
@@ -235,7 +232,7 @@ struct Factorisation::State {
 
 Factorisation::Factorisation() : state_(std::make_unique<State>()) {
   umfpack_di_defaults(state_->control.data());
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  keep_blas_in_one_thread();
   // The patterns are symmetric; Newton's method is the refinement.
   state_->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   state_->control[UMFPACK_IRSTEP] = 0;

@@ -1,13 +1,22 @@
 #include "hosel/models/fe_impact.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/golf/units.hpp"
+
+// Absent where the BLAS is not OpenBLAS, which opens as many threads as there are cores unless it is told otherwise.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace hosel::models {
 namespace {
@@ -156,6 +165,45 @@ TEST(FeImpact, TiltOfTheMeshDoesNotMatter) {
   EXPECT_NE(tilted.spin, chosen.spin);
   EXPECT_LT((tilted.velocity - chosen.velocity).norm(), 2e-3 * chosen.ball_speed());
   EXPECT_LT((tilted.spin - chosen.spin).norm(), 0.01 * chosen.spin_rate());
+}
+
+/// Rubber that counts the threads which ask it.
+struct Watched : fem::Hyperelastic {
+  void add(const fem::Sym& C, bool tangent, fem::Response& out) const {
+    if (thread_local int last = 0; std::exchange(last, blow) != blow) ++threads;
+    Hyperelastic::add(C, tangent, out);
+  }
+  inline static std::atomic<int> blow = 0, threads = 0;
+};
+
+/// All accepted states of a blow without a plane of symmetry, whose even and odd harmonics have large factors apart;
+/// the BLAS starts with as many threads.
+std::vector<double> states(int threads) {
+  Blow blow = iron_blow();
+  blow.delivery.impact_toe = 0.006;
+  FeImpactOptions o = coarse(4);
+  o.antisymmetric = 4;
+  o.steps_per_contact = 10;
+  o.ball = elastic_ball("watched", {.elastic = Watched{{.c10 = 10e6, .bulk = 400e6}}, .branches = {}, .density = 1129});
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  if (openblas_set_num_threads) openblas_set_num_threads(threads);
+  ++Watched::blow;
+  Watched::threads = 0;
+  std::vector<double> out;
+  tbb::task_arena(threads).execute([&] {
+    solve_free_body(blow, o, [&](const ImpactView& view) {
+      for (const fem::Vector* part : {&view.state.q, &view.state.v, &view.state.a})
+        out.insert(out.end(), part->begin(), part->end());
+    });
+  });
+  EXPECT_EQ(Watched::threads, threads);
+  return out;
+}
+
+TEST(FeImpact, OneThreadAndTwoGiveTheSameBytes) {
+  const std::vector<double> one = states(1), two = states(2);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(double)), 0);
 }
 
 TEST(FeImpact, RefusesWhatItCannotDo) {

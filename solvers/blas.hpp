@@ -1,0 +1,11 @@
+/// The linear algebra below CHOLMOD, UMFPACK and Ceres.
+#pragma once
+
+namespace hosel::solvers {
+
+/// From here on the BLAS works in the threads that call it and opens none of its own: on matrices as small as ours they
+/// cost more than they bring, and they divide sums by the number of cores, so that the last digits of an answer would
+/// depend on the machine. Does nothing where the BLAS is not OpenBLAS. From any thread.
+void keep_blas_in_one_thread();
+
+}  // namespace hosel::solvers
