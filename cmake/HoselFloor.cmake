@@ -22,7 +22,7 @@ function(hosel_floor name)
     # Floors with the same flags share one precompiled header, the first one's.
     if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
       # False alarms of GCC 12: inside Eigen's AVX-512 packets, and where a string is moved into a vector.
-      target_compile_options(hosel_${name} PRIVATE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
+      target_compile_options(hosel_${name} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overread;-Wno-stringop-overflow>")
     endif()
     if(name MATCHES "^(mesh|fem|solvers|models|post)$")
       target_precompile_headers(hosel_${name} REUSE_FROM hosel_golf)
