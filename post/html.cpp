@@ -32,7 +32,7 @@ color:var(--soft);font-size:.87rem}.answers b{font-size:1.2rem;font-weight:600;f
 table{border-collapse:collapse;margin:.6rem 0;font-variant-numeric:tabular-nums}
 td,th{padding:.28rem .8rem .28rem 0;text-align:right;border-bottom:1px solid var(--rule);vertical-align:top}
 th{font-weight:600;color:var(--soft);font-size:.87rem}td:first-child,th:first-child,.l{text-align:left!important}
-td.l:not(:first-child){min-width:11rem}
+td.long:not(:first-child){min-width:11rem}
 tr.chosen td{background:var(--chosen);font-weight:600}.scroll{overflow-x:auto}
 .inputs{columns:21rem 2;column-gap:2.5rem}.inputs table{break-inside:avoid;width:100%}.inputs td:last-child{
 overflow-wrap:anywhere;max-width:14rem}
@@ -40,7 +40,7 @@ pre{overflow-x:auto;font:13px/1.45 ui-monospace,'DejaVu Sans Mono',monospace;mar
 pre.command{border-left:3px solid var(--rule);padding-left:.8rem;white-space:pre-wrap;overflow-wrap:anywhere}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(26rem,100%),1fr));gap:1rem}figure{margin:.4rem 0}
 .wide{max-width:44rem}.figures figure.alone{grid-column:1/-1;max-width:44rem}figcaption{font-size:.85rem;color:var(--soft)}
-svg,img{width:100%;height:auto;display:block}img{border-radius:4px}svg text{font-size:12px;fill:var(--ink)}
+:not(svg)>svg,img{width:100%;height:auto;display:block}img{border-radius:4px}svg text{font-size:12px;fill:var(--ink)}
 .grid{stroke:var(--rule)}.band{fill:var(--band)}.before{fill:var(--grey);opacity:.65}
 .after{fill:var(--blue);opacity:.85}.holdout{fill:var(--orange);opacity:.9}.one{stroke:var(--gold);stroke-dasharray:4 3}
 .whisker{stroke:var(--ink);stroke-width:1.4}.line-before{fill:none;stroke:var(--grey);stroke-width:1.4}

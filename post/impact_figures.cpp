@@ -46,6 +46,7 @@ std::string force_svg(const std::filesystem::path& history) {
   for (std::size_t i = 0; i < time.size(); ++i) peak.add(time[i], normal[i]);
   SvgPlot p{.y_label = "force on the ball [kN]", .told = "normal and tangential force over time"};
   p.series = {{"line-1", time, normal}, {"line-2", time, tangential}};
+  p.series[0].label = "normal";
   p.series[1].label = "along the slip";
   p.marks = {{peak.time, peak.value, fmt::format("{:.2f} kN at {:.3f} ms", peak.value, peak.time)}};
   return plot(std::move(p));

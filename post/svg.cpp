@@ -57,7 +57,7 @@ std::string svg(const SvgPlot& p) {
     }
     if (!points.empty())  // a picture in the picture ends at its frame
       s += fmt::format(
-          "<svg x='{0}' y='{1}' viewBox='{0} {1} {2} {3}' style='width:{2}px;height:{3}px'><polyline class='{4}' "
+          "<svg x='{0}' y='{1}' width='{2}' height='{3}' viewBox='{0} {1} {2} {3}'><polyline class='{4}' "
           "points='{5}'/></svg>",
           kLeft, kTop, w, h, one.style, points);
     if (one.label.empty() || one.y.empty()) continue;
@@ -70,9 +70,13 @@ std::string svg(const SvgPlot& p) {
         if (cx - half < kLeft || cx + half > kLeft + w || cy < kTop + 8 || cy > kTop + h - 8) continue;
         double nearest = 20 - 0.2 * std::abs(above);  // room enough
         for (const SvgSeries& other : p.series)
-          for (std::size_t k = 0; k < other.x.size(); ++k)
-            nearest = std::min(nearest, std::hypot(std::max(0.0, std::abs(X(other.x[k]) - cx) - half),
-                                                   std::max(0.0, std::abs(Y(other.y[k]) - cy) - 6)));
+          for (std::size_t k = 1; k < other.x.size(); ++k)
+            for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {  // a steep line crosses words between its points
+              const double x = X(std::lerp(other.x[k - 1], other.x[k], t)),
+                           y = Y(std::lerp(other.y[k - 1], other.y[k], t));
+              nearest = std::min(
+                  nearest, std::hypot(std::max(0.0, std::abs(x - cx) - half), std::max(0.0, std::abs(y - cy) - 6)));
+            }
         if (nearest > best) best = nearest, at_x = cx, at_y = cy;
       }
     if (best >= 0)
@@ -83,7 +87,7 @@ std::string svg(const SvgPlot& p) {
     const bool left = X(m.x) > kLeft + 0.6 * w;
     s += fmt::format(
         "<circle class='mark' cx='{:.1f}' cy='{:.1f}' r='4'/><text x='{:.1f}' y='{:.1f}' text-anchor='{}'>{}</text>",
-        X(m.x), Y(m.y), X(m.x) + (left ? -9 : 9), Y(m.y) + 4, left ? "end" : "start", escape_html(m.text));
+        X(m.x), Y(m.y), X(m.x) + (left ? -9 : 9), Y(m.y) - 4, left ? "end" : "start", escape_html(m.text));
   }
   return s + fmt::format(
                  "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text><text transform='translate(13 {:.1f}) "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "hosel/post/html.hpp"
 #include "hosel/post/labels.hpp"
@@ -10,7 +11,7 @@
 namespace hosel::post {
 namespace {
 
-/// Of a longer cell the words matter, not where its digits stand.
+/// A column with longer cells is not squeezed on a narrow page.
 constexpr std::size_t kSentence = 30;
 
 /// A key as people read it; a row's name without underscores; anything else as it stands.
@@ -48,18 +49,23 @@ std::string TextTable::html() const {
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (std::size_t c = 0; c < rows[r].size(); ++c) shown[c][r] = in_words(rows[r][c], c == 0);
   }
-  // A column of sentences reads from the left, one of numbers stands by its last digit.
-  std::vector<bool> sentence(shown.front().size());
-  for (const auto& row : shown)
-    for (std::size_t c = 0; c < row.size(); ++c) sentence[c] = sentence[c] || row[c].size() > kSentence;
+  // A column of words reads from the left, one of numbers stands by its last digit.
+  std::vector<std::size_t> longest(shown.front().size());
+  std::vector<bool> words(longest.size());
+  for (auto row = shown.begin() + 1; row != shown.end(); ++row)
+    for (std::size_t c = 0; c < row->size(); ++c) {
+      const std::string& cell = (*row)[c];
+      words[c] = words[c] || (!cell.empty() && std::isalpha(static_cast<unsigned char>(cell.front())));
+      longest[c] = std::max(longest[c], cell.size());
+    }
   std::string out = "<div class='scroll'><table>";
   for (std::size_t r = 0; r < shown.size(); ++r) {
     out += "<tr>";
-    for (std::string& cell : shown[r]) {
+    for (std::size_t c = 0; c < shown[r].size(); ++c) {
+      std::string& cell = shown[r][c];
       if (const auto sign = cell.find("+-"); sign != cell.npos) cell.replace(sign, 2, "±");
-      out +=
-          fmt::format("<{}{}>", r ? "td" : "th", sentence[std::size_t(&cell - shown[r].data())] ? " class='l'" : "") +
-          escape_html(cell);
+      const char* kind = !words[c] ? "" : longest[c] > kSentence ? " class='l long'" : " class='l'";
+      out += fmt::format("<{}{}>", r ? "td" : "th", kind) + escape_html(cell);
     }
     out += "</tr>";
   }

@@ -18,6 +18,8 @@ bool holds(const std::string& page, const std::string& text) { return page.find(
 /// Nothing that a browser would fetch.
 void expect_alone(const std::string& page) {
   EXPECT_FALSE(std::regex_search(page, std::regex("<(script|link|iframe)|(src|href)=.?(https?:|//)|@import|url\\(")));
+  // By its attributes: no style of a page may stretch it.
+  EXPECT_FALSE(std::regex_search(page, std::regex("<svg[^>]*style=|[^>]svg,img\\{")));
   EXPECT_TRUE(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
 }
 
