@@ -1,5 +1,9 @@
 #include "hosel/fem/contact.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -125,54 +129,101 @@ Eigen::Ref<const Contact::Directions, 0, Eigen::OuterStride<>> Contact::function
   return functions_.middleRows<3>(3 * static_cast<Index>(angle));
 }
 
-template <class Visit>
-void Contact::visit(const State& s, Points which, Visit&& visit) const {
-  const Moved m = moved(s);
-  const Mat3 to_body = m.R.transpose();
+struct Contact::Scratch {
+  explicit Scratch(const Contact& contact)
+      : U(contact.solid_.unknowns(), 3),
+        V(contact.solid_.unknowns(), 3),
+        u(contact.solid_.unknowns()),
+        v(contact.solid_.unknowns()),
+        arms(3, static_cast<Index>(contact.angles_.size())),
+        velocities(arms),
+        forces(arms) {}
+  Eigen::Matrix<double, Eigen::Dynamic, 3> U, V;  // of the edge, one column a node
+  Vector u, v;                                    // of the station
+  Directions arms, velocities;                    // of its points, global
+  Directions forces;                              // on them, global
+};
+
+std::vector<std::size_t> Contact::within_reach(const Moved& m, const State& s) const {
   const Index K = solid_.unknowns(), angles = static_cast<Index>(angles_.size());
-  const double reach = carrier_.centre.x() + surface_->reach(m.own);
-  Eigen::Matrix<double, Eigen::Dynamic, 3> U(K, 3), V(K, 3);  // one column a node of the edge
-  Vector u(K), v(K);
-  Directions arms(3, angles), velocities(3, angles);
-  const Edge* edge = nullptr;
-  Kinematics k;
-  for (const Station& station : stations_) {
-    if (edge != &edges_[station.edge]) {
-      edge = &edges_[station.edge];
+  const double reach = m.node.dot(m.R.col(0)) + carrier_.centre.x() + surface_->reach(m.own);
+  Eigen::MatrixXd lift(angles, K);  // along the surface's first axis, by each function
+  for (Index a = 0; a < angles; ++a) lift.row(a).noalias() = m.R.col(0).transpose() * functions_.middleRows<3>(3 * a);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> U = Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(K, 3);
+  Vector u(K), heights(angles);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    const Edge& edge = edges_[stations_[i].edge];
+    if (i == 0 || stations_[i].edge != stations_[i - 1].edge) {
       U.setZero();
-      V.setZero();
-      for (std::size_t i = 0; i < edge->places.size(); ++i) {
-        U.data()[edge->places[i]] = s.q[edge->dofs[i] + to_q_];
-        V.data()[edge->places[i]] = s.v[edge->dofs[i]];
-      }
+      for (std::size_t k = 0; k < edge.places.size(); ++k) U.data()[edge.places[k]] = s.q[edge.dofs[k] + to_q_];
     }
-    u.noalias() = U * station.shape;
-    arms.colwise() = -m.node;
-    arms += reference_.middleCols(static_cast<Index>(k.number), angles);
-    arms.reshaped().noalias() += functions_ * u;
-    if (which == Points::near && (to_body.row(0) * arms).minCoeff() > reach) {
-      k.number += angles_.size();
-      continue;
-    }
-    v.noalias() = V * station.shape;
-    velocities.reshaped().noalias() = functions_ * v;
-    k.station = &station;
-    for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
-      k.arm.noalias() = to_body * arms.col(static_cast<Index>(k.angle));
-      k.place = place(m, k.arm);
-      k.gap = surface_->gap(k.place);
-      if (k.gap < 0) {  // elsewhere nothing acts
-        k.relative.noalias() = to_body * (velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
-        k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
-        if (own_) {
-          k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
-          k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
-                            k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
-        }
-      }
-      visit(m, std::as_const(k));
-    }
+    u.noalias() = U * stations_[i].shape;
+    heights.noalias() = lift * u;
+    heights.noalias() += reference_.middleCols(static_cast<Index>(i) * angles, angles).transpose() * m.R.col(0);
+    if (!(heights.minCoeff() > reach)) out.push_back(i);
   }
+  return out;
+}
+
+template <class Work>
+void Contact::over_stations(std::size_t count, const Work& work) const {
+  constexpr std::size_t kWorthIt = 20000;  // numbers to be multiplied; waking another thread costs as much
+  const std::size_t all = std::max<std::size_t>(count, 1), size = static_cast<std::size_t>(functions_.size());
+  // Isolated: a thread that waits here takes no other blow meanwhile.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, all * size < kWorthIt ? all : 2),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        Scratch scratch(*this);
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) work(i, scratch);
+                      });
+  });
+}
+
+template <class Visit>
+void Contact::visit_station(const Moved& m, const State& s, std::size_t number, Scratch& t, Visit&& visit) const {
+  const Station& station = stations_[number];
+  const Edge& edge = edges_[station.edge];
+  const Index angles = static_cast<Index>(angles_.size());
+  const Mat3 to_body = m.R.transpose();
+  t.U.setZero();
+  t.V.setZero();
+  for (std::size_t i = 0; i < edge.places.size(); ++i) {
+    t.U.data()[edge.places[i]] = s.q[edge.dofs[i] + to_q_];
+    t.V.data()[edge.places[i]] = s.v[edge.dofs[i]];
+  }
+  t.u.noalias() = t.U * station.shape;
+  t.v.noalias() = t.V * station.shape;
+  t.arms.colwise() = -m.node;
+  t.arms += reference_.middleCols(static_cast<Index>(number) * angles, angles);
+  t.arms.reshaped().noalias() += functions_ * t.u;
+  t.velocities.reshaped().noalias() = functions_ * t.v;
+  Kinematics k;
+  k.station = &station;
+  k.number = number * angles_.size();
+  for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
+    k.arm.noalias() = to_body * t.arms.col(static_cast<Index>(k.angle));
+    k.place = place(m, k.arm);
+    k.gap = surface_->gap(k.place);
+    if (k.gap < 0) {  // elsewhere nothing acts
+      k.relative.noalias() = to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
+      k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
+      if (own_) {
+        k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
+        k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
+                          k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
+      }
+    }
+    visit(std::as_const(k));
+  }
+}
+
+template <class Visit>
+void Contact::visit(const State& s, Visit&& visit) const {
+  const Moved m = moved(s);
+  Scratch scratch(*this);
+  for (std::size_t i = 0; i < stations_.size(); ++i)
+    visit_station(m, s, i, scratch, [&](const Kinematics& k) { visit(m, k); });
 }
 
 Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
@@ -204,7 +255,7 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
 }
 
 void Contact::start(const State& s) {
-  visit(s, Points::all, [&](const Moved&, const Kinematics& k) {
+  visit(s, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     past = {};
     past.place = past.anchor = k.place;
@@ -220,38 +271,45 @@ void Contact::pattern(std::vector<std::vector<Index>>& blocks) const {
 
 void Contact::residual(const State& s, Vector&, Vector& force) const {
   if (!started_) throw std::logic_error("contact: start() has not been called");
-  const Index K = solid_.unknowns();
-  Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
-  SurfaceUnknowns own = SurfaceUnknowns::Zero();
-  Directions forces(3, static_cast<Index>(angles_.size()));  // of a station's points, global
-  Eigen::Matrix<double, Eigen::Dynamic, 3> spread(K, 3);     // over the nodes of its edge
-  Mat3 R = Mat3::Identity();
-  bool touched = false;
-  visit(s, Points::near, [&](const Moved& m, const Kinematics& k) {
-    if (k.angle == 0) {
-      forces.setZero();
-      touched = false;
-    }
-    const Station& station = *k.station;
-    if (k.gap < 0) {
-      R = m.R;
-      touched = true;
+  const Moved m = moved(s);
+  const std::vector<std::size_t> near = within_reach(m, s);
+  struct Push {
+    bool any = false;
+    Eigen::Matrix<double, Eigen::Dynamic, 3> spread;  // over the nodes of the edge
+    Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
+    SurfaceUnknowns own = SurfaceUnknowns::Zero();
+  };
+  std::vector<Push> pushes(near.size());
+  over_stations(near.size(), [&](std::size_t i, Scratch& t) {
+    Push& push = pushes[i];
+    const Station& station = stations_[near[i]];
+    t.forces.setZero();
+    visit_station(m, s, near[i], t, [&](const Kinematics& k) {
+      if (!(k.gap < 0)) return;
+      push.any = true;
       const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
-      forces.col(static_cast<Index>(k.angle)).noalias() = m.R * f;
-      total += f;
-      moment += k.arm.cross(f);
-      own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
-    }
-    if (k.angle + 1 < angles_.size() || !touched) return;
-    spread.noalias() = (functions_.transpose() * forces.reshaped()) * station.shape.transpose();
-    const Edge& edge = edges_[station.edge];
-    for (std::size_t i = 0; i < edge.places.size(); ++i) force[edge.dofs[i]] -= spread.data()[edge.places[i]];
+      t.forces.col(static_cast<Index>(k.angle)).noalias() = m.R * f;
+      push.total += f;
+      push.moment += k.arm.cross(f);
+      push.own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
+    });
+    if (push.any) push.spread.noalias() = (functions_.transpose() * t.forces.reshaped()) * station.shape.transpose();
   });
-  if (carrier_.translation) {
-    force.segment<3>(carrier_.translation->v) += free_translation() * R * total;
-    force.segment<3>(carrier_.rotation->v) += free_rotation(R) * moment;
+  Push sum;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Push& push = pushes[i];
+    if (!push.any) continue;
+    const Edge& edge = edges_[stations_[near[i]].edge];
+    for (std::size_t j = 0; j < edge.places.size(); ++j) force[edge.dofs[j]] -= push.spread.data()[edge.places[j]];
+    sum.total += push.total;
+    sum.moment += push.moment;
+    sum.own += push.own;
   }
-  if (own_) force.segment(own_->v, own_->size) += own.head(own_->size);
+  if (carrier_.translation) {
+    force.segment<3>(carrier_.translation->v) += free_translation() * m.R * sum.total;
+    force.segment<3>(carrier_.rotation->v) += free_rotation(m.R) * sum.moment;
+  }
+  if (own_) force.segment(own_->v, own_->size) += sum.own.head(own_->size);
 }
 
 void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const {
@@ -315,47 +373,47 @@ void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weig
 void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
   if (weights.stiffness == 0 && weights.damping == 0) return;
   const Index K = solid_.unknowns(), size = K + carried_, own = own_ ? own_->size : 0;
-  // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
-  Linearised at(static_cast<Index>(angles_.size()) * (3 + own), size);
-  Eigen::MatrixXd sum(size, size), wide(3 * K + carried_, 3 * K + carried_);  // of a station; of its edge
-  const Edge* edge = nullptr;
-  bool edge_touched = false;
-  const auto finish_edge = [&] {
-    if (edge_touched) sink.add(edge->dofs, edge->dofs, wide(edge->places_and_carried, edge->places_and_carried));
-    edge_touched = false;
-  };
-  visit(s, Points::near, [&](const Moved& m, const Kinematics& k) {
-    const Station& station = *k.station;
-    if (k.angle == 0) {
-      if (edge != &edges_[station.edge]) {
-        finish_edge();
-        edge = &edges_[station.edge];
-      }
-      at.clear();
-    }
-    if (k.gap < 0) linearise(m, k, weights, at);
-    if (k.angle + 1 < angles_.size() || at.rows == 0) return;
-    sum.noalias() = at.changes.topRows(at.rows).transpose() * at.forces.topRows(at.rows);
+  const Moved m = moved(s);
+  const std::vector<std::size_t> near = within_reach(m, s);
+  std::vector<Eigen::MatrixXd> sums(near.size());  // of what touches
+  over_stations(near.size(), [&](std::size_t i, Scratch& t) {
+    // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
+    Linearised at(static_cast<Index>(angles_.size()) * (3 + own), size);
+    visit_station(m, s, near[i], t, [&](const Kinematics& k) {
+      if (k.gap < 0) linearise(m, k, weights, at);
+    });
+    if (at.rows == 0) return;
+    sums[i].noalias() = at.changes.topRows(at.rows).transpose() * at.forces.topRows(at.rows);
     if (carrier_.translation) {
-      sum.middleCols<3>(K + 3) += at.turned;
-      sum.middleRows<3>(K + 3) += at.moment;
+      sums[i].middleCols<3>(K + 3) += at.turned;
+      sums[i].middleRows<3>(K + 3) += at.moment;
     }
-    if (!edge_touched) wide.setZero();
-    edge_touched = true;
-    for (Index j = 0; j < 3; ++j) {
-      for (Index i = 0; i < 3; ++i)
-        wide.block(i * K, j * K, K, K) += station.shape[i] * station.shape[j] * sum.topLeftCorner(K, K);
-      wide.block(j * K, 3 * K, K, carried_) += station.shape[j] * sum.topRightCorner(K, carried_);
-      wide.block(3 * K, j * K, carried_, K) += station.shape[j] * sum.bottomLeftCorner(carried_, K);
-    }
-    wide.bottomRightCorner(carried_, carried_) += sum.bottomRightCorner(carried_, carried_);
   });
-  finish_edge();
+  Eigen::MatrixXd wide(3 * K + carried_, 3 * K + carried_);  // of an edge
+  bool touched = false;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Station& station = stations_[near[i]];
+    if (const Eigen::MatrixXd& sum = sums[i]; sum.size() > 0) {
+      if (!touched) wide.setZero();
+      touched = true;
+      for (Index j = 0; j < 3; ++j) {
+        for (Index l = 0; l < 3; ++l)
+          wide.block(l * K, j * K, K, K) += station.shape[l] * station.shape[j] * sum.topLeftCorner(K, K);
+        wide.block(j * K, 3 * K, K, carried_) += station.shape[j] * sum.topRightCorner(K, carried_);
+        wide.block(3 * K, j * K, carried_, K) += station.shape[j] * sum.bottomLeftCorner(carried_, K);
+      }
+      wide.bottomRightCorner(carried_, carried_) += sum.bottomRightCorner(carried_, carried_);
+    }
+    if (!touched || (i + 1 < near.size() && stations_[near[i + 1]].edge == station.edge)) continue;
+    const Edge& edge = edges_[station.edge];
+    sink.add(edge.dofs, edge.dofs, wide(edge.places_and_carried, edge.places_and_carried));
+    touched = false;
+  }
 }
 
 Energies Contact::energies(const State& s) const {
   Energies out;
-  visit(s, Points::near, [&](const Moved&, const Kinematics& k) {
+  visit(s, [&](const Moved&, const Kinematics& k) {
     if (k.gap >= 0) return;
     out.contact += k.station->area *
                    (0.5 * laws_.normal_stiffness * k.gap * k.gap + evaluate(k, false).friction.stored);
@@ -365,7 +423,7 @@ Energies Contact::energies(const State& s) const {
 }
 
 void Contact::commit(const State& s) {
-  visit(s, Points::all, [&](const Moved&, const Kinematics& k) {
+  visit(s, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     const double area = k.station->area;
     if (k.gap >= 0) {
@@ -426,7 +484,7 @@ ContactReport Contact::report(const State& s) const {
   ContactReport out;
   double weight = 0;
   Vec3 centre = Vec3::Zero();
-  visit(s, Points::all, [&](const Moved& m, const Kinematics& k) {
+  visit(s, [&](const Moved& m, const Kinematics& k) {
     out.nearest = std::min(out.nearest, k.gap);
     if (k.gap >= 0) return;
     const Local local = evaluate(k, false);
@@ -449,7 +507,7 @@ ContactReport Contact::report(const State& s) const {
 
 std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
-  visit(s, Points::all, [&](const Moved& m, const Kinematics& k) {
+  visit(s, [&](const Moved& m, const Kinematics& k) {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
@@ -460,7 +518,7 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
 
 double Contact::centre_gap(const State& s) const {
   const Moved m = moved(s);
-  return surface_->gap(place(m, m.R.transpose() * (solid_.motion(s).centre - m.node)));
+  return surface_->gap(place(m, m.R.transpose() * (solid_.centre(s) - m.node)));
 }
 
 Mat3 Contact::free_translation() const {

@@ -134,17 +134,28 @@ class Contact final : public Term {
   /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point
   /// and one for each unknown of the surface's own; columns are the solid's functions, carrier and own unknowns.
   struct Linearised {
-    Linearised(Index most, Index size) : changes(most, size), forces(most, size), turned(size, 3), moment(3, size) {}
-    void clear() { rows = 0, turned.setZero(), moment.setZero(); }
+    Linearised(Index most, Index size)
+        : changes(most, size),
+          forces(most, size),
+          turned(decltype(turned)::Zero(size, 3)),
+          moment(Directions::Zero(3, size)) {}
     Index rows = 0;
     Eigen::MatrixXd changes, forces;
     Eigen::Matrix<double, Eigen::Dynamic, 3> turned;  // columns of the carrier's rotation
     Directions moment;                                // and its rows
   };
   void linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const;
-  enum class Points { all, near };  // near: at stations with a point that the surface reaches
+  struct Scratch;  // of a station's work
+  /// Numbers of the stations with a point that the surface reaches.
+  std::vector<std::size_t> within_reach(const Moved& m, const State& s) const;
+  /// So many stations may be worked on at once, each on its own: what they find is put together in their order.
+  template <class Work>
+  void over_stations(std::size_t count, const Work& work) const;
   template <class Visit>
-  void visit(const State& s, Points which, Visit&& visit) const;  // visit(moved, kinematics)
+  void visit_station(const Moved& m, const State& s, std::size_t number, Scratch& scratch,
+                     Visit&& visit) const;  // visit(kinematics)
+  template <class Visit>
+  void visit(const State& s, Visit&& visit) const;  // visit(moved, kinematics) at every point
 
   const HarmonicSolid& solid_;
   std::unique_ptr<const ContactSurface> surface_;

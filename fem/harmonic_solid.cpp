@@ -411,7 +411,7 @@ void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink&
     if (static_cast<Index>(places.size()) == 8 * K) stiffness[e] = std::move(ke);
     else stiffness[e] = ke(places, places);
   });
-  for (std::size_t e = 0; e < elements; ++e) sink.add(element_equations_[e], element_equations_[e], stiffness[e]);
+  sink.add_all(element_equations_, stiffness);
 }
 
 Energies HarmonicSolid::energies(const State& s) const {
@@ -642,6 +642,22 @@ MeanMotion HarmonicSolid::motion(const State& s) const {
   out.angular_momentum = placement_.axes * (spin - centre.cross(momentum));
   out.inertia = placement_.axes * (about.trace() * Mat3::Identity() - about) * placement_.axes.transpose();
   return out;
+}
+
+Vec3 HarmonicSolid::centre(const State& s) const {
+  double mass = 0;
+  Vec3 first = Vec3::Zero();
+  for (std::size_t e = 0; e < mesh_.elements.size(); ++e)
+    for (int i = 0; i < 8; ++i) {
+      const int node = mesh_.elements[e][static_cast<std::size_t>(i)];
+      const double m = element_mass_[e].row(i).sum();
+      mass += m;
+      first.x() += m * mesh_.nodes[static_cast<std::size_t>(node)].x();
+      for (Index k = 0; k < unknowns(); ++k)  // no other function has a mean over the angles
+        if (const AngularFunction& f = basis_[static_cast<std::size_t>(k)]; f.order == 0)
+          first += m * s.q[offset(node, k)] * f.cosine;
+    }
+  return placement_.origin + placement_.axes * (first / mass);
 }
 
 double HarmonicSolid::mass() const {

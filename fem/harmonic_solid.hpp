@@ -84,6 +84,7 @@ class HarmonicSolid final : public Term {
   void set_velocity(State& s, const Vec3& linear, const Vec3& angular) const;
 
   MeanMotion motion(const State& s) const;
+  Vec3 centre(const State& s) const;                                     ///< of mass alone, as motion() has it
   double mass() const;                                                   ///< of the mesh [kg]
   const std::vector<double>& dissipated() const { return dissipated_; }  ///< by layer, cumulative [J]
   std::vector<double> strain_by_layer(const State& accepted) const;      ///< [J]

@@ -28,6 +28,8 @@ class TangentSink {
   /// Adds `block` (row-major meaning irrelevant: block(i, j) at row rows[i], column columns[j]).
   virtual void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
                    const Eigen::Ref<const Eigen::MatrixXd>& block) = 0;
+  /// Adds blocks whose rows and columns are alike, one after the other or at once.
+  virtual void add_all(const std::vector<std::vector<Index>>& equations, const std::vector<Eigen::MatrixXd>& blocks);
 };
 
 /// Joules. Stored energies are states; dissipations and external work are cumulative since the start.

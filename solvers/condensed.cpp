@@ -211,30 +211,35 @@ struct CondensedFactorisation::State {
   Eigen::MatrixXd schur;
   bool ready = false;
 
-  /// Works on each part, with the first of its places among all rows and among the kept ones; at once where cores are
-  /// free, and no other blow meanwhile.
+  /// Works on the number of each part, at once where cores are free, and on no other blow meanwhile.
+  template <class Work>
+  void at_once(const Work& work) const {
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, parts.size(), work); });
+  }
+
+  /// Works on each part, with the first of its places among all rows and among the kept ones.
   template <class Work>
   void each(const Work& work) const {
-    tbb::this_task_arena::isolate([&] {
-      tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
-        Index row = 0, kept_row = 0;
-        for (std::size_t k = 0; k < i; ++k) row += parts[k]->size(), kept_row += parts[k]->kept();
-        work(*parts[i], row, kept_row);
-      });
+    at_once([&](std::size_t i) {
+      Index row = 0, kept_row = 0;
+      for (std::size_t k = 0; k < i; ++k) row += parts[k]->size(), kept_row += parts[k]->kept();
+      work(*parts[i], row, kept_row);
     });
   }
 
   void analyse(const SparseTangent& a, const std::vector<char>& apart) {
     const auto n = static_cast<std::size_t>(a.size());
-    std::vector<char> last(n, 0), members(n, 0);
+    std::vector<char> last(n, 0);
     for (int k : asked) last[static_cast<std::size_t>(k)] = 1;
-    parts.clear();
+    std::vector<std::vector<char>> members;
     for (const char which : {0, 1}) {
-      for (std::size_t i = 0; i < n; ++i) members[i] = (apart.empty() ? 0 : apart[i]) == which;
-      if (std::ranges::find(members, 1) == members.end()) continue;
-      parts.push_back(std::make_unique<Part>());
-      parts.back()->analyse(a, members, last);
+      members.emplace_back(n);
+      for (std::size_t i = 0; i < n; ++i) members.back()[i] = (apart.empty() ? 0 : apart[i]) == which;
+      if (std::ranges::find(members.back(), 1) == members.back().end()) members.pop_back();
     }
+    parts.clear();
+    for (std::size_t i = 0; i < members.size(); ++i) parts.push_back(std::make_unique<Part>());
+    at_once([&](std::size_t i) { parts[i]->analyse(a, members[i], last); });
     kept.clear();
     for (const auto& part : parts) kept.insert(kept.end(), part->order().end() - part->kept(), part->order().end());
     places.assign(n, -1);

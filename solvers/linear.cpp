@@ -1,6 +1,8 @@
 #include "hosel/solvers/linear.hpp"
 
 #include <klu.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <umfpack.h>
 
 #include <algorithm>
@@ -13,6 +15,16 @@
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::solvers {
+namespace {
+
+// What runs at once here is isolated: a thread that waits takes no other blow meanwhile.
+
+void keep_once(std::vector<int>& list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
 
 SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(terms) {
   const auto n = static_cast<std::size_t>(system.dof_map.size());
@@ -44,15 +56,12 @@ SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(te
       auto& list = columns[static_cast<std::size_t>(column)];
       for (Index r : block)
         if (const int row = reduced_[static_cast<std::size_t>(r)]; row >= 0) list.push_back(row);
-      if (list.size() > 4096) {  // keeps the lists short while many blocks meet in one column
-        std::ranges::sort(list);
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-      }
+      if (list.size() > 4096) keep_once(list);  // keeps the lists short while many blocks meet in one column
     }
   starts_.push_back(0);
-  for (auto& list : columns) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+  tbb::this_task_arena::isolate(
+      [&] { tbb::parallel_for(std::size_t{0}, columns.size(), [&](std::size_t i) { keep_once(columns[i]); }); });
+  for (const auto& list : columns) {
     rows_.insert(rows_.end(), list.begin(), list.end());
     starts_.push_back(static_cast<int>(rows_.size()));
   }
@@ -147,6 +156,33 @@ void SparseTangent::add(const std::vector<Index>& rows, const std::vector<Index>
   for (Index j = 0; j < from.cols(); ++j)
     for (Index i = 0; i < from.rows(); ++i, ++to)
       if (*to >= 0) values_[static_cast<std::size_t>(*to)] += from(i, j);
+}
+
+void SparseTangent::add_all(const std::vector<std::vector<Index>>& equations,
+                            const std::vector<Eigen::MatrixXd>& blocks) {
+  if (!transform_.empty()) return TangentSink::add_all(equations, blocks);
+  const std::size_t first = turn_;
+  turn_ += blocks.size();
+  if (scatters_.size() < turn_) scatters_.resize(turn_);
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+      Scatter& s = scatters_[first + b];
+      if (s.rows != equations[b] || s.columns != equations[b]) s = make_scatter(equations[b], equations[b]);
+    });
+    constexpr Index slices = 8;
+    tbb::parallel_for(Index{0}, slices, [&](Index slice) {
+      const Index from = size() * slice / slices, end = size() * (slice + 1) / slices;
+      for (std::size_t b = 0; b < blocks.size(); ++b)
+        for (Index j = 0; j < blocks[b].cols(); ++j) {
+          const int column = row(equations[b][static_cast<std::size_t>(j)]);
+          if (column < from || column >= end) continue;
+          const double* value = blocks[b].col(j).data();
+          const int* to = scatters_[first + b].to.data() + j * blocks[b].rows();
+          for (Index i = 0; i < blocks[b].rows(); ++i)
+            if (to[i] >= 0) values_[static_cast<std::size_t>(to[i])] += value[i];
+        }
+    });
+  });
 }
 
 Vector SparseTangent::multiply(const Vector& x) const {

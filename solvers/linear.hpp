@@ -38,6 +38,8 @@ class SparseTangent final : public fem::TangentSink {
 
   void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
            const Eigen::Ref<const Eigen::MatrixXd>& block) override;
+  /// On all cores, each with columns of its own: sums do not depend on how many there are.
+  void add_all(const std::vector<std::vector<Index>>& equations, const std::vector<Eigen::MatrixXd>& blocks) override;
 
   Vector multiply(const Vector& reduced) const;
   /// Norm of the residual that round-off alone may leave: eps | |A| |x| |, with x the configuration's

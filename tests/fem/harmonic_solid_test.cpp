@@ -185,6 +185,9 @@ TEST(HarmonicSolid, RigidMotion) {
   EXPECT_LT((m.angular_momentum - inertia * w).norm(), 2e-5 * inertia * w.norm());
   EXPECT_LT((m.inertia * w - m.angular_momentum).norm(), 1e-12 * inertia * w.norm());
   EXPECT_NEAR(solid.energies(s).kinetic, 0.5 * kMass * v.squaredNorm() + 0.5 * inertia * w.squaredNorm(), 1e-4);
+  s.q = test::random_vector(dof_map.q_size(), 1, 1e-3);
+  EXPECT_GT((solid.centre(s) - placement.origin).norm(), 1e-6);
+  EXPECT_LT((solid.centre(s) - solid.motion(s).centre).norm(), 1e-15);  // round-off of places within a metre
 }
 
 }  // namespace
