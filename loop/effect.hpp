@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,8 @@ struct Parameter {
   double si = 1;     ///< one printed unit in SI
   double min, max;   ///< plausible range [SI]; zero lies inside or on its edge
   double scale;      ///< a size that matters [SI]: step of finite differences, unit of the optimiser
+  /// Standard deviation about zero by another measurement of what is declared [SI]; infinite: none is known.
+  double known = std::numeric_limits<double>::infinity();
 };
 
 /// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.

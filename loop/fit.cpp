@@ -16,17 +16,45 @@ Eigen::VectorXd scales(const Model& model) {
   return s;
 }
 
-/// A model's parameters are searched in units of their scale.
+/// One row for each parameter of which something is known beside the data: its scale over that standard deviation.
+Eigen::MatrixXd prior_of(const Model& model) {
+  const std::vector<const Parameter*> all = model.parameters();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(
+      std::ranges::count_if(all, [](const Parameter* q) { return std::isfinite(q->known); }), model.size());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (std::isfinite(all[k]->known)) rows(row++, Eigen::Index(k)) = all[k]->scale / all[k]->known;
+  return rows;
+}
+
+/// A model's parameters are searched in units of their scale; what is known of them stands below the data.
 solvers::LeastSquares least_squares(const Problem& problem, Part part, const Model& model, const Stage& stage,
                                     const Eigen::VectorXd& scale, Eigen::Index residuals) {
-  solvers::LeastSquares out{.residuals = int(residuals), .bounds = {}, .value = {}, .loss = stage.loss};
+  const Eigen::MatrixXd prior = prior_of(model);
+  solvers::LeastSquares out{.residuals = int(residuals + prior.rows()),
+                            .bounds = {},
+                            .value = {},
+                            .loss = stage.loss,
+                            .plain = int(prior.rows())};
   for (const Parameter* q : model.parameters()) out.bounds.push_back({q->min / q->scale, q->max / q->scale, 1});
-  out.value = [&problem, &model, &scale, part, window = stage.window](const Eigen::VectorXd& x, Eigen::VectorXd& z) {
-    return problem.whitened(part, model, x.cwiseProduct(scale), z, window);
+  out.value = [&problem, &model, &scale, prior, part, window = stage.window](const Eigen::VectorXd& x,
+                                                                             Eigen::VectorXd& z) {
+    Eigen::VectorXd data;
+    if (!problem.whitened(part, model, x.cwiseProduct(scale), data, window)) return false;
+    z.resize(data.size() + prior.rows());
+    z << data, prior * x;
+    return true;
   };
-  out.linearised = [&problem, &model, &scale, part, window = stage.window](const Eigen::VectorXd& x, Eigen::VectorXd& z,
-                                                                           Eigen::MatrixXd& J) {
-    return problem.linearise(part, model, x.cwiseProduct(scale), z, J, window);
+  out.linearised = [&problem, &model, &scale, prior, part, window = stage.window](
+                       const Eigen::VectorXd& x, Eigen::VectorXd& z, Eigen::MatrixXd& J) {
+    Eigen::VectorXd data;
+    Eigen::MatrixXd by_data;
+    if (!problem.linearise(part, model, x.cwiseProduct(scale), data, by_data, window)) return false;
+    z.resize(data.size() + prior.rows());
+    z << data, prior * x;
+    J.resize(z.size(), x.size());
+    J << by_data, prior;
+    return true;
   };
   return out;
 }
@@ -41,8 +69,12 @@ Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, 
 
 double deviance(const Problem& problem, Part part, const Fit& f) {
   const Eigen::VectorXd z = whitened(problem, part, f.model, f.p);
-  return z.size() ? problem.stages().back().loss.sum(z) : kInfinity;
+  if (!z.size()) return kInfinity;
+  const double data = problem.stages().back().loss.sum(z);
+  return part == Part::holdout ? data : data + known(f);
 }
+
+double known(const Fit& f) { return (prior_of(f.model) * f.p.cwiseQuotient(scales(f.model))).squaredNorm(); }
 
 std::vector<Eigen::VectorXd> starts(const Model& model) {
   std::vector<Eigen::VectorXd> all = {Eigen::VectorXd::Zero(model.size())};
@@ -143,6 +175,10 @@ Eigen::MatrixXd covariance(const Problem& problem, const Fit& f) {
     blocks += s > 0;
   }
   scores *= blocks / std::max(1.0, blocks - double(f.size()));
+  const Eigen::MatrixXd prior = prior_of(f.model), data = J;
+  J.resize(data.rows() + prior.rows(), data.cols());
+  J << data, prior;
+  scores += prior.transpose() * prior;
   bool known = true;
   for (int c = 0; c < problem.width(); ++c) known = known && problem.channel(c).trusted();
   // Below a thousandth of a noise unit per unit of scale nothing is known along a direction.

@@ -8,7 +8,7 @@ namespace hosel::loop {
 struct Fit {
   Model model;
   Eigen::VectorXd p;    ///< parameters [SI]
-  double deviance = 0;  ///< sum of the losses; infinite where the model has no answer
+  double deviance = 0;  ///< see deviance(); infinite where the model has no answer
   bool converged = false;
   bool at_bound = false;  ///< a parameter at the edge of its plausible range (zero excepted)
   int size() const { return int(p.size()); }
@@ -23,9 +23,13 @@ std::vector<Eigen::VectorXd> starts(const Model& model);
 
 /// Whitened residual of a fit; empty where the model has no answer.
 Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, const Eigen::VectorXd& p);
+/// What a fit minimises: the losses, on rows that are fitted with what is known of the parameters besides.
 double deviance(const Problem& problem, Part part, const Fit& fit);
 /// A fit with one more form, its parameters zero: where a look beside the fit begins.
 Fit beside(const Fit& fit, const Parametrisation* more);
+
+/// What is known of a fit's parameters beside the data, as a part of its deviance.
+double known(const Fit& fit);
 
 /// Covariance of the parameters [SI] on the selection's data; infinite along null vectors. Where the noise of a channel
 /// is not known, by the scatter of the scores.

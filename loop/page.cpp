@@ -159,8 +159,9 @@ std::string page(const LoopResult& r, const Shots& table) {
                      number(c.before.holdout_bias), number(c.after.holdout_bias));
   s += "</table></div>";
   s += gloss(
-      "Residual: model minus measured. Noise: standard deviation of one reading, as declared or as the readings' own "
-      "spread shows it. Scatter / noise: what is left about the fit over that noise, 1 where both are right. Held out: "
+      "Residual: model minus measured. Noise: standard deviation of one reading, as declared, as the readings' own "
+      "spread shows it, or (repeats) as the rows do of which a reading is the mean. Scatter / noise: what is left "
+      "about the fit over that noise, 1 where both are right. Held out: "
       "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers. "
       "Bias: their mean.");
   if (r.corrected && !r.corrected->rows.empty()) {

@@ -30,6 +30,7 @@ struct Channel {
   std::optional<double> declared;  ///< what the case says of it
   double resolution = 0;           ///< recording step, header's unit
   bool refuted = false;            ///< the data's own scatter contradicts what is declared
+  bool repeated = false;           ///< what stands as declared is the scatter of rows of which a reading is the mean
 
   bool trusted() const { return declared && !refuted; }
 };

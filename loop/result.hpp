@@ -26,7 +26,7 @@ struct Errors {
 struct ChannelResult {
   std::string name;
   double noise = 0;
-  std::string noise_source;       ///< declared, estimated
+  std::string noise_source;       ///< declared, repeats (of which a reading is the mean), estimated
   std::optional<double> refuted;  ///< what was declared, where the data's own scatter contradicts it
   double scatter = 0;             ///< what the residual of the final model shows, over `noise`
   Errors before, after;

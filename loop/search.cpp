@@ -327,6 +327,10 @@ double Search::promise(const std::vector<std::size_t>& which, Eigen::VectorXd& p
   const Eigen::VectorXd b = target_(at);
   G.diagonal() *= 1 + 1e-9;
   G.diagonal().array() += 1e-9;
+  Eigen::Index at_known = 0;
+  for (const std::size_t w : which)
+    for (const Parameter& par : linear_[w].form->parameters)
+      G.diagonal()[at_known++] += std::pow(par.scale / par.known, 2);
   Eigen::VectorXd q = G.ldlt().solve(b);
   // Out of range: held at the edge. One pass is enough for a guess.
   p.resize(q.size());

@@ -65,7 +65,9 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
     const Channel& ch = problem.channel(c);
     result.channels.push_back({.name = ch.name,
                                .noise = ch.noise,
-                               .noise_source = ch.trusted() ? "declared" : "estimated",
+                               .noise_source = !ch.trusted() ? "estimated"
+                                               : ch.repeated ? "repeats"
+                                                             : "declared",
                                .refuted = ch.refuted ? ch.declared : std::nullopt,
                                .scatter = problem.scatter(c, ra, after.size()).ratio,
                                .before = errors(result.rows, &UsedRow::before, std::size_t(c)),

@@ -15,10 +15,10 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Scales the blocks so that the plain sum of squares is the loss; the derivatives likewise.
-void apply(const Loss& loss, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+/// Scales the blocks of the first `count` so that the plain sum of squares is the loss; the derivatives likewise.
+void apply(const Loss& loss, Eigen::Index count, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
   if (std::isinf(loss.knee)) return;
-  for (Eigen::Index i = 0; i < r.size(); i += loss.block) {
+  for (Eigen::Index i = 0; i < count; i += loss.block) {
     auto z = r.segment(i, loss.block);
     const double s = z.squaredNorm();
     if (!(s > loss.knee)) continue;
@@ -67,7 +67,7 @@ class Cost final : public ceres::CostFunction {
     const bool derive = jacobians && jacobians[0];
     if (!(derive && problem_.linearised ? problem_.linearised(p, r, J) : problem_.value(p, r))) return false;
     if (derive && !problem_.linearised && !differences(problem_, p, J)) return false;
-    apply(problem_.loss, r, derive ? &J : nullptr);
+    apply(problem_.loss, r.size() - problem_.plain, r, derive ? &J : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
     if (derive) Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J * scale_.asDiagonal();
     return true;

@@ -47,6 +47,7 @@ struct LeastSquares {
   Linearised linearised = {};  ///< empty: central differences of `value`
   double step = 1e-3;          ///< of those, in scales; kept inside the bounds
   Loss loss = {};
+  int plain = 0;  ///< of the last residuals, which are squared whatever the loss
 };
 
 struct Tolerances {

@@ -1,6 +1,7 @@
 #include "hosel/app/kinds/loop.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
 
@@ -92,6 +93,11 @@ class LoopJob final : public Job {
       if (name != "dynamic_loft") data.fail("unknown", "only dynamic_loft can be found from the launch: its angle");
     case_.loft_unknown = !unknown.empty();
     const auto path = data.data_file({"shots", "CSV of the measured shots"});
+    const std::string average_by = data.text(
+        {"average_by", "column whose shots are compared as their mean, with their own scatter for noise"}, "");
+    if (!average_by.empty() && data.has("noise"))
+      data.fail("noise", "the noise of a mean is its shots' own scatter: leave out this table or average_by");
+    read_known(data);
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
@@ -100,6 +106,11 @@ class LoopJob final : public Job {
           const auto other = joined->data_file({"file", "CSV with further columns"});
           const std::string by = joined->text({"by", "column that both files have"});
           loop::join(case_.shots, post::read_csv(other), by);
+        }
+        if (!average_by.empty()) {
+          auto [means, about] = loop::average(std::move(case_.shots), average_by);
+          case_.shots = std::move(means);
+          case_.averages = std::move(about);
         }
       } catch (const DataError& e) { throw InputError(e.what()); }
       if (auto noise = data.optional_table("noise"))
@@ -196,6 +207,38 @@ class LoopJob final : public Job {
     };
     if (!same(coarse, options.fe)) slow_.fine = [this](const loop::Shot& s) { return fe_->launch(s.blow, s.change); };
     case_.slow = &slow_;
+  }
+
+  /// Every parameter of the effects that can act on this base.
+  void read_known(Table data) {
+    std::vector<hosel::Output> launch;
+    for (int k = 0; k < kLaunchOutputs; ++k) launch.push_back(hosel::Output(k));
+    const loop::Setting setting{.head_turns = true,
+                                .inertia_declared = true,
+                                .outputs = launch,
+                                .flies = true,
+                                .deformable = case_.deformable,
+                                .shaft = case_.shaft_declared,
+                                .full_club = case_.full_club,
+                                .thin_face = true};
+    for (Table table : data.tables("known")) {
+      loop::Known known;
+      known.effect = table.text({"effect", "of which another measurement tells something"});
+      const loop::EffectEntry* entry = loop::find_effect(known.effect);
+      if (!entry || !entry->on_shots) table.fail("effect", fmt::format("no effect '{}' on shots", known.effect));
+      std::map<std::string, std::string> units;
+      for (const loop::Parametrisation& form : entry->on_shots(setting))
+        for (const loop::Parameter& p : form.parameters) units[p.name] = p.unit;
+      known.parameter = table.text({"parameter", "of the effect, zero where the case is right"});
+      if (!units.contains(known.parameter)) {
+        std::vector<std::string> names;
+        for (const auto& [name, unit] : units) names.push_back(fmt::format("{} [{}]", name, unit));
+        table.fail("parameter", fmt::format("{} has here: {}", known.effect, fmt::join(names, ", ")));
+      }
+      known.sd = table.number({"sd", "standard deviation, in the unit that reports print"}, Range::positive());
+      known.source = table.text({"source", "the measurement that tells it"});
+      case_.known.push_back(std::move(known));
+    }
   }
 
   loop::ShotCase case_;

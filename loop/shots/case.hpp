@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "hosel/loop/case.hpp"
+#include "hosel/loop/shots/averages.hpp"
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/loop/shots/surrogate.hpp"
 #include "hosel/models/flight.hpp"
@@ -22,6 +24,13 @@ struct SlowBase {
   unsigned long seed = 1;
 };
 
+/// What another measurement says of what the base declares: an effect's parameter is zero within this.
+struct Known {
+  std::string effect, parameter;
+  double sd;  ///< standard deviation, the parameter's printed unit
+  std::string source;
+};
+
 struct ShotCase : Case {
   /// Of the base, one of: a model that answers quickly; one that does not (`run` makes a surrogate); a surrogate.
   const models::ImpactModel* model = nullptr;
@@ -37,9 +46,14 @@ struct ShotCase : Case {
   bool inertia_declared = false;
   std::optional<models::FlightConditions> flight;  ///< absent: readings of the flight are not looked at
   Shots shots;
+  std::optional<Averages> averages;           ///< the shots are means of these rows
   bool loft_unknown = false;                  ///< every shot's loft is found from its launch angle
   std::map<std::string, double> noise;        ///< by header, header's unit
   std::map<std::string, double> input_noise;  ///< the same for inputs
+  std::vector<Known> known;
 };
+
+/// The rows that were read, of which the shots may be means.
+inline const Shots& as_read(const ShotCase& c) { return c.averages ? c.averages->single : c.shots; }
 
 }  // namespace hosel::loop

@@ -243,13 +243,15 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   Eigen::VectorXd noise(model.width());
   for (int ch = 0; ch < noise.size(); ++ch) {
     double sum = 0;
-    for (const int i : rows) sum += model.sigma(i, ch);
+    for (const int i : rows) sum += model.sigma(i, ch) * std::sqrt(model.count(i));  // of a single shot
     noise[ch] = sum / double(rows.size());
   }
   // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
   constexpr double wanted = 5.5 * 5.5;
-  const std::size_t most = std::max<std::size_t>(12, rows.size() * 3 / 2);  // the session once more
-  std::vector<std::size_t> chosen;                                          // for all pairs together
+  std::size_t single = 0;
+  for (const int i : rows) single += std::size_t(model.count(i));
+  const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);  // the session once more
+  std::vector<std::size_t> chosen;                                     // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
   std::vector<std::string> sentences, sensors;
   for (const Rivals& r : rivals(selection)) {
@@ -258,7 +260,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     Contest apart(model, one, two, noise);
     Contest::Site site;
     for (const int i : rows)
-      if (apart.look(model.trial(i), i, site)) apart.add(site);
+      if (apart.look(model.trial(i), i, site))
+        for (int k = 0; k < model.count(i); ++k) apart.add(site);
     const double before = std::sqrt(apart.squared());
     std::vector<std::pair<std::size_t, Contest::Site>> possible;
     for (std::size_t k = 0; k < sites.size(); ++k)

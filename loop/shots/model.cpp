@@ -398,6 +398,21 @@ void ShotModel::add_launch_noise(int shot, const models::FlightConditions& condi
   }
 }
 
+Eigen::MatrixXd ShotModel::scattered(int shot, const Model& model, const double* parameters) const {
+  const int m = width();
+  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(m, scatter_.cols());  // model minus measured
+  unsigned mask = 0;
+  for (int k = 0; k < kInputs; ++k)
+    if (scatter_(k, k) > 0 && !(seen_ && Input(k) == Input::dynamic_loft)) mask |= 1U << k;
+  if (mask) carried.leftCols(kInputs) = input_jacobian(shot, model, parameters, mask);
+  if (Shot t; seen_ && asked(shot, model, parameters, t)) try {
+      carried.col(kInputs + int(seen_->channel.output)) = shown(shot, t, model, parameters).by_launch /
+                                                          seen_->channel.si;
+    } catch (const std::invalid_argument&) {}
+  for (int c = 0; c < m; ++c) carried(c, kInputs + int(channel(c).output)) -= 1 / channel(c).si;
+  return carried * scatter_ * carried.transpose() / count(shot);
+}
+
 void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model,
                                const double* parameters) {
   const int m = width();
@@ -405,10 +420,9 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
   sigma_.resize(shots(), m);
   for (int i = 0; i < shots(); ++i) {
     Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
-    for (int c = 0; c < m; ++c) {
-      const ShotChannel& ch = channels_[std::size_t(c)];
-      cov(c, c) = ch.noise * ch.noise;
-    }
+    if (count_.empty())
+      for (int c = 0; c < m; ++c) cov(c, c) = std::pow(channel(c).noise, 2);
+    else cov = scattered(i, model, parameters);
     if (flies_) add_launch_noise(i, conditions(model, parameters), cov);
     if (!inputs.empty()) {
       const Eigen::MatrixXd& sx = inputs[std::size_t(i)];

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "hosel/loop/problem.hpp"
+#include "hosel/loop/shots/averages.hpp"
 #include "hosel/loop/shots/surrogate.hpp"
 #include "hosel/models/flight_budget.hpp"
 #include "hosel/models/impact_model.hpp"
@@ -69,6 +70,15 @@ class ShotModel {
   /// Raw residuals model - measured, shots x channels, NaN where missing.
   Eigen::MatrixXd residuals(const Model& model, const double* parameters) const;
 
+  /// The shots are means of so many rows each, which scatter about them: that is their noise from now on. As much wider
+  /// as the inverse of a covariance with these `degrees` of freedom is too large on average (Wishart).
+  void set_scatter(const Eigen::MatrixXd& scatter, int degrees, std::vector<int> count) {
+    scatter_ = scatter * (degrees / double(degrees - width() - 1));
+    count_ = std::move(count);
+  }
+  /// Rows in a shot's mean; 1 where it is none.
+  int count(int shot) const { return count_.empty() ? 1 : count_[std::size_t(shot)]; }
+
   /// Covariance of the inputs about the trial's values, per shot (8 x 8, SI; none: all exact); sets up the whitening
   /// Sigma_y + J_x Sigma_x J_x^T about the given model.
   void set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model, const double* parameters);
@@ -131,6 +141,8 @@ class ShotModel {
                  Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) const;
   /// Sensitivity of the channels to the inputs about a model: width x 8, header's units per SI.
   Eigen::MatrixXd input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const;
+  /// What the rows' scatter does to the residual of their mean, header's units.
+  Eigen::MatrixXd scattered(int shot, const Model& model, const double* parameters) const;
 
   const models::ImpactModel& base_;
   bool direct_;
@@ -139,6 +151,8 @@ class ShotModel {
   std::vector<Shot> trials_;
   std::vector<ShotChannel> channels_;
   Eigen::MatrixXd measured_;
+  Eigen::MatrixXd scatter_;  ///< see Averages
+  std::vector<int> count_;   ///< rows in every shot's mean; empty: the shots are no means
   std::vector<double> whiten_;
   Eigen::MatrixXd sigma_;
   std::optional<models::FlightConditions> flight_;

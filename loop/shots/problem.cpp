@@ -27,7 +27,7 @@ ShotProblem::ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& de
   read(derived, doubted);
   split({});
   estimate_noise(nullptr);
-  model_->set_covariance(inputs_.covariance, Model{}, nullptr);
+  set_covariance(Model{}, nullptr);
   regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
 }
 
@@ -39,6 +39,8 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise, case_.loft_unknown);
   notes_ = case_.notes;
   notes_.insert(notes_.end(), inputs_.notes.begin(), inputs_.notes.end());
+  for (const Known& k : case_.known)
+    notes_.push_back(fmt::format("{}: {} is zero within {:g} ({})", k.effect, k.parameter, k.sd, k.source));
   if (doubted) distrust(*doubted);
 
   // Cells that are no numbers, and values no blow has: flagged before anything is fitted.
@@ -108,6 +110,12 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   for (std::size_t k = 0; k < columns.size(); ++k) uses_.push_back({columns[k], -1, int(k)});
   model_ = std::make_unique<ShotModel>(*case_.model, case_.direct, std::move(good.trials), std::move(channels),
                                        std::move(measured), case_.surrogate, std::move(seen), case_.flight);
+  if (case_.averages) {
+    std::vector<int> count;
+    for (const int row : inputs_.row_of) count.push_back(case_.averages->count[std::size_t(row)]);
+    model_->set_scatter(case_.averages->scatter, case_.averages->degrees, std::move(count));
+    notes_.insert(notes_.end(), case_.averages->notes.begin(), case_.averages->notes.end());
+  }
   std::vector<double> out(static_cast<std::size_t>(width()));
   for (int i = 0; i < model_->shots(); ++i) {
     if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
@@ -142,10 +150,13 @@ std::vector<Parametrisation> ShotProblem::forms() const {
   }
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own)) {
-    if (!e.on_shots || (e.name == "session-drift" && sorted_by(case_.shots))) continue;
+    if (!e.on_shots || (e.name == "session-drift" && sorted_by(as_read(case_)))) continue;
     for (Parametrisation& f : e.on_shots(setting)) {
       // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
       if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.complexity += 10;
+      for (const Known& k : case_.known)
+        for (Parameter& p : f.parameters)
+          if (k.effect == f.effect && k.parameter == p.name) p.known = k.sd * p.si;
       all.push_back(std::move(f));
     }
   }
@@ -199,7 +210,7 @@ std::vector<Flag> ShotProblem::flags() const {
 
 std::vector<std::string> ShotProblem::notes() const {
   std::vector<std::string> all = notes_;
-  if (const Column* by = sorted_by(case_.shots))
+  if (const Column* by = sorted_by(as_read(case_)))
     all.push_back(fmt::format("rows stand sorted by {} and have no shot number: no session-drift is sought", by->name));
   if (select_.size() < rows_.train.size())
     all.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", select_.size(),
@@ -292,6 +303,7 @@ bool ShotProblem::screen(const Selection& selection) {
     if (std::ranges::any_of(bare.flags, &RowFlag::cluster)) screening = std::move(bare);
   }
   flags_ = std::move(screening.flags);
+  if (held_rows_) std::erase_if(flags_, [&](const RowFlag& f) { return f.shot >= 0 && held_rows_->contains(f.row); });
   widespread_ = std::move(screening.widespread);
   std::set<int> now;
   for (const RowFlag& f : flags_)
@@ -311,9 +323,9 @@ double ShotProblem::update_noise(const Fit& selected, const Fit&) {
   std::vector<double> before;
   for (int c = 0; c < width(); ++c) before.push_back(channel(c).noise);
   estimate_noise(&selected);
+  set_covariance(selected.model, selected.p.data());
   double change = 0;
   for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
-  model_->set_covariance(inputs_.covariance, selected.model, selected.p.data());
   regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
   // Noisy inputs and launches weigh otherwise once they are carried through the effects.
   const bool anew = !updated_ && (!inputs_.covariance.empty() || case_.flight) && !selected.model.forms.empty();
@@ -321,8 +333,22 @@ double ShotProblem::update_noise(const Fit& selected, const Fit&) {
   return anew ? std::numeric_limits<double>::infinity() : change;
 }
 
+/// Of means the noise is what their rows' scatter does about a model.
+void ShotProblem::set_covariance(const Model& model, const double* parameters) {
+  model_->set_covariance(inputs_.covariance, model, parameters);
+  if (!case_.averages) return;
+  for (int c = 0; c < width(); ++c) {
+    ShotChannel& ch = model_->channel(c);
+    double variance = 0;
+    for (const int i : rows_.train) variance += model_->sigma(i, c) * model_->sigma(i, c) / double(rows_.train.size());
+    ch.declared = ch.noise = std::sqrt(variance);
+    ch.repeated = true;
+  }
+}
+
 /// Noise that is not declared (or refuted), from the residuals of a fit.
 void ShotProblem::estimate_noise(const Fit* at) {
+  if (case_.averages) return;
   const Eigen::MatrixXd r = at ? residuals(at->model, at->p) : model_->residuals(Model{}, nullptr);
   const double rows = std::max<double>(1, double(rows_.train.size()));
   for (int c = 0; c < width(); ++c) {
@@ -538,7 +564,9 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   const Eigen::MatrixXd residuals = this->residuals(s.chosen.model, s.chosen.p);
   for (int c = 0; c < width(); ++c)
     if (const double ratio = scatter(c, residuals, s.chosen.size()).ratio; channel(c).trusted() && ratio > wide)
-      told.push_back({channel(c).name, "", fmt::format("scatters {:.1f} times as much as the noise declared", ratio)});
+      told.push_back({channel(c).name, "",
+                      fmt::format("scatters {:.1f} times as much as the {}", ratio,
+                                  channel(c).repeated ? "rows that it is the mean of tell" : "noise declared")});
   for (int c = 0; c < width(); ++c)
     if (const double middle = median(size[std::size_t(c)]); middle > many)
       told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});

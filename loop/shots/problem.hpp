@@ -16,8 +16,9 @@ namespace hosel::loop {
 
 class ShotProblem final : public Problem {
  public:
-  /// `derived`: outputs among them are no channels. `held_rows`: the holdout, where it is not split here. `doubted`:
-  /// an input whose record counts for nothing. Throws DataError where the columns are of no use at all.
+  /// `derived`: outputs among them are no channels. `held_rows`: the holdout, where it is not split here; none
+  /// of them is screened. `doubted`: an input whose record counts for nothing. Throws DataError where the columns are
+  /// of no use at all.
   ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& derived, std::optional<std::set<int>> held_rows,
               std::optional<Input> doubted);
 
@@ -62,6 +63,7 @@ class ShotProblem final : public Problem {
   void distrust(Input input);
   void split(const std::set<int>& without);
   void estimate_noise(const Fit* at);
+  void set_covariance(const Model& model, const double* parameters);
   const std::vector<int>& shots(Part part) const;
   Location place(const Finding& f) const;
   std::optional<Location> two_populations(const Selection& s) const;

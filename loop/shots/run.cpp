@@ -42,16 +42,18 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
   return result;
 }
 
-/// Rows flagged for what stands in this column: no evidence for or against a formula.
-Shots without_flagged(const Shots& shots, const LoopResult& r) {
+/// Flagged rows are no evidence, for a formula or of what a fold foretells. `of`: these alone.
+Shots without_flagged(const Shots& shots, const LoopResult& r, const std::set<int>* of = nullptr) {
   Shots clean = shots;
   for (Column& c : clean.columns)
     for (const auto& f : r.flagged)
-      if (c.numeric && std::size_t(f.row) < c.value.size()) c.value[std::size_t(f.row)] = kNaN;
+      if (c.numeric && std::size_t(f.row) < c.value.size() && (!of || of->contains(f.row)))
+        c.value[std::size_t(f.row)] = kNaN;
   return clean;
 }
 
-/// Every cluster is the holdout once; errors and residuals are pooled over the clusters.
+/// Every cluster is the holdout once; errors and residuals are pooled over the clusters. What is flagged there is what
+/// the pass over all rows flagged: that the others do not foretell a row is no reason to leave it out.
 void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
                    LoopResult& whole) {
   const Groups g = groups(*c.shots.find(c.split.by));
@@ -60,7 +62,9 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
     std::set<int> held;
     for (std::size_t i = 0; i < g.of_row.size(); ++i)
       if (g.of_row[i] == int(k)) held.insert(int(i));
-    const LoopResult fold = pass(c, columns, derived, held);
+    ShotCase others = c;
+    others.shots = without_flagged(c.shots, whole, &held);
+    const LoopResult fold = pass(others, columns, derived, held);
     for (const UsedRow& u : fold.rows)
       if (u.holdout) pooled.push_back(u);
     if (fold.corrected && whole.corrected)
@@ -89,11 +93,15 @@ LoopResult run(const ShotCase& c) {
   if (c.shots.rows() > kMostShots)
     throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
                                 kMostShots));
-  const Columns columns(c);
-  std::vector<DerivedColumn> derived = audit(c.shots, c.blow.ball);
+  // Columns and their formulas are those of the rows, whatever is a mean of them.
+  ShotCase rows = c;
+  rows.shots = as_read(c);
+  rows.averages.reset();
+  const Columns columns(rows);
+  std::vector<DerivedColumn> derived = audit(rows.shots, c.blow.ball);
   const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
   LoopResult result = pass(c, columns, derived, held);
-  if (!result.flagged.empty()) {
+  if (!result.flagged.empty() && !c.averages) {
     // Bad rows can hide a formula: once they are known, look again.
     const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, result), c.blow.ball);
     const auto outputs = [](const std::vector<DerivedColumn>& d) {

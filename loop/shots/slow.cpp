@@ -254,7 +254,7 @@ void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& res
   const double best = std::ranges::min(all, {}, &Rival::rank).rank;
   for (Rival& r : all) {
     const Doubt doubt = in_doubt(problem, r.fit);
-    r.rank = doubt.favoured + r.cost;
+    r.rank = doubt.favoured + known(r.fit) + r.cost;
     if (doubt.matters() && r.rank < best + rules.tie) possible.push_back(std::move(r));
   }
   std::ranges::sort(possible, {}, &Rival::rank);

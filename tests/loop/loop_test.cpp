@@ -14,7 +14,9 @@
 
 #include "hosel/golf/face_library.hpp"
 #include "hosel/loop/report.hpp"
+#include "hosel/loop/shots/problem.hpp"
 #include "hosel/loop/shots/run.hpp"
+#include "hosel/loop/study.hpp"
 #include "hosel/models/face_strike.hpp"
 #include "hosel/models/registry.hpp"
 
@@ -185,6 +187,18 @@ TEST_F(Loop, AUnitSlipIsFlaggedWithItsReason) {
   EXPECT_EQ(r.flagged[0].column, "ball_speed_mps");
   EXPECT_NE(r.flagged[0].reason.find("mph"), std::string::npos) << r.flagged[0].reason;
   EXPECT_TRUE(r.adopted.empty());
+}
+
+/// A fold that leaves out what it does not foretell would praise itself.
+TEST_F(Loop, WhatAFoldHoldsOutIsNotScreened) {
+  const ShotCase c = case_of(csv({.swapped = 40}));
+  for (const bool held : {false, true}) {
+    ShotProblem problem(c, {}, held ? std::set<int>{40} : std::set<int>{}, {});
+    const std::vector<Parametrisation> forms = problem.forms();
+    const Study study(problem, forms, {}, {});
+    EXPECT_EQ(problem.flags().size(), held ? 0U : 1U);
+    EXPECT_EQ(problem.rows().size(), held ? 90U : 89U);
+  }
 }
 
 TEST_F(Loop, AComputedColumnIsFound) {
