@@ -286,7 +286,7 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
     row.id = id.at(i);
     for (const auto& [fit, into] : {std::pair{&before, &row.before}, {&after, &row.after}}) {
       into->assign(std::size_t(model.width()), kNone);
-      if (fit == &after && after.size() == before.size()) {  // nothing was added
+      if (into == &row.after && after.size() == before.size()) {  // nothing was added
         row.after = row.before;
         continue;
       }

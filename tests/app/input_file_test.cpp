@@ -57,6 +57,28 @@ TEST(InputFile, MeasuredDataThatAreNotHereAreSkipped) {
   EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
 }
 
+TEST(InputFile, WhatIsKnownAndAveragedHasAName) {
+  const fs::path dir = fresh_directory("known");
+  write(dir / "shots.csv", "club,club_speed_mps,ball_speed_mps\n7i,40,55\n");
+  const auto said = [&](const std::string& more) {
+    write(dir / "case.toml", loop_of("shots.csv") + more);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2) << more << o.text;
+    return o.text;
+  };
+  const std::string rest = "sd = 2\nsource = \"scales\"\n";
+  EXPECT_NE(said("[[data.known]]\neffect = \"head-mass\"\nparameter = \"mass\"\n" + rest)
+                .find("case.toml:10: data.known[1].parameter: head-mass has here: added_mass [g]"),
+            std::string::npos);
+  EXPECT_NE(
+      said("[[data.known]]\neffect = \"head-mas\"\nparameter = \"added_mass\"\n" + rest).find("no effect 'head-mas'"),
+      std::string::npos);
+  EXPECT_NE(said("average_by = \"player\"\n").find("no column 'player' to average by"), std::string::npos);
+  EXPECT_NE(said("average_by = \"club\"\n").find("too few to tell how rows scatter"), std::string::npos);
+  EXPECT_NE(said("average_by = \"club\"\n[data.noise]\nball_speed_mps = 0.2\n").find("leave out this table"),
+            std::string::npos);
+}
+
 TEST(InputFile, ANewCaseFindsWhatItsModelNamed) {
   const fs::path dir = fresh_directory("new_case");
   write(dir / "here/base/case.toml", kEccentricBlow);

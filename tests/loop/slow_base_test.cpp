@@ -183,6 +183,10 @@ TEST(SlowBase, NothingHiddenNothingAdopted) {
   const LoopResult r = run(c);
   EXPECT_TRUE(r.adopted.empty());
   EXPECT_TRUE(r.ties.empty());
+  // The base is asked about what was held out all the same.
+  ASSERT_TRUE(r.corrected && r.corrected->rows.size() > 10);
+  EXPECT_EQ(answered(r.corrected->rows, 0), int(r.corrected->rows.size()));
+  for (const Corrected::Row& row : r.corrected->rows) EXPECT_EQ(row.before, row.after);
 }
 
 TEST(SlowBase, AnUnknownLoftIsFoundFromTheLaunchAngle) {
