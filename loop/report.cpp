@@ -59,7 +59,8 @@ json to_json(const LoopResult& r) {
   for (const ChannelResult& c : r.channels)
     out["channels"].push_back({{"name", c.name},
                                {"noise_sd", value(c.noise)},
-                               {"noise_source", c.noise_source},
+                               {"noise_source", c.noise_source == "declared" ? "declared" : "estimated"},
+                               {"noise_from_repeats", c.noise_source == "repeats"},
                                {"scatter_over_noise", value(c.scatter)},
                                {"before", errors(c.before)},
                                {"after", errors(c.after)}});
