@@ -156,16 +156,16 @@ json to_json(const LoopResult& r) {
                           {"before_rmse", value(rms(r.corrected->rows, &Corrected::Row::before, k))},
                           {"after_rmse", value(rms(r.corrected->rows, &Corrected::Row::after, k))},
                           {"rows", answered(r.corrected->rows, k)}});
-    json shots = json::array();  // model minus measured
+    json by_shot = json::array();  // model minus measured
     for (const Corrected::Row& row : r.corrected->rows) {
       json shot{{"shot", row.id}};
       for (std::size_t k = 0; k < r.channels.size(); ++k)
         shot[r.channels[k].name] = {{"before", value(row.before[k])}, {"after", value(row.after[k])}};
-      shots.push_back(std::move(shot));
+      by_shot.push_back(std::move(shot));
     }
     out["corrected"] = {{"case", r.corrected->shots.empty() ? json(nullptr) : json("corrected/case.toml")},
                         {"channels", channels},
-                        {"shots", shots},
+                        {"shots", by_shot},
                         {"not_in_the_case", r.corrected->instrument}};
   }
   out["notes"] = r.notes;

@@ -257,7 +257,7 @@ range = [44.0, 46.0]
   EXPECT_LT(summary["correlation"]["effect.heavier.figures.fastest_club_toe_mm.value"]["head.cg_mm[2]"], -0.999);
   EXPECT_NE(run.text.find("fastest_club_toe_mm.value; head.cg_mm[2] (-1.00)"), std::string::npos) << run.text;
   const std::string page = content(dir / "out" / "report.html"), drawn = content(dir / "out" / "figures" / "sweep.gp");
-  EXPECT_NE(page.find("<td>statement 1 holds<td>0<td>0.75<td>1<td>cg 2 [mm]"), std::string::npos);
+  EXPECT_NE(page.find("<td>statement 1 holds<td>0<td>0.75<td>1<td class='l'>cg 2 [mm]"), std::string::npos);
   EXPECT_NE(drawn.find("set xlabel 'cg 2 [mm]'"), std::string::npos) << "against what it goes with";
   EXPECT_EQ(drawn.find("set xlabel 'club speed"), std::string::npos);
   const Outcome bad =
