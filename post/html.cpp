@@ -32,7 +32,7 @@ color:var(--soft);font-size:.87rem}.answers b{font-size:1.2rem;font-weight:600;f
 table{border-collapse:collapse;margin:.6rem 0;font-variant-numeric:tabular-nums}
 td,th{padding:.28rem .8rem .28rem 0;text-align:right;border-bottom:1px solid var(--rule);vertical-align:top}
 th{font-weight:600;color:var(--soft);font-size:.87rem}td:first-child,th:first-child,.l{text-align:left!important}
-td.long:not(:first-child){min-width:11rem}
+td.long{min-width:11rem}
 tr.chosen td{background:var(--chosen);font-weight:600}.scroll{overflow-x:auto}
 .inputs{columns:21rem 2;column-gap:2.5rem}.inputs table{break-inside:avoid;width:100%}.inputs td:last-child{
 overflow-wrap:anywhere;max-width:14rem}

@@ -64,7 +64,7 @@ std::string TextTable::html() const {
     for (std::size_t c = 0; c < shown[r].size(); ++c) {
       std::string& cell = shown[r][c];
       if (const auto sign = cell.find("+-"); sign != cell.npos) cell.replace(sign, 2, "±");
-      const char* kind = !words[c] ? "" : longest[c] > kSentence ? " class='l long'" : " class='l'";
+      const char* kind = c == 0 || !words[c] ? "" : longest[c] > kSentence ? " class='l long'" : " class='l'";
       out += fmt::format("<{}{}>", r ? "td" : "th", kind) + escape_html(cell);
     }
     out += "</tr>";
