@@ -110,6 +110,7 @@ Contact::Moved Contact::moved(const State& s) const {
     m.spin = s.v.segment<3>(carrier_.rotation->v);
     m.R = rotation(s, *carrier_.rotation).toRotationMatrix();
   }
+  m.to_body = m.R.transpose();
   for (Index i = 0; own_ && i < own_->size; ++i) {
     m.own[i] = s.q[own_->q + i];
     m.own_rate[i] = s.v[own_->v + i];
@@ -185,7 +186,6 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
   const Station& station = stations_[number];
   const Edge& edge = edges_[station.edge];
   const Index angles = static_cast<Index>(angles_.size());
-  const Mat3 to_body = m.R.transpose();
   t.U.setZero();
   t.V.setZero();
   for (std::size_t i = 0; i < edge.places.size(); ++i) {
@@ -202,11 +202,11 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
   k.station = &station;
   k.number = number * angles_.size();
   for (k.angle = 0; k.angle < angles_.size(); ++k.angle, ++k.number) {
-    k.arm.noalias() = to_body * t.arms.col(static_cast<Index>(k.angle));
+    k.arm.noalias() = m.to_body * t.arms.col(static_cast<Index>(k.angle));
     k.place = place(m, k.arm);
     k.gap = surface_->gap(k.place);
     if (k.gap < 0) {  // elsewhere nothing acts
-      k.relative.noalias() = to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
+      k.relative.noalias() = m.to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
       k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
       if (own_) {
         k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
@@ -323,9 +323,9 @@ void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weig
   // Change of the arm by each unknown but the surface's own: these change nothing but the place.
   const Index others = size - own;
   auto arm = out.changes.block(out.rows, 0, 3, others);
-  arm.leftCols(K).noalias() = m.R.transpose() * functions(k.angle);
+  arm.leftCols(K).noalias() = m.to_body * functions(k.angle);
   if (moving) {
-    arm.middleCols<3>(K) = -m.R.transpose() * free_translation();
+    arm.middleCols<3>(K) = -m.to_body * free_translation();
     arm.middleCols<3>(K + 3) = skew(k.arm) * turn;
   }
   if (own > 0) {
@@ -518,7 +518,7 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
 
 double Contact::centre_gap(const State& s) const {
   const Moved m = moved(s);
-  return surface_->gap(place(m, m.R.transpose() * (solid_.centre(s) - m.node)));
+  return surface_->gap(place(m, m.to_body * (solid_.centre(s) - m.node)));
 }
 
 Mat3 Contact::free_translation() const {

@@ -99,7 +99,7 @@ class Contact final : public Term {
   };
   struct Moved {                                                   // what holds for all points of a state
     Vec3 node, node_velocity = Vec3::Zero(), spin = Vec3::Zero();  // spin in the body frame
-    Mat3 R;
+    Mat3 R, to_body;                                               // its inverse
     SurfaceUnknowns own = SurfaceUnknowns::Zero(), own_rate = own;
   };
   struct Kinematics {  // of one point

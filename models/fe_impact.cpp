@@ -217,11 +217,12 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.rho_inf = o.rho_inf;
   options.newton.residual_relative = o.newton_relative;
   // The gradient F holds strains to machine precision and no better: what that is in forces counts in very slow blows.
+  // On 21,000 unknowns up to 58 eps of modulus times radius squared were seen.
   double stiffest = 0;
   for (const fem::Solid& m : parts.ball->materials())
     stiffest = std::max(stiffest, m.bulk() + 4.0 / 3 * m.instant_shear());
   options.newton.residual_absolute = 1e-3 * o.newton_relative * mass * approach_speed / expected +
-                                     4 * std::numeric_limits<double>::epsilon() * stiffest * radius * radius;
+                                     64 * std::numeric_limits<double>::epsilon() * stiffest * radius * radius;
   options.newton.increment_vector = 1e-4 * approach_speed * step;
   options.newton.increment_rotation = 1e-4 * approach_speed * step / radius;
   options.newton.max_iterations = 60;
