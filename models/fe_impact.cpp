@@ -217,7 +217,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   options.rho_inf = o.rho_inf;
   options.newton.residual_relative = o.newton_relative;
   // The gradient F holds strains to machine precision and no better: what that is in forces counts in very slow blows.
-  // On 21,000 unknowns up to 58 eps of modulus times radius squared were seen.
+  // On 21,000 unknowns residuals wandered from 5 to 113 eps of modulus times radius squared, half of them below 18.
   double stiffest = 0;
   for (const fem::Solid& m : parts.ball->materials())
     stiffest = std::max(stiffest, m.bulk() + 4.0 / 3 * m.instant_shear());
