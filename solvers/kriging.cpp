@@ -1,87 +1,141 @@
 #include "hosel/solvers/kriging.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace hosel::solvers {
 namespace {
 
+constexpr double kStart = 3;  // length of an input of which nothing is known: some more than its range
+constexpr double kShortest = 0.1, kLongest = 200, kLeastNugget = 1e-8, kLargestNugget = 100;
+constexpr double kLengthStep = 2.5, kNuggetStep = 10;  // factors of the search
+constexpr double kGain = 0.1;                          // of log likelihood: less is not worth a step
+constexpr int kSweeps = 3;
+
 double matern(double distance) {
   const double d = std::sqrt(5.0) * distance;
   return (1 + d + d * d / 3) * std::exp(-d);
 }
 
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& distance, double length, double nugget) {
-  Eigen::MatrixXd k = distance.unaryExpr([&](double d) { return matern(d / length); });
-  k.diagonal().array() += nugget;
-  return k.llt().solve(Eigen::MatrixXd::Identity(k.rows(), k.cols()));
-}
+/// Of so many points a plane may be asked, or a constant.
+Eigen::Index terms(Eigen::Index points, Eigen::Index inputs) { return points > 3 * (inputs + 1) ? inputs + 1 : 1; }
+
+/// What follows from a correlation.
+struct Regression {
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  Eigen::MatrixXd of_trend, normal, plane, weight;
+  Eigen::VectorXd variance;  // of every output
+
+  Regression(const Eigen::MatrixXd& x, const Eigen::MatrixXd& trend, const Eigen::MatrixXd& y,
+             const Kriging::Correlation& c) {
+    const Eigen::MatrixXd at = c.length.cwiseInverse().asDiagonal() * x.transpose();
+    const Eigen::VectorXd square = at.colwise().squaredNorm();
+    Eigen::MatrixXd k = (at.transpose() * at) * -2;
+    k.colwise() += square;
+    k.rowwise() += square.transpose();
+    k = k.unaryExpr([](double d) { return matern(std::sqrt(std::max(d, 0.0))); });
+    k.diagonal().setConstant(1 + c.nugget);
+    factor.compute(k);
+    of_trend = factor.solve(trend);
+    normal = trend.transpose() * of_trend;
+    plane = normal.llt().solve(of_trend.transpose() * y);
+    const Eigen::MatrixXd left = y - trend * plane;
+    weight = factor.solve(left);
+    variance = (left.array() * weight.array()).colwise().sum().transpose() / double(x.rows() - trend.cols());
+  }
+
+  /// Logarithm of the restricted likelihood but for a constant, outputs that vary taken as independent.
+  double likelihood(Eigen::Index freedom) const {
+    if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+    double sum = 0;
+    int outputs = 0;
+    for (const double v : variance)
+      if (v > std::numeric_limits<double>::min()) sum += std::log(v), ++outputs;
+    const auto determinant = [](const Eigen::LLT<Eigen::MatrixXd>& f) {
+      return 2 * f.matrixLLT().diagonal().array().log().sum();
+    };
+    return -0.5 * (outputs * (determinant(factor) + determinant(normal.llt())) + double(freedom) * sum);
+  }
+};
 
 }  // namespace
 
-Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::VectorXd& length, const Eigen::MatrixXd& y,
-                 const Eigen::MatrixXd& honest)
-    : scale_(length.cwiseInverse()), process_(honest.transpose() * honest / double(x.rows())), left_out_(honest) {
-  const Eigen::Index n = x.rows();
-  points_ = scale_.asDiagonal() * x.transpose();
-  Eigen::MatrixXd distance(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) distance.col(i) = (points_.colwise() - points_.col(i)).colwise().norm();
+Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) : Kriging(x, y, Correlation{}) {}
 
-  const Eigen::VectorXd size = process_.diagonal().cwiseMax(std::numeric_limits<double>::min());
-  double least = double(honest.cols()) * double(n);  // of no interpolation
-  double best = 0;
-  for (double l = 0.125; l <= 8; l *= 2)
-    for (double nugget = 1e-4; nugget <= 1; nugget *= 10) {
-      const Eigen::MatrixXd inverse = inverse_of(distance, l, nugget);
-      const Eigen::MatrixXd e = inverse.diagonal().cwiseInverse().asDiagonal() * (inverse * honest);
-      const double sum = (e.colwise().squaredNorm().transpose().array() / size.array()).sum();
-      if (!(sum < least)) continue;
-      least = sum;
+Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from) : correlation_(std::move(from)) {
+  const Eigen::Index n = x.rows(), d = x.cols(), p = terms(n, d);
+  if (correlation_.length.size() != d) correlation_ = {.length = Eigen::VectorXd::Constant(d, kStart)};
+  Eigen::MatrixXd trend = Eigen::MatrixXd::Ones(n, p);
+  if (p > 1) trend.rightCols(d) = x;
+
+  double best = Regression(x, trend, y, correlation_).likelihood(n - p);
+  /// One of the lengths, or the nugget, as far as it is worth while.
+  const auto follow = [&](Eigen::Index k, double factor) {
+    bool moved = false;
+    for (;; moved = true) {
+      Correlation tried = correlation_;
+      double& value = k < d ? tried.length[k] : tried.nugget;
+      value *= factor;
+      if (k < d ? value < kShortest || value > kLongest : value < kLeastNugget || value > kLargestNugget) return moved;
+      const double l = Regression(x, trend, y, tried).likelihood(n - p);
+      if (!(l > best + kGain)) return moved;
       best = l;
-      nugget_ = nugget;
-      left_out_ = e;
+      correlation_ = std::move(tried);
     }
-  if (best == 0) return;
-  scale_ /= best;
-  points_ /= best;
+  };
+  for (int sweep = 0, moved = 1; sweep < kSweeps && moved; ++sweep) {
+    moved = 0;
+    for (Eigen::Index k = 0; k <= d; ++k) {
+      const double factor = k < d ? kLengthStep : kNuggetStep;
+      moved += follow(k, factor) || follow(k, 1 / factor);
+    }
+  }
+
+  const Regression found(x, trend, y, correlation_);
+  points_ = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
   square_ = points_.colwise().squaredNorm().transpose();
-  inverse_ = inverse_of(distance, best, nugget_);
-  weight_ = inverse_ * y;
-  // The errors of leaving one out, each over the share of the process that was unknown there.
-  const Eigen::MatrixXd over = inverse_.diagonal().cwiseSqrt().asDiagonal() * left_out_;
-  process_ = over.transpose() * over / double(n);
+  inverse_ = found.factor.solve(Eigen::MatrixXd::Identity(n, n));
+  of_trend_ = found.of_trend;
+  plane_ = found.plane;
+  plane_error_ = found.normal.llt().solve(Eigen::MatrixXd::Identity(p, p));
+  weight_ = found.weight;
+  process_ = weight_.transpose() * (y - trend * plane_) / double(n - p);
 }
 
 Eigen::VectorXd Kriging::covariances(const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd there = scale_.cwiseProduct(x);
+  const Eigen::VectorXd there = x.cwiseQuotient(correlation_.length);
   Eigen::ArrayXd d = (points_.transpose() * there).array() * -2 + (square_ + there.squaredNorm());
   d = (5 * d.max(0.0)).sqrt();
   return (1 + d + d.square() / 3) * (-d).exp();
 }
 
+Eigen::VectorXd Kriging::trend(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd terms = Eigen::VectorXd::Ones(plane_.rows());
+  if (terms.size() > 1) terms.tail(x.size()) = x;
+  return terms;
+}
+
 Eigen::VectorXd Kriging::operator()(const Eigen::VectorXd& x) const {
-  if (!interpolates()) return Eigen::VectorXd::Zero(process_.rows());
-  return weight_.transpose() * covariances(x);
+  return plane_.transpose() * trend(x) + weight_.transpose() * covariances(x);
 }
 
 Eigen::MatrixXd Kriging::error(const Eigen::VectorXd& x) const {
-  if (!interpolates()) return process_;
-  const Eigen::VectorXd k = covariances(x);
-  return (1 + nugget_ - k.dot(inverse_ * k)) * process_;
+  const Eigen::VectorXd k = covariances(x), open = trend(x) - of_trend_.transpose() * k;
+  return (1 + correlation_.nugget - k.dot(inverse_ * k) + open.dot(plane_error_ * open)) * process_;
 }
 
 Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {
   const Eigen::Index n = x.rows();
-  if (!interpolates()) return Eigen::MatrixXd::Identity(n, n);
-  const Eigen::MatrixXd there = scale_.asDiagonal() * x.transpose();
-  Eigen::MatrixXd of_points(points_.cols(), n), shared(n, n);
+  const Eigen::MatrixXd there = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
+  Eigen::MatrixXd of_points(points_.cols(), n), shared(n, n), open(plane_.rows(), n);
   for (Eigen::Index i = 0; i < n; ++i) {
     of_points.col(i) = covariances(x.row(i).transpose());
+    open.col(i) = trend(x.row(i).transpose()) - of_trend_.transpose() * of_points.col(i);
     shared.col(i) = (there.colwise() - there.col(i)).colwise().norm().unaryExpr(&matern).transpose();
   }
-  shared.diagonal().array() += nugget_;
-  return shared - of_points.transpose() * inverse_ * of_points;
+  shared.diagonal().array() += correlation_.nugget;
+  return shared - of_points.transpose() * inverse_ * of_points + open.transpose() * plane_error_ * open;
 }
 
 }  // namespace hosel::solvers

@@ -1,20 +1,28 @@
-/// What a regression leaves, interpolated: near a point that was asked its answer counts, far from all none does.
+/// A Gaussian process through the answers of a slow model: near a point that was asked its answer counts, far from all
+/// of them a plane does, and everywhere the error to be expected is told.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace hosel::solvers {
 
-/// Simple kriging [@pc-kriging] of residuals with zero mean, Matern's covariance of smoothness 5/2 over a distance with
-/// a length per input, and a nugget. One factor on the lengths and the nugget, common to all outputs, are those of
-/// least error in leaving one out; where no interpolation predicts better than zero, there is none.
+/// Universal kriging [@gp-ml] of several outputs with one correlation: Matern's of smoothness 5/2 over a distance with
+/// a length per input, and a nugget. Under it lies a plane, or a constant where the points are too few for one. Lengths
+/// and nugget are those of largest restricted likelihood, by a search along one of them at a time.
 class Kriging {
  public:
-  Kriging() = default;  ///< says zero everywhere
-  /// `x`: points x inputs; `length`: of every input, relative to each other; `y`: residuals to interpolate, points x
-  /// outputs; `honest`: residuals of the same points by a regression that had not seen them, to choose by.
-  Kriging(const Eigen::MatrixXd& x, const Eigen::VectorXd& length, const Eigen::MatrixXd& y,
-          const Eigen::MatrixXd& honest);
+  /// What the likelihood chooses.
+  struct Correlation {
+    Eigen::VectorXd length;  ///< of every input
+    double nugget = 1e-6;    ///< variance of one point alone over that of the process
+  };
+
+  Kriging() = default;  ///< says nothing, of no output
+  /// `x`: points x inputs, some two units wide; `y`: points x outputs.
+  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y);
+  /// `from`: where the search begins, e.g. that of fewer points.
+  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from);
 
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   /// Mean square of the error to be expected there, outputs x outputs.
@@ -22,23 +30,23 @@ class Kriging {
   /// How the errors of many points (a row each) go together: times `process` the covariance of two points' errors; its
   /// diagonal times that is `error`.
   Eigen::MatrixXd errors_together(const Eigen::MatrixXd& x) const;
-  /// Covariance of the outputs where nothing is known near.
+  /// Covariance of the outputs about the plane.
   const Eigen::MatrixXd& process() const { return process_; }
-  bool interpolates() const { return weight_.size() > 0; }
-  /// What was left of every point's honest residual once the others had predicted it: points x outputs.
-  const Eigen::MatrixXd& left_out() const { return left_out_; }
+  const Correlation& correlation() const { return correlation_; }
 
  private:
   Eigen::VectorXd covariances(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd trend(const Eigen::VectorXd& x) const;
 
-  Eigen::MatrixXd points_;   ///< scaled, inputs x points
-  Eigen::ArrayXd square_;    ///< their squared lengths
-  Eigen::VectorXd scale_;    ///< of the inputs [1/length]
-  Eigen::MatrixXd inverse_;  ///< of the points' correlation with the nugget
-  Eigen::MatrixXd weight_;   ///< points x outputs
-  double nugget_ = 0;
+  Correlation correlation_;
+  Eigen::MatrixXd points_;       ///< over the lengths, inputs x points
+  Eigen::ArrayXd square_;        ///< their squared distances from the origin
+  Eigen::MatrixXd inverse_;      ///< of the points' correlation with the nugget
+  Eigen::MatrixXd of_trend_;     ///< inverse times the points' trend
+  Eigen::MatrixXd plane_;        ///< coefficients, terms of the trend x outputs
+  Eigen::MatrixXd plane_error_;  ///< their covariance over that of the process
+  Eigen::MatrixXd weight_;       ///< points x outputs
   Eigen::MatrixXd process_;
-  Eigen::MatrixXd left_out_;
 };
 
 }  // namespace hosel::solvers

@@ -97,7 +97,10 @@ class LoopJob final : public Job {
         {"average_by", "column whose shots are compared as their mean, with their own scatter for noise"}, "");
     if (!average_by.empty() && data.has("noise"))
       data.fail("noise", "the noise of a mean is its shots' own scatter: leave out this table or average_by");
-    read_known(data);
+    case_.known = read_known(data, "known", {"effect", "of which another measurement tells something"});
+    case_.varying = read_known(data, "varying", {"effect", "of which the rows that are compared differ"});
+    if (!case_.varying.empty() && average_by.empty())
+      data.fail("varying", "rows that share a club or a player differ alike: compare them as means (average_by)");
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) {
       try {
@@ -209,8 +212,8 @@ class LoopJob final : public Job {
     case_.slow = &slow_;
   }
 
-  /// Every parameter of the effects that can act on this base.
-  void read_known(Table data) {
+  /// A table for every parameter of the effects that can act on this base.
+  std::vector<loop::Known> read_known(Table data, const char* name, const Key& effect) {
     std::vector<hosel::Output> launch;
     for (int k = 0; k < kLaunchOutputs; ++k) launch.push_back(hosel::Output(k));
     const loop::Setting setting{.head_turns = true,
@@ -221,9 +224,10 @@ class LoopJob final : public Job {
                                 .shaft = case_.shaft_declared,
                                 .full_club = case_.full_club,
                                 .thin_face = true};
-    for (Table table : data.tables("known")) {
+    std::vector<loop::Known> all;
+    for (Table table : data.tables(name)) {
       loop::Known known;
-      known.effect = table.text({"effect", "of which another measurement tells something"});
+      known.effect = table.text(effect);
       const loop::EffectEntry* entry = loop::find_effect(known.effect);
       if (!entry || !entry->on_shots) table.fail("effect", fmt::format("no effect '{}' on shots", known.effect));
       std::map<std::string, std::string> units;
@@ -232,13 +236,14 @@ class LoopJob final : public Job {
       known.parameter = table.text({"parameter", "of the effect, zero where the case is right"});
       if (!units.contains(known.parameter)) {
         std::vector<std::string> names;
-        for (const auto& [name, unit] : units) names.push_back(fmt::format("{} [{}]", name, unit));
+        for (const auto& [parameter, unit] : units) names.push_back(fmt::format("{} [{}]", parameter, unit));
         table.fail("parameter", fmt::format("{} has here: {}", known.effect, fmt::join(names, ", ")));
       }
       known.sd = table.number({"sd", "standard deviation, in the unit that reports print"}, Range::positive());
-      known.source = table.text({"source", "the measurement that tells it"});
-      case_.known.push_back(std::move(known));
+      known.source = table.text({"source", "the measurement, or whose judgement, that tells it"});
+      all.push_back(std::move(known));
     }
+    return all;
   }
 
   loop::ShotCase case_;

@@ -24,7 +24,7 @@ struct SlowBase {
   unsigned long seed = 1;
 };
 
-/// What another measurement says of what the base declares: an effect's parameter is zero within this.
+/// What the case tells of an effect's parameter beside the shots: it is zero within this.
 struct Known {
   std::string effect, parameter;
   double sd;  ///< standard deviation, the parameter's printed unit
@@ -50,7 +50,8 @@ struct ShotCase : Case {
   bool loft_unknown = false;                  ///< every shot's loft is found from its launch angle
   std::map<std::string, double> noise;        ///< by header, header's unit
   std::map<std::string, double> input_noise;  ///< the same for inputs
-  std::vector<Known> known;
+  std::vector<Known> known;                   ///< of what the base declares, for all rows alike: by another measurement
+  std::vector<Known> varying;  ///< of what the base declares once and every row has its own of: between the rows
 };
 
 /// The rows that were read, of which the shots may be means.

@@ -64,6 +64,7 @@ ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<S
       flies_(std::ranges::any_of(channels_, [](const ShotChannel& c) { return of_flight(c.output); })) {
   if (flies_)
     for (int i = 0; i < shots(); ++i) follow_seen(i);
+  expected_ = measured_;
   if (!direct_) {
     offset_.reserve(trials_.size());
     for (Shot& t : trials_) {
@@ -413,11 +414,27 @@ Eigen::MatrixXd ShotModel::scattered(int shot, const Model& model, const double*
   return carried * scatter_ * carried.transpose() / count(shot);
 }
 
+ShotModel::Varied ShotModel::varied(int shot, const Model& model, const double* parameters, const Varying& by) const {
+  const Model with = model.with(&by.form);
+  std::vector<double> p(parameters, parameters + model.size());
+  p.resize(p.size() + by.form.parameters.size(), 0.0);
+  double& value = p[std::size_t(model.size()) + by.parameter];
+  Eigen::VectorXd up(width()), middle(width()), down(width());
+  bool good = predict(shot, with, p.data(), middle.data());
+  value = by.sd;
+  good = predict(shot, with, p.data(), up.data()) && good;
+  value = -by.sd;
+  good = predict(shot, with, p.data(), down.data()) && good;
+  if (!good) return {Eigen::VectorXd::Zero(width()), Eigen::VectorXd::Zero(width())};
+  return {(up - down) / 2, (up + down) / 2 - middle};
+}
+
 void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model,
                                const double* parameters) {
   const int m = width();
   whiten_.assign(std::size_t(shots()) * std::size_t(m) * std::size_t(m), 0.0);
   sigma_.resize(shots(), m);
+  expected_ = measured_;
   for (int i = 0; i < shots(); ++i) {
     Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
     if (count_.empty())
@@ -432,6 +449,11 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
         const Eigen::MatrixXd J = input_jacobian(i, model, parameters, mask);
         cov += J * sx * J.transpose();
       }
+    }
+    for (const Varying& v : varying_) {
+      const auto [linear, square] = varied(i, model, parameters, v);
+      cov += linear * linear.transpose() + 2 * square * square.transpose();
+      expected_.row(i) -= square.transpose();  // heads that differ miss by that much on average
     }
     if (surrogate_ || seen_) {
       const Found found = found_covariance(i, model, parameters);
@@ -458,7 +480,7 @@ Eigen::MatrixXd ShotModel::residuals(const Model& model, const double* parameter
   Eigen::MatrixXd r(shots(), width());
   Eigen::VectorXd out(width());
   for (int i = 0; i < shots(); ++i) {
-    if (predict(i, model, parameters, out.data())) r.row(i) = out.transpose() - measured_.row(i);
+    if (predict(i, model, parameters, out.data())) r.row(i) = out.transpose() - expected_.row(i);
     else r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return r;
@@ -471,7 +493,7 @@ void ShotModel::whiten(int shot, const Model& model, const double* p, double* sc
     out.setConstant(kImpossible);
     return;
   }
-  for (int c = 0; c < m; ++c) scratch[c] = observed(shot, c) ? scratch[c] - measured_(shot, c) : 0.0;
+  for (int c = 0; c < m; ++c) scratch[c] = observed(shot, c) ? scratch[c] - expected_(shot, c) : 0.0;
   out.noalias() = whitening(shot) * Eigen::Map<const Eigen::VectorXd>(scratch, m);
 }
 
@@ -486,7 +508,7 @@ void ShotModel::linearise(int shot, const Model& model, const double* p, double 
   }
   for (int c = 0; c < m; ++c) {
     const bool seen = observed(shot, c);
-    scratch[std::size_t(c)] = seen ? scratch[std::size_t(c)] - measured_(shot, c) : 0.0;
+    scratch[std::size_t(c)] = seen ? scratch[std::size_t(c)] - expected_(shot, c) : 0.0;
     if (!seen) J.row(c).setZero();
   }
   const auto W = whitening(shot).triangularView<Eigen::Lower>();

@@ -76,6 +76,11 @@ class ShotModel {
     scatter_ = scatter * (degrees / double(degrees - width() - 1));
     count_ = std::move(count);
   }
+  /// A parameter of this form differs from shot to shot by `sd` [SI], mean zero: joins the covariance of every shot,
+  /// and, where it always takes away, its expectation.
+  void vary(Parametrisation form, std::size_t parameter, double sd) {
+    varying_.push_back({std::move(form), parameter, sd});
+  }
   /// Rows in a shot's mean; 1 where it is none.
   int count(int shot) const { return count_.empty() ? 1 : count_[std::size_t(shot)]; }
 
@@ -144,6 +149,18 @@ class ShotModel {
   /// What the rows' scatter does to the residual of their mean, header's units.
   Eigen::MatrixXd scattered(int shot, const Model& model, const double* parameters) const;
 
+  struct Varying {
+    Parametrisation form;
+    std::size_t parameter;
+    double sd;
+  };
+  /// What the channels show of one standard deviation of it, to second order: readings move by
+  /// `linear` u + `square` u^2, u normal.
+  struct Varied {
+    Eigen::VectorXd linear, square;
+  };
+  Varied varied(int shot, const Model& model, const double* parameters, const Varying& by) const;
+
   const models::ImpactModel& base_;
   bool direct_;
   const Surrogate* surrogate_;
@@ -151,8 +168,10 @@ class ShotModel {
   std::vector<Shot> trials_;
   std::vector<ShotChannel> channels_;
   Eigen::MatrixXd measured_;
-  Eigen::MatrixXd scatter_;  ///< see Averages
-  std::vector<int> count_;   ///< rows in every shot's mean; empty: the shots are no means
+  Eigen::MatrixXd expected_;  ///< what a model with nothing that varies should show: measured less what varying adds
+  Eigen::MatrixXd scatter_;   ///< see Averages
+  std::vector<int> count_;    ///< rows in every shot's mean; empty: the shots are no means
+  std::vector<Varying> varying_;
   std::vector<double> whiten_;
   Eigen::MatrixXd sigma_;
   std::optional<models::FlightConditions> flight_;

@@ -116,11 +116,31 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     model_->set_scatter(case_.averages->scatter, case_.averages->degrees, std::move(count));
     notes_.insert(notes_.end(), case_.averages->notes.begin(), case_.averages->notes.end());
   }
+  const std::vector<Parametrisation> all = case_.varying.empty() ? std::vector<Parametrisation>{} : forms();
+  for (const Known& k : case_.varying) vary(all, k);
   std::vector<double> out(static_cast<std::size_t>(width()));
   for (int i = 0; i < model_->shots(); ++i) {
     if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
     else flag(inputs_.row_of[std::size_t(i)], "", "the base model has no answer: the head moves away from the ball", i);
   }
+}
+
+/// The form with the fewest other parameters stands for it.
+void ShotProblem::vary(const std::vector<Parametrisation>& all, const Known& k) {
+  const Parametrisation* least = nullptr;
+  std::size_t place = 0;
+  for (const Parametrisation& f : all) {
+    const auto it = std::ranges::find(f.parameters, k.parameter, &Parameter::name);
+    if (f.effect != k.effect || it == f.parameters.end()) continue;
+    if (least && least->parameters.size() <= f.parameters.size()) continue;
+    least = &f;
+    place = std::size_t(it - f.parameters.begin());
+  }
+  if (!least) throw DataError(fmt::format("effect '{}' with a parameter '{}' cannot act here", k.effect, k.parameter));
+  model_->vary(*least, place, k.sd * least->parameters[place].si);
+  const std::string row = case_.averages ? case_.averages->by : "row";
+  notes_.push_back(fmt::format("{}: {} differs from {} to {} by {:g} {} ({})", k.effect, k.parameter, row, row, k.sd,
+                               least->parameters[place].unit, k.source));
 }
 
 /// Every shot's value of this input may be anything: its direction is projected out of the shot's channels.

@@ -60,6 +60,7 @@ class ShotProblem final : public Problem {
 
  private:
   void read(const std::vector<DerivedColumn>& derived, std::optional<Input> doubted);
+  void vary(const std::vector<Parametrisation>& all, const Known& k);
   void distrust(Input input);
   void split(const std::set<int>& without);
   void estimate_noise(const Fit* at);

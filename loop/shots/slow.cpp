@@ -158,7 +158,7 @@ std::vector<Fit> places(const Fit& fit, Eigen::Index parameters) {
 Learnt learn(const ShotCase& c) {
   const SlowBase& slow = *c.slow;
   std::vector<Shot> shots = recorded(c);
-  Surrogate coarse(slow.coarse, first_answer, 3);
+  Surrogate coarse(slow.coarse, first_answer);
   ShotCase quick = without_holdout(c);
   quick.surrogate = &coarse;
   const std::vector<Parametrisation> effects = ShotProblem(quick, {}, std::set<int>{}, {}).forms();
@@ -167,8 +167,7 @@ Learnt learn(const ShotCase& c) {
     coarse.learn(spread(shots, effects, runs, slow.seed), told(c, "surrogate", std::size_t(runs)));
     if (!slow.fine) return {std::move(shots), nullptr, std::move(coarse)};
     const auto first = std::make_shared<const Surrogate>(std::move(coarse));
-    Surrogate fine(
-        slow.fine, [first](const Shot& s) { return first->launch(s); }, 2);
+    Surrogate fine(slow.fine, [first](const Shot& s) { return first->launch(s); });
     fine.learn(spread(shots, {}, slow.fine_runs, slow.seed + 1),
                told(c, "the case's own accuracy", std::size_t(slow.fine_runs)));
     return {std::move(shots), first, std::move(fine)};
@@ -213,9 +212,10 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
   last.checked = slow.checked;
   const Surrogate& coarse = learnt.coarse ? *learnt.coarse : best;
   last.notes.push_back(fmt::format(
-      "{} stands behind a sparse polynomial of {} of its answers over {} quantities of blow and effects ({} had none), "
-      "its residuals interpolated{}; error of each predicted from the others: {}",
-      c.base, coarse.points(), coarse.inputs(), coarse.failed(),
+      "{} stands behind a Gaussian process of {} of its answers over {} quantities of blow and effects ({} had "
+      "none){}; "
+      "its error at the shots: {}",
+      c.base, learnt.coarse ? coarse.points() : first_points, coarse.inputs(), coarse.failed(),
       learnt.coarse ? fmt::format(", corrected by {} at the case's own accuracy", best.points()) : "", first_error));
   if (best.points() > first_points)
     last.notes.push_back(fmt::format(

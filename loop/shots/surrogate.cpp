@@ -7,14 +7,13 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "hosel/loop/shots/features.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::loop {
 namespace {
-
-constexpr double kBelieved = 8;  // answers that the errors of cross-validation are worth, beside new ones
 
 Vec6 in_face(const Launch& l, const Shot& s) {
   const Mat3 R = s.blow.delivery.face_to_global().transpose();
@@ -25,8 +24,7 @@ Vec6 in_face(const Launch& l, const Shot& s) {
 
 }  // namespace
 
-Surrogate::Surrogate(Answer slow, Answer quick, int degree)
-    : slow_(std::move(slow)), quick_(std::move(quick)), degree_(degree) {}
+Surrogate::Surrogate(Answer slow, Answer quick) : slow_(std::move(slow)), quick_(std::move(quick)) {}
 
 void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(int)>& told) {
   std::vector<std::optional<Vec6>> found(shots.size());
@@ -40,9 +38,6 @@ void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(i
     if (told) told(++done);
   });
   surprise_ = surprise(shots, found);
-  // The spread reaches far, the shots that are asked for lie where it matters: what is seen there is what is told.
-  if (std::isfinite(surprise_))
-    told_scale_ *= (kBelieved + double(shots.size()) * surprise_) / (kBelieved + double(shots.size()));
   for (std::size_t i = 0; i < shots.size(); ++i) {
     if (!found[i]) {
       ++failed_;
@@ -61,7 +56,7 @@ double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std
   for (std::size_t i = 0; i < shots.size(); ++i) {
     if (!found[i]) continue;
     const Eigen::VectorXd x = coordinates(shots[i]);
-    const Vec6 miss = *found[i] - polynomial_(x) - residual_(x), told = told_scale_ * residual_.error(x).diagonal();
+    const Vec6 miss = *found[i] - process_(x), told = process_.error(x).diagonal();
     for (int k = 0; k < 6; ++k)
       if (told[k] > 0) {
         sum += miss[k] * miss[k] / told[k];
@@ -78,7 +73,7 @@ void Surrogate::fit() {
   Eigen::MatrixXd value(n, Eigen::Index(all.size()));
   for (Eigen::Index i = 0; i < n; ++i)
     for (std::size_t k = 0; k < all.size(); ++k) value(i, Eigen::Index(k)) = all[k].get(shots_[std::size_t(i)]);
-  features_.clear();
+  const std::vector<std::size_t> before = std::exchange(features_, {});
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto column = value.col(Eigen::Index(k));
     const double low = column.minCoeff(), high = column.maxCoeff();
@@ -95,12 +90,9 @@ void Surrogate::fit() {
     x.col(k) = (column.array() - middle_[k]) / half_[k];
   }
   for (Eigen::Index i = 0; i < n; ++i) y.row(i) = beyond_[std::size_t(i)].transpose();
-  polynomial_ = {x, y, degree_};
-  Eigen::MatrixXd left = y;
-  for (Eigen::Index i = 0; i < n; ++i) left.row(i) -= polynomial_(x.row(i).transpose()).transpose();
-  // A quantity that hardly moves the answer hardly parts two blows.
-  constexpr double least = 0.05;
-  residual_ = {x, polynomial_.importance(d).cwiseMax(least).cwiseInverse(), left, y - polynomial_.left_out()};
+  solvers::Kriging::Correlation from;
+  if (features_ == before) from = process_.correlation();
+  process_ = {x, y, std::move(from)};
 }
 
 Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
@@ -114,18 +106,18 @@ Launch Surrogate::launch(const Shot& shot) const {
   const Launch quick = quick_(shot);
   if (shots_.empty()) return quick;
   const Eigen::VectorXd x = coordinates(shot);
-  return shifted(quick, shot, polynomial_(x) + residual_(x));
+  return shifted(quick, shot, process_(x));
 }
 
 Mat6 Surrogate::error(const Shot& shot) const {
   if (shots_.empty()) return Mat6::Zero();
-  return told_scale_ * residual_.error(coordinates(shot));
+  return process_.error(coordinates(shot));
 }
 
 Eigen::MatrixXd Surrogate::errors_together(const std::vector<Shot>& shots) const {
   Eigen::MatrixXd x(Eigen::Index(shots.size()), Eigen::Index(features_.size()));
   for (std::size_t i = 0; i < shots.size(); ++i) x.row(Eigen::Index(i)) = coordinates(shots[i]).transpose();
-  return residual_.errors_together(x);
+  return process_.errors_together(x);
 }
 
 Launch Surrogate::shifted(Launch l, const Shot& s, const Vec6& error) {

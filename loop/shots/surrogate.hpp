@@ -1,5 +1,5 @@
-/// A slow base made quick: what it says beyond a quicker answer, over blows and effects together, as a sparse
-/// polynomial whose residuals are interpolated, with its error.
+/// A slow base made quick: what it says beyond a quicker answer, over blows and effects together, as a Gaussian
+/// process, with its error.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,6 @@
 #include "hosel/golf/launch.hpp"
 #include "hosel/loop/effect.hpp"
 #include "hosel/solvers/kriging.hpp"
-#include "hosel/solvers/sparse_polynomial.hpp"
 
 namespace hosel::loop {
 
@@ -23,7 +22,7 @@ class Surrogate {
   using Answer = std::function<Launch(const Shot&)>;
 
   /// `slow` is asked from many threads; `quick` answers first, and its head's motion is kept.
-  Surrogate(Answer slow, Answer quick, int degree);
+  Surrogate(Answer slow, Answer quick);
 
   /// Asks the slow model about these shots too, and fits anew. Shots that it finds no answer to are left out. `told`
   /// hears how many of them are done.
@@ -35,17 +34,15 @@ class Surrogate {
   int points() const { return int(shots_.size()); }
   int inputs() const { return int(features_.size()); }  ///< quantities that vary over them
   int failed() const { return failed_; }
-  int terms() const { return polynomial_.terms(); }
   /// Of the shots it learnt last: chi-squared per output of what it had said of them before. About 1 where it had told
   /// its error truly; not a number before it has learnt twice.
   double surprise() const { return surprise_; }
-  /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2], scaled to what
-  /// cross-validation shows, and then to what every later lesson shows: zero before it has learnt.
+  /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2]: zero before it has learnt.
   Mat6 error(const Shot& shot) const;
   /// How the errors of many answers go together: entry (i, j) times `error_scale` is the covariance of the errors of
   /// shots i and j. Neighbours err alike.
   Eigen::MatrixXd errors_together(const std::vector<Shot>& shots) const;
-  Mat6 error_scale() const { return told_scale_ * residual_.process(); }
+  Mat6 error_scale() const { return process_.process(); }
   /// A launch with such an error added.
   static Launch shifted(Launch launch, const Shot& shot, const Vec6& error);
 
@@ -55,15 +52,13 @@ class Surrogate {
   void fit();
 
   Answer slow_, quick_;
-  int degree_, failed_ = 0;
+  int failed_ = 0;
   double surprise_ = std::numeric_limits<double>::quiet_NaN();
-  double told_scale_ = 1;  ///< of the mean squares
   std::vector<Shot> shots_;
   std::vector<Vec6> beyond_;           ///< what the slow model says beyond the quick one
   std::vector<std::size_t> features_;  ///< that vary over the shots
   Eigen::VectorXd middle_, half_;
-  solvers::SparsePolynomial polynomial_;
-  solvers::Kriging residual_;
+  solvers::Kriging process_;
 };
 
 }  // namespace hosel::loop

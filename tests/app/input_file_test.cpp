@@ -73,6 +73,9 @@ TEST(InputFile, WhatIsKnownAndAveragedHasAName) {
   EXPECT_NE(
       said("[[data.known]]\neffect = \"head-mas\"\nparameter = \"added_mass\"\n" + rest).find("no effect 'head-mas'"),
       std::string::npos);
+  EXPECT_NE(said("[[data.varying]]\neffect = \"head-mass\"\nparameter = \"added_mass\"\n" + rest)
+                .find("compare them as means (average_by)"),
+            std::string::npos);
   EXPECT_NE(said("average_by = \"player\"\n").find("no column 'player' to average by"), std::string::npos);
   EXPECT_NE(said("average_by = \"club\"\n").find("too few to tell how rows scatter"), std::string::npos);
   EXPECT_NE(said("average_by = \"club\"\n[data.noise]\nball_speed_mps = 0.2\n").find("leave out this table"),

@@ -99,7 +99,7 @@ TEST(SlowBase, ASurrogateOverBlowsAndEffectsTellsItsError) {
     b.contact = {};
     return models::RigidEccentric().launch(b);
   };
-  Surrogate surrogate(slow_model, closed, 3);
+  Surrogate surrogate(slow_model, closed);
   surrogate.learn(spread(recorded, effects, 300, 1));
   EXPECT_EQ(surrogate.failed(), 0);
   double square = 0, told = 0;
