@@ -122,7 +122,8 @@ Eigen::VectorXd Kriging::operator()(const Eigen::VectorXd& x) const {
 
 Eigen::MatrixXd Kriging::error(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd k = covariances(x), open = trend(x) - of_trend_.transpose() * k;
-  return (1 + correlation_.nugget - k.dot(inverse_ * k) + open.dot(plane_error_ * open)) * process_;
+  const double share = 1 - k.dot(inverse_ * k) + open.dot(plane_error_ * open);  // at a point that was asked, rounding
+  return (std::max(share, 0.0) + correlation_.nugget) * process_;
 }
 
 Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {

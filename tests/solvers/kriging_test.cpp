@@ -26,7 +26,10 @@ TEST(Kriging, AnswersWhereItWasAskedAndTellsItsErrorElsewhere) {
   std::mt19937_64 random(1);
   const Eigen::MatrixXd x = anywhere(150, 3, random), y = bumps(x);
   const Kriging fit(x, y);
-  for (int i = 0; i < 150; ++i) EXPECT_LT((fit(x.row(i).transpose()) - y.row(i).transpose()).norm(), 1e-3);
+  for (int i = 0; i < 150; ++i) {
+    EXPECT_LT((fit(x.row(i).transpose()) - y.row(i).transpose()).norm(), 1e-3);
+    EXPECT_GE(fit.error(x.row(i).transpose())(0, 0), fit.correlation().nugget * fit.process()(0, 0));
+  }
   const Eigen::MatrixXd there = anywhere(300, 3, random), truth = bumps(there);
   Eigen::Vector2d chi = Eigen::Vector2d::Zero();
   double square = 0;
