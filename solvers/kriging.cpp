@@ -95,7 +95,7 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
   const Regression found(x, trend, y, correlation_);
   points_ = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
   square_ = points_.colwise().squaredNorm().transpose();
-  inverse_ = found.factor.solve(Eigen::MatrixXd::Identity(n, n));
+  inverse_ = found.factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
   of_trend_ = found.of_trend;
   plane_ = found.plane;
   plane_error_ = found.normal.llt().solve(Eigen::MatrixXd::Identity(p, p));
@@ -122,7 +122,8 @@ Eigen::VectorXd Kriging::operator()(const Eigen::VectorXd& x) const {
 
 Eigen::MatrixXd Kriging::error(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd k = covariances(x), open = trend(x) - of_trend_.transpose() * k;
-  const double share = 1 - k.dot(inverse_ * k) + open.dot(plane_error_ * open);  // at a point that was asked, rounding
+  const double share = 1 - (inverse_.triangularView<Eigen::Lower>() * k).squaredNorm() +
+                       open.dot(plane_error_ * open);  // at a point that was asked, rounding
   return (std::max(share, 0.0) + correlation_.nugget) * process_;
 }
 
@@ -136,7 +137,8 @@ Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {
     shared.col(i) = (there.colwise() - there.col(i)).colwise().norm().unaryExpr(&matern).transpose();
   }
   shared.diagonal().array() += correlation_.nugget;
-  return shared - of_points.transpose() * inverse_ * of_points + open.transpose() * plane_error_ * open;
+  const Eigen::MatrixXd told = inverse_.triangularView<Eigen::Lower>() * of_points;
+  return shared - told.transpose() * told + open.transpose() * plane_error_ * open;
 }
 
 }  // namespace hosel::solvers

@@ -39,11 +39,12 @@ class Kriging {
   Eigen::VectorXd trend(const Eigen::VectorXd& x) const;
 
   Correlation correlation_;
-  Eigen::MatrixXd points_;       ///< over the lengths, inputs x points
-  Eigen::ArrayXd square_;        ///< their squared distances from the origin
-  Eigen::MatrixXd inverse_;      ///< of the points' correlation with the nugget
-  Eigen::MatrixXd of_trend_;     ///< inverse times the points' trend
-  Eigen::MatrixXd plane_;        ///< coefficients, terms of the trend x outputs
+  Eigen::MatrixXd points_;    ///< over the lengths, inputs x points
+  Eigen::ArrayXd square_;     ///< their squared distances from the origin
+  Eigen::MatrixXd inverse_;   ///< of the lower factor of the points' correlation with the nugget: a square cannot round
+                              ///< to less than none
+  Eigen::MatrixXd of_trend_;  ///< inverse times the points' trend
+  Eigen::MatrixXd plane_;     ///< coefficients, terms of the trend x outputs
   Eigen::MatrixXd plane_error_;  ///< their covariance over that of the process
   Eigen::MatrixXd weight_;       ///< points x outputs
   Eigen::MatrixXd process_;

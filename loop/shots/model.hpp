@@ -67,7 +67,7 @@ class ShotModel {
   /// Everything that the base with effects says of a blow that was not measured (companion bases: without the
   /// base's own answer).
   bool launch(Shot trial, const Model& model, const double* parameters, Launch& out) const;
-  /// Raw residuals model - measured, shots x channels, NaN where missing.
+  /// Raw residuals model - measured, shots x channels, NaN where missing; the model with what varies on average in it.
   Eigen::MatrixXd residuals(const Model& model, const double* parameters) const;
 
   /// The shots are means of so many rows each, which scatter about them: that is their noise from now on. As much wider

@@ -110,7 +110,7 @@ TEST(SlowBase, ASurrogateOverBlowsAndEffectsTellsItsError) {
     told += surrogate.error(s).diagonal().tail<3>().sum() * s.blow.delivery.club_speed * s.blow.delivery.club_speed /
             200;
   }
-  EXPECT_NEAR(std::sqrt(told / square), 1, 0.4);  // told from 300 points with a tenth of them left out, seen on 200
+  EXPECT_NEAR(std::sqrt(told / square), 1, 0.4);  // told from 300 points, seen on 200
   EXPECT_LT(rpm(std::sqrt(square)), 150);         // of changes of some thousands
 }
 

@@ -40,7 +40,7 @@ TEST(Kriging, AnswersWhereItWasAskedAndTellsItsErrorElsewhere) {
   }
   EXPECT_LT(std::sqrt(square), 0.04);  // of a process of 0.4
   for (const double c : chi) {         // told from 150 points, seen on 300 that lie no closer
-    EXPECT_GT(c, 0.1);
+    EXPECT_GT(c, 0.1);  // sines are smoother than the process takes them for: told up to three times too large
     EXPECT_LT(c, 3);
   }
 }
@@ -74,13 +74,12 @@ TEST(Kriging, NeighboursErrAlike) {
   Eigen::MatrixXd at(4, 3);
   at << 0.31, 0.12, 0, 0.315, 0.12, 0, -0.8, 0.7, 0, x.row(0);
   const Eigen::MatrixXd together = fit.errors_together(at);
-  for (int i = 0; i < 4; ++i)  // rounding: an inverse of nearly dependent columns
-    EXPECT_NEAR(together(i, i) * fit.process()(0, 0), fit.error(at.row(i).transpose())(0, 0),
-                1e-6 * fit.process()(0, 0));
+  for (int i = 0; i < 4; ++i)
+    EXPECT_NEAR(together(i, i) * fit.process()(0, 0), fit.error(at.row(i).transpose())(0, 0), 1e-9);
   const auto correlation = [&](int i, int j) { return together(i, j) / std::sqrt(together(i, i) * together(j, j)); };
   EXPECT_GT(correlation(0, 1), 0.5);
-  EXPECT_LT(std::abs(correlation(0, 2)), 0.2);
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(together.topLeftCorner(3, 3)).eigenvalues()[0], 0);
+  EXPECT_LT(std::abs(correlation(0, 2)), 0.1);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(together).eigenvalues()[0], 0);
 }
 
 TEST(Kriging, NoiseIsNotInterpolated) {
