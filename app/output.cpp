@@ -102,7 +102,8 @@ Output::Output(OutputOptions options, std::string_view resolved) : state_(std::m
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
   state_->lock = std::make_unique<DirectoryLock>(out);
   post::remove_unfinished(out);
-  fs::remove(out / "summary.json", error);
+  // What told of the run that lay here would stand beside this one's unfinished files.
+  for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
   const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), true);
   std::vector<spdlog::sink_ptr> sinks{sink};
   if (!state_->options.log.empty())

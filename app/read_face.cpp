@@ -21,12 +21,12 @@ FaceCompliance read_face(Table table) {
                                   standard(&FaceCompliance::stiffness));
   face.damping =
       table.quantity({"damping", "at the centre of the face"}, "N_s_per_m", {0, 1e4}, named ? named->damping : 0.0);
-  constexpr double kInf = std::numeric_limits<double>::infinity();
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   face.half_width =
       table.quantity({"half_width", "where the face no longer moves, heel to toe; inf: it moves alike everywhere"},
-                     "mm", {0.005, kInf}, named ? named->half_width : face.half_width);
-  face.half_height = table.quantity({"half_height", "where the face no longer moves, up and down"}, "mm", {0.005, kInf},
-                                    named ? named->half_height : face.half_height);
+                     "mm", {0.005, kNoEnd}, named ? named->half_width : face.half_width);
+  face.half_height = table.quantity({"half_height", "where the face no longer moves, up and down"}, "mm",
+                                    {0.005, kNoEnd}, named ? named->half_height : face.half_height);
   return face;
 }
 

@@ -153,7 +153,7 @@ FlightSetup read_flight(Table table) {
     s.turf = t;
     if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
   }
-  for (Table t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t));
+  for (const Table& t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t));
   return s;
 }
 

@@ -635,13 +635,15 @@ void override_element(detail::Document& document, toml::table& table, const std:
   toml::node* node = table.get(key.substr(0, key.find('[')));
   toml::array* list = nullptr;
   std::size_t number = 0;
-  for (std::size_t at = key.find('['); at != std::string::npos; at = key.find('[', at + 1)) {
+  std::size_t at = key.find('[');
+  do {
     if (list) node = list->get(number - 1);
     list = node ? node->as_array() : nullptr;
     number = std::strtoul(key.c_str() + at + 1, nullptr, 10);
     if (!list || number < 1 || number > list->size())
       throw InputError(fmt::format("--set {}: there is no '{}'", text, key));
-  }
+    at = key.find('[', at + 1);
+  } while (at != std::string::npos);
   document.set.erase(list->get(number - 1));
   list->replace(list->cbegin() + static_cast<std::ptrdiff_t>(number - 1), *parsed.get("value"));
   document.set[list->get(number - 1)] = text;

@@ -32,7 +32,7 @@ void RunPage::close_figures() {
   figures_.clear();
 }
 
-void RunPage::section(std::string_view heading, std::string html) {
+void RunPage::section(std::string_view heading, std::string_view html) {
   close_figures();
   sections_ = true;
   if (!heading.empty()) body_ += fmt::format("<h2>{}</h2>", escape_html(std::string(heading)));

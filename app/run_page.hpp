@@ -19,7 +19,7 @@ class RunPage {
   /// A table beneath those numbers.
   void answer(const post::TextTable& table);
   /// HTML under a heading; under the one before where it is empty.
-  void section(std::string_view heading, std::string html);
+  void section(std::string_view heading, std::string_view html);
   /// A picture that stands in the page's own text, beside others that come with it.
   void figure(std::string_view caption, std::string svg);
   /// What post::draw has made: lines as they are, maps as one picture of points.

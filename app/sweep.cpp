@@ -164,7 +164,7 @@ Shard parse_shard(const std::string& text) {
   return {index, count};
 }
 
-void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides, OutputOptions options) {
+void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides, const OutputOptions& options) {
   const fs::path found = find_case(where.string());
   const Planned p = read_planned(found, overrides);
   const fs::path root = options.directory;

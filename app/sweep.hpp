@@ -42,7 +42,8 @@ Shard parse_shard(const std::string& text);  ///< "2/8"; throws InputError
 
 // The subcommands of `hosel sweep`. Each throws InputError on a directory that is not a plan, or whose
 // case or program is no longer the one it was planned with.
-void sweep_plan(const std::filesystem::path& where, const std::vector<std::string>& overrides, OutputOptions out);
+void sweep_plan(const std::filesystem::path& where, const std::vector<std::string>& overrides,
+                const OutputOptions& out);
 void sweep_run(const std::filesystem::path& out, Shard shard, bool quiet);
 void sweep_merge(const std::filesystem::path& out, bool force, bool quiet);
 void sweep_status(const std::filesystem::path& out);

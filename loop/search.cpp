@@ -239,7 +239,7 @@ void Search::weigh(const Fit& f) {
     weight_.segment(i, loss_.block).setConstant(std::sqrt(loss_.weight(z.segment(i, loss_.block).squaredNorm())));
 }
 
-Eigen::MatrixXd Search::weighted(Eigen::MatrixXd a) const { return weight_.asDiagonal() * a; }
+Eigen::MatrixXd Search::weighted(const Eigen::MatrixXd& a) const { return weight_.asDiagonal() * a; }
 
 bool Search::acts(const Parametrisation* form) const {
   Fit probe = beside(base, form);

@@ -52,7 +52,7 @@ class Search {
   };
 
   void weigh(const Fit& fit);
-  Eigen::MatrixXd weighted(Eigen::MatrixXd a) const;
+  Eigen::MatrixXd weighted(const Eigen::MatrixXd& a) const;
   bool acts(const Parametrisation* form) const;
   bool nothing_to_find(const std::vector<Eigen::MatrixXd>& columns) const;
   Eigen::MatrixXd about_zero(const Parametrisation& form) const;

@@ -16,14 +16,14 @@ namespace {
         },                                    \
         [](Options& o, Blow& b, double x) {   \
           (void)o, (void)b;                   \
-          place = x;                          \
+          (place) = x;                        \
         }                                     \
   }
 // An error of the recorded delivery: zero in the record, added to what a shot says.
 #define OFFSET(name, unit, low, high, place)                                \
   NamedParameter {                                                          \
     name, unit, low, high, [](const Options&, const Blow&) { return 0.0; }, \
-        [](Options&, Blow& b, double x) { place += x; }                     \
+        [](Options&, Blow& b, double x) { (place) += x; }                   \
   }
 
 constexpr double kTurn = 1.5;  // [rad]

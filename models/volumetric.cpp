@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "hosel/golf/first_contact.hpp"
@@ -295,7 +294,7 @@ class Contact {
 
   void evaluate(const double* y) {
     const bool same_face = !law_.face || std::equal(y + kFree, y + kFree + 2, seen_face_.begin());
-    if (same_face && std::memcmp(y, seen_.data(), sizeof seen_) == 0) return;  // the same instant again
+    if (same_face && std::equal(seen_.begin(), seen_.end(), y)) return;  // the same instant again
     std::copy(y, y + kLostNormal, seen_.begin());
     if (law_.face) std::copy(y + kFree, y + kFree + 2, seen_face_.begin());
     geometry(y);

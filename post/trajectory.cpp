@@ -22,7 +22,7 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
   top.title = "from above";
   top.y_label = fmt::format("left  <-  [{}]  ->  right", shown);
   for (const NamedFlight& f : flights) {
-    Series height{.label = f.title}, right = height;
+    Series height{.label = f.title}, right{.label = f.title};
     const auto add = [&](const Vec3& x) {
       height.x.push_back(x.x() / size(unit));
       height.y.push_back(x.z() / size(unit));

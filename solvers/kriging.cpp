@@ -1,5 +1,6 @@
 #include "hosel/solvers/kriging.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>

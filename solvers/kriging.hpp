@@ -2,7 +2,6 @@
 /// of them a plane does, and everywhere the error to be expected is told.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace hosel::solvers {

@@ -93,7 +93,7 @@ class BounceJob final : public Job {
       Measured m{.quantity = &*std::ranges::find(kBounceQuantities, wanted, &BounceQuantity::name)};
       m.label = t.text({"label", "who measured"});
       m.angles = t.quantities({"angles", "at which it was measured"}, "deg", 0, {1e-3, 1.5});
-      const auto numbers = [&](Key key, std::optional<std::vector<double>> standard) {
+      const auto numbers = [&](Key key, const std::optional<std::vector<double>>& standard) {
         return *m.quantity->unit ? t.quantities(key, m.quantity->unit, 0, Range::finite(), standard)
                                  : t.numbers(key, 0, Range::finite(), standard);
       };

@@ -370,7 +370,7 @@ class ClubsJob final : public Job {
         if (text.empty()) fail("the cell is empty");
         if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x))
           fail(fmt::format("'{}' is no number", text));
-        if (!si.contains(x * split.unit->si)) fail(fmt::format("{} is {}", text, si.sentence(*split.unit)));
+        if (!si.contains(x * split.unit->si)) fail(fmt::format("{} is {}", text, si.sentence(split.unit)));
         return x * split.unit->si;
       };
       const loop::Column* club = shots.find("club");

@@ -72,7 +72,7 @@ class CrossCheckJob final : public Job {
     const std::optional<FlightSetup> flight = read_optional_flight(root);
     for (const char* name : kChannels)
       if (auto c = find_shot_channel(name, flight, blow_.ball)) channels_.push_back(std::move(*c));
-    for (Table t : root.tables("grid")) axes_.push_back(read_axis(t));
+    for (const Table& t : root.tables("grid")) axes_.push_back(read_axis(t));
     if (axes_.empty()) root.fail("grid", "name at least one [[grid]] axis");
     points_ = 1;
     for (const Axis& a : axes_) points_ *= a.values.size();

@@ -47,7 +47,9 @@ void answer(Output& out, const ImpactStory& s) {
                 mph ? fmt::format("club {:.1f} mph", club / kMpsPerMph) : fmt::format("club {:.2f} m/s", club));
   page.answer("launch angle", fmt::format("{:.2f}°", degrees(l.launch_angle())),
               note("launch_angle", kRadPerDeg, 2, "°"));
-  const auto beside = [](const char* word, std::string rest) { return rest.empty() ? word : word + ("; " + rest); };
+  const auto beside = [](const char* word, const std::string& rest) {
+    return rest.empty() ? word : word + ("; " + rest);
+  };
   const double aside = degrees(l.azimuth());
   page.answer("direction", fmt::format("{:.2f}°", std::abs(aside)),
               beside(aside < -0.005  ? "left of the target"

@@ -252,7 +252,7 @@ class SweepJob final : public PointJob {
         return fmt::format("statement {} holds", 1 + std::atoi(entry.c_str() + at + 11));
       return post::label(entry);
     };
-    const std::string name = own(record);
+    std::string name = own(record);
     if (std::ranges::count(record_, name, own) == 1) return name;
     std::string tables = record.substr(0, std::min(record.find(".figures."), record.find(".statements.")));
     if (tables == record) tables = record.substr(0, record.rfind('.'));

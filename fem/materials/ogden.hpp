@@ -38,7 +38,7 @@ struct Ogden {
 
   void add(const Sym& C, bool tangent, Response& out) const {
     const Eigen::SelfAdjointEigenSolver<Mat3> spectrum(to_matrix(C));
-    const Vec3 square = spectrum.eigenvalues();  // of the stretches
+    const Vec3& square = spectrum.eigenvalues();  // of the stretches
     const Mat3& n = spectrum.eigenvectors();
     const Vec3 x = 0.5 * square.array().log();  // logarithms of the stretches; NaN for an inverted point
     const double J = std::exp(x.sum());

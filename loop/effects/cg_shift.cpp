@@ -7,7 +7,7 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> cg_shift(const Setting& setting) {
   if (!setting.inertia_declared) return {};
   const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}; };
-  const auto along = [&](std::vector<int> axes, const char* what) {
+  const auto along = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
     Parametrisation f{.effect = "cg-shift", .what = what};
     for (const int a : axes) f.parameters.push_back(component(names[a]));
@@ -25,7 +25,7 @@ std::vector<Parametrisation> cg_shift(const Setting& setting) {
 
 std::vector<Parametrisation> cg_shift(const HistorySetting& setting) {
   if (!setting.head) return {};
-  const auto along = [](std::vector<int> axes, const char* what, double complexity) {
+  const auto along = [](const std::vector<int>& axes, const char* what, double complexity) {
     static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
     Parametrisation f{.effect = "cg-shift", .what = what, .complexity = complexity};
     for (const int a : axes) f.parameters.push_back({names[a], "mm", 1e-3, -0.03, 0.03, 1e-3});

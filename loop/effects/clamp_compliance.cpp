@@ -6,7 +6,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> clamp_compliance(const HistorySetting& setting) {
   const double unit = setting.compliance;
-  const auto form = [&](const char* what, double complexity, Vec3 axes) {
+  const auto form = [&](const char* what, double complexity, const Vec3& axes) {
     Parametrisation f{.effect = "clamp-compliance",
                       .what = what,
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},

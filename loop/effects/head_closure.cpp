@@ -19,7 +19,7 @@ void add_moving_point(const Vec3& spin, const Shot& t, Launch& launch) {
 
 std::vector<Parametrisation> head_closure(const Setting& setting) {
   const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}; };
-  const auto about = [&](std::vector<int> axes, const char* what) {
+  const auto about = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
     Parametrisation f{.effect = "head-closure", .what = what};
     for (const int a : axes) f.parameters.push_back(rate(names[a]));

@@ -40,7 +40,7 @@ std::vector<Parametrisation> head_inertia(const Setting& setting) {
 
 std::vector<Parametrisation> head_inertia(const HistorySetting& setting) {
   if (!setting.head) return {};
-  const auto about = [](const char* what, const char* name, double complexity, Vec3 axes) {
+  const auto about = [](const char* what, const char* name, double complexity, const Vec3& axes) {
     Parametrisation f{.effect = "head-inertia",
                       .what = what,
                       .parameters = {{name, "1", 1, -0.8, 1.2, 0.02}},

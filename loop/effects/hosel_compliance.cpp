@@ -7,7 +7,7 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> hosel_compliance(const HistorySetting& setting) {
   if (!setting.head) return {};
   const double unit = setting.compliance;
-  const auto form = [&](const char* what, double complexity, Vec3 axes) {
+  const auto form = [&](const char* what, double complexity, const Vec3& axes) {
     Parametrisation f{.effect = "hosel-compliance",
                       .what = what,
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},

@@ -11,7 +11,7 @@ std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
     return Parameter{name, "deg", kRadPerDeg, radians(-most), radians(most), radians(0.5)};
   };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
-  const auto about = [&](std::vector<int> axes, const char* what) {
+  const auto about = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};
     Parametrisation f{.effect = "monitor-misalignment", .what = what};
     for (const int a : axes) f.parameters.push_back(angle(names[a], a == 2 ? 5 : 3));

@@ -248,14 +248,14 @@ class Audit {
     const auto si = [&](int k, const std::vector<double>& x) {
       return x[std::size_t(k)] * sources_[std::size_t(k)].column->si;
     };
-    const auto attempt = [&](std::set<int> from, std::string text, auto f) {
+    const auto attempt = [&](const std::set<int>& from, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < 12) return false;
       Formula out;
       if (!judge(
               target, from, 0, rows, [&](const std::vector<double>& x) { return f(x) / y.si; }, out))
         return false;
-      out.text = text;
+      out.text = std::move(text);
       out.rows = int(rows.size());
       best = out;
       return true;

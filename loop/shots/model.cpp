@@ -420,13 +420,15 @@ ShotModel::Varied ShotModel::varied(int shot, const Model& model, const double* 
   p.resize(p.size() + by.form.parameters.size(), 0.0);
   double& value = p[std::size_t(model.size()) + by.parameter];
   Eigen::VectorXd up(width()), middle(width()), down(width());
-  bool good = predict(shot, with, p.data(), middle.data());
-  value = by.sd;
-  good = predict(shot, with, p.data(), up.data()) && good;
-  value = -by.sd;
-  good = predict(shot, with, p.data(), down.data()) && good;
-  if (!good) return {Eigen::VectorXd::Zero(width()), Eigen::VectorXd::Zero(width())};
-  return {(up - down) / 2, (up + down) / 2 - middle};
+  if (predict(shot, with, p.data(), middle.data()))
+    for (double part = 1; part > 1e-2; part /= 2) {  // so near a limit of the model, a smaller difference
+      value = part * by.sd;
+      if (!predict(shot, with, p.data(), up.data())) continue;
+      value = -part * by.sd;
+      if (!predict(shot, with, p.data(), down.data())) continue;
+      return {(up - down) / (2 * part), ((up + down) / 2 - middle) / (part * part)};
+    }
+  return {Eigen::VectorXd::Zero(width()), Eigen::VectorXd::Zero(width())};
 }
 
 void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const Model& model,

@@ -155,7 +155,7 @@ class ShotModel {
     double sd;
   };
   /// What the channels show of one standard deviation of it, to second order: readings move by
-  /// `linear` u + `square` u^2, u normal.
+  /// `linear` u + `square` u^2, u normal; by nothing where the model has no answer.
   struct Varied {
     Eigen::VectorXd linear, square;
   };

@@ -219,9 +219,13 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
       learnt.coarse ? fmt::format(", corrected by {} at the case's own accuracy", best.points()) : "", first_error));
   if (best.points() > first_points)
     last.notes.push_back(fmt::format(
-        "where the decision hangs {} was asked {} times more, after which the error is {}; the last of these answers "
-        "were {:.2g} of the told errors away from what had been foretold (root mean square)",
-        c.base, best.points() - first_points, errors(best, learnt.shots, c.shots), std::sqrt(best.surprise())));
+        "where the decision hangs {} was asked {} times more, after which the error is {}; {}", c.base,
+        best.points() - first_points, errors(best, learnt.shots, c.shots),
+        std::isfinite(best.surprise())
+            ? fmt::format("the last of these answers were {:.2g} of the told errors away from what had been foretold "
+                          "(root mean square)",
+                          std::sqrt(best.surprise()))
+            : "the last that was asked had no answer"));
   return run(last);
 }
 

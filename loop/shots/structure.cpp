@@ -31,7 +31,7 @@ bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
   return true;
 }
 
-Eigen::VectorXd ranks_clipped(Eigen::VectorXd x) {
+Eigen::VectorXd ranks_clipped(const Eigen::VectorXd& x) {
   // One wild cell must not be the regressor: beyond four robust deviations values are drawn in.
   return x.cwiseMax(-4.0).cwiseMin(4.0);
 }

@@ -63,7 +63,7 @@ double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std
         ++readings;
       }
   }
-  return readings ? sum / readings : 0;
+  return readings ? sum / readings : std::numeric_limits<double>::quiet_NaN();
 }
 
 void Surrogate::fit() {
@@ -103,7 +103,7 @@ Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
 }
 
 Launch Surrogate::launch(const Shot& shot) const {
-  const Launch quick = quick_(shot);
+  Launch quick = quick_(shot);
   if (shots_.empty()) return quick;
   const Eigen::VectorXd x = coordinates(shot);
   return shifted(quick, shot, process_(x));

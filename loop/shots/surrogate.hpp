@@ -35,7 +35,7 @@ class Surrogate {
   int inputs() const { return int(features_.size()); }  ///< quantities that vary over them
   int failed() const { return failed_; }
   /// Of the shots it learnt last: chi-squared per output of what it had said of them before. About 1 where it had told
-  /// its error truly; not a number before it has learnt twice.
+  /// its error truly; not a number before it has learnt twice, and where none of them had an answer.
   double surprise() const { return surprise_; }
   /// Mean square of the error to be expected of an answer [(m/s)^2, (rad/s)^2 over speed^2]: zero before it has learnt.
   Mat6 error(const Shot& shot) const;

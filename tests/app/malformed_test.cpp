@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "command.hpp"
+#include "hosel/app/output.hpp"
 
 namespace {
 
@@ -75,6 +77,14 @@ TEST(Command, FinishedRunIsNotOverwrittenUnlessTold) {
   EXPECT_EQ(again.status, 2);
   EXPECT_NE(again.text.find("--force"), std::string::npos);
   EXPECT_EQ(command(arguments + " --force").status, 0);
+}
+
+TEST(Command, NoReportOfAnEarlierRunStandsBesideAnUnfinishedOne) {
+  const fs::path out = fresh_directory("unfinished");
+  const std::array told{"summary.json", "report.json", "report.html"};
+  for (const char* file : told) std::ofstream(out / file) << "{}";
+  const hosel::app::Output begun({.directory = out, .force = true, .quiet = true, .log = {}}, "");
+  for (const char* file : told) EXPECT_FALSE(fs::exists(out / file)) << file;
 }
 
 TEST(Command, ResolvedCaseRunsAgain) {

@@ -339,7 +339,7 @@ Json score_sets(const fs::path& dir) {
     if (!o.ran || !o.report.contains("columns")) return false;
     for (const auto& c : o.report["columns"])
       if (names_of(o.key["slip"]["columns"]).contains(c.value("column", "")) &&
-          (!with_kind || c.value("finding", "") == o.key["slip"]["slip"]))
+          (!with_kind || c.value("finding", "") == o.key["slip"].value("slip", "")))
         return true;
     return false;
   };
@@ -426,7 +426,7 @@ Json score_sets(const fs::path& dir) {
         const Names members = names_of(tie);
         if (!members.contains(*o.truth.begin())) continue;
         for (const auto& m : members)
-          if (m != *o.truth.begin() && (rival.empty() || m == o.key["rival"])) rival = m;
+          if (m != *o.truth.begin() && (rival.empty() || m == o.key.value("rival", ""))) rival = m;
       }
       if (!rival.empty()) {
         try {

@@ -9,6 +9,7 @@
 
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/report.hpp"
+#include "hosel/loop/shots/problem.hpp"
 #include "hosel/loop/shots/run.hpp"
 #include "hosel/models/rigid_eccentric.hpp"
 
@@ -155,6 +156,18 @@ TEST(Known, WhatIsWeighedIsNotTied) {
     EXPECT_LT(std::abs(mass->candidate.fit.p[0]), 0.01);
     EXPECT_LT(mass->sd.front(), 1.01e-3);
   }
+}
+
+/// What varies by more than the model has an answer to, a head of no mass, is not left out.
+TEST(Varying, NearALimitOfTheModelASmallerDifferenceStandsForIt) {
+  const auto sigma = [](double grams) {
+    ShotCase c = averaged(irons(0, 11, 0));
+    if (grams > 0) c.varying.push_back({"head-mass", "added_mass", grams, "made so"});
+    const ShotProblem problem(c, {}, std::set<int>{}, {});
+    return problem.model().sigma(0, 0);
+  };
+  EXPECT_GT(sigma(20), 2 * sigma(0));
+  EXPECT_GT(sigma(400), 2 * sigma(20));  // the head has some 250 g
 }
 
 /// One head is declared, seven were swung: what their differences do is neither noise of a reading nor an effect.

@@ -114,6 +114,30 @@ TEST(SlowBase, ASurrogateOverBlowsAndEffectsTellsItsError) {
   EXPECT_LT(rpm(std::sqrt(square)), 150);         // of changes of some thousands
 }
 
+TEST(SlowBase, AnswersThatAreNoneForesawNothing) {
+  const ShotCase c = made(0, 40, 0, 3);
+  std::vector<Shot> shots(12);
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    shots[i].blow = c.blow;
+    shots[i].blow.delivery = {.club_speed = 30 + double(i), .dynamic_loft = radians(20)};
+  }
+  bool answers = true;
+  const auto slow = [&](const Shot& s) {
+    if (!answers) throw std::invalid_argument("no such blow");
+    return slow_model(s);
+  };
+  Surrogate surrogate(slow, [](const Shot& s) { return models::RigidEccentric().launch(s.blow); });
+  surrogate.learn(shots);
+  EXPECT_TRUE(std::isnan(surrogate.surprise()));
+  for (Shot& s : shots) s.blow.delivery.club_speed += 0.5;
+  surrogate.learn(shots);
+  EXPECT_TRUE(std::isfinite(surrogate.surprise()));
+  answers = false;
+  surrogate.learn(shots);
+  EXPECT_EQ(surrogate.failed(), 12);
+  EXPECT_TRUE(std::isnan(surrogate.surprise()));  // zero would read as foreseen to the last digit
+}
+
 TEST(SlowBase, EveryEffectInsideABaseMovesACoordinateAndNoneAtZero) {
   const ShotCase c = made(0, 1, 0, 1);
   int inside = 0;
