@@ -1,7 +1,6 @@
 #include "hosel/app/sweep.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <chrono>
@@ -11,6 +10,7 @@
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/app/version.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/post/file.hpp"
 #include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
@@ -49,7 +49,7 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
   const auto clock = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
   const auto start = clock();
   const StopSignals stop;
-  tbb::parallel_for(
+  for_all(
       tbb::blocked_range<std::size_t>(0, todo.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {

@@ -1,13 +1,13 @@
 #include "hosel/fem/contact.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "hosel/golf/parallel.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -171,14 +171,11 @@ template <class Work>
 void Contact::over_stations(std::size_t count, const Work& work) const {
   constexpr std::size_t kWorthIt = 20000;  // numbers to be multiplied; waking another thread costs as much
   const std::size_t all = std::max<std::size_t>(count, 1), size = static_cast<std::size_t>(functions_.size());
-  // Isolated: a thread that waits here takes no other blow meanwhile.
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, all * size < kWorthIt ? all : 2),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        Scratch scratch(*this);
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) work(i, scratch);
-                      });
-  });
+  for_all_alone(tbb::blocked_range<std::size_t>(0, count, all * size < kWorthIt ? all : 2),
+                [&](const tbb::blocked_range<std::size_t>& range) {
+                  Scratch scratch(*this);
+                  for (std::size_t i = range.begin(); i < range.end(); ++i) work(i, scratch);
+                });
 }
 
 template <class Visit>

@@ -1,8 +1,6 @@
 #include "hosel/fem/harmonic_solid.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -10,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "hosel/golf/parallel.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -247,14 +247,11 @@ struct HarmonicSolid::Scratch {
 
 template <class Work>
 void HarmonicSolid::over_elements(const Work& work) const {
-  // Isolated: a thread that waits here takes no other blow meanwhile.
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.elements.size(), 4),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        Scratch scratch(*this);
-                        for (std::size_t e = range.begin(); e < range.end(); ++e) work(e, scratch);
-                      });
-  });
+  for_all_alone(tbb::blocked_range<std::size_t>(0, mesh_.elements.size(), 4),
+                [&](const tbb::blocked_range<std::size_t>& range) {
+                  Scratch scratch(*this);
+                  for (std::size_t e = range.begin(); e < range.end(); ++e) work(e, scratch);
+                });
 }
 
 std::span<const double> HarmonicSolid::history_at(std::size_t point, Index angle) const {

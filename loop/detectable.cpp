@@ -1,10 +1,10 @@
 #include "hosel/loop/detectable.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+
+#include "hosel/golf/parallel.hpp"
 
 namespace hosel::loop {
 
@@ -45,7 +45,7 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
     else same->push_back(f);
   }
   std::vector<std::optional<Detectable>> found(of_effect.size());
-  tbb::parallel_for(std::size_t(0), of_effect.size(), [&](std::size_t k) {
+  for_all(std::size_t(0), of_effect.size(), [&](std::size_t k) {
     for (const Parametrisation* f : of_effect[k])
       if (!found[k]) found[k] = size_of(f);
   });

@@ -1,13 +1,12 @@
 #include "hosel/loop/search.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/loop/structure.hpp"
 
 namespace hosel::loop {
@@ -59,7 +58,7 @@ Search::Search(const Problem& problem, const std::vector<const Parametrisation*>
   weigh(base);
 
   std::vector<char> moves(forms.size(), 0);
-  tbb::parallel_for(std::size_t(0), forms.size(), [&](std::size_t k) { moves[k] = acts(forms[k]); });
+  for_all(std::size_t(0), forms.size(), [&](std::size_t k) { moves[k] = acts(forms[k]); });
   std::set<std::string> active, every;
   for (std::size_t k = 0; k < forms.size(); ++k) {
     every.insert(forms[k]->effect);
@@ -70,8 +69,8 @@ Search::Search(const Problem& problem, const std::vector<const Parametrisation*>
   std::ranges::set_difference(every, active, std::back_inserter(silent));
 
   std::vector<Eigen::MatrixXd> columns(of_form_.size());
-  tbb::parallel_for(std::size_t(0), of_form_.size(),
-                    [&](std::size_t k) { columns[k] = about_zero(*of_form_[k].fit.model.forms.back()); });
+  for_all(std::size_t(0), of_form_.size(),
+          [&](std::size_t k) { columns[k] = about_zero(*of_form_[k].fit.model.forms.back()); });
   const bool quiet = nothing_to_find(columns);
   told_for(told_, "single effects", of_form_.size(), [&](std::size_t k) {
     const Model& with = of_form_[k].fit.model;
@@ -158,7 +157,7 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
     const Eigen::VectorXd z = weighted(whitened(problem_, Part::select, f.model, f.p));
     const Eigen::MatrixXd Q = orthonormal(weighted(problem_.jacobian(Part::select, f.model, f.p)));
     std::vector<std::pair<double, const Parametrisation*>> ranked(linear_.size());
-    tbb::parallel_for(std::size_t(0), linear_.size(), [&](std::size_t j) {
+    for_all(std::size_t(0), linear_.size(), [&](std::size_t j) {
       const Linear& l = linear_[j];
       Eigen::MatrixXd A = columns_.middleCols(l.first, l.count);
       if (effort_.pairs == 0) {  // far from linear: what it does here is not what it does beside the base
@@ -192,7 +191,7 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
 std::vector<Candidate> Search::refined(std::vector<Candidate> all) const {
   std::ranges::stable_sort(all, {}, &Candidate::criterion);
   if (std::isfinite(problem_.stages().front().window))
-    tbb::parallel_for(std::size_t(0), std::min<std::size_t>(all.size(), 6), [&](std::size_t k) {
+    for_all(std::size_t(0), std::min<std::size_t>(all.size(), 6), [&](std::size_t k) {
       const Model& m = all[k].fit.model;
       std::vector<Eigen::VectorXd> from = {all[k].fit.p};
       // Each member at its own optimum, the others at zero.

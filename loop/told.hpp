@@ -1,11 +1,11 @@
 /// What a loop is doing while it works.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <functional>
 #include <string_view>
+
+#include "hosel/golf/parallel.hpp"
 
 namespace hosel::loop {
 
@@ -17,7 +17,7 @@ template <class Body>
 void told_for(const Told& told, std::string_view what, std::size_t n, const Body& body) {
   if (told && n) told(what, 0);
   std::atomic<std::size_t> ended = 0;
-  tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {
+  for_all(std::size_t(0), n, [&](std::size_t k) {
     body(k);
     if (const std::size_t e = ++ended; told) told(what, double(e) / double(n));
   });

@@ -5,7 +5,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
-#include <tbb/parallel_for.h>
 
 #include <mutex>
 
@@ -14,6 +13,7 @@
 #include "hosel/app/job.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/golf/quantities.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
@@ -74,7 +74,7 @@ class Model {
     std::string why;
     {
       const py::gil_scoped_release released;
-      tbb::parallel_for(py::ssize_t{0}, in.shape(0), [&](py::ssize_t i) {
+      for_all(py::ssize_t{0}, in.shape(0), [&](py::ssize_t i) {
         Blow blow = blow_;
         for (std::size_t c = 0; c < columns.size(); ++c)
           set(blow, columns[c].first, in(i, py::ssize_t(c)) * columns[c].second);

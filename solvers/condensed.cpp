@@ -1,13 +1,12 @@
 #include "hosel/solvers/condensed.hpp"
 
 #include <cholmod.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <utility>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -211,10 +210,10 @@ struct CondensedFactorisation::State {
   Eigen::MatrixXd schur;
   bool ready = false;
 
-  /// Works on the number of each part, at once where cores are free, and on no other blow meanwhile.
+  /// Works on the number of each part, at once where cores are free.
   template <class Work>
   void at_once(const Work& work) const {
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, parts.size(), work); });
+    for_all_alone(std::size_t{0}, parts.size(), work);
   }
 
   /// Works on each part, with the first of its places among all rows and among the kept ones.

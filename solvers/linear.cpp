@@ -1,8 +1,6 @@
 #include "hosel/solvers/linear.hpp"
 
 #include <klu.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <umfpack.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/solvers/blas.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -59,8 +58,7 @@ SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(te
       if (list.size() > 4096) keep_once(list);  // keeps the lists short while many blocks meet in one column
     }
   starts_.push_back(0);
-  tbb::this_task_arena::isolate(
-      [&] { tbb::parallel_for(std::size_t{0}, columns.size(), [&](std::size_t i) { keep_once(columns[i]); }); });
+  for_all_alone(std::size_t{0}, columns.size(), [&](std::size_t i) { keep_once(columns[i]); });
   for (const auto& list : columns) {
     rows_.insert(rows_.end(), list.begin(), list.end());
     starts_.push_back(static_cast<int>(rows_.size()));
@@ -164,24 +162,22 @@ void SparseTangent::add_all(const std::vector<std::vector<Index>>& equations,
   const std::size_t first = turn_;
   turn_ += blocks.size();
   if (scatters_.size() < turn_) scatters_.resize(turn_);
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-      Scatter& s = scatters_[first + b];
-      if (s.rows != equations[b] || s.columns != equations[b]) s = make_scatter(equations[b], equations[b]);
-    });
-    constexpr Index slices = 8;
-    tbb::parallel_for(Index{0}, slices, [&](Index slice) {
-      const Index from = size() * slice / slices, end = size() * (slice + 1) / slices;
-      for (std::size_t b = 0; b < blocks.size(); ++b)
-        for (Index j = 0; j < blocks[b].cols(); ++j) {
-          const int column = row(equations[b][static_cast<std::size_t>(j)]);
-          if (column < from || column >= end) continue;
-          const double* value = blocks[b].col(j).data();
-          const int* to = scatters_[first + b].to.data() + j * blocks[b].rows();
-          for (Index i = 0; i < blocks[b].rows(); ++i)
-            if (to[i] >= 0) values_[static_cast<std::size_t>(to[i])] += value[i];
-        }
-    });
+  for_all_alone(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    Scatter& s = scatters_[first + b];
+    if (s.rows != equations[b] || s.columns != equations[b]) s = make_scatter(equations[b], equations[b]);
+  });
+  constexpr Index slices = 8;
+  for_all_alone(Index{0}, slices, [&](Index slice) {
+    const Index from = size() * slice / slices, end = size() * (slice + 1) / slices;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (Index j = 0; j < blocks[b].cols(); ++j) {
+        const int column = row(equations[b][static_cast<std::size_t>(j)]);
+        if (column < from || column >= end) continue;
+        const double* value = blocks[b].col(j).data();
+        const int* to = scatters_[first + b].to.data() + j * blocks[b].rows();
+        for (Index i = 0; i < blocks[b].rows(); ++i)
+          if (to[i] >= 0) values_[static_cast<std::size_t>(to[i])] += value[i];
+      }
   });
 }
 

@@ -1,7 +1,6 @@
 #include "hosel/app/kinds/bounce.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/models/elastic_plate.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
@@ -117,7 +117,7 @@ class BounceJob final : public Job {
     {
       Progress progress = out.progress("bounces");
       std::atomic<std::size_t> done = 0;
-      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      for_all(std::size_t{0}, count, [&](std::size_t k) {
         const std::size_t at = k % grid;
         bounces[k] =
             models::bounce(*thrown_[k / grid].model, ball_, speeds_[at / angles_.size()], angles_[at % angles_.size()]);

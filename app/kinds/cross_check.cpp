@@ -1,7 +1,6 @@
 #include "hosel/app/kinds/cross_check.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/golf/first_contact.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/post/figure.hpp"
@@ -83,7 +83,7 @@ class CrossCheckJob final : public Job {
     {
       Progress progress = out.progress("cross-check");
       std::atomic<std::size_t> done = 0;
-      tbb::parallel_for(std::size_t{0}, points_, [&](std::size_t k) {
+      for_all(std::size_t{0}, points_, [&](std::size_t k) {
         models::Options options = options_;
         Blow blow = blow_;
         set(k, options, blow);

@@ -1,7 +1,6 @@
 #include "hosel/app/kinds/tune.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/app/read_parameter.hpp"
 #include "hosel/app/read_shaft.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/shots.hpp"
 #include "hosel/models/loaded_shaft.hpp"
@@ -274,7 +274,7 @@ class TuneJob final : public Job {
   bool whitened(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
     std::atomic<bool> good = true;
     const std::size_t width = fitted_.size();
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+    for_all(std::size_t{0}, rows.size(), [&](std::size_t i) {
       const std::vector<double> model = predict(rows[i], p);
       for (std::size_t k = 0; k < width; ++k) {
         const double e = error(rows[i], fitted_[k], model) / channels_[fitted_[k]].noise;
@@ -382,7 +382,7 @@ class TuneJob final : public Job {
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
       std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
       std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
-      tbb::parallel_for(std::size_t{0}, rows->size(), [&](std::size_t i) {
+      for_all(std::size_t{0}, rows->size(), [&](std::size_t i) {
         model_before[i] = predict((*rows)[i], start);
         model_after[i] = predict((*rows)[i], fit.parameters);
       });

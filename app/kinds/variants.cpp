@@ -1,7 +1,6 @@
 #include "hosel/app/kinds/variants.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/models/ball_calibration.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/matched_launch.hpp"
@@ -69,7 +69,7 @@ class VariantsJob final : public Job {
       throw InputError(fmt::format("{}: {}", variants_.front().name, answers.front().error));
     Progress progress = out.progress("variants");
     std::atomic<std::size_t> done = 1;
-    tbb::parallel_for(std::size_t{1}, variants_.size(), [&](std::size_t i) {
+    for_all(std::size_t{1}, variants_.size(), [&](std::size_t i) {
       answers[i] = answer(variants_[i], &answers.front());
       progress.update(double(++done) / double(variants_.size()), variants_[i].name);
     });

@@ -1,7 +1,6 @@
 #include "hosel/loop/shots/slow.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/loop/shots/features.hpp"
 #include "hosel/loop/shots/inputs.hpp"
 #include "hosel/loop/shots/problem.hpp"
@@ -284,7 +284,7 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
     }
   const std::vector<int> asked = evenly(held, most);
   out.rows.resize(asked.size());
-  tbb::parallel_for(std::size_t(0), asked.size(), [&](std::size_t k) {
+  for_all(std::size_t(0), asked.size(), [&](std::size_t k) {
     const int i = asked[k];
     Corrected::Row& row = out.rows[k];
     row.id = id.at(i);

@@ -1,7 +1,5 @@
 #include "hosel/loop/shots/surrogate.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/loop/shots/features.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -29,7 +28,7 @@ Surrogate::Surrogate(Answer slow, Answer quick) : slow_(std::move(slow)), quick_
 void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(int)>& told) {
   std::vector<std::optional<Vec6>> found(shots.size());
   std::atomic<int> done = 0;
-  tbb::parallel_for(std::size_t(0), shots.size(), [&](std::size_t i) {
+  for_all(std::size_t(0), shots.size(), [&](std::size_t i) {
     try {
       const Vec6 beyond = in_face(slow_(shots[i]), shots[i]) - in_face(quick_(shots[i]), shots[i]);
       if (beyond.allFinite()) found[i] = beyond;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <fmt/ranges.h>
-#include <tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include <random>
 #include <sstream>
 
+#include "hosel/golf/parallel.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/features.hpp"
@@ -258,7 +258,7 @@ int main(int argc, char** argv) {
     if (truth)
       for (Shot& s : of) truth->hide(size, s);
     std::vector<Launch> out(of.size());
-    tbb::parallel_for(std::size_t(0), of.size(), [&](std::size_t i) { out[i] = answer(of[i]); });
+    for_all(std::size_t(0), of.size(), [&](std::size_t i) { out[i] = answer(of[i]); });
     return out;
   };
   // A size by its signal, which is drawn between 8 and 40 and met on some shots: as near as the range allows.
