@@ -1,5 +1,6 @@
 #include "hosel/app/stop.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <mutex>
 #include <string>
@@ -7,7 +8,8 @@
 namespace hosel::app {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;  // the signal that has come
+std::atomic<int> asked = 0;                            // the signal that has come; read by every thread
+static_assert(std::atomic<int>::is_always_lock_free);  // what a handler may write
 std::mutex guard;
 int watching = 0;  // StopSignals alive: points of a sweep may have one each
 struct sigaction before_int, before_term;

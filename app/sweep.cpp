@@ -1,6 +1,7 @@
 #include "hosel/app/sweep.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 
 #include <atomic>
 #include <chrono>
