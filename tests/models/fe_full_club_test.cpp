@@ -160,5 +160,51 @@ TEST(FeFullClub, RefusesAClubWithoutShaft) {
   EXPECT_THROW(solve_full_club(blow, {coarse(), {}}), std::invalid_argument);
 }
 
+/// A club of every part that remembers: hands that push and hold, a joint that gives, a shaft that is viscous. What is
+/// not remembered would show in the ledger.
+TEST(FeFullClub, GoesOnFromACheckpointToTheSameBits) {
+  Blow blow = driver_blow(0.01);
+  FeFullClubOptions options{coarse(), {.grip = Grip::hands, .elements = 4, .growth = 1}};
+  options.mount.hands = {.translation = Vec3::Constant(2e4),
+                         .rotation = Vec3::Constant(50),
+                         .translation_damping = Vec3::Constant(100),
+                         .rotation_damping = Vec3::Constant(1)};
+  options.mount.joint = {.kind = HeadJoint::Kind::spring,
+                         .stiffness = {.translation = Vec3::Constant(1e7),
+                                       .rotation = Vec3::Constant(1e4),
+                                       .translation_damping = Vec3::Constant(100),
+                                       .rotation_damping = Vec3::Constant(1)}};
+  options.mount.loaded = LoadedShaft{};
+  for (const mesh::LineNode& n : shaft_line(blow.club, 0, 4, 1))
+    options.mount.loaded->nodes.push_back({.position = n.position});
+  options.mount.loaded->grip = {Vec3(100, -50, 300), Vec3(2, 1, 0)};
+
+  std::optional<ImpactCheckpoint> half;
+  int steps = 0;
+  const FeOutcome whole = solve_full_club(blow, options, [&](const ImpactView& view) {
+    if (++steps == 30) half = view.checkpoint();
+  });
+  ASSERT_GT(steps, 45);
+  ASSERT_TRUE(half && half->touched && !half->over);
+  const FeOutcome rest = solve_full_club(blow, options, {}, &*half);
+  EXPECT_EQ(rest.launch.velocity, whole.launch.velocity);
+  EXPECT_EQ(rest.launch.spin, whole.launch.spin);
+  EXPECT_EQ(rest.launch.head_spin, whole.launch.head_spin);
+  EXPECT_EQ(rest.result.penetration, whole.result.penetration);
+  const solvers::Ledger &a = rest.result.ledger, &b = whole.result.ledger;
+  EXPECT_NE(b.external, 0);
+  EXPECT_GT(b.viscous, 0);
+  EXPECT_EQ(a.external, b.external);
+  EXPECT_EQ(a.viscous, b.viscous);
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_EQ(a.numerical, b.numerical);
+  EXPECT_EQ(a.closure, b.closure);
+  EXPECT_LT(std::abs(b.closure), 5e-3 * b.initial);
+
+  // Of another club, with fewer parts that remember: not gone on from.
+  options.mount.grip = Grip::free;
+  EXPECT_ANY_THROW(solve_full_club(blow, options, {}, &*half));
+}
+
 }  // namespace
 }  // namespace hosel::models

@@ -1,0 +1,116 @@
+// A ball's material found again from what a ball of known material did.
+#include "hosel/models/ball_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "hosel/golf/units.hpp"
+
+namespace hosel::models {
+namespace {
+
+constexpr double kElastic = 1.3, kViscous = 0.7, kFriction = 0.9;  // factors of the true ball over the start
+
+FeImpactOptions few_elements() {
+  FeImpactOptions o;
+  o.resolve(Accuracy::look);
+  o.mesh.sector = 1;
+  o.mesh.rings = 1;
+  o.harmonics = 0;
+  o.steps_per_contact = 30;
+  o.friction = 0.2;
+  return o;
+}
+
+/// The start with all moduli changed as the calibration may change them.
+FeImpactOptions true_ball(FeImpactOptions o) {
+  for (BallLayer& layer : o.ball.layers) {
+    layer.material.elastic = layer.material.elastic.stiffened(kElastic);
+    for (auto& branch : layer.material.branches) branch.modulus *= kViscous;
+  }
+  o.friction *= kFriction;
+  return o;
+}
+
+/// What that ball does at the wall: a line through two speeds is a line through all there are.
+NormalImpactTarget at_the_wall(FeImpactOptions truth) {
+  truth.harmonics = 0;
+  const NormalImpactPoint slow = normal_impact(truth, {}, 25), fast = normal_impact(truth, {}, 45);
+  const double slope = (fast.restitution - slow.restitution) / 20;
+  return {.speeds = {25, 45},
+          .restitution = slow.restitution - 25 * slope,
+          .restitution_slope = slope,
+          .restitution_sigma = 1e-3,
+          .contact_speed = 45,
+          .contact_time = fast.contact_time,
+          .contact_time_sigma = 1e-6};
+}
+
+TEST(BallCalibration, FindsTheModuliFromBounces) {
+  const FeImpactOptions start = few_elements(), truth = true_ball(start);
+  const NormalImpactTarget target = at_the_wall(truth);
+  const NormalImpactPoint before = normal_impact(start, {}, 45);
+  ASSERT_GT(std::abs(before.contact_time - target.contact_time), 10 * target.contact_time_sigma);
+  int told = 0;
+  const BallCalibration fit =
+      calibrate_ball(start, {}, target, {}, {.branch_times = false}, [&](int n, double) { told = n; });
+  EXPECT_TRUE(fit.converged) << fit.report;
+  EXPECT_EQ(told, fit.evaluations);
+  ASSERT_EQ(fit.values.size(), 2U);
+  // Within three of the errors that it tells, which are those of the targets' sigmas.
+  for (const int k : {0, 1}) {
+    const double truth_log = std::log(k ? kViscous : kElastic), sd = std::sqrt(fit.covariance(k, k));
+    EXPECT_NEAR(std::log(fit.values[std::size_t(k)] / fit.start[std::size_t(k)]), truth_log, 3 * sd) << k;
+    EXPECT_LT(sd, 0.2 * std::abs(truth_log)) << k;
+  }
+  ASSERT_EQ(fit.points.size(), 2U);
+  EXPECT_NEAR(fit.points[1].restitution, fit.points[1].target, target.restitution_sigma);
+  EXPECT_EQ(fit.ball.layers[0].material.branches[0].modulus, fit.values[1]);
+  EXPECT_EQ(fit.friction, start.friction);
+}
+
+/// A steep blow slides to its end: its spin is the friction's, and its loft is found from the launch angle.
+TEST(BallCalibration, FindsFrictionFromAnObliqueBlowWhoseLoftIsNotKnown) {
+  FeImpactOptions start = few_elements();
+  start.harmonics = 1;
+  const FeImpactOptions truth = true_ball(start);
+  Blow blow;
+  blow.club.head.mass = 0.25;
+  blow.club.head.inertia = Vec3(3e-4, 2e-4, 3e-4).asDiagonal();
+  blow.delivery = {.club_speed = 35, .dynamic_loft = radians(48)};
+  const Launch made = FeFreeBody(truth).launch(blow);
+  blow.delivery.dynamic_loft = radians(46);
+  const ObliqueTarget shot{.name = "steep",
+                           .blow = blow,
+                           .launch_angle = made.launch_angle(),
+                           .spin_rate = made.spin_rate(),
+                           .spin_sigma = 0.01,
+                           .ball_speed = made.ball_speed(),
+                           .ball_speed_sigma = 0.01};
+  const BallCalibration fit =
+      calibrate_ball(start, {}, at_the_wall(truth), {shot}, {.branch_times = false, .friction = true});
+  EXPECT_TRUE(fit.converged) << fit.report;
+  ASSERT_EQ(fit.values.size(), 3U);
+  EXPECT_NEAR(fit.friction / start.friction, kFriction, 0.02);
+  EXPECT_EQ(fit.values[2], fit.friction);
+  ASSERT_EQ(fit.shots.size(), 1U);
+  EXPECT_NEAR(degrees(fit.shots[0].loft), 48, 0.2);
+  EXPECT_NEAR(fit.shots[0].spin_rate / made.spin_rate(), 1, 0.01);
+  EXPECT_NEAR(fit.shots[0].ball_speed / made.ball_speed(), 1, 0.005);
+}
+
+TEST(BallCalibration, WhatNoDataSeeIsRefused) {
+  const FeImpactOptions start = few_elements();
+  EXPECT_THROW(calibrate_ball(start, {}, {}, {}, {.cover = true}), std::invalid_argument);
+  EXPECT_THROW(calibrate_ball(start, {}, {}, {}, {.friction = true}), std::invalid_argument);
+  EXPECT_THROW(calibrate_ball(start, {}, {.contact_speed = 41}, {}, {}), std::invalid_argument);
+  EXPECT_THROW(calibrate_ball(start, {}, {}, {ObliqueTarget{}}, {.face = true}), std::invalid_argument);
+  FeImpactOptions elastic = start;
+  for (BallLayer& layer : elastic.ball.layers) layer.material.branches.clear();
+  EXPECT_THROW(calibrate_ball(elastic, {}, {}, {}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hosel::models
