@@ -320,7 +320,7 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
   return out;
 }
 
-Vec3 Table::vector(Key key, std::string_view unit, std::optional<Vec3> standard) {
+Vec3 Table::vector(Key key, std::string_view unit, const std::optional<Vec3>& standard) {
   return vector(key, unit, Range::finite(), standard);
 }
 
@@ -438,12 +438,13 @@ std::string Table::read_text(std::string_view key, const std::optional<std::stri
   return x;
 }
 
-std::string Table::text(Key key, std::optional<std::string> standard) {
+std::string Table::text(Key key, const std::optional<std::string>& standard) {
   declare(key, {.type = "text", .standard = standard});
   return read_text(key.name, standard);
 }
 
-std::string Table::choice(Key key, const std::vector<std::string>& allowed, std::optional<std::string> standard) {
+std::string Table::choice(Key key, const std::vector<std::string>& allowed,
+                          const std::optional<std::string>& standard) {
   const std::string all = fmt::format("{}", fmt::join(allowed, ", "));
   declare(key, {.type = "one of " + all, .standard = standard});
   const std::string x = read_text(key.name, standard);

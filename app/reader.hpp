@@ -90,7 +90,7 @@ class Table {
   /// As above for a list of `size` values (any size where 0).
   std::vector<double> quantities(Key key, std::string_view unit, std::size_t size, Range si = Range::finite(),
                                  std::optional<std::vector<double>> default_si = {});
-  Vec3 vector(Key key, std::string_view unit, std::optional<Vec3> default_si = {});
+  Vec3 vector(Key key, std::string_view unit, const std::optional<Vec3>& default_si = {});
   Vec3 vector(Key key, std::string_view unit, Range si, std::optional<Vec3> default_si = {});
   /// A 3x3 matrix as a list of rows.
   Mat3 matrix(Key key, std::string_view unit, std::optional<Mat3> default_si = {});
@@ -100,9 +100,9 @@ class Table {
                               std::optional<std::vector<double>> standard = {});
   long integer(Key key, long min, long max, std::optional<long> standard = {});
   bool flag(Key key, std::optional<bool> standard = {});
-  std::string text(Key key, std::optional<std::string> standard = {});
+  std::string text(Key key, const std::optional<std::string>& standard = {});
   /// One of the words, else an error that names the nearest.
-  std::string choice(Key key, const std::vector<std::string>& allowed, std::optional<std::string> standard = {});
+  std::string choice(Key key, const std::vector<std::string>& allowed, const std::optional<std::string>& standard = {});
   std::vector<std::string> texts(Key key, std::optional<std::vector<std::string>> standard = {});
   /// A list of numbers, texts or flags as TOML text, to be handed on to another case.
   std::vector<std::string> scalars(Key key);
