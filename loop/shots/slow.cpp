@@ -213,8 +213,7 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
   const Surrogate& coarse = learnt.coarse ? *learnt.coarse : best;
   last.notes.push_back(fmt::format(
       "{} stands behind a Gaussian process of {} of its answers over {} quantities of blow and effects ({} had "
-      "none){}; "
-      "its error at the shots: {}",
+      "none){}; its error at the shots: {}",
       c.base, learnt.coarse ? coarse.points() : first_points, coarse.inputs(), coarse.failed(),
       learnt.coarse ? fmt::format(", corrected by {} at the case's own accuracy", best.points()) : "", first_error));
   if (best.points() > first_points)
