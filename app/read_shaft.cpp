@@ -118,8 +118,9 @@ Shaft read_shaft(Table table) {
     else if (auto tube = table.optional_table("tube")) shaft = by_tube(*tube);
     else table.fail("name", "say which shaft: `name`, or a table `table`, `polynomial` or `tube`");
   } catch (const std::invalid_argument& e) { table.fail("", e.what()); }
-  shaft = scaled(std::move(shaft), table.number({"bending_scale", "factor on EI everywhere"}, Range::positive(), 1.0),
-                 table.number({"torsion_scale", "factor on GJ everywhere"}, Range::positive(), 1.0));
+  const double bending_scale = table.number({"bending_scale", "factor on EI everywhere"}, Range::positive(), 1.0);
+  const double torsion_scale = table.number({"torsion_scale", "factor on GJ everywhere"}, Range::positive(), 1.0);
+  shaft = scaled(std::move(shaft), bending_scale, torsion_scale);
   const double mass_scale =
       table.number({"mass_scale", "factor on mass and rotary inertia everywhere"}, Range::positive(), 1.0);
   for (ShaftStation& s : shaft.stations) {
