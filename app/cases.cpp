@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 
 #include "build_info.hpp"
 #include "hosel/app/job.hpp"
+#include "hosel/app/parse_toml.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/face_library.hpp"
@@ -81,8 +81,8 @@ void copy_case(const std::string& from, const fs::path& to) {
   std::string text = post::read_file(fs::is_directory(found) ? found / "case.toml" : found);
   std::vector<std::string> all;
   try {
-    texts(toml::parse(text), all);
-  } catch (const toml::parse_error&) {}  // copied as it is: whoever runs it is told
+    texts(parse_toml(text, found.string()), all);
+  } catch (const InputError&) {}  // copied as it is: whoever runs it is told
   fs::create_directories(to);
   fs::copy(source.empty() ? "." : source, to, fs::copy_options::recursive);
   // What lies beside the old case is named from the new one.

@@ -1,7 +1,6 @@
 #include "hosel/app/diff.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "hosel/app/parse_toml.hpp"
 #include "hosel/app/reader.hpp"
 #include "hosel/post/file.hpp"
 #include "hosel/post/launch_table.hpp"
+#include "hosel/post/parse_json.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -46,13 +47,12 @@ Run read(const fs::path& directory) {
     throw InputError(fmt::format("{}: no finished run (no summary.json)", directory.string()));
   Run run;
   try {
-    run.summary = json::parse(post::read_file(directory / "summary.json"));
-    leaves(toml::parse(post::read_file(directory / "case.resolved.toml")), "", run.inputs);
-  } catch (const toml::parse_error& e) {
-    throw InputError(fmt::format("{}: case.resolved.toml: {}", directory.string(), std::string(e.description())));
-  } catch (const json::exception& e) {
+    run.summary = post::parse_json(post::read_file(directory / "summary.json"));
+  } catch (const std::exception& e) {
     throw InputError(fmt::format("{}: summary.json: {}", directory.string(), e.what()));
   }
+  const fs::path resolved = directory / "case.resolved.toml";
+  leaves(parse_toml(post::read_file(resolved), resolved.string()), "", run.inputs);
   return run;
 }
 

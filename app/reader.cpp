@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <utf8.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include "build_info.hpp"
+#include "hosel/app/parse_toml.hpp"
+#include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -656,6 +656,7 @@ void apply_override(detail::Document& document, const std::string& text) {
   if (equals == std::string::npos || equals == 0)
     throw InputError(fmt::format("--set {}: expected key=value, e.g. --set delivery.club_speed_mps=45", text));
   const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
+  limit_dots(text, fmt::format("--set {:.80}", key));
   toml::table parsed;
   try {
     parsed = toml::parse("value = " + value);
@@ -734,10 +735,11 @@ CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overri
   d.directory = d.file.parent_path();
   if (d.directory.empty()) d.directory = ".";
   if (!fs::is_regular_file(d.file)) throw InputError(fmt::format("{}: no such case file", d.file.string()));
-  std::ifstream in(d.file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  d.text = text.str();
+  constexpr std::uintmax_t most = 1u << 20;
+  if (fs::file_size(d.file) > most)
+    throw InputError(
+        fmt::format("{}: more than 1 MiB: this is no case; tables belong into files that it names", d.file.string()));
+  d.text = post::read_file(d.file);
   parse();
 }
 
@@ -752,12 +754,7 @@ CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrid
 
 void CaseFile::parse() {
   detail::Document& d = *document_;
-  try {
-    d.root = toml::parse(d.text, d.file.string());
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: not valid TOML: {}", d.file.string(), error.source().begin.line,
-                                 std::string(error.description())));
-  }
+  d.root = parse_toml(d.text, d.file.string());
   for (const std::string& o : d.overrides) apply_override(d, o);
   d.echo[&d.root] = &d.resolved;
   d.known[&d.root];

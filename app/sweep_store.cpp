@@ -14,6 +14,7 @@
 #include "hosel/app/reader.hpp"
 #include "hosel/app/version.hpp"
 #include "hosel/post/file.hpp"
+#include "hosel/post/parse_json.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -23,7 +24,7 @@ nlohmann::json sealed(nlohmann::json entry) {
 }
 
 nlohmann::json unsealed(std::string_view text) {
-  nlohmann::json entry = nlohmann::json::parse(text);
+  nlohmann::json entry = post::parse_json(text);
   const std::string check = entry.at("check");
   entry.erase("check");
   if (check != post::digest(entry.dump())) throw std::runtime_error("damaged");

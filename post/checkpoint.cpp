@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hosel/post/file.hpp"
+#include "hosel/post/parse_json.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -102,6 +103,41 @@ void from_json(const json& j, BallSection& s) {
     throw std::length_error("checkpoint");
 }
 
+SavedImpact saved_impact(const json& j) {
+  SavedImpact out;
+  models::ImpactCheckpoint& i = out.impact;
+  const json &s = j.at("solver"), &r = j.at("so_far");
+  from_json(s.at("state"), i.solver.state);
+  numbers(s.at("auxiliary"), i.solver.auxiliary);
+  i.solver.step = s.at("step");
+  i.solver.last_step = s.at("last_step");
+  from_json(s.at("ledger"), i.solver.ledger);
+  i.solver.friction_before = s.at("friction_before");
+  i.solver.viscous_before = s.at("viscous_before");
+  i.solver.external_before = s.at("external_before");
+  i.solver.history = s.at("history").get<std::vector<double>>();
+  i.so_far.penetration = r.at("penetration");
+  i.so_far.creep = r.at("creep");
+  const auto counts = r.at("counts").get<std::array<long, 5>>();
+  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], counts[4], r.at("worst_residual")};
+  from_json(j.at("force"), i.force);
+  from_json(j.at("compression"), i.compression);
+  from_json(j.at("face_travel"), i.face_travel);
+  i.touched = j.at("touched");
+  i.over = j.at("over");
+  i.last_touch = j.at("last_touch");
+  i.last_nearest = j.at("last_nearest");
+  i.last_gap = j.at("last_gap");
+  numbers(j.at("face_centre"), out.face_centre);
+  numbers(j.at("face_axes"), out.face_axes);
+  out.history = {j.at("history").at(0), j.at("history").at(1)};
+  if (j.contains("section")) from_json(j.at("section"), out.section.emplace());
+  if (j.contains("series"))
+    for (const auto& [body, mark] : j.at("series").items())
+      out.series[body] = {mark.at(0).get<std::vector<double>>(), mark.at(1)};
+  return out;
+}
+
 }  // namespace
 
 void save_checkpoint(const fs::path& file, const std::string& run, const SavedImpact& saved) {
@@ -151,40 +187,11 @@ std::optional<SavedImpact> load_checkpoint(const fs::path& file, const std::stri
   if (end == std::string::npos) return std::nullopt;
   const std::string_view bytes = std::string_view(text).substr(end + 1);
   if (text.substr(0, end) != fmt::format("{} {}", kFormat, digest(bytes))) return std::nullopt;
-  const json j = json::from_cbor(bytes, true, false);
-  if (!j.is_object() || j.value("run", "") != run) return std::nullopt;
-  SavedImpact out;
-  models::ImpactCheckpoint& i = out.impact;
-  const json &s = j.at("solver"), &r = j.at("so_far");
-  from_json(s.at("state"), i.solver.state);
-  numbers(s.at("auxiliary"), i.solver.auxiliary);
-  i.solver.step = s.at("step");
-  i.solver.last_step = s.at("last_step");
-  from_json(s.at("ledger"), i.solver.ledger);
-  i.solver.friction_before = s.at("friction_before");
-  i.solver.viscous_before = s.at("viscous_before");
-  i.solver.external_before = s.at("external_before");
-  i.solver.history = s.at("history").get<std::vector<double>>();
-  i.so_far.penetration = r.at("penetration");
-  i.so_far.creep = r.at("creep");
-  const auto counts = r.at("counts").get<std::array<long, 5>>();
-  i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], counts[4], r.at("worst_residual")};
-  from_json(j.at("force"), i.force);
-  from_json(j.at("compression"), i.compression);
-  from_json(j.at("face_travel"), i.face_travel);
-  i.touched = j.at("touched");
-  i.over = j.at("over");
-  i.last_touch = j.at("last_touch");
-  i.last_nearest = j.at("last_nearest");
-  i.last_gap = j.at("last_gap");
-  numbers(j.at("face_centre"), out.face_centre);
-  numbers(j.at("face_axes"), out.face_axes);
-  out.history = {j.at("history").at(0), j.at("history").at(1)};
-  if (j.contains("section")) from_json(j.at("section"), out.section.emplace());
-  if (j.contains("series"))
-    for (const auto& [body, mark] : j.at("series").items())
-      out.series[body] = {mark.at(0).get<std::vector<double>>(), mark.at(1)};
-  return out;
+  try {
+    const json j = parse_cbor(bytes);
+    if (j.value("run", "") == run) return saved_impact(j);
+  } catch (const std::exception&) {}  // with the right digest: made by hand
+  return std::nullopt;
 }
 
 }  // namespace hosel::post

@@ -13,6 +13,7 @@ namespace hosel::post {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 1'000'000'000;
+constexpr std::size_t kMostColumns = 10'000;
 
 void trim(std::string& s) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -55,6 +56,7 @@ Sheet read_csv(const std::filesystem::path& path) {
       return;
     }
     if (header) {
+      if (row.size() > kMostColumns) fail(row_line, fmt::format("{} columns, more than {}", row.size(), kMostColumns));
       for (std::size_t c = 0; c < row.size(); ++c) {
         if (row[c].empty()) fail(row_line, fmt::format("column {} has no name", c + 1));
         if (std::count(row.begin(), row.end(), row[c]) > 1)

@@ -275,6 +275,9 @@ Checkpoint GeneralizedAlpha::checkpoint() const {
 }
 
 void GeneralizedAlpha::restore(const Checkpoint& saved) {
+  if (saved.state.q.size() != state_.q.size() || saved.state.v.size() != state_.v.size() ||
+      saved.state.a.size() != state_.a.size() || saved.auxiliary.size() != auxiliary_.size())
+    throw std::invalid_argument("the checkpoint is of another system");
   state_ = saved.state;
   auxiliary_ = saved.auxiliary;
   step_ = saved.step;

@@ -9,9 +9,11 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "hosel/app/import/cells.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/post/parse_json.hpp"
 
 namespace hosel::app {
 namespace {
@@ -89,6 +91,14 @@ void flatten(const nlohmann::json& node, const std::string& path, std::map<std::
   }
 }
 
+/// Every shot gets a cell for every name: a file of some megabytes could ask for a thousand times that.
+void check_size(const fs::path& file, std::size_t names, std::size_t shots) {
+  constexpr std::size_t most_names = 1000, most_shots = 100'000;
+  if (names > most_names || shots > most_shots)
+    throw InputError(fmt::format("{}: {} names and {} rows, more than {} and {}: this is no launch monitor's session",
+                                 file.string(), names, shots, most_names, most_shots));
+}
+
 /// The longest list of objects anywhere in the document: the shots. A lone object is one shot.
 const nlohmann::json* list_of_shots(const nlohmann::json& node) {
   const nlohmann::json* best = nullptr;
@@ -102,20 +112,20 @@ const nlohmann::json* list_of_shots(const nlohmann::json& node) {
 Sheet read_json(const std::string& text, const fs::path& file) {
   nlohmann::json document;
   try {
-    document = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what()));
-  }
+    document = post::parse_json(text);
+  } catch (const std::exception& e) { throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what())); }
   nlohmann::json shots = nlohmann::json::array({document});
   if (const auto* list = list_of_shots(document)) shots = *list;
   Sheet sheet;
   std::vector<std::map<std::string, std::string>> flat;
+  std::set<std::string> known;
   for (const auto& shot : shots) {
     flat.emplace_back();
     flatten(shot, "", flat.back());
     for (const auto& [key, value] : flat.back())
-      if (!std::ranges::count(sheet.names, key)) sheet.names.push_back(key);
+      if (known.insert(key).second) sheet.names.push_back(key);
   }
+  check_size(file, sheet.names.size(), flat.size());
   for (auto& shot : flat) {
     Row row;
     for (const std::string& name : sheet.names) row.push_back(shot.contains(name) ? shot[name] : "");
@@ -156,6 +166,7 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
                     "--dictionary FILE or --column 'header=quantity_unit' help",
                     file.string()));
   while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
+  check_size(file, best.names.size(), best.rows.size());
   // A row of units is one whose cells are units or empty.
   if (!best.rows.empty()) {
     const Row& first = best.rows.front();

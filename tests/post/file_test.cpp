@@ -136,5 +136,23 @@ TEST(Checkpoint, FiveHundredDamagedOnesAreNotGoneOnFrom) {
   EXPECT_TRUE(load_checkpoint(file, "run"));
 }
 
+TEST(Checkpoint, OnesMadeByHandAreNotGoneOnFrom) {
+  const fs::path file = fresh("hosel_checkpoint_hand") / "checkpoint.cbor";
+  save_checkpoint(file, "run", some_impact());
+  const std::string good = read_file(file);
+  const std::size_t end = good.find('\n'), digest_at = good.rfind(' ', end) + 1;
+  const auto made = [&](const std::string& bytes) {
+    write_file(file, good.substr(0, digest_at) + digest(bytes) + '\n' + bytes, false);
+    return load_checkpoint(file, "run").has_value();
+  };
+  std::string body = good.substr(end + 1);
+  ASSERT_TRUE(made(body)) << "the digest is right";
+  EXPECT_FALSE(made(std::string(1'000'000, '\x81'))) << "lists of one list";
+  EXPECT_FALSE(made(std::string("\xa1\x63run\x63run"))) << "{run: run}";
+  EXPECT_FALSE(made("\x80")) << "a list";
+  body.replace(body.find("closure"), 7, "closing");
+  EXPECT_FALSE(made(body)) << "a key is missing";
+}
+
 }  // namespace
 }  // namespace hosel::post

@@ -140,6 +140,26 @@ TEST(GeneralizedAlpha, RestartGoesOnExactly) {
   // Not bitwise: the factor kept by Newton is made afresh after a restart.
   EXPECT_LT((a.state().q - b.state().q).norm(), 1e-9);
   EXPECT_NEAR(a.ledger().closure, b.ledger().closure, 1e-9);
+  // A state of another size would be read and written beyond its end.
+  const auto resized = [&](auto&& vector_of, Eigen::Index size) {
+    Checkpoint other = saved;
+    vector_of(other).conservativeResize(size);
+    return other;
+  };
+  for (const Eigen::Index size : {1, 3}) {
+    EXPECT_THROW(b.restore(resized(
+                     [](Checkpoint & c) -> auto& { return c.state.q; }, size)),
+                 std::invalid_argument);
+    EXPECT_THROW(b.restore(resized(
+                     [](Checkpoint & c) -> auto& { return c.state.v; }, size)),
+                 std::invalid_argument);
+    EXPECT_THROW(b.restore(resized(
+                     [](Checkpoint & c) -> auto& { return c.state.a; }, size)),
+                 std::invalid_argument);
+    EXPECT_THROW(b.restore(resized(
+                     [](Checkpoint & c) -> auto& { return c.auxiliary; }, size)),
+                 std::invalid_argument);
+  }
 }
 
 TEST(GeneralizedAlpha, ErrorControlMeetsTheEndAndTheTolerance) {
