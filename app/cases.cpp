@@ -78,13 +78,21 @@ void texts(const toml::node& node, std::vector<std::string>& out) {
 void copy_case(const std::string& from, const fs::path& to) {
   const fs::path found = find_case(from), source = fs::is_directory(found) ? found : found.parent_path();
   if (fs::exists(to)) throw InputError(fmt::format("{}: is there already", to.string()));
+  const fs::path inside = fs::weakly_canonical(to).lexically_relative(fs::canonical(source.empty() ? "." : source));
+  if (!inside.empty() && *inside.begin() != "..")
+    throw InputError(fmt::format("{}: lies in what is copied, {}", to.string(), from));
   std::string text = post::read_file(fs::is_directory(found) ? found / "case.toml" : found);
   std::vector<std::string> all;
   try {
     texts(parse_toml(text, found.string()), all);
   } catch (const InputError&) {}  // copied as it is: whoever runs it is told
   fs::create_directories(to);
-  fs::copy(source.empty() ? "." : source, to, fs::copy_options::recursive);
+  std::error_code error;
+  fs::copy(source.empty() ? "." : source, to, fs::copy_options::recursive, error);
+  if (error) {  // a link in it that leads back, a disk that is full
+    fs::remove_all(to);
+    throw InputError(fmt::format("{}: cannot be copied to {}: {}", from, to.string(), error.message()));
+  }
   // What lies beside the old case is named from the new one.
   for (const std::string& name : all) {
     const fs::path path = name;

@@ -67,7 +67,7 @@ NumericalError numerical_error(const std::string& model, const Run& run) {
   if (model.starts_with("fe-")) {
     const auto at_least = [&](const char* key, double level) {
       const auto it = run.inputs.find(key);
-      return it != run.inputs.end() && std::stod(it->second) >= level;
+      return it != run.inputs.end() && std::strtod(it->second.c_str(), nullptr) >= level;
     };
     const bool fine = at_least("mesh.sector", 3) && at_least("mesh.harmonics", 4) &&
                       at_least("time.steps_per_contact", 60);

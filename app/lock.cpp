@@ -15,6 +15,7 @@
 #include "hosel/post/file.hpp"
 
 namespace hosel::app {
+namespace fs = std::filesystem;
 namespace {
 
 std::string owner() {
@@ -26,9 +27,25 @@ std::string owner() {
 
 }  // namespace
 
-DirectoryLock::DirectoryLock(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / ".lock";
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+void refuse_links(const fs::path& directory) {
+  std::error_code error;
+  // Where another shard is at work, directories come and go: looked through again.
+  for (int tries = 0; tries < 100 && fs::exists(directory); ++tries) {
+    fs::recursive_directory_iterator it(directory, error), end;
+    for (; !error && it != end; it.increment(error))
+      if (it->is_symlink())
+        throw InputError(fmt::format("{}: a link, to what may not be this run's; remove it, or name another --out",
+                                     it->path().string()));
+    if (!error) return;
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be looked through: {}", directory.string(), error.message()));
+}
+
+DirectoryLock::DirectoryLock(const fs::path& directory) {
+  refuse_links(directory);
+  const fs::path file = directory / ".lock";
+  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (descriptor_ < 0)
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {

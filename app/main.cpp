@@ -34,9 +34,13 @@ void run(const Arguments& a) {
   const auto where = app::find_case(a.case_dir);
   app::CaseFile file(where, a.sets);
   const auto job = app::read_job(file);
-  const std::filesystem::path out = a.out.empty() ? std::filesystem::path("out") /
-                                                        std::filesystem::canonical(file.directory()).filename()
-                                                  : std::filesystem::path(a.out);
+  const std::filesystem::path standard = std::filesystem::path("out") /
+                                         std::filesystem::canonical(file.directory()).filename();
+  const std::filesystem::path out = a.out.empty() ? standard : std::filesystem::path(a.out);
+  // Whoever made the case may have made them.
+  for (const std::filesystem::path& place : {standard.parent_path(), standard})
+    if (a.out.empty() && std::filesystem::is_symlink(place))
+      throw app::InputError(fmt::format("{}: a link; name the directory that you mean by --out", place.string()));
   app::Output output({.directory = out,
                       .force = a.force,
                       .quiet = a.quiet,

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/post/csv.hpp"
+#include "hosel/app/read_sheet.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -17,24 +16,15 @@ namespace {
 models::TableLaw read_coefficients(Table& table) {
   const std::filesystem::path file = table.file({"coefficients", "CSV with columns reynolds, spin_ratio, drag, lift"});
   models::TableLaw law;
-  try {
-    const post::Sheet sheet = post::read_csv(file);
-    const auto column = [&](std::string_view name) -> const std::vector<std::string>& {
-      const auto it = std::ranges::find(sheet.names, name);
-      if (it == sheet.names.end()) throw InputError(fmt::format("{}: no column '{}'", file.string(), name));
-      return sheet.columns[std::size_t(it - sheet.names.begin())];
-    };
-    const auto &reynolds = column("reynolds"), &spin = column("spin_ratio"), &drag = column("drag"),
-               &lift = column("lift");
-    for (std::size_t i = 0; i < sheet.rows(); ++i) {
-      const double re = std::stod(reynolds[i]);
-      if (law.rows.empty() || law.rows.back().reynolds != re) law.rows.push_back({re, {}, {}, {}});
-      law.rows.back().spin.push_back(std::stod(spin[i]));
-      law.rows.back().drag.push_back(std::stod(drag[i]));
-      law.rows.back().lift.push_back(std::stod(lift[i]));
-    }
-  } catch (const DataError& e) { throw InputError(e.what()); } catch (const std::logic_error&) {
-    throw InputError(fmt::format("{}: a cell is not a number", file.string()));
+  const post::Sheet sheet = read_sheet(file);
+  const auto plain = [&](std::string_view name) { return column(sheet, name, Dimension::length, false); };
+  const std::vector<double> reynolds = plain("reynolds"), spin = plain("spin_ratio"), drag = plain("drag"),
+                            lift = plain("lift");
+  for (std::size_t i = 0; i < sheet.rows(); ++i) {
+    if (law.rows.empty() || law.rows.back().reynolds != reynolds[i]) law.rows.push_back({reynolds[i], {}, {}, {}});
+    law.rows.back().spin.push_back(spin[i]);
+    law.rows.back().drag.push_back(drag[i]);
+    law.rows.back().lift.push_back(lift[i]);
   }
   if (const auto faults = law.faults(); !faults.empty()) table.fail("coefficients", faults.front());
   return law;

@@ -128,6 +128,17 @@ Shaft read_shaft(Table table) {
     s.rotary_inertia_y *= mass_scale;
     s.rotary_inertia_z *= mass_scale;
   }
+  for (const ShaftStation& s : shaft.stations) {
+    const auto within = [&](const char* what, double x, double least, double most) {
+      if (!(least <= x && x <= most))
+        table.fail("", fmt::format("{} is {:g} at {:g} m; the range of shafts, stiff and light ones far included, is "
+                                   "{:g} to {:g}",
+                                   what, x, s.arc_length, least, most));
+    };
+    for (const double x : {s.bending_stiffness_y, s.bending_stiffness_z}) within("EI [N m2]", x, 1e-6, 1e12);
+    within("GJ [N m2]", s.torsional_stiffness, 1e-6, 1e12);
+    within("the mass per length [kg/m]", s.mass_per_length, 1e-9, 1e4);
+  }
   if (auto offsets = table.optional_table("offsets")) read_offsets(*offsets, shaft);
   // Stiffness-proportional: the damping ratio holds at one frequency and grows in proportion to it.
   const double ratio =

@@ -169,7 +169,8 @@ models::SwingOptions read_swing_options(Table root) {
   if (auto t = root.optional_table("solution")) {
     o.elements = static_cast<int>(t->integer({"elements", "finite elements along the shaft"}, 1, 1000, o.elements));
     o.growth = t->number({"growth", "of the elements' lengths towards the tip"}, {0.5, 2}, o.growth);
-    o.step = t->quantity({"step", "longest time step"}, "ms", Range::positive(), o.step);
+    o.step = t->quantity({"step", "longest time step"}, "ms",
+                         Range{1e-7, 0.1}.because("a swing lasts a second, its bends take milliseconds"), o.step);
     o.rho_inf = t->number({"rho_inf", "spectral radius of generalized-alpha at infinite frequency"}, Range::fraction(),
                           o.rho_inf);
     o.shear = t->flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, o.shear);

@@ -100,8 +100,10 @@ std::string Range::sentence(std::optional<Unit> unit) const {
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  constexpr std::size_t longest = 200;  // of a name: comparing takes the product of both lengths
   for (const std::string& c : candidates)
-    if (const std::size_t d = edit_distance(word, c); d < least) {
+    if (word.size() > longest || c.size() > longest) continue;
+    else if (const std::size_t d = edit_distance(word, c); d < least) {
       least = d;
       best = c;
     }

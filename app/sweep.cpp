@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/lock.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/app/version.hpp"
@@ -35,7 +36,7 @@ Plan plan_of(const PointJob& job, const std::string& resolved_case) {
 void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root, Shard shard, Output& out) {
   solvers::keep_blas_in_one_thread();  // one thread a point
   const fs::path shards = root / "shards", own = shards / fmt::format("{}-of-{}", shard.index, shard.count);
-  const auto finished = read_points(shards, plan.fingerprint);
+  const auto finished = read_points(shards, plan.fingerprint, plan.points);
   std::vector<std::size_t> todo;
   for (std::size_t p = shard.index - 1; p < plan.points; p += shard.count)
     if (!finished.contains(p)) todo.push_back(p);
@@ -77,7 +78,7 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
 
 /// Every point, in order; where some are missing, an InputError that says how many.
 std::vector<json> all_points(const Plan& plan, const fs::path& root) {
-  auto found = read_points(root / "shards", plan.fingerprint);
+  auto found = read_points(root / "shards", plan.fingerprint, plan.points);
   if (found.size() != plan.points)
     throw InputError(
         fmt::format("{}: {} of {} points are finished; nothing merged", root.string(), found.size(), plan.points));
@@ -87,7 +88,12 @@ std::vector<json> all_points(const Plan& plan, const fs::path& root) {
 }
 
 void report_all(const PointJob& job, const std::vector<json>& points, Output& out) {
-  job.report(out, points);
+  try {
+    job.report(out, points);
+  } catch (const json::exception& e) {
+    throw InputError(fmt::format("{}: a finished point is none of this case ({}); discard all points with --force",
+                                 out.directory().string(), e.what()));
+  }
   std::size_t failed = 0, first = 0;
   for (std::size_t p = points.size(); p-- > 0;)
     if (points[p].contains("error")) {
@@ -124,19 +130,20 @@ Planned open_plan(const fs::path& out) {
     throw InputError(
         fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
   json plan;
-  std::string named;
+  std::string named, version;
   std::vector<std::string> set;
   try {
     plan = unsealed(post::read_file(out / "plan.json"));
     named = plan.at("case");
+    version = plan.at("version");
     set = plan.at("set").get<std::vector<std::string>>();
   } catch (const std::exception&) {
     throw InputError(fmt::format("{}: the plan is damaged; plan again", (out / "plan.json").string()));
   }
   Planned p = read_planned(named, set);
-  if (plan.at("version") != p.plan.version)
-    throw InputError(fmt::format("{}: planned with version {}, this program is {}; plan again", out.string(),
-                                 plan.at("version").get<std::string>(), p.plan.version));
+  if (version != p.plan.version)
+    throw InputError(fmt::format("{}: planned with version {}, this program is {}; plan again", out.string(), version,
+                                 p.plan.version));
   if (plan.at("fingerprint") != p.plan.fingerprint)
     throw InputError(fmt::format("{}: the case {} has changed since it was planned; plan again", out.string(), named));
   return p;
@@ -170,7 +177,7 @@ void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides
   const Planned p = read_planned(found, overrides);
   const fs::path root = options.directory;
   if (fs::exists(root / "shards") && options.force) fs::remove_all(root / "shards");
-  read_points(root / "shards", p.plan.fingerprint);  // refuses a directory with other points
+  read_points(root / "shards", p.plan.fingerprint, p.plan.points);  // refuses a directory with other points
   Output out(options, p.file->resolved());
   out.write_json("plan.json", sealed({{"case", fs::canonical(found).string()},
                                       {"set", overrides},
@@ -182,6 +189,7 @@ void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides
 
 void sweep_run(const fs::path& root, Shard shard, bool quiet) {
   const Planned p = open_plan(root);
+  refuse_links(root);
   // A directory of its own: shards run side by side and share no file.
   Output out({.directory = root / "shards" / fmt::format("{}-of-{}", shard.index, shard.count), .quiet = quiet},
              p.file->resolved());
@@ -197,7 +205,7 @@ void sweep_merge(const fs::path& root, bool force, bool quiet) {
 
 void sweep_status(const fs::path& root) {
   const Planned p = open_plan(root);
-  const auto points = read_points(root / "shards", p.plan.fingerprint);
+  const auto points = read_points(root / "shards", p.plan.fingerprint, p.plan.points);
   std::size_t failed = 0;
   for (const auto& [number, result] : points) failed += result.contains("error");
   fmt::print("{} of {} points finished, {} without an answer{}\n", points.size(), p.plan.points, failed,

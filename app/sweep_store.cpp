@@ -39,7 +39,8 @@ std::string digest_of_files(const std::vector<fs::path>& files) {
   return post::digest(all);
 }
 
-std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, const std::string& fingerprint) {
+std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, const std::string& fingerprint,
+                                                  std::size_t size) {
   std::map<std::size_t, nlohmann::json> points;
   if (!fs::is_directory(directory)) return points;
   std::vector<fs::path> files;
@@ -63,8 +64,12 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
                             file.string()));
         } else {
           const std::size_t number = entry.at("point");
-          const auto [it, fresh] = points.emplace(number, entry.at("result"));
-          if (!fresh && it->second != entry.at("result"))
+          const nlohmann::json& result = entry.at("result");
+          if (!entry["point"].is_number_unsigned() || number >= size || !result.is_object() ||
+              (result.contains("error") && !result["error"].is_string()))
+            throw std::out_of_range("point");
+          const auto [it, fresh] = points.emplace(number, result);
+          if (!fresh && it->second != result)
             throw InputError(fmt::format("{}:{}: point {} has two different results", file.string(), line, number));
         }
       } catch (const InputError&) { throw; } catch (const std::exception&) {
@@ -81,7 +86,7 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
 
 PointStore::PointStore(const fs::path& directory, const std::string& fingerprint)
     : file_((directory / "points.jsonl").string()),
-      descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+      descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)) {
   if (descriptor_ < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
   try {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)

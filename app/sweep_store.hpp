@@ -21,10 +21,10 @@ nlohmann::json sealed(nlohmann::json entry);
 nlohmann::json unsealed(std::string_view text);
 
 /// Every point found in DIRECTORY/*/points.jsonl, by its number. A last line cut short by a kill is
-/// not a point. Throws InputError where a file belongs to another `fingerprint`, or where two files
-/// disagree about a point.
+/// not a point. Throws InputError where a file belongs to another `fingerprint`, where two files
+/// disagree about a point, or where one is none of `size`.
 std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& directory,
-                                                  const std::string& fingerprint);
+                                                  const std::string& fingerprint, std::size_t size);
 
 /// The points file of one shard, held by one process at a time.
 class PointStore {

@@ -242,6 +242,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
       V.col(V.cols() - 1) = u / after;
     }
   basis_ = int(V.cols());
+  if (basis_ == 0 || !V.allFinite()) throw std::invalid_argument("bench: the modes of this shaft are not finite");
   head_shape_ = V.bottomRows<6>().transpose();
   MatrixXd move = MatrixXd::Zero(n, 3);
   for (std::ptrdiff_t i = 0; i < n; i += 6) move.block<3, 3>(i, 0).setIdentity();

@@ -185,6 +185,11 @@ std::vector<std::string> TableLaw::faults() const {
     if (!rise(r.spin, std::identity{})) out.push_back("the spin ratios of one Reynolds number rise");
     if (r.drag.size() != r.spin.size() || r.lift.size() != r.spin.size())
       out.push_back("each spin ratio of a table has its drag and lift");
+    const auto within = [](const std::vector<double>& x, double least) {
+      return std::ranges::all_of(x, [&](double c) { return c >= least && c <= 5; });
+    };
+    if (!within(r.drag, 0) || !within(r.lift, -5))
+      out.push_back("drag coefficients lie between 0 and 5, lift coefficients between -5 and 5: no ball has others");
   }
   return out;
 }

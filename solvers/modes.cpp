@@ -93,7 +93,8 @@ Pairs all_modes(const Sparse& K, const Sparse& M, double shift) {
 Pairs lowest_modes(const Sparse& K, const Sparse& M, double zero, Index count) {
   double wanted =
       zero;  // the decade of the last mode: rigid motions are not to drown it, so the shift is not far below
-  while (below(K, M, wanted) < count) wanted *= 10;
+  while (below(K, M, wanted) < count)
+    if (wanted *= 10; !std::isfinite(wanted)) throw NonConvergence("the modes have no finite frequencies");
   const double shift = std::max(zero, 1e-2 * wanted);
   const Index n = K.rows(), ncv = std::min(n, std::max<Index>(2 * count + 1, 40));
   Spectra::SparseSymMatProd<double> mass(M);

@@ -102,6 +102,13 @@ Spline Spline::near(const std::vector<double>& times, const Eigen::MatrixXd& val
   check(times, values, 6);
   if (!(spacing > 0)) throw std::invalid_argument("the knots of a smoothing spline need a spacing above zero");
   const double span = times.back() - times.front();
+  const auto too_close = [&] {
+    std::ostringstream text;
+    text << "the smoothing spline has too few samples between its knots, " << spacing
+         << " s apart: lengthen the smoothing";
+    throw std::invalid_argument(text.str());
+  };
+  if (span / spacing > static_cast<double>(times.size())) too_close();
   const int pieces = std::max(1, static_cast<int>(std::lround(span / spacing)));
   Spline s;
   s.knots_.assign(6, times.front());
@@ -116,12 +123,7 @@ Spline Spline::near(const std::vector<double>& times, const Eigen::MatrixXd& val
   Eigen::SparseMatrix<double> A(values.rows(), n);
   A.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(Eigen::SparseMatrix<double>(A.transpose() * A));
-  if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-12) {
-    std::ostringstream text;
-    text << "the smoothing spline has too few samples between its knots, " << spacing
-         << " s apart: lengthen the smoothing";
-    throw std::invalid_argument(text.str());
-  }
+  if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-12) too_close();
   s.coefficients_ = ldlt.solve(Eigen::MatrixXd(A.transpose() * values));
   return s;
 }

@@ -75,7 +75,11 @@ class CrossCheckJob final : public Job {
     for (const Table& t : root.tables("grid")) axes_.push_back(read_axis(t));
     if (axes_.empty()) root.fail("grid", "name at least one [[grid]] axis");
     points_ = 1;
-    for (const Axis& a : axes_) points_ *= a.values.size();
+    constexpr std::size_t most = 1'000'000;
+    for (const Axis& a : axes_) {
+      if (points_ > most / a.values.size()) root.fail("grid", fmt::format("has more than {} points", most));
+      points_ *= a.values.size();
+    }
   }
 
   void run(Output& out) override {

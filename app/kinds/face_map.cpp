@@ -175,6 +175,8 @@ class FaceMapJob final : public PointJob {
           {name, model, v.texts({"set", "keys that this map changes, table.key=value"}),
            v.text({"against", "the map that this one is the counterpart of, if not the reference"}, "")});
     }
+    constexpr std::size_t most = 1000;  // each is read once for every one
+    if (s.variants.size() > most) root.fail("variants", fmt::format("more than {}: sweep a key instead", most));
     std::vector<std::string> names;
     for (const MapVariant& v : s.variants) {
       if (std::ranges::find(names, v.title) != names.end())
@@ -291,10 +293,11 @@ class FaceMapJob final : public PointJob {
       if (work_[i].layer != layer) continue;
       const bool has = points[i].contains("hosel");
       for (std::size_t k = 0; k < 6; ++k)
-        impulses[k].push_back(has ? points[i]["hosel"]["impulse"][k / 3][k % 3].get<double>() : std::nan(""));
+        impulses[k].push_back(has ? points[i].at("hosel").at("impulse").at(k / 3).at(k % 3).get<double>()
+                                  : std::nan(""));
       if (!has) continue;
       any = true;
-      for (const json& row : points[i]["hosel"]["history"]) {
+      for (const json& row : points[i].at("hosel").at("history")) {
         const Vec3 force = vector_from(row.at(1)), moment = vector_from(row.at(2));
         csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n",
                            1e3 * grid_.toe_at(work_[i].place), 1e3 * grid_.high_at(work_[i].place),

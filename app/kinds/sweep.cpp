@@ -43,7 +43,7 @@ void flatten(const json& j, const std::string& name, json& out) {
 }
 
 /// More points than this are a slip of the keys: each is read before anything is computed.
-constexpr std::size_t kMostPoints = 1'000'000;
+constexpr std::size_t kMostPoints = 100'000;
 
 /// The sweeps that are being read, outermost first: a case that sweeps itself would never end.
 class Nesting {
@@ -52,7 +52,13 @@ class Nesting {
     const fs::path here = fs::weakly_canonical(own);
     if (std::ranges::find(open(), here) != open().end())
       root.fail("case", "this sweep names itself, directly or by way of another: it would never end");
+    if (depth_ == 0) counted() = 0;
     open().push_back(here);
+  }
+  /// A point of this sweep, or of one inside it.
+  void count(Table& root) {
+    if (++counted() > kMostPoints)
+      root.fail("case", fmt::format("with the sweeps inside it, this one has more than {} points", kMostPoints));
   }
   ~Nesting() { open().resize(depth_); }
   Nesting(const Nesting&) = delete;
@@ -63,6 +69,10 @@ class Nesting {
     thread_local std::vector<fs::path> files;
     return files;
   }
+  static std::size_t& counted() {
+    thread_local std::size_t points = 0;
+    return points;
+  }
   std::size_t depth_;
 };
 
@@ -70,7 +80,7 @@ class SweepJob final : public PointJob {
  public:
   explicit SweepJob(CaseFile& file) {
     Table root = file.root();
-    const Nesting nesting(root, file.file());
+    Nesting nesting(root, file.file());
     title_ = root.text({"title", "of tables, pages and figures"}, "");
     const std::string named = root.text({"case", "the case whose keys are swept: beside this one, or a shipped one"});
     const fs::path beside = file.directory() / named;
@@ -107,6 +117,7 @@ class SweepJob final : public PointJob {
     // Every point is read now: a value that the case refuses is an error before anything is computed.
     swept_ = std::make_unique<CaseFile>(case_);
     for (std::size_t point = 0; point < size_; ++point) {
+      nesting.count(root);
       CaseFile one(*swept_, overrides(point));
       read_job(one);
       identities_.push_back(identity_of(one));

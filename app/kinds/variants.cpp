@@ -55,7 +55,9 @@ class VariantsJob final : public Job {
       std::vector<std::string> overrides = first[i].set;  // the command line has the last word
       overrides.insert(overrides.end(), file.overrides().begin(), file.overrides().end());
       CaseFile own(file, overrides);
-      variants_.push_back(read(own.root()).at(i));
+      std::vector<Variant> again = read(own.root());
+      if (again.size() != first.size()) own.root().fail("variants", "a variant may not change the list of variants");
+      variants_.push_back(std::move(again[i]));
       own.root().text({"kind", "what the case does (`hosel list`)"});
       own.root().text({"title", "of tables, pages and figures"}, "");
       own.finish();
@@ -102,6 +104,8 @@ class VariantsJob final : public Job {
       if (matched_ && !v.seen.launch_angle) t.fail("", "matched_launch needs a measured launch angle");
       out.push_back(std::move(v));
     }
+    constexpr std::size_t most = 1000;  // each is read once for every one
+    if (out.size() > most) root.fail("variants", fmt::format("more than {}: sweep a key instead", most));
     if (out.empty())
       root.fail("variants", "name at least one [[variants]]; the first is what the others are compared with");
     return out;

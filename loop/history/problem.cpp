@@ -282,8 +282,9 @@ std::vector<Stage> HistoryProblem::stages() const {
   double span = 0;
   for (const HistoryRecord& r : records_)
     if (!r.times.empty()) span = std::max(span, r.times.back() - r.times.front());
-  if (setting_.frequency > 0)
-    for (double w = 4 * 2 * kPi / setting_.frequency; w < 0.7 * span; w *= 3)
+  // Ten times three times as long, 240,000 periods, are more than any record of a bench has.
+  if (const double periods = 2 * kPi / setting_.frequency; setting_.frequency > 0)
+    for (double w = std::max(4 * periods, span / std::pow(3, 10)); w < 0.7 * span; w *= 3)
       all.push_back({.window = w, .loss = {}, .iterations = 8});
   all.push_back({.loss = {}, .iterations = 20});
   return all;

@@ -96,4 +96,75 @@ TEST(Bounds, ACellForEveryNameInEveryRow) {
                   "table.csv:1: 100001 columns, more than 10000");
 }
 
+TEST(Bounds, NumbersOfPointsAndVariants) {
+  const fs::path dir = fresh_directory("many");
+  const auto check = [&](const std::string& name, const std::string& text) {
+    write(dir / name / "case.toml", text);
+    return command("check " + (dir / name).string());
+  };
+  std::string grid = kEccentricBlow;
+  grid.replace(grid.find("\"impact\""), 8, "\"cross-check\"");
+  grid.replace(grid.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-eccentric\", \"stick-slip\"]");
+  // 65536^4 is 2^64, which is none.
+  grid += repeated("[[grid]]\nname = \"impact_toe\"\nfrom_mm = -24.0\nto_mm = 24.0\ncount = 65536\n", 4);
+  expect_one_line(check("grid", grid), "grid: has more than 1000000 points");
+
+  std::string maps = kEccentricBlow, variants = kEccentricBlow;
+  maps.replace(maps.find("\"impact\""), 8, "\"face-map\"");
+  for (int i = 0; i < 3000; ++i)
+    maps += "[[variants]]\nname = \"" + std::to_string(i) + "\"\nmodel = \"rigid-eccentric\"\nset = []\n";
+  expect_one_line(check("maps", maps), "variants: more than 1000");
+  variants.replace(variants.find("\"impact\""), 8, "\"variants\"");
+  expect_one_line(check("variants", variants + repeated("[[variants]]\nname = \"a\"\n", 3000)),
+                  "variants: more than 1000");
+  expect_one_line(check("own", variants + "[[variants]]\nname = \"a\"\n[[variants]]\nname = \"b\"\n" +
+                                   "set = [\"variants=[{name='c'}]\"]\n"),
+                  "a variant may not change the list of variants");
+
+  // The names that come near a name are looked for among names, not among texts of any length.
+  std::string named = kEccentricBlow;
+  named.replace(named.find("\"impact\""), 8, "\"face-map\"");
+  named.insert(0, "reference = \"" + std::string(300'000, 'a') + "\"\n");
+  named += "[[variants]]\nname = \"" + std::string(300'000, 'b') + "\"\nmodel = \"rigid-eccentric\"\nset = []\n";
+  EXPECT_EQ(check("names", named).status, 2);
+
+  // A sweep of a sweep: each counts, and all together.
+  const std::string sample = "[sample]\npoints = 400\nseed = 1\n[[parameters]]\nrange = [40.0, 50.0]\nkey = ";
+  write(dir / "blow/case.toml", kEccentricBlow);
+  write(dir / "inner/case.toml", "kind = \"sweep\"\ncase = \"../blow\"\n" + sample + "\"delivery.club_speed_mps\"\n");
+  const Outcome o = check("outer",
+                          "kind = \"sweep\"\ncase = \"../inner\"\n[sample]\npoints = 400\nseed = 1\n"
+                          "[[parameters]]\nkey = \"sample.seed\"\nrange = [1.0, 2.0]\n");
+  EXPECT_EQ(o.status, 2) << o.text;
+}
+
+TEST(Bounds, WhatNoShaftSwingOrBallHas) {
+  const auto refused = [](const std::string& arguments, const std::string& says) {
+    const fs::path out = fresh_directory("no_such") / "out";
+    const Outcome o = command("run " + arguments + " --quiet --out " + out.string());
+    expect_one_line(o, says);
+    EXPECT_FALSE(fs::exists(out / "summary.json"));
+  };
+  refused("loop-bench --set 'shaft.table.bending_stiffness_N_m2=[1e300,1e300]'", "EI [N m2] is 1e+300 at 0 m");
+  refused("shaft-modes --set shaft.bending_scale=1e300", "EI [N m2] is ");
+  refused("shaft-modes --set shaft.mass_scale=1e300", "the mass per length [kg/m] is ");
+  refused("swing-driver --set motion.smoothing_ms=1e-9", "too few samples between its knots");
+  refused("swing-driver --set solution.step_ms=1e-300", "solution.step_ms: 1e-300 is out of range");
+  const fs::path dir = fresh_directory("drives");
+  const std::string flight =
+      "kind = \"flight\"\n[[launch]]\nname = \"a\"\nball_speed_mps = 77\nlaunch_angle_deg = "
+      "10\nspin_rate_rpm = 2600\n[flight]\nlaw = \"table\"\ncoefficients = \"c.csv\"\n"
+      "spin_decay_per_s = 0.04\n";
+  const auto table = [](const std::string& drag) {
+    return "reynolds,spin_ratio,drag,lift\n1e4,0," + drag + ",0\n1e4,1,0.2,0\n3e5,0,0.2,0\n3e5,1,0.2,0\n";
+  };
+  write(dir / "case.toml", flight);
+  write(dir / "c.csv", table("-0.05"));
+  refused(dir.string(), "drag coefficients lie between 0 and 5");
+  write(dir / "c.csv", table("0.2x"));
+  refused(dir.string(), "c.csv:2: drag '0.2x' is no number");
+  write(dir / "c.csv", table("0.2"));
+  EXPECT_EQ(command("check " + dir.string()).status, 0);
+}
+
 }  // namespace

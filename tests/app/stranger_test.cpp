@@ -1,4 +1,5 @@
-// A case is data: whatever stands in its names, headers and paths, nothing of it is executed.
+// A case is data: whatever stands in its names, headers and paths, nothing of it is executed, and nothing outside OUT
+// is written.
 #include <gtest/gtest.h>
 
 #include "command.hpp"
@@ -103,6 +104,72 @@ TEST(Stranger, PathsOfAJobArrayAreNoShell) {
   EXPECT_NE(
       std::system(("PATH=" + dir.string() + ":$PATH " + array + quoted(out.string()) + " '3;x' 2>/dev/null").c_str()),
       0);
+}
+
+/// A case that brings its OUT along, in which something points at what is not the run's.
+TEST(Stranger, LinksInOutLeadNowhere) {
+  const fs::path dir = fresh_directory("stranger_link"), victim = dir / "victim", out = dir / "out";
+  write(dir / "blow/case.toml", kEccentricBlow);
+  const auto refused = [&](const fs::path& link, const fs::path& target, const std::string& arguments) {
+    fs::remove_all(victim);
+    write(victim / "thesis.tex", "years");
+    fs::create_directories(link.parent_path());
+    fs::create_symlink(target, link);
+    const Outcome o = command(arguments);
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_NE(o.text.find(link.filename().string() + ": a link"), std::string::npos) << o.text;
+    EXPECT_EQ(content(victim / "thesis.tex"), "years") << link;
+    EXPECT_EQ(std::distance(fs::directory_iterator(victim), {}), 1) << link;
+    fs::remove(link);
+  };
+  const std::string run = "run " + (dir / "blow").string() + " --quiet --out " + out.string();
+  for (const char* name : {".lock", "log.txt", "figures/map.png"}) refused(out / name, victim / "thesis.tex", run);
+  for (const char* name : {"vtk", "vtk/ball", "figures"}) {
+    fs::remove_all(out);
+    refused(out / name, victim, run);
+  }
+  fs::remove_all(out);
+  EXPECT_EQ(command(run).status, 0);
+
+  write(dir / "sweep/case.toml",
+        "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
+  const std::string swept = (dir / "swept").string();
+  ASSERT_EQ(command("sweep plan " + (dir / "sweep").string() + " --out " + swept).status, 0);
+  refused(dir / "swept/shards/1-of-1/points.jsonl", victim / "thesis.tex", "sweep run " + swept + " --quiet");
+  fs::remove_all(dir / "swept/shards");
+  refused(dir / "swept/shards", victim, "sweep run " + swept + " --quiet");
+  EXPECT_EQ(command("sweep run " + swept + " --quiet").status, 0);
+
+  // Where nobody named OUT: in the working directory, which may be the stranger's too.
+  const auto at_home = [&] {
+    return std::system(("cd " + dir.string() + " && " + HOSEL_COMMAND + " run blow --quiet >/dev/null 2>&1").c_str());
+  };
+  for (const fs::path& link : {out, out / "blow"}) {
+    fs::remove_all(out);
+    if (link != out) fs::create_directories(out);
+    fs::create_directory_symlink(victim, link);
+    EXPECT_EQ(WEXITSTATUS(at_home()), 2) << link;
+    EXPECT_EQ(std::distance(fs::directory_iterator(victim), {}), 1) << link;
+  }
+  // Who names a link means what it points at.
+  fs::create_directory_symlink(dir / "elsewhere", dir / "named");
+  fs::create_directories(dir / "elsewhere");
+  EXPECT_EQ(command("run " + (dir / "blow").string() + " --quiet --out " + (dir / "named").string()).status, 0);
+  EXPECT_TRUE(fs::exists(dir / "elsewhere/summary.json"));
+}
+
+TEST(Stranger, ACaseIsNotCopiedIntoItself) {
+  const fs::path dir = fresh_directory("stranger_copy");
+  write(dir / "mine/case.toml", kEccentricBlow);
+  const Outcome o = command("new " + (dir / "mine/variant").string() + " --from " + (dir / "mine").string());
+  EXPECT_EQ(o.status, 2);
+  EXPECT_NE(o.text.find("lies in what is copied"), std::string::npos) << o.text;
+  EXPECT_FALSE(fs::exists(dir / "mine/variant"));
+  fs::create_directory_symlink(".", dir / "mine/again");
+  const Outcome endless = command("new " + (dir / "copy").string() + " --from " + (dir / "mine").string());
+  EXPECT_EQ(endless.status, 2);
+  EXPECT_NE(endless.text.find("cannot be copied"), std::string::npos) << endless.text;
+  EXPECT_FALSE(fs::exists(dir / "copy"));
 }
 
 }  // namespace

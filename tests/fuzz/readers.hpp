@@ -82,7 +82,7 @@ inline void read_points(std::string_view bytes) {
   }
   for (const std::string_view text : {bytes, std::string_view(sealed)}) {
     try {
-      app::read_points(file_of(text, "points/points.jsonl").parent_path().parent_path(), "case");
+      app::read_points(file_of(text, "points/points.jsonl").parent_path().parent_path(), "case", 9);
     } catch (const app::InputError&) {}
   }
 }
