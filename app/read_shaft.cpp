@@ -163,7 +163,7 @@ ClubGeometry read_club_geometry(Table table) {
   const double lie =
       table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
                      {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
-  const double lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-kPi / 4, kPi / 4}, 0);
+  const double lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2}, 0);
   g.shaft_axis = Vec3(std::sin(lean) * std::sin(lie), std::cos(lie), std::cos(lean) * std::sin(lie));
   return g;
 }

@@ -9,7 +9,7 @@ namespace hosel::models {
 MatchedLaunch match_launch_angle(const ImpactModel& model, Blow blow, double launch_angle, double tolerance) {
   MatchedLaunch out{.blow = std::move(blow)};
   double& loft = out.blow.delivery.dynamic_loft;
-  double slope = 0.7, last_loft = 0, last_angle = 0;  // of a gripping ball: launch ratios are 0.6 to 0.85
+  double slope = kLaunchPerLoft, last_loft = 0, last_angle = 0;
   while (out.blows < 8) {
     out.launch = model.launch(out.blow);
     const double angle = out.launch.launch_angle();

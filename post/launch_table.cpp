@@ -21,7 +21,30 @@ constexpr std::array kChannels = {
     Channel{"spin_rate", "rpm", kRadPerSecPerRpm, &Launch::spin_rate, 0},
     Channel{"spin_axis", "deg", kRadPerDeg, &Launch::spin_axis, 2},
 };
+
+/// Model minus measurement over the measurement's standard deviation.
+double off_by(const Launch& launch, const MeasuredValue& m) {
+  return ((launch.*m.channel->value)() - m.value) / m.uncertainty;
+}
 }  // namespace
+
+const MeasuredValue* find(const Measured& measured, const Channel* channel) {
+  const auto it = std::ranges::find(measured, channel, &MeasuredValue::channel);
+  return it == measured.end() ? nullptr : &*it;
+}
+
+std::vector<std::string> outside(const Launch& launch, const Measured& measured) {
+  std::vector<std::string> out;
+  for (const MeasuredValue& m : measured) {
+    if (!(m.uncertainty > 0)) continue;
+    const double off = off_by(launch, m);
+    if (std::abs(off) <= 2) continue;
+    out.push_back(fmt::format("{} is {:.1f} standard deviations of the measurement {}: {}", m.channel->name,
+                              std::abs(off), off > 0 ? "too high" : "too low",
+                              m.explained.empty() ? "the case gives no reason" : m.explained));
+  }
+  return out;
+}
 
 std::span<const Channel> channels() { return kChannels; }
 
@@ -42,6 +65,8 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
   TextTable table{.rows = {{""}}};
   for (const LaunchColumn& c : columns) table.rows[0].push_back(c.title);
   if (beside) table.rows[0].emplace_back("measured");
+  const bool judged = std::ranges::any_of(measured, [](const MeasuredValue& m) { return m.uncertainty > 0; });
+  if (judged) table.rows[0].emplace_back("off by [sd]");
   for (Channel channel : kChannels) {
     const Channel* const measured_as = find_channel(channel.name);
     if (channel.unit == "mps" && units == Units::golf) channel.unit = "mph", channel.si = kMpsPerMph;
@@ -57,8 +82,11 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
       if (c.coarser) row.back() += fmt::format(" +-{:.{}f}", error, channel.decimals);
     }
     if (!beside) continue;
-    const auto it = std::ranges::find(measured, measured_as, &Measured::value_type::first);
-    row.push_back(it == measured.end() ? "-" : fmt::format("{:.{}f}", it->second / channel.si, channel.decimals));
+    const MeasuredValue* const m = find(measured, measured_as);
+    row.push_back(m ? fmt::format("{:.{}f}", m->value / channel.si, channel.decimals) : "-");
+    if (m && m->uncertainty > 0)
+      row.back() += fmt::format(" +-{:.{}f}", m->uncertainty / channel.si, channel.decimals);
+    if (judged) row.push_back(m && m->uncertainty > 0 ? fmt::format("{:+.1f}", off_by(columns.back().launch, *m)) : "-");
   }
   const auto add = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
     if (!range && std::ranges::none_of(columns, [&](const LaunchColumn& c) { return (c.oblique.*value).has_value(); }))
@@ -67,6 +95,7 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
     for (const LaunchColumn& c : columns)
       row.push_back(c.oblique.*value ? fmt::format("{:.3f}", *(c.oblique.*value)) : "-");
     if (beside) row.push_back(range ? fmt::format("{:g} to {:g}", range->first, range->second) : "-");
+    if (judged) row.emplace_back();
   };
   add("e_t [-]", &Oblique::tangential_restitution, ranges.tangential_restitution);
   add("launch ratio [-]", &Oblique::launch_ratio, ranges.launch_ratio);

@@ -30,7 +30,16 @@ std::span<const Channel> channels();
 const Channel* find_channel(std::string_view name);  ///< nullptr where unknown
 std::string channel_names();                         ///< for messages
 
-using Measured = std::vector<std::pair<const Channel*, double>>;  ///< values in SI
+/// One measured quantity of a launch.
+struct MeasuredValue {
+  const Channel* channel;
+  double value;               ///< SI
+  double uncertainty = 0;     ///< one standard deviation, SI; 0: not stated
+  std::string explained = {}; ///< why a model may lie outside it
+};
+using Measured = std::vector<MeasuredValue>;
+/// nullptr where it was not measured.
+const MeasuredValue* find(const Measured& measured, const Channel* channel);
 
 /// What a blow says beside its launch; absent where it says nothing (models/oblique.hpp).
 struct Oblique {
@@ -41,17 +50,20 @@ struct LaunchColumn {
   Launch launch;
   Oblique oblique = {};
   std::optional<ShotFlight> flight = {};
-  std::optional<Launch> coarser = {};  ///< the same on coarser numerics: shown as the error of each quantity
+  std::optional<double> loft_deg = {};  ///< at which it stands, where that was looked for
+  std::optional<Launch> coarser = {};   ///< the same on coarser numerics: shown as the error of each quantity
 };
 /// Ranges that others measured on such blows: lowest and highest.
 using Range = std::optional<std::pair<double, double>>;
 struct MeasuredOblique {
   Range tangential_restitution, launch_ratio;
 };
-/// A row per quantity, a column per model, the measurement last where there is one; then the flights, where the columns
-/// have them.
+/// A row per quantity, a column per model, the measurement last where there is one, and where its uncertainty is stated
+/// by how many of its standard deviations the last model is off; then the flights, where the columns have them.
 TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
                        const MeasuredOblique& ranges = {}, Units units = Units::metric);
+/// Sentences about the quantities in which a launch is more than two standard deviations off the measurement.
+std::vector<std::string> outside(const Launch& launch, const Measured& measured);
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
 nlohmann::json to_json(const Launch& launch);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -23,91 +24,71 @@ class CalibrateBallJob final : public Job {
   explicit CalibrateBallJob(CaseFile& file) {
     Table root = file.root();
     Table ball = root.table("ball");
-    ball_ = read_ball(ball);
-    options_.ball = read_fe_ball(ball, models::range_ball());
-    for (const models::BallLayer& layer : options_.ball.layers)
+    problem_.ball = read_ball(ball);
+    models::FeImpactOptions& options = problem_.options;
+    options.ball = read_fe_ball(ball, models::range_ball());
+    for (const models::BallLayer& layer : options.ball.layers)
       if (!layer.material.elastic.as<fem::Hyperelastic>())
         ball.fail("layers", "calibration fits neo-hooke, mooney-rivlin and yeoh layers");
-    read_shots(root);
-    options_.harmonics = 0;
-    if (auto mesh = root.optional_table("mesh")) {
-      options_.mesh.sector = int(mesh->integer({"sector", "elements per 45 degrees of the surface before grading"}, 1,
-                                               64, options_.mesh.sector));
-      options_.mesh.rings =
-          int(mesh->integer({"rings", "rings of elements outside the core block"}, 1, 64, options_.mesh.rings));
-      options_.mesh.pole = mesh->number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
-                                        {0.01, 1}, options_.mesh.pole);
-      options_.mesh.skin =
-          mesh->number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, options_.mesh.skin);
-      if (!shots_.empty()) {
-        options_.harmonics =
-            int(mesh->integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
-        options_.antisymmetric = int(mesh->integer(
-            {"antisymmetric", "harmonics across the plane of the slip in shots without a plane of symmetry"}, 1, 16,
-            options_.harmonics));
-      }
-    }
-    check_memory(root, options_);
-    if (auto time = root.optional_table("time"))
-      options_.steps_per_contact =
-          int(time->integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000,
-                            options_.steps_per_contact));
     Table target = root.table("target");
-    target_.speeds =
-        target.quantities({"speeds", "of the normal impacts on a wall"}, "mps", 0, {1, 100}, target_.speeds);
-    target_.restitution = target.number({"restitution", "of the target law at 0 m/s"}, {0, 1}, target_.restitution);
-    target_.restitution_slope =
-        target.quantity({"restitution_slope", "of the target law"}, "s_per_m", {-0.1, 0.1}, target_.restitution_slope);
-    target_.restitution_sigma = target.number({"restitution_sigma", "standard error of the restitution wanted"},
-                                              {1e-6, 1}, target_.restitution_sigma);
-    target_.contact_speed = target.quantity({"contact_speed", "at which the contact time is wanted"}, "mps", {1, 100},
-                                            target_.contact_speed);
-    target_.contact_time = target.quantity({"contact_time", "wanted"}, "ms", Range::positive(), target_.contact_time);
-    target_.contact_time_sigma = target.quantity({"contact_time_sigma", "standard error of the contact time wanted"},
-                                                 "ms", Range::positive(), target_.contact_time_sigma);
-    if (auto fit = root.optional_table("fit")) {
-      fitted_.branch_times = !fit->flag({"hold_branch_times", "leave the branch times as they are"}, false);
-      if (!shots_.empty()) {
-        fitted_.cover = fit->flag({"cover", "fit a factor on the moduli of the outermost layer"}, false);
-        fitted_.friction = fit->flag({"friction", "fit the friction of the shots"}, false);
-        if (options_.face)
-          fitted_.face = fit->flag({"face", "fit the stiffness of the clubs' face, one for all shots"}, false);
-      }
+    read_target(target);
+    read_shots(root);
+    if (problem_.bounce || !problem_.shots.empty())
+      options.friction =
+          root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
+    options.harmonics = 0;
+    if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
+    check_memory(root, options);
+    if (auto time = root.optional_table("time")) {
+      options.steps_per_contact =
+          int(time->integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000,
+                            options.steps_per_contact));
+      options.newton_relative = time->number(
+          {"newton_relative", "residual at which Newton stops, over the size of the forces"}, {1e-14, 1e-2},
+          options.newton_relative);
+      options.after = time->number({"after", "time computed after contact, over the contact time"}, {0, 10},
+                                   options.after);
     }
-    if (const auto faults = options_.faults(); !faults.empty()) root.fail("ball", faults.front());
+    for (Table& t : root.tables("free")) problem_.free.push_back(read_free(t));
+    if (problem_.free.empty()) root.fail("free", "name at least one parameter to fit: [[free]] with `what`");
+    problem_.leave_one_out =
+        root.flag({"leave_one_out", "every seen shot is predicted by a fit without it, one Gauss-Newton step away"},
+                  false);
+    if (const auto faults = options.faults(); !faults.empty()) root.fail("ball", faults.front());
+    if (const auto faults = problem_.faults(); !faults.empty()) root.fail("free", faults.front());
   }
 
   void run(Output& out) override {
     Progress progress = out.progress("calibrating");
     const models::BallCalibration fit =
-        models::calibrate_ball(options_, ball_, target_, shots_, fitted_, [&](int n, double cost) {
-          progress.update(std::min(0.99, n / 40.0), fmt::format("{} evaluations, cost {:.3f}", n, cost));
+        models::calibrate_ball(problem_, [&](int n, double cost) {
+          progress.update(std::min(0.99, n / expected_blows()), fmt::format("{} blows, cost {:.3f}", n, cost));
         });
     progress.finish();
     nlohmann::json summary{
-        {"converged", fit.converged}, {"cost", fit.cost}, {"evaluations", fit.evaluations}, {"solver", fit.report}};
+        {"converged", fit.converged}, {"cost", fit.cost}, {"blows", fit.evaluations}, {"solver", fit.report}};
+    const std::size_t width = std::ranges::max(fit.names, {}, &std::string::size).size();
     for (std::size_t p = 0; p < fit.names.size(); ++p) {
-      const double relative = std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p)));
-      summary["parameters"].push_back(
-          {{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]}, {"relative_sigma", relative}});
-      out.say(fmt::format("{:<32} {:12.5g}  +- {:.1f} %", fit.names[p], fit.values[p], 100 * relative));
+      const double sd = sigma(fit, p);
+      const std::string unit = additive(p) ? "" : " %";
+      summary["parameters"].push_back({{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]},
+                                       {additive(p) ? "sigma" : "relative_sigma", sd}});
+      out.say(fmt::format("{:<{}} {:12.5g}  +- {:.{}g}{}", fit.names[p], std::max<std::size_t>(32, width), fit.values[p],
+                          additive(p) ? sd : 100 * sd, additive(p) ? 2 : 3, unit));
       // A name ends with its unit: moduli are read in MPa.
       const std::string name = fit.names[p].substr(0, fit.names[p].find(" ["));
       const bool modulus = fit.names[p].ends_with("[Pa]");
       out.page().answer(name, fmt::format("{:.4g}{}", (modulus ? 1e-6 : 1) * fit.values[p], modulus ? " MPa" : ""),
-                        fmt::format("± {:.1f} %", 100 * relative));
+                        additive(p) ? fmt::format("± {:.2g}", sd) : fmt::format("± {:.1f} %", 100 * sd));
     }
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
       std::vector<double> row;
       for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) row.push_back(fit.covariance(i, j));
-      summary["covariance_of_logarithms"].push_back(row);
+      summary["covariance"].push_back(row);
     }
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
     std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
     post::Series wanted{.label = "target, one standard deviation"}, got{.label = "ball", .style = "points"};
-    post::Series law{.label = fmt::format("{:g} {} {:g} v", target_.restitution,
-                                          target_.restitution_slope < 0 ? '-' : '+',
-                                          std::abs(target_.restitution_slope))};
     post::Series time_wanted{.label = "target, one standard deviation"},
         time_got{.label = "ball", .style = "linespoints"};
     post::TextTable bounce{{{"speed [m/s]", "wanted e", "e", "contact [ms]", "peak force [kN]"}}};
@@ -126,40 +107,30 @@ class CalibrateBallJob final : public Job {
                                    {"peak_force_N", p.peak_force}});
       wanted.x.push_back(p.speed);
       wanted.y.push_back(p.target);
-      wanted.error.push_back(target_.restitution_sigma);
-      law.x.push_back(p.speed);
-      law.y.push_back(p.target);
+      wanted.error.push_back(problem_.wall.restitution_sigma);
       got.x.push_back(p.speed);
       got.y.push_back(p.restitution);
       time_got.x.push_back(p.speed);
       time_got.y.push_back(1e3 * p.contact_time);
     }
     out.page().answer(bounce);
-    time_wanted.x = {target_.contact_speed};
-    time_wanted.y = {1e3 * target_.contact_time};
-    time_wanted.error = {1e3 * target_.contact_time_sigma};
+    time_wanted.x = {problem_.wall.contact_speed};
+    time_wanted.y = {1e3 * problem_.wall.contact_time};
+    time_wanted.error = {1e3 * problem_.wall.contact_time_sigma};
     out.write("fit.csv", csv);
-    if (!fit.shots.empty())
-      out.say("shot       loft found [deg]   spin: target, ball [rpm]   speed: measured, ball [m/s]     e_t");
-    for (std::size_t k = 0; k < fit.shots.size(); ++k) {
-      const models::ObliquePoint& s = fit.shots[k];
-      const std::optional<double>& speed = shots_[k].ball_speed;
-      out.say(fmt::format("{:<10} {:16.2f} {:17.0f} {:8.0f} {:>20} {:8.2f} {:7.3f}", s.name, degrees(s.loft),
-                          rpm(s.target), rpm(s.spin_rate), speed ? fmt::format("{:.2f}", *speed) : "-", s.ball_speed,
-                          s.tangential_restitution));
-      summary["shots"].push_back({{"name", s.name},
-                                  {"dynamic_loft_deg", degrees(s.loft)},
-                                  {"target_spin_rate_rpm", rpm(s.target)},
-                                  {"spin_rate_rpm", rpm(s.spin_rate)},
-                                  {"ball_speed_mps", s.ball_speed},
-                                  {"tangential_restitution", s.tangential_restitution}});
+    if (fit.bounce) {
+      out.say(fmt::format("thrown at a plate at {:g} m/s, {:g} deg from the normal: e_t {:.3f}, wanted {:g} +- {:g}",
+                          problem_.bounce->speed, degrees(problem_.bounce->angle), *fit.bounce,
+                          problem_.bounce->tangential_restitution, problem_.bounce->sigma));
+      summary["bounce"] = {{"tangential_restitution", *fit.bounce}};
     }
+    if (!fit.shots.empty()) report_shots(out, fit, summary);
     out.write("ball.toml", ball_file(fit));
     post::Figure figure;
     figure.title = "the calibrated ball on a rigid wall";
     figure.columns = 2;
     for (const auto& [label, series] :
-         {std::pair{"restitution", std::vector{wanted, got, law}}, {"contact time [ms]", {time_wanted, time_got}}}) {
+         {std::pair{"restitution", std::vector{wanted, got}}, {"contact time [ms]", {time_wanted, time_got}}}) {
       post::Panel panel;
       panel.x_label = "impact speed [m/s]";
       panel.y_label = label;
@@ -167,29 +138,80 @@ class CalibrateBallJob final : public Job {
       figure.panels.push_back(panel);
     }
     out.draw(figure, "fit");
+    if (!fit.shots.empty()) out.draw(shot_figure(fit), "shots");
     if (!fit.converged) out.say("the fit has not converged: " + fit.report);
     out.write_summary(summary);
   }
 
  private:
-  /// Measured shots beside the bounce; each with its own head and delivery, all with the case's shaft where it has one.
+  using What = models::FreeParameter::What;
+  using Points = std::vector<models::ObliquePoint>;
+
+  void read_target(Table& target) {
+    models::NormalImpactTarget& wall = problem_.wall;
+    wall.speeds = target.quantities({"speeds", "of the normal impacts on a wall"}, "mps", 0, {1, 100}, wall.speeds);
+    if (target.has("restitutions")) {
+      wall.restitutions =
+          target.numbers({"restitutions", "one for each speed, in place of a law"}, wall.speeds.size(), {0, 1});
+    } else {
+      wall.restitution = target.number({"restitution", "of the target law at 0 m/s"}, {0, 1}, wall.restitution);
+      wall.restitution_slope = target.quantity({"restitution_slope", "of the target law"}, "s_per_m", {-0.1, 0.1},
+                                               wall.restitution_slope);
+    }
+    wall.restitution_sigma = target.number({"restitution_sigma", "standard error of the restitution wanted"}, {1e-6, 1},
+                                           wall.restitution_sigma);
+    wall.contact_speed =
+        target.quantity({"contact_speed", "at which the contact time is wanted"}, "mps", {1, 100}, wall.contact_speed);
+    wall.contact_time = target.quantity({"contact_time", "wanted"}, "ms", Range::positive(), wall.contact_time);
+    wall.contact_time_sigma = target.quantity({"contact_time_sigma", "standard error of the contact time wanted"}, "ms",
+                                              Range::positive(), wall.contact_time_sigma);
+    if (auto t = target.optional_table("bounce"))
+      problem_.bounce = {
+          .speed = t->quantity({"speed", "at which the ball is thrown at a rigid plate"}, "mps", {1, 100}),
+          .angle = t->quantity({"angle", "from the plate's normal"}, "deg", {0.01, 1.5}),
+          .tangential_restitution = t->number({"tangential_restitution", "wanted"}, {-1, 1}),
+          .sigma = t->number({"sigma", "standard error of the tangential restitution wanted"}, {1e-4, 1})};
+  }
+
+  void read_mesh(Table& mesh) {
+    models::FeImpactOptions& o = problem_.options;
+    o.mesh.sector =
+        int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
+    o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
+    o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
+                              {0.01, 1}, o.mesh.pole);
+    o.mesh.skin =
+        mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
+    if (problem_.shots.empty() && !problem_.bounce) return;
+    o.harmonics = int(mesh.integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
+    o.antisymmetric = int(mesh.integer(
+        {"antisymmetric", "harmonics across the plane of the slip in shots without a plane of symmetry"}, 1, 16,
+        o.harmonics));
+  }
+
+  /// Measured shots beside the bounce; each with its own head and delivery, and with the case's face, shaft and hosel
+  /// where it has none of its own.
   void read_shots(Table root) {
     const auto tables = root.tables("shots");
     if (tables.empty()) return;
-    options_.friction =
-        root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
-    if (auto t = root.optional_table("face")) options_.face = read_face(*t);
+    std::optional<FaceCompliance> face;
+    if (auto t = root.optional_table("face")) face = read_face(*t);
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
     ClubGeometry geometry;
     if (auto t = root.optional_table("hosel")) geometry = read_club_geometry(*t);
     for (Table t : tables) {
       models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
-      shot.blow.ball = ball_;
+      groups_.push_back(t.text({"group", "of shots whose errors are summed up together"}, ""));
+      shot.seen = t.flag({"seen", "false: predicted, not fitted"}, true);
+      shot.blow.ball = problem_.ball;
       shot.blow.delivery = read_delivery(t.table("delivery"));
       shot.blow.club.head = read_head(t.table("head"), true);
-      shot.blow.club.shaft = shaft;
-      shot.blow.club.geometry = geometry;
+      auto own_face = t.optional_table("face"), own_shaft = t.optional_table("shaft"),
+           own_hosel = t.optional_table("hosel");
+      shot.face = own_face ? std::optional(read_face(*own_face)) : face;
+      shot.blow.club.shaft = own_shaft ? std::optional(read_shaft(*own_shaft)) : shaft;
+      shot.blow.club.geometry = own_hosel ? read_club_geometry(*own_hosel) : geometry;
       shot.launch_angle =
           t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg", {-1.5, 1.5});
       shot.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
@@ -199,14 +221,182 @@ class CalibrateBallJob final : public Job {
         shot.ball_speed_sigma =
             t.number({"ball_speed_sigma", "standard error of ball speed over club speed, relative"}, {1e-4, 1});
       }
-      shots_.push_back(std::move(shot));
+      problem_.shots.push_back(std::move(shot));
     }
+  }
+
+  models::FreeParameter read_free(Table& t) {
+    static const std::vector<std::pair<std::string, What>> kinds{
+        {"long-term-moduli", What::long_term}, {"branch-moduli", What::branches},
+        {"branch-times", What::branch_times},  {"layer-moduli", What::layer},
+        {"friction", What::friction},          {"face-stiffness", What::face_stiffness},
+        {"impact-high", What::impact_high},    {"head-mass", What::head_mass}};
+    std::vector<std::string> names;
+    for (const auto& [name, what] : kinds) names.push_back(name);
+    const std::string named = t.choice({"what", "is fitted"}, names);
+    models::FreeParameter p{.what = std::ranges::find(kinds, named, &std::pair<std::string, What>::first)->second};
+    if (p.what == What::layer)
+      p.layer = std::size_t(t.integer({"layer", "counted from the inside, from 1"}, 1,
+                                      long(problem_.options.ball.layers.size()))) -
+                1;
+    if (p.of_shots())
+      for (const std::string& name : t.texts({"shots", "whose face, strike or head it is"})) {
+        const auto it = std::ranges::find(problem_.shots, name, &models::ObliqueTarget::name);
+        if (it == problem_.shots.end()) t.fail("shots", fmt::format("no shot '{}'", name));
+        p.shots.push_back(std::size_t(it - problem_.shots.begin()));
+      }
+    // The prior, in the parameter's own unit: an offset, or the logarithm of a factor.
+    const double inf = INFINITY;
+    if (p.what == What::impact_high) {
+      p.prior = 100 * t.quantity({"offset", "expected, up the face"}, "mm", limits::impact_place, 0);
+      p.sd = 100 * t.quantity({"sd", "of that expectation; inf: nothing is expected"}, "mm", {1e-6, inf}, inf);
+    } else if (p.what == What::head_mass) {
+      p.prior = 100 * t.quantity({"offset", "expected"}, "kg", {-0.1, 0.1}, 0);
+      p.sd = 100 * t.quantity({"sd", "of that expectation; inf: nothing is expected"}, "kg", {1e-6, inf}, inf);
+    } else {
+      p.prior = std::log(t.number({"factor", "expected"}, {0.05, 20}, 1.0));
+      p.sd = t.number({"sd", "of the factor's logarithm; inf: nothing is expected"}, {1e-6, inf}, inf);
+    }
+    return p;
+  }
+
+  bool additive(std::size_t p) const {
+    return problem_.free[p].what == What::impact_high || problem_.free[p].what == What::head_mass;
+  }
+  /// Relative, or of an additive parameter in its unit.
+  double sigma(const models::BallCalibration& fit, std::size_t p) const {
+    return std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))) * (additive(p) ? 0.01 : 1);
+  }
+  /// Blows of some six iterations: values (three blows a shot) and derivatives.
+  double expected_blows() const {
+    const auto n = double(problem_.free.size()), wall = double(problem_.wall.speeds.size()) + 1;
+    return 6 * (wall * (n + 1) + double(problem_.shots.size()) * (n + 4)) + 1;
+  }
+
+  const models::ObliqueTarget& target_of(const models::ObliquePoint& p) const {
+    return *std::ranges::find(problem_.shots, p.name, &models::ObliqueTarget::name);
+  }
+
+  void report_shots(Output& out, const models::BallCalibration& fit, nlohmann::json& summary) const {
+    std::size_t width = 5;
+    for (const auto& shot : problem_.shots) width = std::max(width, shot.name.size() + 1);
+    std::string csv =
+        "fit,name,group,dynamic_loft_deg,spin_rate_rpm,spin_off_percent,ball_speed_mps,ball_speed_off_percent,"
+        "tangential_restitution,launch_ratio\n";
+    post::TextTable page{{{"fit", "shot", "loft [deg]", "spin [rpm]", "off [%]", "ball speed [m/s]", "off [%]", "e_t",
+                           "launch ratio"}}};
+    const auto rows = [&](const std::string& title, const Points& points) {
+      if (points.empty()) return;
+      out.say(fmt::format("{:<{}} {:>7} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6}", title, width, "loft", "measured",
+                          "spin", "off [%]", "speed", "off [%]", "e_t", "ratio"));
+      for (const models::ObliquePoint& p : points) {
+        const models::ObliqueTarget& t = target_of(p);
+        const double spin = off(p.spin_rate, t.spin_rate);
+        const std::string speed = t.ball_speed ? fmt::format("{:+.2f}", off(p.ball_speed, *t.ball_speed)) : "-";
+        out.say(fmt::format("{:<{}} {:7.2f} {:9.0f} {:7.0f} {:+7.1f} {:8.2f} {:>7} {:7.3f} {:6.3f}", p.name, width,
+                            degrees(p.loft), rpm(t.spin_rate), rpm(p.spin_rate), spin, p.ball_speed, speed,
+                            p.tangential_restitution, p.launch_ratio));
+        page.rows.push_back({title, p.name, fmt::format("{:.2f}", degrees(p.loft)), fmt::format("{:.0f}", rpm(p.spin_rate)),
+                             fmt::format("{:+.1f}", spin), fmt::format("{:.2f}", p.ball_speed), speed,
+                             fmt::format("{:.3f}", p.tangential_restitution), fmt::format("{:.3f}", p.launch_ratio)});
+        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{:.4g},{:.4g}\n", title, post::csv_cell(p.name),
+                           post::csv_cell(group_of(p)), degrees(p.loft), rpm(p.spin_rate), spin, p.ball_speed,
+                           t.ball_speed ? fmt::format("{:.4g}", off(p.ball_speed, *t.ball_speed)) : "",
+                           p.tangential_restitution, p.launch_ratio);
+        summary["shots"].push_back({{"fit", title},
+                                    {"name", p.name},
+                                    {"dynamic_loft_deg", degrees(p.loft)},
+                                    {"target_spin_rate_rpm", rpm(p.spin_rate / (1 + spin / 100))},
+                                    {"spin_rate_rpm", rpm(p.spin_rate)},
+                                    {"ball_speed_mps", p.ball_speed},
+                                    {"tangential_restitution", p.tangential_restitution},
+                                    {"launch_ratio", p.launch_ratio}});
+      }
+      sum_up(out, title, points, summary);
+    };
+    Points seen, unseen;
+    for (const auto& p : fit.shots) (p.seen ? seen : unseen).push_back(p);
+    rows("seen", seen);
+    rows("left out", fit.left_out);
+    rows("not seen", unseen);
+    for (std::size_t k = 0, row = 0; k < problem_.shots.size() && !fit.left_out.empty(); ++k) {
+      if (!problem_.shots[k].seen) continue;
+      for (std::size_t c = 0; c < problem_.free.size(); ++c)
+        if (const auto& p = problem_.free[c]; p.of_shots() && p.shots.front() == k && additive(c))
+          out.say(fmt::format("{} without {}: {:.3g}", fit.names[c], problem_.shots[k].name,
+                              0.01 * fit.left_out_values[row][c]));
+      ++row;
+    }
+    out.page().answer(page);
+    out.write("shots.csv", csv);
+  }
+
+  /// Root of the mean square of the errors of every group that has a name.
+  void sum_up(Output& out, const std::string& title, const Points& points, nlohmann::json& summary) const {
+    std::vector<std::string> names;
+    for (const auto& p : points)
+      if (!group_of(p).empty() && std::ranges::find(names, group_of(p)) == names.end()) names.push_back(group_of(p));
+    for (const std::string& name : names) {
+      double spin = 0, speed = 0, worst = 0;
+      int n = 0, speeds = 0;
+      for (const auto& p : points) {
+        if (group_of(p) != name) continue;
+        const models::ObliqueTarget& t = target_of(p);
+        ++n;
+        spin += std::pow(off(p.spin_rate, t.spin_rate), 2);
+        if (!t.ball_speed) continue;
+        const double s = off(p.ball_speed, *t.ball_speed);
+        ++speeds;
+        speed += s * s;
+        worst = std::max(worst, std::abs(s));
+      }
+      std::string line = fmt::format("{}, {}: spin {:.2f} % rms", title, name, std::sqrt(spin / n));
+      summary["rms"][title][name]["spin_percent"] = std::sqrt(spin / n);
+      if (speeds > 0) {
+        line += fmt::format(", ball speed {:.2f} % rms, {:.2f} % at most", std::sqrt(speed / speeds), worst);
+        summary["rms"][title][name]["ball_speed_percent"] = std::sqrt(speed / speeds);
+        summary["rms"][title][name]["ball_speed_worst_percent"] = worst;
+      }
+      out.say(line);
+    }
+  }
+
+  static double off(double value, double measured) { return 100 * (value / measured - 1); }
+  const std::string& group_of(const models::ObliquePoint& p) const {
+    return groups_[std::size_t(&target_of(p) - problem_.shots.data())];
+  }
+
+  post::Figure shot_figure(const models::BallCalibration& fit) const {
+    post::Figure f{.title = "measured shots at their launch angle", .columns = 2, .panel_width = 560,
+                   .panel_height = 130 + 22 * int(problem_.shots.size())};
+    post::Panel spin{.x_label = "spin, off by [%]"}, speed{.x_label = "ball speed, off by [%]"};
+    for (const auto& shot : problem_.shots) spin.y_names.push_back(shot.name);
+    speed.y_names = spin.y_names;
+    const auto add = [&](const std::string& label, const Points& points, bool seen) {
+      post::Series a{.label = label, .style = "points"}, b{.label = label, .style = "points"};
+      for (const auto& p : points) {
+        if (p.seen != seen) continue;
+        const models::ObliqueTarget& t = target_of(p);
+        const double y = -double(&t - problem_.shots.data());
+        a.x.push_back(off(p.spin_rate, t.spin_rate)), a.y.push_back(y);
+        if (t.ball_speed) b.x.push_back(off(p.ball_speed, *t.ball_speed)), b.y.push_back(y);
+      }
+      if (a.x.empty()) return;
+      spin.series.push_back(a);
+      if (!b.x.empty()) speed.series.push_back(b);
+    };
+    add("seen by the fit", fit.shots, true);
+    add("left out of the fit", fit.left_out, true);
+    add("never seen", fit.shots, false);
+    f.panels = {spin, speed};
+    return f;
   }
 
   /// The fitted layers as a case has them under [ball], with where they come from.
   std::string ball_file(const models::BallCalibration& fit) const {
     std::vector<std::string> spins, speeds;
-    for (const auto& shot : shots_) {
+    for (const auto& shot : problem_.shots) {
+      if (!shot.seen) continue;
       spins.push_back(shot.name);
       if (shot.ball_speed) speeds.push_back(shot.name);
     }
@@ -216,19 +406,22 @@ class CalibrateBallJob final : public Job {
       if (!speeds.empty()) saw += fmt::format("; ball speed of {}", fmt::join(speeds, ", "));
       not_seen = "other clubs, recorded lofts, tangential restitution, launch ratios";
     }
+    if (problem_.bounce)
+      saw += fmt::format("; e_t of {:g} +- {:g} off a plate at {:g} deg", problem_.bounce->tangential_restitution,
+                         problem_.bounce->sigma, degrees(problem_.bounce->angle));
+    std::vector<double> wanted;
+    for (std::size_t k = 0; k < problem_.wall.speeds.size(); ++k) wanted.push_back(problem_.wall.wanted(k));
     std::string text = fmt::format(
-        "# Saw restitution {:g} {:+g} v at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall{}.\n"
+        "# Saw restitutions {:.4g} at {} m/s and a contact of {:g} ms at {:g} m/s on a rigid wall{}.\n"
         "# Did not see {}.\n# {}\n",
-        target_.restitution, target_.restitution_slope, fmt::join(target_.speeds, ", "), 1e3 * target_.contact_time,
-        target_.contact_speed, saw, not_seen, fit.report);
+        fmt::join(wanted, ", "), fmt::join(problem_.wall.speeds, ", "), 1e3 * problem_.wall.contact_time,
+        problem_.wall.contact_speed, saw, not_seen, fit.report);
     for (std::size_t p = 0; p < fit.names.size(); ++p)
-      text += fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p],
-                          100 * std::sqrt(fit.covariance(Eigen::Index(p), Eigen::Index(p))));
-    text += "# covariance of their logarithms:";
+      text += additive(p) ? fmt::format("# {}: {:.6g} +- {:.2g}\n", fit.names[p], fit.values[p], sigma(fit, p))
+                          : fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p], 100 * sigma(fit, p));
+    text += "# covariance (logarithms of factors; strikes in cm, masses in 10 g):";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
-    text += fmt::format("\n{}\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n",
-                        fitted_.branch_times ? "# branch times were fitted" : "# branch times were held", ball_.mass,
-                        1e3 * ball_.radius);
+    text += fmt::format("\n\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", problem_.ball.mass, 1e3 * problem_.ball.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
       const auto& law = *layer.material.elastic.as<fem::Hyperelastic>();
       std::vector<double> moduli, times;
@@ -246,11 +439,8 @@ class CalibrateBallJob final : public Job {
     return text;
   }
 
-  Ball ball_;
-  models::FeImpactOptions options_;
-  models::NormalImpactTarget target_;
-  std::vector<models::ObliqueTarget> shots_;
-  models::Fitted fitted_;
+  models::BallCalibrationProblem problem_;
+  std::vector<std::string> groups_;  // of the shots
 };
 
 }  // namespace

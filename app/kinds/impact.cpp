@@ -14,6 +14,7 @@
 #include "hosel/app/stop.hpp"
 #include "hosel/app/version.hpp"
 #include "hosel/golf/face_library.hpp"
+#include "hosel/golf/parallel.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/face_strike.hpp"
 #include "hosel/models/fe_impact.hpp"
@@ -32,115 +33,197 @@ class ImpactJob final : public Job {
  public:
   explicit ImpactJob(CaseFile& file) {
     Table root = file.root();
-    const std::vector<std::string> names = read_models(root);
-    blow_ = read_blow(root, names);
-    const models::Options options = read_options(root, names);
-    face_ = options.fe.face;
-    fe_ = options.fe;
-    for (const std::string& name : names) models_.push_back({name, models::find(name)->make(options)});
-    // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
-    if (std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; })) {
-      const auto coarser = options.fe.coarser();
-      if (root.flag(
-              {"error_estimate", "run a coarser companion too: every number of a launch gets its numerical error"},
-              coarser.has_value() && root.has("accuracy"))) {
-        if (!coarser)
-          root.fail("error_estimate",
-                    "the numerics are as coarse as they can be: accuracy = \"default\" has a coarser companion");
-        models::Options companion = options;
-        companion.fe = *coarser;
-        for (Entry& e : models_)
-          if (e.fe()) e.companion = models::find(e.name)->make(companion);
-      }
-    }
+    own_ = read_side(root);
     matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
     record_ = read_recorder(root);
-    if (auto measured = root.optional_table("measured"))
-      for (const std::string& key : measured->keys()) {
-        if (post::Range* range = key == "tangential_restitution" ? &ranges_.tangential_restitution
-                                 : key == "launch_ratio"         ? &ranges_.launch_ratio
-                                                                 : nullptr) {
-          const auto ends = measured->numbers({key, "lowest and highest that was measured"}, 2);
-          if (ends[0] > ends[1]) measured->fail(key, "give the lowest and the highest that was measured");
-          *range = std::pair{ends[0], ends[1]};
-          continue;
-        }
-        const SplitName split = split_unit(key);
-        const post::Channel* channel = post::find_channel(split.stem);
-        if (!channel)
-          measured->fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
-        measured_.emplace_back(channel,
-                               measured->quantity({split.stem, "what was measured of this blow", "<launch quantity>"},
-                                                  std::string(channel->unit)));
-      }
+    if (auto measured = root.optional_table("measured")) read_measured(*measured);
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
     flight_ = read_optional_flight(root);
+    for (Table t : root.tables("compare")) {
+      const std::string name = t.text({"name", "of the columns that stand before the case's own"});
+      std::vector<std::string> set = t.texts({"set", "keys in which it differs from the case, table.key=value"});
+      set.insert(set.end(), file.overrides().begin(), file.overrides().end());  // the command line has the last word
+      CaseFile other(file, set);
+      compared_.push_back(read_side(other.root()));
+      compared_.back().name = name;
+    }
   }
 
   void run(Output& out) override {
-    const bool fe = std::ranges::any_of(models_, [](const Entry& e) { return e.fe() != nullptr; });
-    if (fe && !face_ && models::wants_yielding_face(blow_.club.head)) out.say(rigid_face_costs());
+    const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
+    if (fe && !own_.fe.face && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
     if (flight_) flight_->show_in(out);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
     std::vector<FeRun> runs;
-    for (const Entry& entry : models_) {
+    for (const Side& side : compared_) compare(side, columns, summary["compared"][side.name]);
+    Blow blow = own_.blow;  // of the last model
+    for (const Entry& entry : own_.models) {
+      blow = at_measured_launch(entry, own_.blow);
+      nlohmann::json& said = summary["models"][entry.name];
       if (const models::FeModel* model = entry.fe()) {
-        const models::FeOutcome outcome = run_fe(out, entry.name, *model, home(out, entry), files, runs);
-        models::check_launch(blow_, outcome.launch);
+        const models::FeOutcome outcome = run_fe(out, entry.name, *model, blow, home(out, entry), files, runs);
+        models::check_launch(blow, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
-        summary["models"][entry.name] = post::to_json(outcome.launch);
-        summary["models"][entry.name]["solution"] = solution(out, entry.name, outcome.result);
+        said = post::to_json(outcome.launch);
+        said["solution"] = solution(out, entry.name, blow, outcome.result);
         if (entry.companion) {
-          columns.back().coarser = models::checked_launch(*entry.companion, blow_);
-          nlohmann::json& error = summary["models"][entry.name]["numerical_error"];
+          columns.back().coarser = models::checked_launch(*entry.companion, blow);
+          nlohmann::json& error = said["numerical_error"];
           error = numerical_error(outcome.launch, *columns.back().coarser);
           if (error.at("ball_speed_mps") > 0.02 * outcome.launch.ball_speed())
             out.warn(fmt::format("{}: the ball speed moves by more than 2 % with the numerics: a finer accuracy",
                                  entry.name));
         }
       } else {
-        columns.push_back({entry.name, models::checked_launch(*entry.model, blow_)});
-        summary["models"][entry.name] = post::to_json(columns.back().launch);
+        columns.push_back({entry.name, models::checked_launch(*entry.model, blow)});
+        said = post::to_json(columns.back().launch);
       }
-      note_oblique(blow_, columns.back(), summary["models"][entry.name]);
-      if (!matched_) continue;
-      // The loft may have been computed from the ball: the same again with the loft unknown and the launch angle seen.
-      const models::MatchedLaunch found =
-          models::match_launch_angle(*entry.model, blow_, *launch_angle(), radians(0.03));
-      const double loft = degrees(found.blow.delivery.dynamic_loft);
-      columns.push_back({fmt::format("loft {:.2f}", loft), found.launch});
-      nlohmann::json& said = summary["matched_launch"][entry.name] = post::to_json(found.launch);
-      said["dynamic_loft_deg"] = loft;
-      note_oblique(found.blow, columns.back(), said);
+      note_oblique(blow, columns.back(), said);
+      if (matched_) note_match(out, columns.back(), blow, said);
     }
     if (flight_)
-      for (post::LaunchColumn& c : columns) c.flight = flight_->follow(c.launch, blow_.ball);
-    for (const auto& [channel, value] : measured_)
-      summary["measured"][fmt::format("{}_{}", channel->name, channel->unit)] = value / channel->si;
+      for (post::LaunchColumn& c : columns) c.flight = flight_->follow(c.launch, own_.blow.ball);
+    for (const post::MeasuredValue& m : measured_)
+      summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
     out.say(table.text());
-    show_impact(out, {blow_, columns, measured_, table, runs, face_.has_value(), flight_.has_value(), record_.vtk});
+    const ImpactStory story{blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(),
+                            flight_.has_value(), record_.vtk};
+    if (matched_) {
+      std::string lofts;
+      for (const auto& c : columns) lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
+      out.say(fmt::format("dynamic loft that gives the measured launch angle [deg]: {}", lofts));
+    }
+    for (const std::string& sentence : post::outside(columns.back().launch, measured_)) out.say(sentence);
+    if (const std::string sentence = shaft_sentence(story); !sentence.empty()) out.say(sentence);
+    show_impact(out, story);
     if (flight_)
       for (const post::LaunchColumn& c : columns) {
         nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
-        said["budget"] = report_flight(out, *flight_, c.title, c.launch, blow_.ball);
+        said["budget"] = report_flight(out, *flight_, c.title, c.launch, own_.blow.ball);
       }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
-    for (const Entry& entry : models_)  // only now: a disk too full for the summary must not cost the run
+    for (const Entry& entry : own_.models)  // only now: a disk too full for the summary must not cost the run
       if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
   }
 
  private:
+  struct Entry {
+    std::string name;
+    std::unique_ptr<models::ImpactModel> model;
+    std::unique_ptr<models::ImpactModel> companion = nullptr;  ///< the same on coarser numerics
+    const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
+  };
+  /// The case itself, or one that it is compared with.
+  struct Side {
+    std::string name;  ///< empty: the case itself
+    Blow blow;
+    models::FeImpactOptions fe;
+    std::vector<Entry> models;
+  };
+
+  static Side read_side(Table root) {
+    Side side;
+    const std::vector<std::string> names = read_models(root);
+    side.blow = read_blow(root, names);
+    const models::Options options = read_options(root, names);
+    side.fe = options.fe;
+    for (const std::string& name : names) side.models.push_back({name, models::find(name)->make(options)});
+    // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
+    if (std::ranges::none_of(side.models, [](const Entry& e) { return e.fe() != nullptr; })) return side;
+    const auto coarser = options.fe.coarser();
+    if (!root.flag({"error_estimate", "run a coarser companion too: every number of a launch gets its numerical error"},
+                   coarser.has_value() && root.has("accuracy")))
+      return side;
+    if (!coarser)
+      root.fail("error_estimate",
+                "the numerics are as coarse as they can be: accuracy = \"default\" has a coarser companion");
+    models::Options companion = options;
+    companion.fe = *coarser;
+    for (Entry& e : side.models)
+      if (e.fe()) e.companion = models::find(e.name)->make(companion);
+    return side;
+  }
+
+  void read_measured(Table measured) {
+    auto uncertainty = measured.optional_table("uncertainty");
+    auto explained = measured.optional_table("explained");
+    for (const std::string& key : measured.keys()) {
+      if (key == "uncertainty" || key == "explained") continue;
+      if (post::Range* range = key == "tangential_restitution" ? &ranges_.tangential_restitution
+                               : key == "launch_ratio"         ? &ranges_.launch_ratio
+                                                               : nullptr) {
+        const auto ends = measured.numbers({key, "lowest and highest that was measured"}, 2);
+        if (ends[0] > ends[1]) measured.fail(key, "give the lowest and the highest that was measured");
+        *range = std::pair{ends[0], ends[1]};
+        continue;
+      }
+      const std::string stem = split_unit(key).stem;
+      const post::Channel* channel = post::find_channel(stem);
+      if (!channel)
+        measured.fail(key, fmt::format("no launch quantity of this name (known: {})", post::channel_names()));
+      const std::string unit(channel->unit);
+      measured_.push_back(
+          {channel, measured.quantity({stem, "what was measured of this blow", "<launch quantity>"}, unit)});
+      if (uncertainty && uncertainty->has_quantity(stem))
+        measured_.back().uncertainty = uncertainty->quantity(
+            {stem, "standard deviation of the comparison: the instrument and what the delivery is known to",
+             "<launch quantity>"},
+            unit, Range::positive());
+      if (explained && explained->has(stem))
+        measured_.back().explained =
+            explained->text({stem, "why the model may lie outside the uncertainty", "<launch quantity>"});
+    }
+  }
+
+  /// The blow as the model is asked about it: with the loft that gives the launch angle, where the loft is not known.
+  /// Finite elements look for it on their coarser numerics and correct it by one blow of their own.
+  Blow at_measured_launch(const Entry& entry, const Blow& blow) const {
+    if (!matched_) return blow;
+    const bool coarse = entry.fe() && entry.companion;
+    Blow found = models::match_launch_angle(coarse ? *entry.companion : *entry.model, blow, *launch_angle(),
+                                            radians(0.03))
+                     .blow;
+    if (coarse)
+      found.delivery.dynamic_loft +=
+          (*launch_angle() - entry.model->launch(found).launch_angle()) / models::kLaunchPerLoft;
+    return found;
+  }
+
+  void note_match(Output& out, post::LaunchColumn& column, const Blow& blow, nlohmann::json& said) const {
+    column.loft_deg = degrees(blow.delivery.dynamic_loft);
+    said["dynamic_loft_deg"] = *column.loft_deg;
+    if (const double off = degrees(column.launch.launch_angle() - *launch_angle()); std::abs(off) > 0.1)
+      out.warn(fmt::format("{}: the launch angle is {:+.2f} deg off the one that it was to match", column.title, off));
+  }
+
+  /// Columns without records: the same models, another ball, face, friction.
+  void compare(const Side& side, std::vector<post::LaunchColumn>& columns, nlohmann::json& said) const {
+    const std::size_t first = columns.size(), count = side.models.size();
+    columns.resize(first + count);
+    std::vector<Blow> blows(count);
+    for_all(std::size_t{0}, count, [&](std::size_t k) {
+      const Entry& entry = side.models[k];
+      blows[k] = at_measured_launch(entry, side.blow);
+      columns[first + k] = {fmt::format("{}: {}", side.name, entry.name), models::checked_launch(*entry.model, blows[k])};
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
+      note_oblique(blows[k], columns[first + k], one);
+      if (matched_) columns[first + k].loft_deg = one["dynamic_loft_deg"] = degrees(blows[k].delivery.dynamic_loft);
+    }
+  }
+
   /// What a driver-like head loses by a rigid face, along the normal.
   std::string rigid_face_costs() const {
-    const models::Striker ball = models::golf_ball(blow_.ball);
-    const double mass = models::mass_at(blow_.club.head, -blow_.delivery.impact_toe, blow_.delivery.impact_high);
+    const models::Striker ball = models::golf_ball(own_.blow.ball);
+    const double mass = models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
     const FaceCompliance face = find_face("modern-driver")->face;
-    const double shape = face.shape(-blow_.delivery.impact_toe, blow_.delivery.impact_high).value;
-    const double speed = models::encounter(blow_).normal_speed;
+    const double shape = face.shape(-own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high).value;
+    const double speed = models::encounter(own_.blow).normal_speed;
     const double gain = (1 + models::strike(ball, mass, face, shape, speed).restitution) /
                             (1 + models::strike(ball, mass, {}, 0, speed).restitution) -
                         1;
@@ -151,23 +234,16 @@ class ImpactJob final : public Job {
         100 * gain);
   }
 
-  struct Entry {
-    std::string name;
-    std::unique_ptr<models::ImpactModel> model;
-    std::unique_ptr<models::ImpactModel> companion = nullptr;  ///< the same on coarser numerics
-    const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
-  };
-
   /// Where an FE model's files go: OUT itself, or OUT/<model> where several models share it.
   fs::path home(const Output& out, const Entry& entry) const {
-    const auto several = std::ranges::count_if(models_, [](const Entry& e) { return e.fe() != nullptr; }) > 1;
+    const auto several = std::ranges::count_if(own_.models, [](const Entry& e) { return e.fe() != nullptr; }) > 1;
     return several ? out.directory() / entry.name : out.directory();
   }
 
-  models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const fs::path& home,
-                           std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
+  models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const Blow& blow,
+                           const fs::path& home, std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
     if (out.force()) fs::remove(home / "checkpoint.cbor");
-    post::ImpactRecorder recorder(home, blow_, record_,
+    post::ImpactRecorder recorder(home, blow, record_,
                                   fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
     if (const models::ImpactCheckpoint* from = recorder.resume())
       out.tell(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
@@ -175,7 +251,7 @@ class ImpactJob final : public Job {
     Progress progress = out.progress(name);
     const StopSignals stop;
     const models::FeOutcome outcome = model.solve(
-        blow_,
+        blow,
         [&](const models::ImpactView& view) {
           recorder(view);
           stop.check();
@@ -190,14 +266,13 @@ class ImpactJob final : public Job {
     runs.back().section = recorder.at_largest_force();
     if (record_.vtk)
       runs.back().patch =
-          post::read_patch(home / "vtk", models::encounter(blow_).ball_axes, models::mesh_axes(blow_, fe_));
+          post::read_patch(home / "vtk", models::encounter(blow).ball_axes, models::mesh_axes(blow, own_.fe));
     return outcome;
   }
 
   std::optional<double> launch_angle() const {
-    for (const auto& [channel, value] : measured_)
-      if (channel->name == "launch_angle") return value;
-    return std::nullopt;
+    const post::MeasuredValue* m = post::find(measured_, post::find_channel("launch_angle"));
+    return m ? std::optional(m->value) : std::nullopt;
   }
 
   static void note_oblique(const Blow& blow, post::LaunchColumn& column, nlohmann::json& said) {
@@ -215,11 +290,12 @@ class ImpactJob final : public Job {
   }
 
   /// What the solution was and how well its energy adds up: for the person and the summary.
-  nlohmann::json solution(Output& out, const std::string& name, const models::FeImpactResult& r) const {
+  nlohmann::json solution(Output& out, const std::string& name, const Blow& blow,
+                          const models::FeImpactResult& r) const {
     const double closure = r.ledger.closure / r.ledger.initial;
     // What the blow can change is the energy of the relative motion, not that of a head that flies on.
-    const models::Encounter e = models::encounter(blow_);
-    const double head = blow_.club.head.mass, ball = blow_.ball.mass;
+    const models::Encounter e = models::encounter(blow);
+    const double head = blow.club.head.mass, ball = blow.ball.mass;
     const double relative = 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) * e.approach.squaredNorm();
     const auto doubt = [&](const char* what, double value, double limit, const char* remedy) {
       if (std::abs(value) > limit)
@@ -249,7 +325,7 @@ class ImpactJob final : public Job {
                         {"factorisations", r.counts.factorisations},
                         {"worst_residual_of_forces", r.counts.worst_residual},
                         {"dissipated_by_layer_J", r.dissipated}};
-    if (face_) {
+    if (own_.fe.face) {
       j["face_travel_mm"] = 1e3 * r.face_travel;
       j["face_energy_J"] = r.face_energy;
     }
@@ -260,10 +336,8 @@ class ImpactJob final : public Job {
     return j;
   }
 
-  std::vector<Entry> models_;
-  Blow blow_;
-  models::FeImpactOptions fe_;
-  std::optional<FaceCompliance> face_;
+  Side own_;
+  std::vector<Side> compared_;
   post::RecorderOptions record_;
   post::Measured measured_;
   post::MeasuredOblique ranges_;

@@ -1,6 +1,7 @@
 #include "hosel/app/kinds/impact_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +32,8 @@ void answer(Output& out, const ImpactStory& s) {
     if (c.coarser)
       text = fmt::format("± {:.{}f} by the numerics", std::abs((l.*of->value)() - ((*c.coarser).*of->value)()) / si,
                          decimals);
-    const auto seen = std::ranges::find(s.measured, of, &post::Measured::value_type::first);
-    if (seen != s.measured.end())
-      text += fmt::format("{}measured {:.{}f} {}", text.empty() ? "" : "; ", seen->second / si, decimals, unit);
+    if (const post::MeasuredValue* seen = post::find(s.measured, of))
+      text += fmt::format("{}measured {:.{}f} {}", text.empty() ? "" : "; ", seen->value / si, decimals, unit);
     return text;
   };
   const double v = l.ball_speed(), in_mph = v / kMpsPerMph;
@@ -68,19 +68,6 @@ void answer(Output& out, const ImpactStory& s) {
   for (const post::FlightChannel& f : post::flight_channels(c.flight->unit))
     if (const auto x = f.value(*c.flight); x && (f.name == "carry" || f.name == "total" || f.name == "side"))
       page.answer(std::string(f.name), fmt::format("{:.1f} {}", *x / f.si, f.unit));
-}
-
-/// How much of it is the shaft's doing: the full club beside its head alone.
-std::string shaft_effect(const ImpactStory& s) {
-  const post::LaunchColumn *club = find(s, "fe-full-club"), *head = find(s, "fe-free-body");
-  if (!club || !head) return {};
-  const Launch &a = club->launch, &b = head->launch;
-  return fmt::format(
-      "<p class='verdict good'><b>The shaft's doing</b><span>{:+.2f} m/s of ball speed, {:+.2f}° of launch angle, "
-      "{:+.2f}° of direction, {:+.0f} rpm of backspin, {:+.0f} rpm of sidespin: the club minus its head alone."
-      "</span></p>",
-      a.ball_speed() - b.ball_speed(), degrees(a.launch_angle() - b.launch_angle()), degrees(a.azimuth() - b.azimuth()),
-      rpm(a.backspin() - b.backspin()), rpm(a.sidespin() - b.sidespin()));
 }
 
 post::TextTable solution(const std::vector<FeRun>& runs) {
@@ -140,10 +127,28 @@ void suggest(Output& out, const ImpactStory& s) {
 
 }  // namespace
 
+std::string shaft_sentence(const ImpactStory& s) {
+  const post::LaunchColumn *club = find(s, "fe-full-club"), *head = find(s, "fe-free-body");
+  if (!club || !head) return {};
+  const Launch &a = club->launch, &b = head->launch;
+  std::vector<std::string> parts{fmt::format("{:+.2f} m/s of ball speed", a.ball_speed() - b.ball_speed())};
+  if (!s.matched) parts.push_back(fmt::format("{:+.2f} deg of launch angle", degrees(a.launch_angle() - b.launch_angle())));
+  parts.push_back(fmt::format("{:+.0f} rpm of backspin", rpm(a.backspin() - b.backspin())));
+  parts.push_back(fmt::format("{:+.0f} rpm of sidespin", rpm(a.sidespin() - b.sidespin())));
+  if (club->flight && head->flight)
+    for (const post::FlightChannel& f : post::flight_channels(club->flight->unit)) {
+      const auto x = f.value(*club->flight), y = f.value(*head->flight);
+      if (f.name == "carry" && x && y) parts.push_back(fmt::format("{:+.1f} {} of carry", (*x - *y) / f.si, f.unit));
+    }
+  return fmt::format("The shaft changes this blow by {}{}.", fmt::join(parts, ", "),
+                     s.matched ? " at the same launch angle" : "");
+}
+
 void show_impact(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   answer(out, s);
-  if (std::string effect = shaft_effect(s); !effect.empty()) page.section("", effect);
+  if (const std::string effect = shaft_sentence(s); !effect.empty())
+    page.section("", fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
   page.section("The launch", fmt::format("<p class='soft'>The numbers above are those of {}.</p>",
                                          post::escape_html(s.columns.back().title)) +
                                  s.table.html());

@@ -23,16 +23,19 @@ struct FeRun {
 };
 
 struct ImpactStory {
-  const Blow& blow;
+  const Blow& blow;                                ///< of the last column
   const std::vector<post::LaunchColumn>& columns;  ///< a model each; the last answers
   const post::Measured& measured;
   const post::TextTable& table;
   const std::vector<FeRun>& runs;
-  bool yields;  ///< the face does
+  bool matched;  ///< every model stands at the loft that gives the measured launch angle
+  bool yields;   ///< the face does
   bool flies;   ///< the case asks for the flight
   bool vtk;     ///< there are series
 };
 
+/// What the full club does beside its head alone, in a sentence; empty where the two are not among the columns.
+std::string shaft_sentence(const ImpactStory& story);
 void show_impact(Output& out, const ImpactStory& story);
 
 }  // namespace hosel::app

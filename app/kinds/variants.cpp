@@ -162,7 +162,9 @@ class VariantsJob final : public Job {
                                             .contact_speed = *bounce_speed_,
                                             .contact_time = reference->contact_time,
                                             .contact_time_sigma = 2e-3 * reference->contact_time};
-    const models::BallCalibration fit = models::calibrate_ball(axial, ball, target, {}, {.branch_times = false});
+    using What = models::FreeParameter::What;
+    const models::BallCalibration fit = models::calibrate_ball(
+        {.options = axial, .ball = ball, .wall = target, .free = {{What::long_term}, {What::branches}}});
     fe.ball = fit.ball;
     a.elastic = fit.values[0] / fit.start[0];
     a.viscous = fit.values[1] / fit.start[1];
