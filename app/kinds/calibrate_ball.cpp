@@ -178,11 +178,10 @@ class CalibrateBallJob final : public Job {
     if (tables.empty()) return;
     options_.friction =
         root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
-    if (auto t = root.optional_table("face")) options_.face = read_face(*t);
+    options_.face = read_club_face(root);
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
-    ClubGeometry geometry;
-    if (auto t = root.optional_table("hosel")) geometry = read_club_geometry(*t);
+    const ClubGeometry geometry = read_club_geometry(root, false);
     for (Table t : tables) {
       models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
       shot.blow.ball = ball_;
