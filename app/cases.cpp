@@ -6,10 +6,10 @@
 
 #include "build_info.hpp"
 #include "hosel/app/job.hpp"
+#include "hosel/app/library.hpp"
 #include "hosel/app/parse_toml.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/reader.hpp"
-#include "hosel/golf/face_library.hpp"
 #include "hosel/golf/shaft_library.hpp"
 #include "hosel/loop/effect.hpp"
 #include "hosel/models/flight_laws.hpp"
@@ -112,6 +112,12 @@ std::vector<ListSection> everything() {
     for (const auto& n : named) out.emplace_back(n.name, n.what);
     return out;
   };
+  const auto shelved = [](Shelf shelf) {
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const LibraryEntry& e : library(shelf))
+      out.emplace_back(e.name, e.shipped ? e.what : fmt::format("{} ({})", e.what, e.file.string()));
+    return out;
+  };
   const auto acting = [](auto on) {
     std::vector<loop::EffectEntry> out;
     std::ranges::copy_if(loop::effects(), std::back_inserter(out), [&](const auto& e) { return e.*on != nullptr; });
@@ -120,9 +126,11 @@ std::vector<ListSection> everything() {
   return {{"kinds", entries(kinds())},
           {"models", entries(models::registry())},
           {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
-          {"balls (ball.model)", entries(models::ball_library())},
+          {"balls (ball.model)", shelved(Shelf::balls)},
+          {"heads (head.name)", shelved(Shelf::heads)},
           {"flight laws (flight.law)", entries(models::flight_laws())},
-          {"faces that yield (face.name)", entries(face_library())},
+          {"faces that yield (face.name)", shelved(Shelf::faces)},
+          {"contacts (contact.name)", shelved(Shelf::contacts)},
           {"shafts (shaft.name)", entries(shaft_library())},
           {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
           {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},

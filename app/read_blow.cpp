@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_shaft.hpp"
 #include "hosel/models/registry.hpp"
 
@@ -15,7 +16,8 @@ constexpr double kInf = limits::inf;
 }
 
 Ball read_ball(Table table) {
-  const Ball standard;
+  const std::optional<std::string> named = named_entry(table, "model", Shelf::balls);
+  const Ball standard = named ? library_ball(*named).body : Ball{};
   Ball ball;
   ball.mass = table.quantity({"mass", "of the ball"}, "kg", limits::ball_mass, standard.mass);
   ball.radius = table.quantity({"radius", "of the ball"}, "mm", limits::ball_radius, standard.radius);
@@ -26,21 +28,30 @@ Ball read_ball(Table table) {
 }
 
 Head read_head(Table table, bool whole) {
+  const std::optional<std::string> name = named_entry(table, "name", Shelf::heads);
+  std::optional<HeadEntry> named;
+  if (name) named = library_head(*name);
+  return read_head_values(table, whole, named ? std::optional(named->head) : std::nullopt);
+}
+
+Head read_head_values(Table table, bool whole, const std::optional<Head>& named) {
   Head head;
-  head.mass = table.quantity({"mass", "of the clubhead; inf is a head that no blow moves"}, "kg", limits::head_mass);
+  head.mass = table.quantity({"mass", "of the clubhead; inf is a head that no blow moves"}, "kg", limits::head_mass,
+                             named ? std::optional(named->mass) : std::nullopt);
   head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
-                                   limits::face_radius, kInf);
+                                   limits::face_radius, named ? named->face.bulge : kInf);
   head.face.roll = table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm",
-                                  limits::face_radius, kInf);
+                                  limits::face_radius, named ? named->face.roll : kInf);
   const bool needed = whole && std::isfinite(head.mass);
-  const bool given = table.has_quantity("inertia") || table.has_quantity("cg");
+  const bool given = table.has_quantity("inertia") || table.has_quantity("cg") || named;
   if (!needed && !given) {
     if (std::isfinite(head.mass)) head.inertia = kInf * Mat3::Identity();
     return head;
   }
   head.cg = table.vector({"cg", "centre of gravity in the face frame (Xc out of the face, Yc to the heel, Zc up)"},
-                         "mm", limits::head_place);
-  head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2");
+                         "mm", limits::head_place, named ? std::optional(named->cg) : std::nullopt);
+  head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2",
+                              named ? std::optional(named->inertia) : std::nullopt);
   auto faults = head.faults();
   if (std::isfinite(head.mass) && faults.empty()) {
     const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
@@ -51,6 +62,8 @@ Head read_head(Table table, bool whole) {
             "{:g} mm (allowed: {:g} to {:g} mm; {})",
             moment, head.mass, 1e3 * r, 1e3 * limits::gyration.min, 1e3 * limits::gyration.max, limits::gyration.why));
   }
+  // Of a named head too, where a case changes its mass alone.
+  if (named && !faults.empty()) table.fail("", faults.front());
   for (const std::string& key : table.keys()) {
     if (key.starts_with("inertia") && !faults.empty()) table.fail(key, faults.front());
     if (key.starts_with("cg") && head.cg.x() > 0)
@@ -61,7 +74,7 @@ Head read_head(Table table, bool whole) {
   return head;
 }
 
-Delivery read_delivery(Table table) {
+Delivery read_delivery(Table table, double loft) {
   Delivery d;
   d.club_speed = table.quantity({"club_speed", "speed of the head's centre of gravity at first contact"}, "mps",
                                 limits::club_speed);
@@ -69,7 +82,7 @@ Delivery read_delivery(Table table) {
   d.club_path =
       table.quantity({"club_path", "direction of the head's velocity, right of the target"}, "deg", limits::angle, 0);
   d.dynamic_loft =
-      table.quantity({"dynamic_loft", "tilt of the face's normal at its centre, up"}, "deg", limits::angle, 0);
+      table.quantity({"dynamic_loft", "tilt of the face's normal at its centre, up"}, "deg", limits::angle, loft);
   d.face_angle = table.quantity({"face_angle", "direction of the face's normal at its centre, right of the target"},
                                 "deg", limits::angle, 0);
   d.impact_toe = table.quantity({"impact_toe", "where the ball meets the face, from its centre towards the toe"}, "mm",
@@ -81,26 +94,42 @@ Delivery read_delivery(Table table) {
   return d;
 }
 
-ContactLaw read_contact_law(Table table) {
-  const ContactLaw standard;
+ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard) {
+  const auto value = [&](double ContactLaw::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   ContactLaw law;
   law.restitution = table.number({"restitution", "normal coefficient of restitution at 0 m/s approach speed"},
-                                 Range{0, 1}.because("above 1 the blow creates energy"), standard.restitution);
+                                 Range{0, 1}.because("above 1 the blow creates energy"),
+                                 value(&ContactLaw::restitution));
   law.restitution_slope = table.quantity({"restitution_slope", "change of restitution with approach speed"}, "s_per_m",
-                                         {-0.1, 0.1}, standard.restitution_slope);
+                                         {-0.1, 0.1}, value(&ContactLaw::restitution_slope));
   law.restitution_falloff = table.number(
       {"restitution_falloff_per_m2", "fall of restitution with the squared distance from the face's centre"},
-      {-1e4, 1e4}, standard.restitution_falloff);
+      {-1e4, 1e4}, standard ? standard->restitution_falloff : 0);
   law.tangential_restitution =
       table.number({"tangential_restitution",
                     "minus the contact point's tangential velocity after over before: 0 rolls, 1 returns everything"},
-                   {-1, 1}, standard.tangential_restitution);
-  law.friction = table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, kInf}, standard.friction);
+                   {-1, 1}, value(&ContactLaw::tangential_restitution));
+  law.friction =
+      table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, kInf}, value(&ContactLaw::friction));
   law.normal_force_offset =
       table.number({"normal_force_offset",
                     "the normal impulse passes this far above the ball's centre, over its radius; positive adds spin"},
-                   {-0.5, 0.5}, standard.normal_force_offset);
+                   {-0.5, 0.5}, value(&ContactLaw::normal_force_offset));
   return law;
+}
+
+ContactLaw read_contact(Table root) {
+  const std::optional<NamedContact> named = named_contact(root);
+  const bool law = named && named->law;
+  if (!law && !root.has("contact")) return {};
+  return read_contact_law(root.default_table("contact"), law ? *named->law : ContactLaw{});
+}
+
+Delivery read_delivery_of(Table root) {
+  double loft = 0;
+  if (auto head = root.optional_table("head"))
+    if (const auto name = named_entry(*head, "name", Shelf::heads)) loft = library_head(*name).loft.value_or(0);
+  return read_delivery(root.table("delivery"), loft);
 }
 
 std::vector<std::string> read_models(Table root) {
@@ -122,10 +151,11 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
   const bool whole = std::ranges::any_of(models, [](const std::string& m) { return m != "rigid-planar"; });
   blow.club.head = read_head(root.table("head"), whole);
-  blow.delivery = read_delivery(root.table("delivery"));
+  blow.delivery = read_delivery_of(root);
   if (auto shaft = root.optional_table("shaft")) blow.club.shaft = read_shaft(*shaft);
-  if (blow.club.shaft || root.has("hosel")) blow.club.geometry = read_club_geometry(root.default_table("hosel"));
-  if (auto contact = root.optional_table("contact")) blow.contact = read_contact_law(*contact);
+  blow.club.geometry = read_club_geometry(root, blow.club.shaft.has_value());
+  blow.contact = read_contact(root);
+  check_use(root, use_of(blow), models);
   return blow;
 }
 

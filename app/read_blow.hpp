@@ -1,6 +1,7 @@
 /// The domain's nouns from a case's tables: each key is declared here, once, with unit and range.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,22 @@ inline constexpr Range spin = Range{-1e3, 1e3}.because("a swung head turns at 40
 inline constexpr Range face_radius = Range{0.01, 1e4}.or_infinite().because("inf is a flat face");
 }  // namespace limits
 
+/// `[ball]`: mass, radius and inertia, by default those of the library's `model` where it is named.
 Ball read_ball(Table table);
-/// `[head]`. `mass_kg = inf` is a rigid wall; `whole = false` reads the mass alone (rigid-planar). The centre of
-/// gravity lies behind the face.
+/// `[head]`: `name` of the library, single values of it replaced; without one all that is needed is required.
+/// `mass_kg = inf` is a rigid wall; `whole = false` reads the mass alone (rigid-planar). The centre of gravity lies
+/// behind the face.
 Head read_head(Table table, bool whole = true);
-Delivery read_delivery(Table table);
-ContactLaw read_contact_law(Table table);
+/// The same with what `named` has for default.
+Head read_head_values(Table table, bool whole, const std::optional<Head>& named);
+/// `loft` is the dynamic loft where none is stated [rad].
+Delivery read_delivery(Table table, double loft = 0);
+/// `[delivery]` of a case: without a dynamic loft that of the head that the case names.
+Delivery read_delivery_of(Table root);
+/// Without a standard every value but the falloff is required.
+ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard);
+/// `[contact]` of a case, on top of what it names in the library.
+ContactLaw read_contact(Table root);
 
 /// `models = [...]`: names from the registry, at least one.
 std::vector<std::string> read_models(Table root);

@@ -1,16 +1,10 @@
 #include "hosel/app/read_face.hpp"
 
-#include "hosel/golf/face_library.hpp"
+#include "hosel/app/library.hpp"
 
 namespace hosel::app {
 
-FaceCompliance read_face(Table table) {
-  std::optional<FaceCompliance> named;
-  if (table.has("name")) {
-    std::vector<std::string> names;
-    for (const NamedFace& f : face_library()) names.emplace_back(f.name);
-    named = find_face(table.choice({"name", "a face of the library (`hosel list`)"}, names))->face;
-  }
+FaceCompliance read_compliance(Table table, const std::optional<FaceCompliance>& named) {
   const auto standard = [&](double FaceCompliance::*value) {
     return named ? std::optional((*named).*value) : std::nullopt;
   };
@@ -28,6 +22,31 @@ FaceCompliance read_face(Table table) {
   face.half_height = table.quantity({"half_height", "where the face no longer moves, up and down"}, "mm",
                                     {0.005, kNoEnd}, named ? named->half_height : face.half_height);
   return face;
+}
+
+std::optional<FaceCompliance> read_face(Table table) {
+  if (!table.has("name")) return read_compliance(table, {});
+  const std::string name = *named_entry(table, "name", Shelf::faces);
+  if (name == kRigidFace) return {};
+  return read_compliance(table, library_face(name).face);
+}
+
+std::optional<FaceCompliance> read_club_face(Table root) {
+  if (auto t = root.optional_table("face"); t && !t->keys().empty()) return read_face(*t);
+  // The head's own is echoed as if the case had named it.
+  if (auto head = root.optional_table("head"); head && head->has("name"))
+    if (const std::string face = library_head(*named_entry(*head, "name", Shelf::heads)).face; !face.empty()) {
+      Table t = root.default_table("face");
+      t.text({"name", "a face of the library (`hosel list`)"}, face);
+      return read_compliance(t, library_face(face).face);
+    }
+  if (auto t = root.optional_table("face")) return read_face(*t);
+  return {};
+}
+
+FaceCompliance read_yielding_face(Table root) {
+  if (const auto face = read_club_face(root)) return *face;
+  root.table("face").fail("", "a face that yields is needed: `name`, or its mass and stiffness");
 }
 
 }  // namespace hosel::app

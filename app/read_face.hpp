@@ -1,12 +1,20 @@
 /// `[face]`: what of a club face yields.
 #pragma once
 
+#include <optional>
+
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/face_compliance.hpp"
 
 namespace hosel::app {
 
-/// A `name` of the library, single values of it replaced; without a name mass and stiffness are required.
-FaceCompliance read_face(Table table);
+/// Values of a face, single ones of `named` replaced; without one mass and stiffness are required.
+FaceCompliance read_compliance(Table table, const std::optional<FaceCompliance>& named);
+/// A `name` of the library, single values of it replaced; nothing where the name is "rigid".
+std::optional<FaceCompliance> read_face(Table table);
+/// `[face]` of a case, else that of the head that `[head] name` names; nothing where neither yields.
+std::optional<FaceCompliance> read_club_face(Table root);
+/// The same where a face has to yield.
+FaceCompliance read_yielding_face(Table root);
 
 }  // namespace hosel::app

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hosel/app/check_memory.hpp"
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_face.hpp"
 #include "hosel/app/read_solid.hpp"
 #include "hosel/app/read_swing.hpp"
@@ -20,9 +21,11 @@ models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>&
                     {"look", "default", "reference"})));
   }
   // Friction is physics: a case with a deformable ball states it.
-  Table contact = root.table("contact");
-  o.friction =
-      contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"}, {0, 5});
+  const std::optional<NamedContact> named = named_contact(root);
+  const bool stated = named && named->face_friction;
+  Table contact = stated ? root.default_table("contact") : root.table("contact");
+  o.friction = contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"},
+                              {0, 5}, stated ? named->face_friction : std::nullopt);
   if (contact.has_quantity("face_transition_speed"))
     o.transition_speed = contact.quantity(
         {"face_transition_speed",
@@ -118,6 +121,43 @@ post::RecorderOptions read_recorder(Table root) {
   return o;
 }
 
+models::VolumetricLaw read_volumetric_law(Table table, const std::optional<models::VolumetricLaw>& standard) {
+  using Law = models::VolumetricLaw;
+  const Range positive = Range::positive(), some = Range::non_negative();
+  const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
+  Law law;
+  law.stiffness = table.quantity({"stiffness", "volumetric stiffness: normal force per overlapping volume"}, "N_per_m3",
+                                 positive, value(&Law::stiffness));
+  law.damping =
+      table.quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", some, value(&Law::damping));
+  law.friction = table.number({"friction", "sliding friction coefficient"}, some, value(&Law::friction));
+  law.static_friction = table.number({"static_friction", "coefficient at vanishing slip"}, some, law.friction);
+  law.transition_speed = table.quantity({"transition_speed", "slip speed at which friction is fully developed"}, "mps",
+                                        positive, value(&Law::transition_speed));
+  law.joint_stiffness = table.quantity({"joint_stiffness", "torsional spring between core and cover"}, "N_m_per_rad",
+                                       some, value(&Law::joint_stiffness));
+  law.joint_damping = table.quantity({"joint_damping", "torsional damper between core and cover"}, "N_m_s_per_rad",
+                                     some, value(&Law::joint_damping));
+  law.cover_thickness = table.quantity({"cover_thickness", "of the cover that turns against the core"}, "mm", positive,
+                                       value(&Law::cover_thickness));
+  law.volume_exponent = table.number({"volume_exponent", "power of the overlapping volume in the normal force"},
+                                     {0.5, 1.5}, value(&Law::volume_exponent));
+  return law;
+}
+
+models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::HertzMawLaw>& standard) {
+  using Law = models::HertzMawLaw;
+  const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
+  Law law;
+  law.modulus =
+      table.quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(), value(&Law::modulus));
+  law.poisson = table.number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, value(&Law::poisson));
+  law.friction = table.number({"friction", "Coulomb coefficient"}, Range::non_negative(), value(&Law::friction));
+  law.damping = table.quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", Range::non_negative(),
+                               value(&Law::damping));
+  return law;
+}
+
 models::Options read_options(Table root, const std::vector<std::string>& models) {
   models::Options options;
   const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
@@ -129,30 +169,20 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   // A case with finite-element tables keeps them where only its other models are asked.
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
   const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));
+  std::optional<NamedContact> named;
+  if (overlap || asked("hertz-maw")) named = named_contact(root);
   std::optional<FaceCompliance> face;
-  if (overlap || fe || there)
-    if (auto t = root.optional_table("face")) face = read_face(*t);
+  if (overlap || fe || there) face = read_club_face(root);
   if (auto t = table("volumetric", overlap)) {
-    const Range positive = Range::positive(), some = Range::non_negative();
-    const bool iron = t->choice({"published", "which published set of parameters the defaults come from"},
-                                {"driver", "iron7"}, "driver") == "iron7";
-    models::VolumetricLaw& law = options.volumetric;
-    law = iron ? models::VolumetricLaw::published_iron7() : models::VolumetricLaw::published_driver();
-    law.stiffness = t->quantity({"stiffness", "volumetric stiffness: normal force per overlapping volume"}, "N_per_m3",
-                                positive, law.stiffness);
-    law.damping = t->quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", some, law.damping);
-    law.friction = t->number({"friction", "sliding friction coefficient"}, some, law.friction);
-    law.static_friction = t->number({"static_friction", "coefficient at vanishing slip"}, some, law.friction);
-    law.transition_speed = t->quantity({"transition_speed", "slip speed at which friction is fully developed"}, "mps",
-                                       positive, law.transition_speed);
-    law.joint_stiffness = t->quantity({"joint_stiffness", "torsional spring between core and cover"}, "N_m_per_rad",
-                                      some, law.joint_stiffness);
-    law.joint_damping = t->quantity({"joint_damping", "torsional damper between core and cover"}, "N_m_s_per_rad", some,
-                                    law.joint_damping);
-    law.cover_thickness = t->quantity({"cover_thickness", "of the cover that turns against the core"}, "mm", positive,
-                                      law.cover_thickness);
-    law.volume_exponent = t->number({"volume_exponent", "power of the overlapping volume in the normal force"},
-                                    {0.5, 1.5}, law.volume_exponent);
+    const bool stated = named && named->volume && !t->has("published");
+    models::VolumetricLaw standard;
+    if (stated) standard = *named->volume;
+    else
+      standard = t->choice({"published", "which published set of parameters the defaults come from"},
+                           {"driver", "iron7"}, "driver") == "iron7"
+                     ? models::VolumetricLaw::published_iron7()
+                     : models::VolumetricLaw::published_driver();
+    options.volumetric = read_volumetric_law(*t, standard);
     options.volumetric_solution.integrator =
         t->choice({"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
                   {"rosenbrock", "cvode"}, "rosenbrock") == "cvode"
@@ -162,12 +192,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
                                                       {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }
   if (auto t = table("hertz_maw", asked("hertz-maw"))) {
-    models::HertzMawLaw& law = options.hertz_maw;
-    law.modulus = t->quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(), law.modulus);
-    law.poisson = t->number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, law.poisson);
-    law.friction = t->number({"friction", "Coulomb coefficient"}, Range::non_negative(), law.friction);
-    law.damping = t->quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", Range::non_negative(),
-                              law.damping);
+    options.hertz_maw = read_hertz_maw_law(*t, named && named->hertz_maw ? *named->hertz_maw : models::HertzMawLaw{});
     options.hertz_maw_solution.springs = static_cast<int>(
         t->integer({"springs", "springs across half the patch"}, 8, 4000, options.hertz_maw_solution.springs));
     options.hertz_maw_solution.steps = static_cast<int>(t->integer(

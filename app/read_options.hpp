@@ -1,6 +1,7 @@
 /// How the models of a case are solved: `[volumetric]`, `[hertz_maw]`, and for FE `[contact]`, `[mesh]`, `[time]`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,10 @@ namespace hosel::app {
 
 /// Reads the tables that the named models look at, and no others.
 models::Options read_options(Table root, const std::vector<std::string>& models);
+
+/// Constants of the reduced models; without a standard each is required.
+models::VolumetricLaw read_volumetric_law(Table table, const std::optional<models::VolumetricLaw>& standard);
+models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::HertzMawLaw>& standard);
 
 /// "look", "default" or "reference", as a case has it.
 models::Accuracy accuracy_named(std::string_view name);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_sheet.hpp"
 #include "hosel/golf/shaft_library.hpp"
@@ -154,18 +155,31 @@ Shaft read_shaft(Table table) {
   return shaft;
 }
 
-ClubGeometry read_club_geometry(Table table) {
-  const ClubGeometry standard;
-  ClubGeometry g;
-  g.hosel = table.vector({"position", "the hosel (where the shaft's axis enters the head) in the face frame"}, "mm",
-                         limits::head_place, standard.hosel);
+HoselPlace read_hosel(Table table, const std::optional<HoselPlace>& standard) {
+  const auto value = [&](double HoselPlace::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
+  HoselPlace at;
+  at.position = table.vector({"position", "the hosel (where the shaft's axis enters the head) in the face frame"}, "mm",
+                             limits::head_place, standard ? std::optional(standard->position) : std::nullopt);
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
-  const double lie =
-      table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
-                     {0, kPi / 2}, std::atan2(standard.shaft_axis.z(), standard.shaft_axis.y()));
-  const double lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2}, 0);
-  g.shaft_axis = Vec3(std::sin(lean) * std::sin(lie), std::cos(lie), std::cos(lean) * std::sin(lie));
-  return g;
+  at.lie = table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
+                          {0, kPi / 2}, value(&HoselPlace::lie));
+  at.lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2},
+                           value(&HoselPlace::lean));
+  return at;
+}
+
+ClubGeometry HoselPlace::geometry() const {
+  return {position, Vec3(std::sin(lean) * std::sin(lie), std::cos(lie), std::cos(lean) * std::sin(lie))};
+}
+
+ClubGeometry read_club_geometry(Table root, bool wanted) {
+  const ClubGeometry any;
+  std::optional<HoselPlace> standard;
+  if (auto head = root.optional_table("head"); head && head->has("name"))
+    standard = library_head(*named_entry(*head, "name", Shelf::heads)).hosel;
+  if (!wanted && !root.has("hosel")) return standard ? standard->geometry() : any;
+  if (!standard) standard = {any.hosel, std::atan2(any.shaft_axis.z(), any.shaft_axis.y()), 0};
+  return read_hosel(root.default_table("hosel"), standard).geometry();
 }
 
 }  // namespace hosel::app

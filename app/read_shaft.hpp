@@ -1,6 +1,7 @@
 /// The shaft and how the head hangs on it, as tables of a case file.
 #pragma once
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/blow.hpp"
 
@@ -10,7 +11,10 @@ namespace hosel::app {
 /// `tube` geometry; with stiffness scales and damping.
 Shaft read_shaft(Table table);
 
-/// `[hosel]`: where the shaft's tip is, and the shaft's direction, in the face frame.
-ClubGeometry read_club_geometry(Table table);
+/// `[hosel]`: where the shaft's tip is, and the shaft's direction, in the face frame. Without a standard all is
+/// required.
+HoselPlace read_hosel(Table table, const std::optional<HoselPlace>& standard);
+/// `[hosel]` of a case, by default that of the head that `[head] name` names; echoed where it is wanted.
+ClubGeometry read_club_geometry(Table root, bool wanted);
 
 }  // namespace hosel::app

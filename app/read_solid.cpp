@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/fem/materials/hyperelastic.hpp"
 #include "hosel/fem/materials/linear_elastic.hpp"
@@ -86,18 +87,8 @@ fem::Solid read_solid(Table table) {
   return solid;
 }
 
-namespace {
-
-models::FeBall read_declared_ball(Table& table, const models::FeBall& standard) {
+models::FeBall read_layers(Table table) {
   auto layers = table.tables("layers");
-  if (layers.empty()) {
-    std::vector<std::string> names;
-    for (const auto& named : models::ball_library()) names.emplace_back(named.name);
-    const std::string name = table.choice({"model", "a ball of the library (`hosel list`)"}, names, standard.name);
-    for (const auto& named : models::ball_library())
-      if (named.name == name) return named.make();
-    return standard;
-  }
   models::FeBall ball{"case", {}};
   for (Table& layer : layers) {
     const double radius = layer.number(
@@ -107,6 +98,19 @@ models::FeBall read_declared_ball(Table& table, const models::FeBall& standard) 
   }
   if (const auto faults = ball.faults(); !faults.empty()) table.fail("layers", faults.front());
   return ball;
+}
+
+namespace {
+
+models::FeBall read_declared_ball(Table& table, const models::FeBall& standard) {
+  const auto name = named_entry(table, "model", Shelf::balls);
+  if (!table.tables("layers").empty()) {
+    if (name) table.fail("model", "either a ball of the library or layers");
+    return read_layers(table);
+  }
+  if (name) return library_ball(*name).layers;
+  table.text({"model", "a ball of the library (`hosel list`)"}, standard.name);
+  return standard;
 }
 
 }  // namespace

@@ -19,6 +19,9 @@ std::span<const NamedLaw> solid_laws();
 /// `law` with its moduli, and `branch_moduli_MPa`, `branch_times_ms` of the relaxation.
 fem::Solid read_solid(Table table);
 
+/// `[[ball.layers]]` from the inside, each a material with `radius_fraction`.
+models::FeBall read_layers(Table table);
+
 /// `[ball]`: either `model = "name"` of the library or `[[ball.layers]]` from the inside, each a material
 /// with `radius_fraction`; `standard` where neither stands. `[ball.changes]`: what the loop finds of a ball, see
 /// models::FeChange.

@@ -597,6 +597,11 @@ Table Table::default_table(std::string_view key) {
   return *optional_table(key);
 }
 
+void Table::note_file(const fs::path& file) {
+  if (std::ranges::find(document_->named_files, file) == document_->named_files.end())
+    document_->named_files.push_back(file);
+}
+
 std::vector<Table> Table::tables(std::string_view key) {
   Access access{*document_, as_table(node_)};
   toml::node* node = access.find(key);

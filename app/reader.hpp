@@ -121,6 +121,8 @@ class Table {
   std::optional<Table> optional_table(std::string_view key);
   /// A sub-table that is as good as empty where it is absent: its defaults are echoed all the same.
   Table default_table(std::string_view key);
+  /// A file that the case depends on without naming its path.
+  void note_file(const std::filesystem::path& file);
   /// A list of tables `[[key]]`; empty where absent.
   std::vector<Table> tables(std::string_view key);
   /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.

@@ -19,7 +19,7 @@ install(TARGETS hosel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY golf mesh fem solvers models post loop app
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hosel FILES_MATCHING PATTERN "*.hpp")
 install(FILES app/import/launch_monitors.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
-install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+install(DIRECTORY cases library DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
 # What the command says of itself, where man and bash look for it.

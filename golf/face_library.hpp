@@ -1,7 +1,6 @@
-/// Club faces by name.
+/// The shipped club faces by name, for the floors that read no files: library/faces of the tree.
 #pragma once
 
-#include <span>
 #include <string_view>
 
 #include "hosel/golf/face_compliance.hpp"
@@ -10,13 +9,9 @@ namespace hosel {
 
 struct NamedFace {
   std::string_view name;
-  std::string_view what;  ///< one sentence for `hosel list`, with where the numbers come from
   FaceCompliance face;
 };
-/// Found by `calibrate-face` from characteristic time and restitution, the effective mass from the plate's size:
-/// a clamped elliptical plate moves with a fifth of its mass.
-std::span<const NamedFace> face_library();
-/// nullptr where no face has this name.
+/// nullptr where no shipped face has this name.
 const NamedFace* find_face(std::string_view name);
 
 }  // namespace hosel

@@ -1,6 +1,7 @@
 #include "hosel/models/fe_ball.hpp"
 
-#include <array>
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "hosel/fem/materials/hyperelastic.hpp"
@@ -33,44 +34,45 @@ double FeBall::instant_young() const {
 FeBall elastic_ball(std::string name, fem::Solid material) { return {std::move(name), {{1, std::move(material)}}}; }
 
 namespace {
-fem::Solid rubber(double c10, double bulk, double density, double branch) {
-  return {.elastic = fem::Hyperelastic{.c10 = c10, .bulk = bulk}, .branches = {{branch, 1e-5}}, .density = density};
-}
-}  // namespace
 
-FeBall range_ball() { return {"range-one-piece", {{1, rubber(14.6827e6, 1e9, 1129, 56.2497e6)}}}; }
-
-FeBall two_piece_ball() {
-  return {"two-piece", {{0.91, rubber(13.3817e6, 1e9, 1150, 51.2032e6)}, {1, rubber(40.1452e6, 1.5e9, 960, 153.61e6)}}};
-}
-
-namespace {
-FeBall three_piece_ball() {
-  return {"three-piece",
-          {{0.89, rubber(13.1366e6, 1e9, 1150, 50.1657e6)},
-           {0.955, rubber(52.5462e6, 1.5e9, 960, 200.663e6)},
-           {1, rubber(13.1366e6, 1.5e9, 1120, 50.1657e6)}}};
-}
-
-FeBall range_skin_ball() {
-  return {"range-skin",
-          {{0.91, rubber(13.9257e6, 1e9, 1129, 53.6697e6)}, {1, rubber(24.693e6, 1.3e9, 1129, 95.1535e6)}}};
-}
-
-constexpr std::array kBalls = {
-    NamedFeBall{"range-one-piece", "one piece of viscoelastic rubber, as cases/calibrate-range-ball finds it",
-                range_ball},
-    NamedFeBall{"two-piece", "rubber core under a cover three times as stiff, as cases/calibrate-two-piece finds it",
-                two_piece_ball},
-    NamedFeBall{"three-piece",
-                "rubber core, mantle four times as stiff, soft cover, as cases/calibrate-three-piece finds it",
-                three_piece_ball},
-    NamedFeBall{"range-skin",
-                "one piece with a skin 1.77 times as stiff: saw three irons as well, cases/calibrate-range-skin",
-                range_skin_ball},
+/// As a file of the library has it.
+struct Layer {
+  double radius, c10, bulk, density, branch_modulus, branch_time;  // moduli in MPa, time in ms
 };
+struct NamedBall {
+  const char* name;
+  std::vector<Layer> layers;
+};
+
+std::vector<FeBall> shipped_balls() {
+  const std::vector<NamedBall> named = {
+#include "library/balls.inc"  // written by cmake/HoselLibrary.cmake
+  };
+  std::vector<FeBall> out;
+  for (const NamedBall& ball : named) {
+    out.push_back({ball.name, {}});
+    for (const Layer& l : ball.layers)
+      out.back().layers.push_back({l.radius,
+                                   {.elastic = fem::Hyperelastic{.c10 = l.c10 * 1e6, .bulk = l.bulk * 1e6},
+                                    .branches = {{l.branch_modulus * 1e6, l.branch_time * 1e-3}},
+                                    .density = l.density}});
+  }
+  return out;
+}
+
+const FeBall& shipped_ball(std::string_view name) {
+  const auto all = ball_library();
+  return *std::ranges::find(all, name, &FeBall::name);
+}
+
 }  // namespace
 
-std::span<const NamedFeBall> ball_library() { return kBalls; }
+std::span<const FeBall> ball_library() {
+  static const std::vector<FeBall> all = shipped_balls();
+  return all;
+}
+
+FeBall range_ball() { return shipped_ball("range-one-piece"); }
+FeBall two_piece_ball() { return shipped_ball("two-piece"); }
 
 }  // namespace hosel::models

@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "hosel/fem/materials/solid.hpp"
@@ -28,16 +27,11 @@ struct FeBall {
 
 /// One elastic layer; for comparison with theory.
 FeBall elastic_ball(std::string name, fem::Solid material);
-struct NamedFeBall {
-  std::string_view name;
-  std::string_view what;  ///< one sentence for `hosel list`
-  FeBall (*make)();
-};
-/// Balls by name, each calibrated to normal restitution and contact time alone.
-std::span<const NamedFeBall> ball_library();
+/// The shipped balls by name, for the floors that read no files: those of library/balls whose layers are neo-Hooke with
+/// one Maxwell branch.
+std::span<const FeBall> ball_library();
 
-/// Nearly incompressible neo-Hooke with one Maxwell branch in each layer.
-FeBall range_ball();
-FeBall two_piece_ball();
+FeBall range_ball();      ///< "range-one-piece"
+FeBall two_piece_ball();  ///< "two-piece"
 
 }  // namespace hosel::models

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
 #include "hosel/golf/parallel.hpp"
@@ -66,9 +67,6 @@ class BounceJob final : public Job {
           t->number({"poisson", "Poisson's ratio of the plate"}, {0, 0.49})};
     const std::vector<std::string> balls = root.texts(
         {"balls", "balls of the library, each thrown by every finite-element model"}, std::vector<std::string>{});
-    for (const std::string& ball : balls)
-      if (std::ranges::find(models::ball_library(), ball, &models::NamedFeBall::name) == models::ball_library().end())
-        root.fail("balls", fmt::format("no ball '{}'; `hosel list` shows them", ball));
     for (const std::string& name : names) {
       const models::ModelEntry& entry = *models::find(name);
       const bool deformable = name.starts_with("fe-");
@@ -78,7 +76,9 @@ class BounceJob final : public Job {
       }
       for (const std::string& ball : balls) {
         models::Options own = options;
-        own.fe.ball = std::ranges::find(models::ball_library(), ball, &models::NamedFeBall::name)->make();
+        try {
+          own.fe.ball = library_ball(ball).layers;
+        } catch (const InputError& error) { root.fail("balls", error.what()); }
         thrown_.push_back({ball, entry.make(own)});
       }
     }

@@ -194,12 +194,10 @@ class CalibrateBallJob final : public Job {
   void read_shots(Table root) {
     const auto tables = root.tables("shots");
     if (tables.empty()) return;
-    std::optional<FaceCompliance> face;
-    if (auto t = root.optional_table("face")) face = read_face(*t);
+    const std::optional<FaceCompliance> face = read_club_face(root);
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
-    ClubGeometry geometry;
-    if (auto t = root.optional_table("hosel")) geometry = read_club_geometry(*t);
+    const ClubGeometry geometry = read_club_geometry(root, false);
     for (Table t : tables) {
       models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
       groups_.push_back(t.text({"group", "of shots whose errors are summed up together"}, ""));
@@ -207,11 +205,11 @@ class CalibrateBallJob final : public Job {
       shot.blow.ball = problem_.ball;
       shot.blow.delivery = read_delivery(t.table("delivery"));
       shot.blow.club.head = read_head(t.table("head"), true);
-      auto own_face = t.optional_table("face"), own_shaft = t.optional_table("shaft"),
-           own_hosel = t.optional_table("hosel");
-      shot.face = own_face ? std::optional(read_face(*own_face)) : face;
+      const bool own_head = t.table("head").has("name");
+      shot.face = own_head || t.has("face") ? read_club_face(t) : face;
+      auto own_shaft = t.optional_table("shaft");
       shot.blow.club.shaft = own_shaft ? std::optional(read_shaft(*own_shaft)) : shaft;
-      shot.blow.club.geometry = own_hosel ? read_club_geometry(*own_hosel) : geometry;
+      shot.blow.club.geometry = own_head || t.has("hosel") ? read_club_geometry(t, false) : geometry;
       shot.launch_angle =
           t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg", {-1.5, 1.5});
       shot.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());

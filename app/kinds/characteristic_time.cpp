@@ -26,7 +26,7 @@ class CharacteristicTimeJob final : public Job {
   explicit CharacteristicTimeJob(CaseFile& file) {
     Table root = file.root();
     head_ = read_head(root.table("head"));
-    face_ = read_face(root.table("face"));
+    face_ = read_yielding_face(root);
     if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
     Table sphere = root.table("sphere");
     sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));

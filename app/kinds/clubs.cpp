@@ -71,11 +71,11 @@ class ClubsJob final : public Job {
     options_ = read_options(root, beside_);
     flight_ = read_optional_flight(root);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
-    if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    blow_.contact = read_contact(root);
     if (auto head = root.optional_table("head"))
       blow_.club.head = read_head(*head, model_ != "rigid-planar" || !beside_.empty());
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
-    if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
+    blow_.club.geometry = read_club_geometry(root, false);
     calibrated_on_ = root.texts({"calibrated_on", "clubs on which the ball was calibrated, marked as such"},
                                 std::vector<std::string>{});
     Table data = root.table("data");

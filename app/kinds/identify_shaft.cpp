@@ -27,7 +27,7 @@ class IdentifyJob final : public Job {
     club_.shaft = read_shaft(root.table("shaft"));
     if (!(club_.shaft->damping_time > 0)) root.fail("shaft", "identification starts from a damping_ratio above zero");
     club_.head = read_head(root.table("head"));
-    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    club_.geometry = read_club_geometry(root, false);
     options_ = read_swing_options(root);
     if (auto markers = root.optional_table("markers")) {
       markers_ = read_markers(*markers);

@@ -42,7 +42,7 @@ class LoadedClubJob final : public Job {
     Table root = file.root();
     blow_.club.shaft = read_shaft(root.table("shaft"));
     blow_.club.head = read_head(root.table("head"));
-    if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
+    blow_.club.geometry = read_club_geometry(root, false);
     if (auto ball = root.optional_table("ball")) blow_.ball = read_ball(*ball);
     motion_ = read_motion(root.table("motion"));
     swing_ = read_swing_options(root);

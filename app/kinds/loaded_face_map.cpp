@@ -185,7 +185,8 @@ class LoadedFaceMapJob final : public PointJob {
     Setup& setup = s.setup;
     setup.club.shaft = read_shaft(root.table("shaft"));
     setup.club.head = read_head(root.table("head"));
-    setup.club.geometry = read_club_geometry(root.table("hosel"));
+    setup.club.geometry =
+        read_club_geometry(root, root.table("head").has("name") || !root.table("hosel").keys().empty());
     if (auto ball = root.optional_table("ball")) setup.ball = read_ball(*ball);
     setup.motion = read_motion(root.table("motion"));
     setup.swing = read_swing_options(root);

@@ -13,6 +13,7 @@
 #include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/kinds/loop_corrected.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
@@ -69,13 +70,12 @@ class LoopJob final : public Job {
     case_.head_turns = case_.base != "rigid-planar";
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
-    if (auto contact = root.optional_table("contact")) case_.blow.contact = read_contact_law(*contact);
+    case_.blow.contact = read_contact(root);
     if (fe) case_.blow.contact.friction = options.fe.friction;
-    if (root.has("shaft") || root.has("hosel"))
-      case_.blow.club.geometry = read_club_geometry(root.default_table("hosel"));
+    case_.blow.club.geometry = read_club_geometry(root, root.has("shaft"));
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
-      case_.head_mass_declared = table->has_quantity("mass");
+      case_.head_mass_declared = table->has_quantity("mass") || table->has("name");
       head = read_loop_head(*table, case_.head_turns);
     } else if (case_.head_turns) {
       root.fail("", "a table [head] with mass, cg_mm and inertia_kg_m2 is needed for this base");
@@ -157,19 +157,25 @@ class LoopJob final : public Job {
   /// `[head]` of a loop: the mass may stand in the shots instead; cg and inertia are needed where the head turns.
   Head read_loop_head(Table table, bool turns) {
     constexpr double inf = std::numeric_limits<double>::infinity();
+    std::optional<Head> named;
+    if (const auto name = named_entry(table, "name", Shelf::heads)) named = library_head(*name).head;
     Head head;
-    head.mass = case_.head_mass_declared ? table.quantity({"mass", "of the clubhead"}, "kg", Range::positive()) : 0.2;
+    head.mass = case_.head_mass_declared ? table.quantity({"mass", "of the clubhead"}, "kg", Range::positive(),
+                                                          named ? std::optional(named->mass) : std::nullopt)
+                                         : 0.2;
     head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
-                                     {0.01, inf}, inf);
-    head.face.roll =
-        table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm", {0.01, inf}, inf);
-    if (!turns && !table.has_quantity("inertia")) {
+                                     {0.01, inf}, named ? named->face.bulge : inf);
+    head.face.roll = table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm",
+                                    {0.01, inf}, named ? named->face.roll : inf);
+    if (!turns && !named && !table.has_quantity("inertia")) {
       head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm", Vec3::Zero());
       head.inertia = inf * Mat3::Identity();
       return head;
     }
-    head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm");
-    head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2");
+    head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm",
+                           named ? std::optional(named->cg) : std::nullopt);
+    head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2",
+                                named ? std::optional(named->inertia) : std::nullopt);
     // A tensor that no body quite can have still gives an answer, and effects may be asked about it: said, not refused.
     const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
     const auto faults = head.faults();

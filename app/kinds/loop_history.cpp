@@ -29,7 +29,7 @@ class HistoryJob final : public Job {
       club_.head = read_head(*head);
       setting.head = true;
     }
-    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    club_.geometry = read_club_geometry(root, false);
     setting.swing = root.has("motion") || root.has("markers");
     if (setting.swing && !setting.head) root.fail("head", "a swing needs a head");
     if (auto grip = root.optional_table("grip");

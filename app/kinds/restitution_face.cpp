@@ -18,7 +18,7 @@ class RestitutionFaceJob final : public Job {
     Table root = file.root();
     ball_ = read_ball(root.table("ball"));
     head_ = read_head(root.table("head"));
-    face_ = read_face(root.table("face"));
+    face_ = read_yielding_face(root);
     if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
     Table grid = root.table("grid");
     speed_ = grid.quantity({"speed", "of the ball against the head at rest"}, "mps", {1, 100}, 48.77);

@@ -26,7 +26,7 @@ class ShaftModesJob final : public Job {
       club_.head = read_head(*head);
       with_head_ = true;
     }
-    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    club_.geometry = read_club_geometry(root, false);
     support_ = root.choice({"support", "of the butt"}, {"clamped", "free"}, "clamped");
     clamped_ = root.quantity({"clamped_length", "of the butt that the clamp holds"}, "mm", Range::non_negative(), 0);
     if (clamped_ >= club_.shaft->length()) root.fail("clamped_length_mm", "the clamp holds the whole shaft");

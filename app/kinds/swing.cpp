@@ -19,7 +19,7 @@ class SwingJob final : public Job {
     Table root = file.root();
     club_.shaft = read_shaft(root.table("shaft"));
     club_.head = read_head(root.table("head"));
-    if (auto hosel = root.optional_table("hosel")) club_.geometry = read_club_geometry(*hosel);
+    club_.geometry = read_club_geometry(root, false);
     motion_ = read_motion(root.table("motion"));
     options_ = read_swing_options(root);
     grip_ = read_grip_drive(root);

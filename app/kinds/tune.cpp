@@ -78,9 +78,9 @@ class TuneJob final : public Job {
     model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
-    if (auto contact = root.optional_table("contact")) blow_.contact = read_contact_law(*contact);
+    blow_.contact = read_contact(root);
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
-    if (auto hosel = root.optional_table("hosel")) blow_.club.geometry = read_club_geometry(*hosel);
+    blow_.club.geometry = read_club_geometry(root, false);
     options_ = read_options(root, {model_});
     const std::optional<FlightSetup> flight = read_optional_flight(root);
     flies_ = flight.has_value();

@@ -8,7 +8,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,14 +70,16 @@ TEST(FeImpact, NormalBlowOnAWall) {
   }
 }
 
-/// The library's balls keep to what they were calibrated to: e = 0.86 - 0.0029 v within 0.005, contact 0.45 +- 0.03 ms
-/// and 9-16 kN at 40 m/s; on the default mesh, which is finer than the calibration's.
+/// The library's balls keep to what these four were calibrated to: e = 0.86 - 0.0029 v within 0.005, contact 0.45 +-
+/// 0.03 ms and 9-16 kN at 40 m/s; on the default mesh, which is finer than the calibration's.
 TEST(FeImpact, LibraryBallsBounce) {
-  ASSERT_GE(ball_library().size(), 2u);
-  for (const NamedFeBall& named : ball_library()) {
+  std::size_t seen = 0;
+  for (const FeBall& named : ball_library()) {
+    if (!std::set<std::string>{"range-one-piece", "two-piece", "three-piece", "range-skin"}.contains(named.name))
+      continue;
+    ++seen;
     FeImpactOptions o;
-    o.ball = named.make();
-    EXPECT_EQ(o.ball.name, named.name);
+    o.ball = named;
     o.harmonics = 0;
     for (double v : {20.0, 30.0, 40.0, 50.0}) {
       const FeOutcome out = solve_free_body(wall_blow(v), o);
@@ -88,6 +92,7 @@ TEST(FeImpact, LibraryBallsBounce) {
       EXPECT_LT(out.result.peak_force, 16e3) << named.name;
     }
   }
+  EXPECT_EQ(seen, 4u);
 }
 
 /// Speed and spin against the force and its arm, summed over the blow from the patch's own report: Newton's and Euler's

@@ -1,0 +1,375 @@
+#include "hosel/app/library.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "build_info.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_face.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/app/read_shaft.hpp"
+#include "hosel/app/read_solid.hpp"
+#include "hosel/post/file.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+
+std::string_view name(Shelf shelf) {
+  constexpr std::array names = {"balls", "faces", "heads", "contacts"};
+  return names[static_cast<std::size_t>(shelf)];
+}
+
+std::string_view singular(Shelf shelf) {
+  const std::string_view all = name(shelf);
+  return all.substr(0, all.size() - 1);
+}
+
+fs::path user_library() {
+  for (const auto& [variable, below] : {std::pair{"HOSEL_LIBRARY", ""}, {"XDG_DATA_HOME", "hosel"}})
+    if (const char* named = std::getenv(variable); named && *named) return fs::path(named) / below;
+  const char* home = std::getenv("HOME");
+  if (!home || !*home) return {};
+  return fs::path(home) / ".local" / "share" / "hosel";
+}
+
+fs::path shipped_library() {
+  const fs::path tree = fs::path(HOSEL_SOURCE_DIR) / "library";
+  return fs::is_directory(tree) ? tree : fs::path(HOSEL_INSTALLED_LIBRARY);
+}
+
+namespace {
+
+/// What stands above the values in every entry: the rest of the file is read by who knows the shelf.
+Seen read_saw(Table root) {
+  Seen s;
+  auto t = root.optional_table("saw");
+  if (!t) return s;
+  const auto interval = [&](Key key, std::string_view unit, Range range) -> std::optional<Interval> {
+    if (!t->has_quantity(key.name)) return {};
+    const auto ends = t->quantities(key, unit, 2, range);
+    if (ends[0] > ends[1]) t->fail("", fmt::format("{}: give the lowest and the highest", key.name));
+    return Interval{ends[0], ends[1]};
+  };
+  s.impact_speed =
+      interval({"impact_speed", "normal speed of approach, as on a wall: lowest and highest"}, "mps", {0, 200});
+  s.spin_loft = interval({"spin_loft", "between the path and the face's normal: lowest and highest"}, "deg", {0, 1.6});
+  s.clubs = t->texts({"clubs", "that were struck"}, std::vector<std::string>{});
+  s.not_for = t->texts({"not_for", "sentences: what the entry must not be used for"}, std::vector<std::string>{});
+  return s;
+}
+
+/// Where the numbers come from and how well they are known: read for its faults.
+void read_origin(Table root) {
+  root.text({"what", "one sentence for `hosel list`"});
+  Table p = root.table("provenance");
+  p.text({"source", "where the numbers come from"});
+  p.text({"case", "that found them"}, "");
+  p.text({"inputs", "digest of the resolved case"}, "");
+  p.text({"build", "of the program that found them"}, "");
+  if (auto fit = root.optional_table("fit")) {
+    const auto parameters = fit->texts({"parameters", "that were fitted, each with its unit"});
+    const std::size_t n = parameters.size();
+    fit->numbers({"values", "found, one for each parameter"}, n);
+    const auto c = fit->numbers({"covariance", "of the parameters, row by row"}, n * n);
+    fit->choice({"of", "what the covariance is of"}, {"values", "logarithms"}, "values");
+    fit->texts({"unidentified", "what the data did not decide"}, std::vector<std::string>{});
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        if (i == j ? !(c[i * n + i] >= 0) : std::abs(c[i * n + j] - c[j * n + i]) > 1e-9 * std::abs(c[i * n + j]))
+          fit->fail("covariance", "a covariance is symmetric and has no negative variance");
+  }
+}
+
+/// The parts of a contact that stand in a table: of an entry's file, or of one set in a ball's.
+NamedContact read_parts(Table t, const std::string& called) {
+  NamedContact c{.name = called};
+  if (auto contact = t.optional_table("contact")) {
+    if (contact->has("face_friction"))
+      c.face_friction = contact->number(
+          {"face_friction", "Coulomb coefficient between the finite-element ball and the face"}, {0, 5});
+    if (contact->has("restitution")) c.law = read_contact_law(*contact, {});
+  }
+  if (auto volume = t.optional_table("volumetric")) c.volume = read_volumetric_law(*volume, {});
+  if (auto hertz = t.optional_table("hertz_maw")) c.hertz_maw = read_hertz_maw_law(*hertz, {});
+  if (!c.law && !c.face_friction && !c.volume && !c.hertz_maw)
+    t.fail("", "says nothing of a contact: a table [contact], [volumetric] or [hertz_maw]");
+  c.seen = read_saw(t);
+  return c;
+}
+
+BallEntry read_ball_entry(Table root) {
+  BallEntry e;
+  Table ball = root.table("ball");
+  e.body = read_ball(ball);
+  e.layers = read_layers(ball);
+  for (Table t : root.tables("reduced"))
+    e.reduced.push_back(read_parts(t, t.text({"name", "of this set, for `[ball] reduced`"})));
+  return e;
+}
+
+FaceEntry read_face_entry(Table root) {
+  FaceEntry e;
+  e.face = read_compliance(root.table("face"), {});
+  return e;
+}
+
+HeadSpread read_spread(Table t) {
+  HeadSpread s{.source = t.text({"source", "where the standard deviations come from"})};
+  const auto one = [&](Key key, std::string_view unit, std::optional<double>& into) {
+    if (t.has_quantity(key.name)) into = t.quantity(key, unit, Range::non_negative());
+  };
+  one({"mass", "of the head"}, "kg", s.mass);
+  one({"bulge", "of the face's radius from heel to toe"}, "mm", s.bulge);
+  one({"roll", "of the face's radius up the face"}, "mm", s.roll);
+  one({"loft", "of the head"}, "deg", s.loft);
+  if (t.has("inertia")) s.inertia = t.number({"inertia", "of each principal moment, relative"}, {0, 1});
+  if (t.has_quantity("cg")) s.cg = t.vector({"cg", "of the centre of gravity, each way"}, "mm", Range::non_negative());
+  return s;
+}
+
+HeadEntry read_head_entry(Table root) {
+  HeadEntry e;
+  Table head = root.table("head");
+  e.head = read_head_values(head, true, {});
+  if (head.has_quantity("loft"))
+    e.loft = head.quantity({"loft", "of the face at its centre, the shaft upright"}, "deg", limits::angle);
+  e.face = head.text({"face", "of the library, or \"rigid\""});
+  if (e.face == kRigidFace) e.face.clear();
+  else try {
+      library_face(e.face);
+    } catch (const InputError& error) { head.fail("face", error.what()); }
+  if (auto t = root.optional_table("hosel")) e.hosel = read_hosel(*t, {});
+  if (auto t = root.optional_table("spread")) e.spread = read_spread(*t);
+  return e;
+}
+
+NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
+
+/// A file of the library, read whole: what is left over is an error.
+template <class Entry>
+Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
+  CaseFile text(file);
+  Table root = text.root();
+  read_origin(root);
+  Entry entry = read(root);
+  if constexpr (requires { entry.seen; }) entry.seen = read_saw(root);
+  text.finish();
+  return entry;
+}
+
+/// Names and files of a shelf, nothing read.
+std::vector<LibraryEntry> on_shelf(Shelf shelf) {
+  std::vector<LibraryEntry> all;
+  for (const bool shipped : {true, false}) {
+    const fs::path home = shipped ? shipped_library() : user_library();
+    std::error_code none;
+    std::vector<LibraryEntry> here;
+    if (!home.empty())
+      for (const auto& file : fs::directory_iterator(home / name(shelf), none))
+        if (file.path().extension() == ".toml" && fs::is_regular_file(file.path()))
+          here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
+    std::ranges::sort(here, {}, &LibraryEntry::name);
+    all.insert(all.end(), here.begin(), here.end());
+  }
+  return all;
+}
+
+std::vector<std::string> names_on(Shelf shelf) {
+  std::vector<std::string> out;
+  for (const LibraryEntry& e : on_shelf(shelf)) out.push_back(e.name);
+  if (shelf == Shelf::faces) out.emplace_back(kRigidFace);
+  return out;
+}
+
+LibraryEntry find_entry(Shelf shelf, const std::string& wanted) {
+  const auto all = on_shelf(shelf);
+  const auto it = std::ranges::find(all, wanted, &LibraryEntry::name);
+  if (it == all.end()) {
+    const std::string near = nearest(wanted, names_on(shelf));
+    throw InputError(fmt::format("no {} '{}' in the library{}", singular(shelf), wanted,
+                                 near.empty() ? "; `hosel list` shows them" : "; did you mean '" + near + "'?"));
+  }
+  if (const auto other = std::find_if(std::next(it), all.end(), [&](const auto& e) { return e.name == wanted; });
+      other != all.end())
+    throw InputError(
+        fmt::format("{}: a shipped {} has this name: rename yours", other->file.string(), singular(shelf)));
+  return *it;
+}
+
+}  // namespace
+
+std::vector<LibraryEntry> library(Shelf shelf) {
+  std::vector<LibraryEntry> all = on_shelf(shelf);
+  for (LibraryEntry& e : all) try {
+      e.what = CaseFile(e.file).root().text({"what", "one sentence for `hosel list`"});
+    } catch (const InputError& error) { e.what = fmt::format("(unreadable: {})", error.what()); }
+  return all;
+}
+
+BallEntry library_ball(const std::string& wanted) {
+  BallEntry e = read_entry(find_entry(Shelf::balls, wanted).file, read_ball_entry);
+  e.layers.name = wanted;
+  return e;
+}
+
+FaceEntry library_face(const std::string& wanted) {
+  return read_entry(find_entry(Shelf::faces, wanted).file, read_face_entry);
+}
+
+HeadEntry library_head(const std::string& wanted) {
+  return read_entry(find_entry(Shelf::heads, wanted).file, read_head_entry);
+}
+
+NamedContact library_contact(const std::string& wanted) {
+  NamedContact c = read_entry(find_entry(Shelf::contacts, wanted).file, read_contact_entry);
+  c.name = wanted;
+  return c;
+}
+
+void check_entry(Shelf shelf, const fs::path& file) {
+  switch (shelf) {
+    case Shelf::balls: read_entry(file, read_ball_entry); break;
+    case Shelf::faces: read_entry(file, read_face_entry); break;
+    case Shelf::heads: read_entry(file, read_head_entry); break;
+    case Shelf::contacts: read_entry(file, read_contact_entry); break;
+  }
+}
+
+std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf shelf) {
+  if (!table.has(key)) return {};
+  const std::string meaning = fmt::format("a {} of the library (`hosel list`)", singular(shelf));
+  const std::string wanted = table.choice({key, meaning}, names_on(shelf));
+  if (shelf == Shelf::faces && wanted == kRigidFace) return wanted;
+  const LibraryEntry entry = find_entry(shelf, wanted);
+  if (!entry.shipped) {
+    table.note_file(entry.file);
+    const std::string now = post::digest(post::read_file(entry.file));
+    if (table.text({"digest", "of your own entry when the case was resolved"}, now) != now)
+      table.fail("digest",
+                 fmt::format("'{}' is not what it was when this case was resolved: {}", wanted, entry.file.string()));
+  }
+  return wanted;
+}
+
+Use use_of(const Blow& blow) {
+  const Delivery& d = blow.delivery;
+  const Vec3 velocity = d.velocity(), normal = d.face_to_global().col(0);
+  const double mass = blow.club.head.mass;
+  const double share = std::isinf(mass) ? 1 : std::sqrt(mass / (mass + blow.ball.mass));
+  const double approach = share * velocity.dot(normal);
+  const double loft = std::acos(std::clamp(velocity.normalized().dot(normal), -1.0, 1.0));
+  return {{approach, approach}, {loft, loft}};
+}
+
+Use both(const Use& a, const Use& b) {
+  const auto hull = [](const Interval& x, const Interval& y) {
+    return Interval{std::min(x.low, y.low), std::max(x.high, y.high)};
+  };
+  return {hull(a.impact_speed, b.impact_speed), hull(a.spin_loft, b.spin_loft)};
+}
+
+namespace {
+
+/// What of a use lies beyond what was seen, as a sentence; empty where nothing does. A thousandth of the range is
+/// forgiven: the ends of intervals are rounded.
+std::string beyond(const Seen& seen, const Use& use) {
+  const auto outside = [](const std::optional<Interval>& saw, const Interval& asked, std::string_view what, double unit,
+                          std::string_view symbol) -> std::string {
+    if (!saw) return {};
+    const double slack = 1e-3 * (saw->high - saw->low);
+    if (asked.low >= saw->low - slack && asked.high <= saw->high + slack) return {};
+    const std::string asks = asked.high - asked.low > slack
+                                 ? fmt::format("{:.3g} to {:.3g}", asked.low / unit, asked.high / unit)
+                                 : fmt::format("{:.3g}", asked.low / unit);
+    return fmt::format("saw {} of {:g} to {:g} {} and is asked about {} {}", what, saw->low / unit, saw->high / unit,
+                       symbol, asks, symbol);
+  };
+  std::string text = outside(seen.impact_speed, use.impact_speed, "impact speeds (normal, as on a wall)", 1, "m/s");
+  if (text.empty()) text = outside(seen.spin_loft, use.spin_loft, "spin lofts", kRadPerDeg, "deg");
+  return text;
+}
+
+bool asks_law(std::string_view model) {
+  constexpr std::array laws = {"rigid-planar", "rigid-eccentric", "stick-slip", "pendulum-club", "hinged-head"};
+  return std::ranges::find(laws, model) != laws.end();
+}
+
+void refuse(Table& table, std::string_view key, const std::string& called, const Seen& seen, const Use& use) {
+  if (table.has("extrapolate") && table.flag({"extrapolate", "use the library's entry beyond what it saw"}, false))
+    return;
+  if (const std::string text = beyond(seen, use); !text.empty())
+    table.fail(key, fmt::format("'{}' {}: `extrapolate = true` beside its name uses it all the same", called, text));
+}
+
+}  // namespace
+
+std::optional<NamedContact> named_contact(Table root) {
+  if (auto contact = root.optional_table("contact"))
+    if (const auto wanted = named_entry(*contact, "name", Shelf::contacts)) return library_contact(*wanted);
+  auto ball = root.optional_table("ball");
+  if (!ball) return {};
+  const auto model = named_entry(*ball, "model", Shelf::balls);
+  if (!model) return {};
+  const std::vector<NamedContact> sets = library_ball(*model).reduced;
+  if (sets.empty()) return {};
+  std::vector<std::string> names;
+  for (const NamedContact& s : sets) names.push_back(s.name);
+  if (ball->has("reduced")) {
+    const std::string wanted =
+        ball->choice({"reduced", "which of the ball's sets of parameters the reduced models take"}, names);
+    return *std::ranges::find(sets, wanted, &NamedContact::name);
+  }
+  if (sets.size() == 1) return sets.front();
+  if (root.has("delivery") && root.has("head")) {
+    Blow blow;
+    blow.delivery = read_delivery_of(root);
+    for (const NamedContact& s : sets)
+      if (beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty()) return s;
+  }
+  ball->fail("model", fmt::format("'{}' has several sets of parameters and none of them saw this loft: say which by "
+                                  "`reduced` ({})",
+                                  *model, fmt::join(names, ", ")));
+}
+
+void check_use(Table root, const Use& use, const std::vector<std::string>& models) {
+  const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
+  const bool volume =
+      std::ranges::any_of(models, [](const std::string& m) { return m == "volumetric" || m == "shaft-coupled"; });
+  const bool hertz = std::ranges::find(models, "hertz-maw") != models.end();
+  const bool law = std::ranges::any_of(models, asks_law);
+  auto ball = root.optional_table("ball");
+  if (ball && fe)
+    if (const auto model = named_entry(*ball, "model", Shelf::balls))
+      refuse(*ball, "model", *model, library_ball(*model).seen, use);
+  if (const auto contact = named_contact(root)) {
+    auto own = root.optional_table("contact");
+    const bool by_name = own && own->has("name");
+    Table& at = by_name ? *own : *ball;
+    const char* key = by_name ? "name" : "model";
+    const auto needs = [&](bool asked, bool there, std::string_view what) {
+      if (asked && !there)
+        at.fail(key, fmt::format("'{}' has no {}: state them in the case, or name another", contact->name, what));
+    };
+    needs(law, contact->law || (own && own->has("restitution")), "restitution and friction for the rigid models");
+    auto volumetric = root.optional_table("volumetric");
+    needs(volume, contact->volume || (volumetric && volumetric->has("published")), "constants of the volumetric model");
+    needs(hertz, contact->hertz_maw || root.has("hertz_maw"), "constants of hertz-maw");
+    if (law || volume || hertz || (fe && contact->face_friction)) refuse(at, key, contact->name, contact->seen, use);
+  }
+  if (!fe && !volume) return;
+  if (auto face = root.optional_table("face"); face && !face->keys().empty()) {
+    if (const auto called = named_entry(*face, "name", Shelf::faces); called && *called != kRigidFace)
+      refuse(*face, "name", *called, library_face(*called).seen, use);
+  } else if (auto head = root.optional_table("head")) {
+    if (const auto called = named_entry(*head, "name", Shelf::heads))
+      if (const std::string f = library_head(*called).face; !f.empty())
+        refuse(*head, "name", f, library_face(f).seen, use);
+  }
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,230 @@
+// The library: every shipped entry is read, a case takes its values, and what an entry did not see is refused.
+#include "hosel/app/library.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "command.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/fem/materials/hyperelastic.hpp"
+#include "hosel/golf/face_library.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel;
+using namespace hosel::app;
+using hosel::test::content;
+using hosel::test::fresh_directory;
+using hosel::test::write;
+
+/// A library of the user's own for the length of a test.
+struct OwnLibrary {
+  fs::path home;
+  explicit OwnLibrary(const std::string& name) : home(fresh_directory(name) / "library") {
+    setenv("HOSEL_LIBRARY", home.c_str(), 1);
+  }
+  ~OwnLibrary() { unsetenv("HOSEL_LIBRARY"); }
+};
+
+const std::string kBlow = R"(kind = "impact"
+models = ["rigid-eccentric"]
+[delivery]
+club_speed_mps = 45.0
+)";
+
+CaseFile case_of(const fs::path& dir, const std::string& text, const std::vector<std::string>& set = {}) {
+  write(dir / "case.toml", text);
+  return CaseFile(dir, set);
+}
+
+std::string refusal(const fs::path& dir, const std::string& text, const std::vector<std::string>& models,
+                    const std::vector<std::string>& set = {}) {
+  CaseFile file = case_of(dir, text, set);
+  try {
+    read_blow(file.root(), models);
+    read_options(file.root(), models);
+  } catch (const InputError& e) { return e.what(); }
+  return {};
+}
+
+TEST(Library, EveryShippedEntryIsRead) {
+  const OwnLibrary own("library_shipped");
+  for (const Shelf shelf : {Shelf::balls, Shelf::faces, Shelf::heads, Shelf::contacts})
+    for (const LibraryEntry& e : library(shelf)) {
+      EXPECT_TRUE(e.shipped) << e.name;
+      EXPECT_FALSE(e.what.empty() || e.what.starts_with("(unreadable")) << e.name << e.what;
+      EXPECT_NO_THROW(check_entry(shelf, e.file)) << e.name;
+    }
+  EXPECT_GE(library(Shelf::balls).size(), 4u);
+  EXPECT_GE(library(Shelf::heads).size(), 2u);
+}
+
+/// What the floors without a reader know is the same file, read by CMake: bit for bit.
+TEST(Library, ConstantsAreWhatTheReaderReads) {
+  std::size_t faces = 0;
+  for (const LibraryEntry& e : library(Shelf::faces)) {
+    const FaceCompliance read = library_face(e.name).face;
+    const NamedFace* constant = find_face(e.name);
+    ASSERT_NE(constant, nullptr) << e.name;
+    for (const auto value : {&FaceCompliance::mass, &FaceCompliance::stiffness, &FaceCompliance::damping,
+                             &FaceCompliance::half_width, &FaceCompliance::half_height})
+      EXPECT_EQ(read.*value, constant->face.*value) << e.name;
+    ++faces;
+  }
+  EXPECT_GE(faces, 3u);
+  ASSERT_GE(models::ball_library().size(), 4u);
+  for (const models::FeBall& constant : models::ball_library()) {
+    const models::FeBall read = library_ball(constant.name).layers;
+    ASSERT_EQ(read.layers.size(), constant.layers.size()) << constant.name;
+    for (std::size_t k = 0; k < read.layers.size(); ++k) {
+      const fem::Solid &a = read.layers[k].material, &b = constant.layers[k].material;
+      EXPECT_EQ(read.layers[k].radius, constant.layers[k].radius);
+      EXPECT_EQ(a.density, b.density);
+      const auto *x = a.elastic.as<fem::Hyperelastic>(), *y = b.elastic.as<fem::Hyperelastic>();
+      ASSERT_TRUE(x && y);
+      EXPECT_EQ(x->c10, y->c10);
+      EXPECT_EQ(x->bulk, y->bulk);
+      ASSERT_EQ(a.branches.size(), b.branches.size());
+      EXPECT_EQ(a.branches[0].modulus, b.branches[0].modulus);
+      EXPECT_EQ(a.branches[0].time, b.branches[0].time);
+    }
+  }
+}
+
+TEST(Library, ACaseTakesAHeadAndChangesSingleValues) {
+  const fs::path dir = fresh_directory("library_head");
+  CaseFile file = case_of(dir, kBlow + "[head]\nname = \"driver-460\"\nmass_kg = 0.198\n");
+  const Blow blow = read_blow(file.root(), {"rigid-eccentric"});
+  const HeadEntry entry = library_head("driver-460");
+  EXPECT_EQ(blow.club.head.mass, 0.198);
+  EXPECT_EQ(blow.club.head.cg, entry.head.cg);
+  EXPECT_EQ(blow.club.head.inertia, entry.head.inertia);
+  EXPECT_EQ(blow.club.head.face.bulge, entry.head.face.bulge);
+  ASSERT_TRUE(entry.loft && entry.hosel);
+  EXPECT_EQ(blow.delivery.dynamic_loft, *entry.loft);
+  EXPECT_EQ(blow.club.geometry.hosel, entry.hosel->position);
+  // Its face, the case's own, none.
+  const auto face = [&](const std::string& more) {
+    CaseFile c = case_of(dir, kBlow + "[head]\nname = \"driver-460\"\n[contact]\nface_friction = 0.3\n" + more);
+    return read_options(c.root(), {"fe-free-body"}).fe.face;
+  };
+  ASSERT_TRUE(face(""));
+  EXPECT_EQ(face("")->stiffness, find_face(entry.face)->face.stiffness);
+  ASSERT_TRUE(face("[face]\nname = \"steel-iron\"\n"));
+  EXPECT_EQ(face("[face]\nname = \"steel-iron\"\n")->stiffness, find_face("steel-iron")->face.stiffness);
+  EXPECT_FALSE(face("[face]\nname = \"rigid\"\n"));
+}
+
+/// A resolved case with a named head says all that it uses, and is read to the same.
+TEST(Library, AResolvedCaseReadsTheSame) {
+  const fs::path dir = fresh_directory("library_resolved");
+  const auto resolved = [&](const std::string& text) {
+    CaseFile file = case_of(dir, text);
+    read_blow(file.root(), {"fe-free-body"});
+    read_options(file.root(), {"fe-free-body"});
+    return file.resolved();
+  };
+  const std::string once = resolved(kBlow +
+                                    "[head]\nname = \"driver-460\"\n[ball]\nmodel = \"two-piece\"\n[contact]\n"
+                                    "face_friction = 0.3\n");
+  EXPECT_NE(once.find("stiffness_N_per_m"), std::string::npos) << once;
+  EXPECT_NE(once.find("dynamic_loft_deg"), std::string::npos);
+  EXPECT_EQ(resolved(once), once);
+}
+
+TEST(Library, BeyondWhatABallSawIsRefusedUnlessItIsSaid) {
+  const fs::path dir = fresh_directory("library_beyond");
+  const std::string text = kBlow +
+                           "[head]\nname = \"driver-460\"\n[ball]\nmodel = \"two-piece\"\n[contact]\n"
+                           "face_friction = 0.3\n";
+  EXPECT_EQ(refusal(dir, text, {"fe-free-body"}), "");
+  const std::string fast = refusal(dir, text, {"fe-free-body"}, {"delivery.club_speed_mps=65"});
+  EXPECT_NE(fast.find("ball.model: 'two-piece' saw impact speeds"), std::string::npos) << fast;
+  EXPECT_NE(fast.find("`extrapolate = true`"), std::string::npos) << fast;
+  EXPECT_EQ(refusal(dir, text, {"fe-free-body"}, {"delivery.club_speed_mps=65", "ball.extrapolate=true"}), "");
+  EXPECT_EQ(refusal(dir, text, {"rigid-eccentric"}, {"delivery.club_speed_mps=65"}), "") << "no layers are asked";
+}
+
+const std::string kContact = R"(what = "a driver's contact"
+[provenance]
+source = "a test"
+[saw]
+spin_loft_deg = [0, 20]
+[volumetric]
+stiffness_N_per_m3 = 7e9
+damping_s_per_m = 5e-3
+friction = 0.3
+transition_speed_mps = 0.9
+joint_stiffness_N_m_per_rad = 13
+joint_damping_N_m_s_per_rad = 2e-3
+cover_thickness_mm = 1.3
+volume_exponent = 1
+)";
+
+TEST(Library, AContactOfOnesOwnIsTheReducedModels) {
+  const OwnLibrary own("library_own");
+  write(own.home / "contacts" / "mine.toml", kContact);
+  const fs::path dir = fresh_directory("library_own_case");
+  const std::string text = kBlow + "[head]\nname = \"driver-460\"\n[contact]\nname = \"mine\"\n";
+  CaseFile file = case_of(dir, text);
+  EXPECT_NO_THROW(read_blow(file.root(), {"volumetric"}));
+  EXPECT_EQ(read_options(file.root(), {"volumetric"}).volumetric.stiffness, 7e9);
+  EXPECT_EQ(refusal(dir, text, {"volumetric"}), "");
+  const std::string iron = refusal(dir, text, {"volumetric"}, {"delivery.dynamic_loft_deg=30"});
+  EXPECT_NE(iron.find("contact.name: 'mine' saw spin lofts of 0 to 20 deg and is asked about 30 deg"),
+            std::string::npos)
+      << iron;
+  const std::string law = refusal(dir, text, {"rigid-eccentric"});
+  EXPECT_NE(law.find("'mine' has no restitution and friction"), std::string::npos) << law;
+  // The digest of what it was stands in the resolved case.
+  const std::string resolved = file.resolved();
+  EXPECT_NE(resolved.find("digest"), std::string::npos) << resolved;
+  EXPECT_EQ(refusal(dir, resolved, {"volumetric"}), "");
+  write(own.home / "contacts" / "mine.toml", kContact + "# another\n");
+  EXPECT_NE(refusal(dir, resolved, {"volumetric"}).find("'mine' is not what it was"), std::string::npos);
+}
+
+/// Faults of an entry are told with its file and line.
+TEST(Library, AFaultyEntryNamesItsLine) {
+  const OwnLibrary own("library_faulty");
+  write(own.home / "contacts" / "mine.toml", kContact + "stiffnes_N_per_m3 = 1\n");
+  const fs::path dir = fresh_directory("library_faulty_case");
+  const std::string text = kBlow + "[head]\nname = \"driver-460\"\n[contact]\nname = \"mine\"\n";
+  const std::string said = refusal(dir, text, {"volumetric"});
+  EXPECT_NE(said.find("mine.toml:15: volumetric.stiffnes_N_per_m3: unknown key"), std::string::npos) << said;
+  write(own.home / "contacts" / "mine.toml", "what = \"nothing\"\n[provenance]\nsource = \"a test\"\n");
+  EXPECT_NE(refusal(dir, text, {"volumetric"}).find("says nothing of a contact"), std::string::npos);
+  write(own.home / "heads" / "driver-460.toml", "");
+  EXPECT_NE(refusal(dir, text, {"volumetric"}).find("a shipped head has this name"), std::string::npos);
+}
+
+/// A ball's parameters follow its loft: a 7-iron is not struck with a driver's.
+TEST(Library, ABallsSetsAreChosenByLoft) {
+  const OwnLibrary own("library_sets");
+  std::string text = content(shipped_library() / "balls" / "range-one-piece.toml");
+  for (const auto& [name, saw, stiffness] : {std::tuple{"driver", "[0, 20]", "7e9"}, {"irons", "[20, 40]", "8e9"}}) {
+    std::string parts = kContact.substr(kContact.find("[volumetric]"));
+    parts.replace(0, 12, "[reduced.volumetric]");
+    parts.replace(parts.find("7e9"), 3, stiffness);
+    text += std::string("[[reduced]]\nname = \"") + name + "\"\n[reduced.saw]\nspin_loft_deg = " + saw + "\n" + parts;
+  }
+  write(own.home / "balls" / "mine.toml", text);
+  const fs::path dir = fresh_directory("library_sets_case");
+  const std::string blow = kBlow + "[head]\nname = \"iron-7\"\n[ball]\nmodel = \"mine\"\n";
+  const auto stiffness = [&](const std::vector<std::string>& set) {
+    CaseFile file = case_of(dir, blow, set);
+    return read_options(file.root(), {"volumetric"}).volumetric.stiffness;
+  };
+  EXPECT_EQ(stiffness({}), 8e9);
+  EXPECT_EQ(stiffness({"delivery.dynamic_loft_deg=12"}), 7e9);
+  EXPECT_EQ(stiffness({"ball.reduced=driver"}), 7e9);
+  EXPECT_NE(refusal(dir, blow, {"volumetric"}, {"ball.reduced=driver"}).find("saw spin lofts of 0 to 20 deg"),
+            std::string::npos);
+  EXPECT_NE(refusal(dir, blow, {"volumetric"}, {"delivery.dynamic_loft_deg=50"}).find("several sets"),
+            std::string::npos);
+}
+
+}  // namespace
