@@ -6,6 +6,7 @@
 #include "hosel/app/kinds/bounce.hpp"
 #include "hosel/app/kinds/calibrate_ball.hpp"
 #include "hosel/app/kinds/calibrate_face.hpp"
+#include "hosel/app/kinds/calibrate_reduced.hpp"
 #include "hosel/app/kinds/characteristic_time.hpp"
 #include "hosel/app/kinds/clubs.hpp"
 #include "hosel/app/kinds/cross_check.hpp"
@@ -69,6 +70,8 @@ constexpr std::array kKinds = {
          "What does this material do along a path of strain?", read_material_point},
     Kind{"calibrate-ball", "a ball's material from its normal impacts on a wall",
          "Which material makes the ball bounce as measured?", read_calibrate_ball},
+    Kind{"calibrate-reduced", "parameters of the reduced models from what the finite-element ball does",
+         "What do the models without a deformable ball need of this ball?", read_calibrate_reduced},
     Kind{"characteristic-time", "the rules' pendulum test of a face that yields: contact time against speed",
          "How long does the rules' pendulum touch this face?", read_characteristic_time},
     Kind{"restitution-face", "restitution and ball speed over a face that yields",

@@ -59,6 +59,7 @@ Seen read_saw(Table root) {
       interval({"impact_speed", "normal speed of approach, as on a wall: lowest and highest"}, "mps", {0, 200});
   s.spin_loft = interval({"spin_loft", "between the path and the face's normal: lowest and highest"}, "deg", {0, 1.6});
   s.clubs = t->texts({"clubs", "that were struck"}, std::vector<std::string>{});
+  s.faces = t->texts({"faces", "on which the ball was struck: the set is for these"}, std::vector<std::string>{});
   s.not_for = t->texts({"not_for", "sentences: what the entry must not be used for"}, std::vector<std::string>{});
   return s;
 }
@@ -308,6 +309,19 @@ void refuse(Table& table, std::string_view key, const std::string& called, const
 
 }  // namespace
 
+namespace {
+
+/// The face that the case or its head names; empty where neither does.
+std::string face_name(Table root) {
+  if (auto face = root.optional_table("face"); face && !face->keys().empty())
+    return named_entry(*face, "name", Shelf::faces).value_or("");
+  if (auto head = root.optional_table("head"))
+    if (const auto called = named_entry(*head, "name", Shelf::heads)) return library_head(*called).face;
+  return "";
+}
+
+}  // namespace
+
 std::optional<NamedContact> named_contact(Table root) {
   if (auto contact = root.optional_table("contact"))
     if (const auto wanted = named_entry(*contact, "name", Shelf::contacts)) return library_contact(*wanted);
@@ -328,8 +342,13 @@ std::optional<NamedContact> named_contact(Table root) {
   if (root.has("delivery") && root.has("head")) {
     Blow blow;
     blow.delivery = read_delivery_of(root);
-    for (const NamedContact& s : sets)
-      if (beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty()) return s;
+    // A set that knows the case's face comes before one of the right loft alone.
+    const std::string face = face_name(root);
+    for (const bool same_face : {true, false})
+      for (const NamedContact& s : sets)
+        if (same_face == (std::ranges::find(s.seen.faces, face) != s.seen.faces.end()) &&
+            beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty())
+          return s;
   }
   ball->fail("model", fmt::format("'{}' has several sets of parameters and none of them saw this loft: say which by "
                                   "`reduced` ({})",

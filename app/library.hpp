@@ -51,6 +51,7 @@ struct Seen {
   /// Between the head's velocity and the face's normal; the angle of incidence of a thrown ball [rad].
   std::optional<Interval> spin_loft;
   std::vector<std::string> clubs;    ///< for the reader
+  std::vector<std::string> faces;    ///< of a ball's set of reduced parameters: for which faces it is
   std::vector<std::string> not_for;  ///< likewise: what it must not be used for
 };
 

@@ -285,8 +285,12 @@ Eigen::VectorXd without(const Fit& fit, const BallCalibrationProblem& problem, s
     const bool prior_of_own = !own.empty() && (J(row, own).array() != 0).any() && !of_shot(row);
     (of_shot(row) || prior_of_own ? its : others).push_back(row);
   }
+  // Against the same step with the shot's rows: where the search ended a little short, that is no part of the change.
+  std::vector<Eigen::Index> all = others;
+  for (const Eigen::Index row : its)
+    if (of_shot(row)) all.push_back(row);
   Eigen::VectorXd moved = x;
-  moved(shared) += gauss_newton(J, r, others, shared);
+  moved(shared) += gauss_newton(J, r, others, shared) - gauss_newton(J, r, all, shared);
   if (!own.empty()) moved(own) += gauss_newton(J, r + J * (moved - x), its, own);
   return moved;
 }
@@ -378,7 +382,7 @@ BallCalibration calibrate_ball(const BallCalibrationProblem& problem,
                          .bounds = std::vector<solvers::Bounds>(std::size_t(n), {-3, 3, 1}),
                          .value = [&](const auto& x, auto& r) { return fit.residuals(x, r); },
                          .linearised = [&](const auto& x, auto& r, auto& J) { return fit.linearised(x, r, J); }},
-                        start, {.iterations = 12, .cost = 1e-2, .parameters = 1e-2});  // where the noise of e begins
+                        start, {.iterations = 8, .cost = 1e-2, .parameters = 1e-2});  // where the noise of e begins
   if (!best) throw solvers::NonConvergence("calibration: no impact of the ball to begin with");
 
   BallCalibration out;

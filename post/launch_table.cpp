@@ -33,7 +33,8 @@ const MeasuredValue* find(const Measured& measured, const Channel* channel) {
   return it == measured.end() ? nullptr : &*it;
 }
 
-std::vector<std::string> outside(const Launch& launch, const Measured& measured) {
+std::vector<std::string> outside(const LaunchColumn& column, const Measured& measured, const MeasuredOblique& ranges) {
+  const Launch& launch = column.launch;
   std::vector<std::string> out;
   for (const MeasuredValue& m : measured) {
     if (!(m.uncertainty > 0)) continue;
@@ -43,6 +44,14 @@ std::vector<std::string> outside(const Launch& launch, const Measured& measured)
                               std::abs(off), off > 0 ? "too high" : "too low",
                               m.explained.empty() ? "the case gives no reason" : m.explained));
   }
+  const auto ranged = [&](const char* name, std::optional<double> value, const Range& range, const std::string& why) {
+    if (!value || !range || (*value >= range->first && *value <= range->second)) return;
+    out.push_back(fmt::format("{} is {:.3f}, outside the {:g} to {:g} that others measured: {}", name, *value,
+                              range->first, range->second, why.empty() ? "the case gives no reason" : why));
+  };
+  ranged("e_t", column.oblique.tangential_restitution, ranges.tangential_restitution,
+         ranges.tangential_restitution_explained);
+  ranged("launch ratio", column.oblique.launch_ratio, ranges.launch_ratio, ranges.launch_ratio_explained);
   return out;
 }
 

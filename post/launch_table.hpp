@@ -57,13 +57,15 @@ struct LaunchColumn {
 using Range = std::optional<std::pair<double, double>>;
 struct MeasuredOblique {
   Range tangential_restitution, launch_ratio;
+  std::string tangential_restitution_explained, launch_ratio_explained;  ///< why a model may lie outside
 };
 /// A row per quantity, a column per model, the measurement last where there is one, and where its uncertainty is stated
 /// by how many of its standard deviations the last model is off; then the flights, where the columns have them.
 TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
                        const MeasuredOblique& ranges = {}, Units units = Units::metric);
-/// Sentences about the quantities in which a launch is more than two standard deviations off the measurement.
-std::vector<std::string> outside(const Launch& launch, const Measured& measured);
+/// Sentences about the quantities in which a launch is more than two standard deviations off the measurement, or outside
+/// the range that others measured.
+std::vector<std::string> outside(const LaunchColumn& column, const Measured& measured, const MeasuredOblique& ranges);
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
 nlohmann::json to_json(const Launch& launch);
 

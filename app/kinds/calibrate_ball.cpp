@@ -402,7 +402,8 @@ class CalibrateBallJob final : public Job {
     if (!spins.empty()) {
       saw = fmt::format("; spin of {}", fmt::join(spins, ", "));
       if (!speeds.empty()) saw += fmt::format("; ball speed of {}", fmt::join(speeds, ", "));
-      not_seen = "other clubs, recorded lofts, tangential restitution, launch ratios";
+      not_seen = problem_.bounce ? "other clubs, recorded lofts, launch ratios"
+                                 : "other clubs, recorded lofts, tangential restitution, launch ratios";
     }
     if (problem_.bounce)
       saw += fmt::format("; e_t of {:g} +- {:g} off a plate at {:g} deg", problem_.bounce->tangential_restitution,

@@ -88,6 +88,12 @@ class ImpactJob final : public Job {
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
+    if (flight_)  // where the errors of the answer's carry come from; the other columns have theirs in the summary
+      for (const post::LaunchColumn& c : columns) {
+        nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
+        if (&c == &columns.back()) said["budget"] = report_flight(out, *flight_, c.title, c.launch, own_.blow.ball);
+      }
+    for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
     const ImpactStory story{blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(),
                             flight_.has_value(), record_.vtk};
@@ -96,15 +102,9 @@ class ImpactJob final : public Job {
       for (const auto& c : columns) lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
       out.say(fmt::format("dynamic loft that gives the measured launch angle [deg]: {}", lofts));
     }
-    for (const std::string& sentence : post::outside(columns.back().launch, measured_)) out.say(sentence);
+    for (const std::string& sentence : post::outside(columns.back(), measured_, ranges_)) out.say(sentence);
     if (const std::string sentence = shaft_sentence(story); !sentence.empty()) out.say(sentence);
     show_impact(out, story);
-    if (flight_)
-      for (const post::LaunchColumn& c : columns) {
-        nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
-        said["budget"] = report_flight(out, *flight_, c.title, c.launch, own_.blow.ball);
-      }
-    for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.write_summary(summary);
     for (const Entry& entry : own_.models)  // only now: a disk too full for the summary must not cost the run
       if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
@@ -159,6 +159,9 @@ class ImpactJob final : public Job {
         const auto ends = measured.numbers({key, "lowest and highest that was measured"}, 2);
         if (ends[0] > ends[1]) measured.fail(key, "give the lowest and the highest that was measured");
         *range = std::pair{ends[0], ends[1]};
+        if (explained && explained->has(key))
+          (key == "launch_ratio" ? ranges_.launch_ratio_explained : ranges_.tangential_restitution_explained) =
+              explained->text({key, "why the model may lie outside the range", "<launch quantity>"});
         continue;
       }
       const std::string stem = split_unit(key).stem;

@@ -1,0 +1,149 @@
+#include "hosel/app/kinds/calibrate_reduced.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_options.hpp"
+#include "hosel/models/oblique.hpp"
+#include "hosel/models/reduced_calibration.hpp"
+#include "hosel/post/csv.hpp"
+
+namespace hosel::app {
+namespace {
+
+/// One club and the blows that it strikes: a grid of speeds and lofts at the centre, and off-centre strikes at the mean
+/// of both.
+struct Set {
+  std::string name;
+  models::FeImpactOptions fe;
+  std::vector<Blow> blows;
+  std::vector<double> lofts;         ///< of the grid [rad]
+  std::vector<std::string> faces;    ///< for which the set is
+  std::vector<std::string> changes;  ///< of the case
+};
+
+class CalibrateReducedJob final : public Job {
+ public:
+  explicit CalibrateReducedJob(CaseFile& file) {
+    Table root = file.root();
+    const std::size_t count = root.tables("sets").size();
+    if (count == 0) root.fail("sets", "name at least one club: [[sets]]");
+    for (std::size_t i = 0; i < count; ++i) {
+      const Set plain = read_set(root, i);  // as the case stands: which keys the set changes
+      std::vector<std::string> changes = plain.changes;
+      changes.insert(changes.end(), file.overrides().begin(), file.overrides().end());  // the command line's last word
+      CaseFile own(file, changes);
+      sets_.push_back(read_set(own.root(), i));
+    }
+  }
+
+  void run(Output& out) override {
+    nlohmann::json summary;
+    std::string toml, csv =
+        "set,model,ball_speed_rms_mps,ball_speed_max_mps,launch_angle_rms_deg,launch_angle_max_deg,azimuth_rms_deg,"
+        "azimuth_max_deg,spin_rms_rpm,spin_max_rpm\n";
+    post::TextTable page{{{"set", "model", "ball speed [m/s]", "launch angle [deg]", "azimuth [deg]", "spin [rpm]"}}};
+    out.say("set        model            ball speed [m/s]  launch [deg]  azimuth [deg]      spin [rpm]   (rms, max)");
+    Progress progress = out.progress("sets");
+    for (std::size_t i = 0; i < sets_.size(); ++i) {
+      const Set& set = sets_[i];
+      const models::ReducedCalibration fit = models::calibrate_reduced(set.fe, set.blows);
+      progress.update(double(i + 1) / double(sets_.size()), set.name);
+      for (const models::ReducedBand& b : fit.bands) {
+        const double spin_rms = rpm(b.spin_rms), spin_max = rpm(b.spin_max);
+        out.say(fmt::format("{:<10} {:<16} {:7.2f} {:8.2f} {:6.2f} {:6.2f} {:7.2f} {:6.2f} {:7.0f} {:7.0f}", set.name,
+                            b.model, b.ball_speed_rms, b.ball_speed_max, degrees(b.launch_angle_rms),
+                            degrees(b.launch_angle_max), degrees(b.azimuth_rms), degrees(b.azimuth_max), spin_rms,
+                            spin_max));
+        page.rows.push_back({set.name, b.model, fmt::format("{:.2f}", b.ball_speed_rms),
+                             fmt::format("{:.2f}", degrees(b.launch_angle_rms)), fmt::format("{:.2f}", degrees(b.azimuth_rms)),
+                             fmt::format("{:.0f}", spin_rms)});
+        csv += fmt::format("{},{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g}\n", post::csv_cell(set.name),
+                           b.model, b.ball_speed_rms, b.ball_speed_max, degrees(b.launch_angle_rms),
+                           degrees(b.launch_angle_max), degrees(b.azimuth_rms), degrees(b.azimuth_max), spin_rms, spin_max);
+        summary["sets"][set.name][b.model] = {{"ball_speed_rms_mps", b.ball_speed_rms},
+                                              {"launch_angle_rms_deg", degrees(b.launch_angle_rms)},
+                                              {"azimuth_rms_deg", degrees(b.azimuth_rms)},
+                                              {"spin_rms_rpm", spin_rms}};
+      }
+      toml += entry(set, fit);
+    }
+    progress.finish();
+    out.page().answer(page);
+    out.write("bands.csv", csv);
+    out.write("reduced.toml", toml);
+    out.write_summary(summary);
+  }
+
+ private:
+  static Set read_set(Table root, std::size_t index) {
+    const std::vector<std::string> models{"fe-free-body"};
+    Set set;
+    const Blow base = read_blow(root, models);
+    set.fe = read_options(root, models).fe;
+    if (auto face = root.optional_table("face"); face && face->has("name"))
+      set.faces.push_back(face->text({"name", "a face of the library"}));
+    Table t = root.tables("sets")[index];
+    set.name = t.text({"name", "of the set of parameters"});
+    set.changes =
+        t.texts({"set", "keys of the case that the set's club changes, table.key=value"}, std::vector<std::string>{});
+    const auto speeds = t.quantities({"club_speeds", "of the grid, at the centre of the face"}, "mps", 0, limits::club_speed);
+    set.lofts = t.quantities({"lofts", "of the grid"}, "deg", 0, limits::angle);
+    const auto toes = t.quantities({"impact_toes", "of the strikes off centre, each with its height"}, "mm", 0,
+                                   limits::impact_place, std::vector<double>{});
+    const auto highs = t.quantities({"impact_highs", "of the same strikes"}, "mm", toes.size(), limits::impact_place,
+                                    std::vector<double>(toes.size(), 0.0));
+    if (speeds.empty() || set.lofts.empty()) t.fail("lofts", "a grid needs at least one speed and one loft");
+    double speed = 0, loft = 0;
+    for (const double v : speeds)
+      for (const double l : set.lofts) {
+        Blow& b = set.blows.emplace_back(base);
+        b.delivery.club_speed = v;
+        b.delivery.dynamic_loft = l;
+        speed += v;
+        loft += l;
+      }
+    const double n = double(set.blows.size());
+    for (std::size_t k = 0; k < toes.size(); ++k) {
+      Blow& b = set.blows.emplace_back(base);
+      b.delivery.club_speed = speed / n;
+      b.delivery.dynamic_loft = loft / n;
+      b.delivery.impact_toe = toes[k];
+      b.delivery.impact_high = highs[k];
+    }
+    if (set.blows.size() < 4) t.fail("lofts", "fewer than four blows tell nothing");
+    return set;
+  }
+
+  /// As a ball's entry of the library has it.
+  static std::string entry(const Set& set, const models::ReducedCalibration& fit) {
+    const auto [low, high] = std::ranges::minmax(set.lofts);
+    const models::VolumetricLaw& v = fit.volume;
+    std::string faces;
+    for (const std::string& f : set.faces) faces += fmt::format("{}\"{}\"", faces.empty() ? "" : ", ", f);
+    return fmt::format(
+        "\n[[reduced]]\nname = \"{}\"\n[reduced.saw]\nspin_loft_deg = [{:g}, {:g}]\n{}[reduced.contact]\n"
+        "face_friction = {:.6g}\nrestitution = {:.6g}\nrestitution_slope_s_per_m = {:.6g}\n"
+        "tangential_restitution = {:.6g}\nfriction = {:.6g}\nnormal_force_offset = 0\n[reduced.volumetric]\n"
+        "stiffness_N_per_m3 = {:.6g}\ndamping_s_per_m = {:.6g}\nfriction = {:.6g}\ntransition_speed_mps = {:.6g}\n"
+        "joint_stiffness_N_m_per_rad = {:.6g}\njoint_damping_N_m_s_per_rad = {:.6g}\ncover_thickness_mm = {:.6g}\n"
+        "volume_exponent = {:.6g}\n[reduced.hertz_maw]\nmodulus_MPa = {:.6g}\npoisson = {:.6g}\nfriction = {:.6g}\n"
+        "damping_s_per_m = {:.6g}\n",
+        set.name, degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces), fit.law.friction,
+        fit.law.restitution, fit.law.restitution_slope, fit.law.tangential_restitution, fit.law.friction, v.stiffness,
+        v.damping, v.friction, v.transition_speed, v.joint_stiffness, v.joint_damping, 1e3 * v.cover_thickness,
+        v.volume_exponent, 1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction, fit.hertz.damping);
+  }
+
+  std::vector<Set> sets_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_calibrate_reduced(CaseFile& file) { return std::make_unique<CalibrateReducedJob>(file); }
+
+}  // namespace hosel::app

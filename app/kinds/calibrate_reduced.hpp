@@ -1,0 +1,10 @@
+/// kind = "calibrate-reduced": what the reduced models need of a ball, from what its finite-element model does.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_calibrate_reduced(CaseFile& file);
+
+}  // namespace hosel::app
