@@ -104,8 +104,8 @@ TEST(ImpactCase, ADriversRigidFaceIsSaidInOneLine) {
     const auto at = run.text.find(warning);
     return at != std::string::npos && run.text.find(warning, at + 1) == std::string::npos;
   };
-  EXPECT_TRUE(said("driver-toe", ""));
-  EXPECT_FALSE(said("driver-toe", "--set 'face.name=\"modern-driver\"'"));
+  EXPECT_TRUE(said("driver-toe", "--set 'face.name=\"rigid\"'"));
+  EXPECT_FALSE(said("driver-toe", ""));
   EXPECT_FALSE(said("iron7-trackman", ""));
 }
 
