@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/check_memory.hpp"
+#include "hosel/app/offer.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_face.hpp"
 #include "hosel/app/read_shaft.hpp"
@@ -56,6 +57,7 @@ class CalibrateBallJob final : public Job {
                   false);
     if (const auto faults = options.faults(); !faults.empty()) root.fail("ball", faults.front());
     if (const auto faults = problem_.faults(); !faults.empty()) root.fail("free", faults.front());
+    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -139,6 +141,8 @@ class CalibrateBallJob final : public Job {
     }
     out.draw(figure, "fit");
     if (!fit.shots.empty()) out.draw(shot_figure(fit), "shots");
+    withdraw_offers(out);
+    if (fit.converged) offer_found(out, fit);
     if (!fit.converged) out.say("the fit has not converged: " + fit.report);
     out.write_summary(summary);
   }
@@ -146,6 +150,43 @@ class CalibrateBallJob final : public Job {
  private:
   using What = models::FreeParameter::What;
   using Points = std::vector<models::ObliquePoint>;
+
+  /// The ball, and the friction that was fitted with it. Faces, strikes and heads are the clubs' own.
+  void offer_found(Output& out, const models::BallCalibration& fit) const {
+    const models::NormalImpactTarget& wall = problem_.wall;
+    Offer o{.what = fmt::format("a ball of {} layer{} by its bounce{}", fit.ball.layers.size(),
+                                fit.ball.layers.size() == 1 ? "" : "s",
+                                problem_.shots.empty() ? "" : " and oblique blows"),
+            .source = fmt::format("restitution at {} speeds and a contact of {:g} ms at {:g} m/s on a wall",
+                                  wall.speeds.size(), 1e3 * wall.contact_time, wall.contact_speed),
+            .parameters = fit.names,
+            .values = fit.values,
+            .covariance = fit.covariance};
+    for (std::size_t p = 0; p < fit.names.size(); ++p) {
+      o.of.emplace_back(additive(p) ? "value" : "logarithm");
+      if (!additive(p)) continue;
+      o.covariance.row(Eigen::Index(p)) *= 0.01;
+      o.covariance.col(Eigen::Index(p)) *= 0.01;
+    }
+    Use use{{std::ranges::min(wall.speeds), std::ranges::max(wall.speeds)}, {0, 0}};
+    bool oblique = problem_.bounce.has_value();
+    if (oblique) use.spin_loft.high = problem_.bounce->angle;
+    for (const models::ObliqueTarget& shot : problem_.shots) {
+      if (!shot.seen) continue;
+      oblique = true;
+      use = both(use, use_of(shot.blow));
+      o.seen.clubs.push_back(shot.name);
+    }
+    o.seen.impact_speed = use.impact_speed;
+    if (oblique) o.seen.spin_loft = use.spin_loft;
+    else o.seen.not_for.emplace_back("a claim about spin: no oblique blow was seen");
+    offer(out, origin_, Shelf::balls, o, ball_tables(problem_.ball, fit.ball));
+    if (std::ranges::any_of(problem_.free, [](const auto& p) { return p.what == What::friction; })) {
+      NamedContact contact;
+      contact.face_friction = fit.friction;
+      offer(out, origin_, Shelf::contacts, o, contact_tables(contact));
+    }
+  }
 
   void read_target(Table& target) {
     models::NormalImpactTarget& wall = problem_.wall;
@@ -438,6 +479,7 @@ class CalibrateBallJob final : public Job {
     return text;
   }
 
+  Origin origin_;
   models::BallCalibrationProblem problem_;
   std::vector<std::string> groups_;  // of the shots
 };
