@@ -182,7 +182,8 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
                      ? models::VolumetricLaw::published_iron7()
                      : models::VolumetricLaw::published_driver();
     else if (named && named->volume) standard = named->volume;
-    else if (overlap && !t->has_quantity("stiffness"))
+    else if (!overlap) standard.emplace();  // nobody asks it: its other keys are checked all the same
+    else if (!t->has_quantity("stiffness"))
       t->fail("",
               "whose constants? `published = \"driver\"` or \"iron7\", all of them, or a ball or contact of the "
               "library that has them");
