@@ -22,6 +22,7 @@
 #include "hosel/app/kinds/modes.hpp"
 #include "hosel/app/kinds/restitution_face.hpp"
 #include "hosel/app/kinds/shaft_modes.hpp"
+#include "hosel/app/kinds/slopes.hpp"
 #include "hosel/app/kinds/sweep.hpp"
 #include "hosel/app/kinds/swing.hpp"
 #include "hosel/app/kinds/tune.hpp"
@@ -80,6 +81,8 @@ constexpr std::array kKinds = {
          "Which face behaves as measured?", read_calibrate_face},
     Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside",
          "How does the ball leave a plate that it meets obliquely?", read_bounce},
+    Kind{"slopes", "slopes of the launch over the face: measured by robust regression, and of models",
+         "How does the launch change with the place of impact, measured and computed?", read_slopes},
     Kind{"variants", "one blow in several variants of its case, at one launch angle and one bounce if asked",
          "What does each change of the case change in the launch?", read_variants},
 };

@@ -76,8 +76,11 @@ void read_origin(Table root) {
     const auto parameters = fit->texts({"parameters", "that were fitted, each with its unit"});
     const std::size_t n = parameters.size();
     fit->numbers({"values", "found, one for each parameter"}, n);
-    const auto c = fit->numbers({"covariance", "of the parameters, row by row"}, n * n);
-    fit->choice({"of", "what the covariance is of"}, {"values", "logarithms"}, "values");
+    const auto c = fit->numbers({"covariance", "of the parameters, row by row"}, n * n, Range::finite().or_infinite());
+    const auto of = fit->texts({"of", "what the covariance is of, for each parameter: value or logarithm"});
+    if (of.size() != n ||
+        std::ranges::any_of(of, [](const std::string& o) { return o != "value" && o != "logarithm"; }))
+      fit->fail("of", "say of each parameter: \"value\" or \"logarithm\"");
     fit->texts({"unidentified", "what the data did not decide"}, std::vector<std::string>{});
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j <= i; ++j)
@@ -169,6 +172,7 @@ std::vector<LibraryEntry> on_shelf(Shelf shelf) {
   for (const bool shipped : {true, false}) {
     const fs::path home = shipped ? shipped_library() : user_library();
     std::error_code none;
+    if (!shipped && fs::equivalent(home, shipped_library(), none)) continue;  // whoever ships entries makes them so
     std::vector<LibraryEntry> here;
     if (!home.empty())
       for (const auto& file : fs::directory_iterator(home / name(shelf), none))

@@ -8,11 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "hosel/app/read_shaft.hpp"
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/blow.hpp"
 #include "hosel/golf/face_compliance.hpp"
 #include "hosel/models/fe_ball.hpp"
 #include "hosel/models/hertz_maw.hpp"
+#include "hosel/models/options.hpp"
 #include "hosel/models/volumetric.hpp"
 
 namespace hosel::app {
@@ -91,13 +93,6 @@ struct HeadSpread {
   std::optional<Vec3> cg;                                  ///< [m]
 };
 
-/// Where the shaft enters the head, as a case's [hosel] says it.
-struct HoselPlace {
-  Vec3 position;     ///< face frame [m]
-  double lie, lean;  ///< [rad]
-  ClubGeometry geometry() const;
-};
-
 struct HeadEntry {
   Head head;
   std::optional<double> loft;  ///< of the face at its centre, the shaft upright [rad]
@@ -121,6 +116,20 @@ std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf
 /// The contact of a case: `[contact] name`, else what `[ball] model` carries for this loft (`[ball] reduced` names one
 /// of several). Nothing where neither is there.
 std::optional<NamedContact> named_contact(Table root);
+
+/// What the blows along some axes ask, along each by itself from `middle`.
+template <class Axes>
+Use use_of_axes(const models::Options& options, const Blow& middle, const Axes& axes) {
+  Use use = use_of(middle);
+  for (const auto& axis : axes)
+    for (const double value : axis.values) {
+      models::Options changed = options;
+      Blow blow = middle;
+      axis.parameter->set(changed, blow, value);
+      use = both(use, use_of(blow));
+    }
+  return use;
+}
 
 /// Refuses, with a sentence, what uses an entry that the case names beyond what it saw, unless `extrapolate = true`
 /// stands beside its name. `models` are those that are asked.

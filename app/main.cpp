@@ -14,6 +14,7 @@
 #include "hosel/app/import/import.hpp"
 #include "hosel/app/job.hpp"
 #include "hosel/app/keys.hpp"
+#include "hosel/app/offer.hpp"
 #include "hosel/app/paraview.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep.hpp"
@@ -71,6 +72,13 @@ void list() {
     for (const auto& [name, what] : section.entries) width = std::max(width, name.size());
     fmt::print("{}\n", section.title);
     for (const auto& [name, what] : section.entries) fmt::print("  {:<{}}  {}\n", name, width, what);
+  }
+}
+
+void adopt(const Arguments& a) {
+  for (const std::filesystem::path& file : app::adopt(a.out, a.from, a.force)) {
+    const std::string shelf = file.parent_path().filename().string();
+    fmt::print("{} '{}': {}\n", shelf.substr(0, shelf.size() - 1), a.from, file.string());
   }
 }
 
@@ -149,6 +157,12 @@ int main(int argc, char** argv) {
   add_directory(status);
   status->callback([&] { app::sweep_status(a.out); });
 
+  CLI::App* adopt_command =
+      cli.add_subcommand("adopt", "make entries of your library of a finished calibration or loop");
+  adopt_command->add_option("OUT", a.out, "directory of a run")->required();
+  adopt_command->add_option("--as", a.from, "name of the entries, for cases")->required();
+  adopt_command->add_flag("--force", a.force, "replace entries of this name");
+  adopt_command->callback([&] { adopt(a); });
   CLI::App* diff_command = cli.add_subcommand("diff", "two finished runs: inputs and launches that differ");
   diff_command->add_option("A", a.from, "directory of a run")->required();
   diff_command->add_option("B", a.out, "directory of another")->required();

@@ -174,14 +174,19 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   std::optional<FaceCompliance> face;
   if (overlap || fe || there) face = read_club_face(root);
   if (auto t = table("volumetric", overlap)) {
-    const bool stated = named && named->volume && !t->has("published");
-    models::VolumetricLaw standard;
-    if (stated) standard = *named->volume;
-    else
+    // Nobody's constants are a default: an iron struck with a driver's is 6 mph too fast.
+    std::optional<models::VolumetricLaw> standard;
+    if (t->has("published"))
       standard = t->choice({"published", "which published set of parameters the defaults come from"},
-                           {"driver", "iron7"}, "driver") == "iron7"
+                           {"driver", "iron7"}) == "iron7"
                      ? models::VolumetricLaw::published_iron7()
                      : models::VolumetricLaw::published_driver();
+    else if (named && named->volume) standard = named->volume;
+    else if (!overlap) standard.emplace();  // nobody asks it: its other keys are checked all the same
+    else if (!t->has_quantity("stiffness"))
+      t->fail("",
+              "whose constants? `published = \"driver\"` or \"iron7\", all of them, or a ball or contact of the "
+              "library that has them");
     options.volumetric = read_volumetric_law(*t, standard);
     options.volumetric_solution.integrator =
         t->choice({"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},

@@ -1,7 +1,8 @@
 /// The shaft and how the head hangs on it, as tables of a case file.
 #pragma once
 
-#include "hosel/app/library.hpp"
+#include <optional>
+
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/blow.hpp"
 
@@ -10,6 +11,13 @@ namespace hosel::app {
 /// `[shaft]`: by `name` from the library, by `table` (lists of station values), by `polynomial`, or by
 /// `tube` geometry; with stiffness scales and damping.
 Shaft read_shaft(Table table);
+
+/// Where the shaft enters the head, as a case's [hosel] says it.
+struct HoselPlace {
+  Vec3 position;     ///< face frame [m]
+  double lie, lean;  ///< [rad]
+  ClubGeometry geometry() const;
+};
 
 /// `[hosel]`: where the shaft's tip is, and the shaft's direction, in the face frame. Without a standard all is
 /// required.

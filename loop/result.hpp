@@ -110,6 +110,7 @@ struct LoopResult {
   std::vector<WrongColumn> columns;  ///< whole columns that contradict their header
   std::vector<ChannelResult> channels;
   Selection selection;
+  Eigen::MatrixXd covariance;  ///< of the parameters of `selection.chosen` [SI]; infinite along null vectors
   std::vector<std::string> channel_names;  ///< of the fit: the findings' numbering
   std::vector<ScoredCandidate> candidates;
   double base_score = 0;

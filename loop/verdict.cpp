@@ -182,6 +182,7 @@ void conclude(const Study& study, LoopResult& result) {
   result.likeness = likeness(problem, after, study.candidates);
   result.next = problem.next_experiment(result);
   result.selection.chosen = some_kept ? kept.fit : chosen;
+  result.covariance = covariance(problem, result.selection.chosen);
 }
 
 }  // namespace hosel::loop

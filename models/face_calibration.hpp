@@ -23,7 +23,8 @@ struct FaceTarget {
 struct FaceCalibration {
   FaceCompliance face;
   std::vector<double> sd;  ///< of mass, stiffness, damping, half width, half height; infinite where the data are blind
-  double cost = 0;         ///< half the sum of squares in units of the standard deviations
+  Eigen::MatrixXd correlation;  ///< of the same
+  double cost = 0;              ///< half the sum of squares in units of the standard deviations
 };
 /// Throws solvers::NonConvergence.
 FaceCalibration calibrate_face(const Head& head, const Striker& sphere, const Striker& ball, const FaceTarget& target);

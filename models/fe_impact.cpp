@@ -205,6 +205,43 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   return parts;
 }
 
+void Release::add(double now, double normal_force, bool touching) {
+  if (!touching) {
+    apart = true;
+    return;
+  }
+  if (apart) known = 0;  // it touches again
+  apart = false;
+  if (known == kSteps) {
+    std::shift_left(time.begin(), time.end(), 1);
+    std::shift_left(force.begin(), force.end(), 1);
+    --known;
+  }
+  time[known] = now;
+  force[known++] = normal_force;
+}
+
+std::optional<double> Release::end() const {
+  if (known < kSteps) return {};
+  std::array<double, kSteps> y{};
+  double t_mean = 0, y_mean = 0;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    y[k] = std::pow(std::max(force[k], 0.0), 2.0 / 3);
+    t_mean += time[k] / kSteps;
+    y_mean += y[k] / kSteps;
+  }
+  double up = 0, down = 0;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    up += (time[k] - t_mean) * (y[k] - y_mean);
+    down += (time[k] - t_mean) * (time[k] - t_mean);
+  }
+  if (!(up < 0)) return {};
+  const double end = t_mean - y_mean * down / up, step = time[kSteps - 1] - time[kSteps - 2];
+  // The last point lets go in the step after the last in contact; the line may miss it by a step.
+  if (std::abs(end - time[kSteps - 1]) > 2 * step) return {};
+  return end;
+}
+
 FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial, const FeImpactOptions& o,
                           double approach_speed, const ImpactObserver& observer, const ImpactCheckpoint* from) {
   parts.contact->start(initial);
@@ -268,6 +305,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
       at.last_touch += (now - at.last_touch) * at.last_nearest / (at.last_nearest - report.nearest);
     }
     at.last_nearest = report.nearest;
+    at.release.add(now, report.normal_force, report.points > 0);
     const double gap = parts.contact->centre_gap(solver.state());
     const bool leaving = gap > at.last_gap;  // a stiff skin may bounce while the ball still comes nearer
     at.last_gap = gap;
@@ -295,7 +333,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   const fem::MeanMotion motion = parts.ball->motion(solver.state());
   out.ball_velocity = motion.velocity;
   out.ball_spin = inertia.inverse() * motion.angular_momentum;
-  out.contact_time = at.last_touch;
+  out.contact_time = at.release.end().value_or(at.last_touch);
   out.peak_force = at.force.value;
   out.peak_time = at.force.time;
   out.compression = at.compression.value;

@@ -1,6 +1,7 @@
 /// The finite-element impact: a deformable ball meets the face of a rigid head.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -100,7 +101,7 @@ struct FeImpactResult {
   /// Angular momentum over the undeformed mesh's own inertia: the spin that the ball keeps once its
   /// vibration has died away, global [rad/s].
   Vec3 ball_spin = Vec3::Zero();
-  double contact_time = 0;         ///< from first to last touch [s]
+  double contact_time = 0;         ///< from first to last touch, see Release [s]
   double peak_force = 0;           ///< largest normal force, by solvers::Peak as the other largest values [N]
   double peak_time = 0;            ///< when [s]
   double compression = 0;          ///< largest approach of ball centre and face along the normal [m]
@@ -114,6 +115,20 @@ struct FeImpactResult {
   fem::State last;  ///< when it was over
 };
 
+/// When contact ends, from the normal force in its last steps: Hertz's falls with (end - t)^(3/2), so its power 2/3
+/// runs straight to zero. The step in which the last point lets go is known to a step only: after it the gap opens at
+/// once.
+struct Release {
+  static constexpr std::size_t kSteps = 4;
+  std::array<double, kSteps> time{}, force{};  ///< the last steps in contact, the latest last [s], [N]
+  std::size_t known = 0;
+  bool apart = false;  ///< since the last of them
+
+  void add(double now, double normal_force, bool touching);
+  /// Nothing where fewer steps are known, or where the force did not fall: a skin that bounces.
+  std::optional<double> end() const;
+};
+
 /// An impact under way: all that is needed to go on exactly where it was.
 struct ImpactCheckpoint {
   solvers::Checkpoint solver;
@@ -123,6 +138,7 @@ struct ImpactCheckpoint {
   double last_touch = 0;    ///< between the steps, where the last point let go [s]
   double last_nearest = 0;  ///< smallest gap of the patch after the last step [m]
   double last_gap = 0;      ///< between ball centre and face [m]
+  Release release;
 };
 
 /// What an observer sees after every accepted step, and once at the start.

@@ -127,6 +127,11 @@ SavedImpact saved_impact(const json& j) {
   i.over = j.at("over");
   i.last_touch = j.at("last_touch");
   i.last_nearest = j.at("last_nearest");
+  i.release.time = j.at("release_time");
+  i.release.force = j.at("release_force");
+  i.release.known = j.at("release_known");
+  if (i.release.known > models::Release::kSteps) throw std::length_error("checkpoint");
+  i.release.apart = j.at("release_apart");
   i.last_gap = j.at("last_gap");
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
@@ -169,6 +174,10 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
             {"over", i.over},
             {"last_touch", i.last_touch},
             {"last_nearest", i.last_nearest},
+            {"release_time", i.release.time},
+            {"release_force", i.release.force},
+            {"release_known", i.release.known},
+            {"release_apart", i.release.apart},
             {"last_gap", i.last_gap},
             {"face_centre", numbers(saved.face_centre)},
             {"face_axes", numbers(saved.face_axes)},

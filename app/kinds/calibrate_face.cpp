@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/offer.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/models/face_calibration.hpp"
 #include "hosel/post/figure.hpp"
@@ -38,6 +39,7 @@ class CalibrateFaceJob final : public Job {
     target_.mass = target.quantity({"effective_mass", "of the face, as estimated"}, "g", {1e-3, 0.04});
     target_.mass_sigma =
         target.quantity({"effective_mass_sigma", "standard error of the effective mass"}, "g", Range::positive());
+    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -68,10 +70,30 @@ class CalibrateFaceJob final : public Job {
     out.say(fmt::format("half the sum of squares: {:.3g} over {} data", fit.cost, target_.taps.size() + 2));
     out.draw(figure(f), "times");
     out.write("face.toml", toml);
+    withdraw_offers(out);
+    offer(out, origin_, Shelf::faces, offered(fit), face_tables(fit.face));
     out.write_summary(summary);
   }
 
  private:
+  Offer offered(const models::FaceCalibration& fit) const {
+    const FaceCompliance& f = fit.face;
+    Offer o{.what = fmt::format("a face by characteristic time, restitution {:g} at {:g} m/s and the plate's mass",
+                                target_.restitution, target_.speed),
+            .source = fmt::format("{} characteristic times, one restitution, an estimated mass", target_.taps.size()),
+            .parameters = {"effective mass [g]", "stiffness [N/m]", "damping [N s/m]", "half width [mm]",
+                           "half height [mm]"},
+            .values = {1e3 * f.mass, f.stiffness, f.damping, 1e3 * f.half_width, 1e3 * f.half_height},
+            .of = std::vector<std::string>(5, "value")};
+    const Eigen::Vector<double, 5> unit(1e3, 1, 1, 1e3, 1e3), sd = Eigen::Map<const Eigen::VectorXd>(fit.sd.data(), 5);
+    o.covariance = (sd.cwiseProduct(unit)).asDiagonal() * fit.correlation * (sd.cwiseProduct(unit)).asDiagonal();
+    for (std::size_t k = 0; k < 5; ++k)
+      if (!std::isfinite(fit.sd[k])) o.unidentified.push_back(o.parameters[k]);
+    o.seen.impact_speed = Interval{0, target_.speed};
+    o.seen.not_for = {"another face than that of the taps", "points of the face far from the taps"};
+    return o;
+  }
+
   /// Characteristic times along the face's two middle lines beside the taps on them.
   post::Figure figure(const FaceCompliance& face) const {
     const models::Striker sphere = models::steel_sphere(radius_);
@@ -105,6 +127,7 @@ class CalibrateFaceJob final : public Job {
     return out;
   }
 
+  Origin origin_;
   Ball ball_;
   Head head_;
   double radius_ = 0;

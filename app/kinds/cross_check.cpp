@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
@@ -74,6 +75,7 @@ class CrossCheckJob final : public Job {
       if (auto c = find_shot_channel(name, flight, blow_.ball)) channels_.push_back(std::move(*c));
     for (const Table& t : root.tables("grid")) axes_.push_back(read_axis(t));
     if (axes_.empty()) root.fail("grid", "name at least one [[grid]] axis");
+    check_use(root, use_of_axes(options_, blow_, axes_), models_);
     points_ = 1;
     constexpr std::size_t most = 1'000'000;
     for (const Axis& a : axes_) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
@@ -37,6 +39,7 @@ class CurvesJob final : public Job {
       return;
     }
     x_ = read_axis(root.table("x"));
+    check_use(root, use_of_axes(options_, blow_, std::array{family_, x_}), models_);
     const std::optional<FlightSetup> flight = read_optional_flight(root);
     for (const std::string& name : root.texts({"channels", "launch quantities drawn over x"})) {
       const auto c = find_shot_channel(name, flight, blow_.ball);

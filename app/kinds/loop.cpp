@@ -13,6 +13,7 @@
 #include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/kinds/loop_corrected.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
+#include "hosel/app/kinds/loop_offer.hpp"
 #include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
@@ -139,6 +140,9 @@ class LoopJob final : public Job {
       if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
         split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
     }
+    if (skipped_.empty())
+      if (const auto use = use_of_shots(case_)) check_use(root, *use, {case_.base});
+    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -150,6 +154,8 @@ class LoopJob final : public Job {
     } catch (const DataError& e) { throw InputError(e.what()); }
     case_.told = {};
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
+    withdraw_offers(out);
+    offer_corrected(out, origin_, case_, result, fe_.get());
     report_loop(out, result, case_.shots, "rows");
   }
 
@@ -253,6 +259,7 @@ class LoopJob final : public Job {
   }
 
   loop::ShotCase case_;
+  Origin origin_;
   std::unique_ptr<models::ImpactModel> model_;
   loop::SlowBase slow_;
   std::unique_ptr<models::ChangeableFe> fe_;  ///< of a finite-element base

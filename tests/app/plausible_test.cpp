@@ -68,12 +68,17 @@ TEST(Plausible, MissingTableIsNamedWithoutColons) {
   EXPECT_NE(o.text.find("case.toml:1: table '[head]' is missing"), std::string::npos) << o.text;
 }
 
-TEST(Plausible, CheckShowsTheSetThatAModelUsesByDefault) {
+/// No model has constants by default: which ball's they are is said in the case.
+TEST(Plausible, NobodysConstantsAreADefault) {
   const fs::path dir = fresh_directory("default_table");
   write(dir / "case.toml", kEccentricBlow);
-  const Outcome o = command("check " + dir.string() + " --set 'models=[\"volumetric\"]'");
-  EXPECT_EQ(o.status, 0) << o.text;
-  EXPECT_NE(o.text.find("published = \"driver\""), std::string::npos) << o.text;
+  const std::string check = "check " + dir.string() + " --set 'models=[\"volumetric\"]'";
+  const Outcome none = command(check);
+  EXPECT_EQ(none.status, 2) << none.text;
+  EXPECT_NE(none.text.find("volumetric: whose constants?"), std::string::npos) << none.text;
+  const Outcome iron = command(check + " --set volumetric.published=iron7");
+  EXPECT_EQ(iron.status, 0) << iron.text;
+  EXPECT_NE(iron.text.find("friction = 0.489"), std::string::npos) << iron.text;
 }
 
 TEST(Plausible, ABlowWithoutAClubHasNoLaunch) {

@@ -319,6 +319,8 @@ club_speed_mps = 40.0
 mass_kg = 0.26
 cg_mm = [0.0, 0.0, 0.0]
 inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
+[volumetric]
+published = "driver"
 )";
   const nlohmann::json s = run(d);
   EXPECT_EQ(s["points"], 4);

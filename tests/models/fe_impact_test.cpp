@@ -95,6 +95,50 @@ TEST(FeImpact, LibraryBallsBounce) {
   EXPECT_EQ(seen, 4u);
 }
 
+/// Contact ends between the steps: two strikes 5 mm apart differ by the face's curvature, not by a step. The end read
+/// where the last point lets go moved by 0.43 steps here.
+TEST(FeImpact, ContactTimeIsNoMultipleOfTheStep) {
+  FeImpactOptions o;
+  o.harmonics = 2;
+  o.mesh.sector = o.mesh.rings = 2;
+  o.antisymmetric = 1;
+  o.steps_per_contact = 30;
+  Blow blow;
+  blow.delivery = {.club_speed = 45, .attack_angle = radians(3), .dynamic_loft = radians(13), .impact_high = -5e-3};
+  blow.club.head = {.mass = 0.204, .cg = Vec3(-42.3e-3, 1e-3, 2.9e-3)};
+  blow.club.head.inertia = Vec3(2.843e-4, 4.085e-4, 5.679e-4).asDiagonal();
+  blow.club.head.face = {.bulge = 0.305, .roll = 0.305};
+  blow.ball.radius = 21.3e-3;
+  std::vector<double> end;
+  double step = 0;
+  for (const double toe : {5e-3, 10e-3}) {
+    blow.delivery.impact_toe = toe;
+    double before = 0;
+    const FeOutcome out = solve_free_body(blow, o, [&](const ImpactView& v) {
+      step = v.state.time - before;
+      before = v.state.time;
+    });
+    EXPECT_GT(out.result.peak_force, 8e3);
+    end.push_back(out.result.contact_time);
+  }
+  EXPECT_NEAR(end[0], end[1], 0.25 * step);
+  EXPECT_NEAR(end[0], 0.418e-3, 0.003e-3) << "240 steps in a contact give 0.417 to 0.420 ms";
+}
+
+TEST(FeImpact, ReleaseIsWhereHertzsForceEnds) {
+  Release r;
+  for (int k = 0; k < 9; ++k) {
+    const double t = 0.05 * k;
+    r.add(t, 7e3 * std::pow(0.42 - t, 1.5), true);
+    if (k < 3) EXPECT_FALSE(r.end()) << "three steps";
+  }
+  r.add(0.45, 0, false);
+  ASSERT_TRUE(r.end());
+  EXPECT_NEAR(*r.end(), 0.42, 1e-12);
+  r.add(0.5, 3, true);  // it touches again: nothing is known of how that ends
+  EXPECT_FALSE(r.end());
+}
+
 /// Speed and spin against the force and its arm, summed over the blow from the patch's own report: Newton's and Euler's
 /// laws for a ball of the stated mass and inertia. One per cent of force, arm, mass or inertia would show.
 TEST(FeImpact, ObliqueBlowSpinsTheBallByTheMomentOfTheForce) {

@@ -1,0 +1,137 @@
+// From a finished run to an entry of the library, and on into a case of another kind.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "hosel/app/library.hpp"
+#include "hosel/app/offer.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel;
+using namespace hosel::app;
+using hosel::test::command;
+using hosel::test::content;
+using hosel::test::fresh_directory;
+using hosel::test::kEccentricBlow;
+using hosel::test::Outcome;
+using hosel::test::write;
+
+struct Adopt : testing::Test {
+  fs::path dir = fresh_directory(testing::UnitTest::GetInstance()->current_test_info()->name());
+  void SetUp() override { setenv("HOSEL_LIBRARY", (dir / "library").c_str(), 1); }
+  void TearDown() override { unsetenv("HOSEL_LIBRARY"); }
+  fs::path finished(const std::string& shipped_case, const std::string& more = "") {
+    const fs::path out = dir / shipped_case;
+    const Outcome o = command("run " + shipped_case + " --quiet --out " + out.string() + more);
+    EXPECT_EQ(o.status, 0) << o.text;
+    return out;
+  }
+  Outcome adopt(const fs::path& out, const std::string& more) { return command("adopt " + out.string() + " " + more); }
+};
+
+/// A face that laboratory data calibrated yields in a blow of another kind as the calibration found it.
+TEST_F(Adopt, ACalibratedFaceIsStruck) {
+  const fs::path out = finished("calibrate-face");
+  const Outcome made = adopt(out, "--as my-face");
+  ASSERT_EQ(made.status, 0) << made.text;
+  const fs::path file = dir / "library" / "faces" / "my-face.toml";
+  EXPECT_NE(made.text.find("face 'my-face': " + file.string()), std::string::npos) << made.text;
+  const std::string entry = content(file);
+  for (const char* part : {"case = \"calibrate-face\"", "inputs = ", "build = ", "covariance = ", "not_for = "})
+    EXPECT_NE(entry.find(part), std::string::npos) << part << entry;
+  const auto summary = nlohmann::json::parse(content(out / "summary.json"));
+  double stiffness = 0;
+  for (const auto& p : summary.at("parameters"))
+    if (p.at("name") == "stiffness_N_per_m") stiffness = p.at("value");
+  ASSERT_GT(stiffness, 1e6);
+  EXPECT_NEAR(library_face("my-face").face.stiffness, stiffness, 1e-9 * stiffness);
+  // Another kind, and another model than the calibration's.
+  write(dir / "blow" / "case.toml",
+        kEccentricBlow + "[face]\nname = \"my-face\"\n[volumetric]\npublished = \"driver\"\n");
+  const std::string blow = "run " + (dir / "blow").string() + " --set 'models=[\"volumetric\"]' --quiet --out ";
+  const Outcome struck = command(blow + (dir / "a").string());
+  EXPECT_EQ(struck.status, 0) << struck.text;
+  const Outcome rigid = command(blow + (dir / "b").string() + " --set 'face={name=\"rigid\"}'");
+  EXPECT_EQ(rigid.status, 0) << rigid.text;
+  const auto speed = [&](const char* run) {
+    return nlohmann::json::parse(content(dir / run / "summary.json"))
+        .at("models")
+        .at("volumetric")
+        .at("ball_speed_mps")
+        .get<double>();
+  };
+  EXPECT_GT(speed("a"), speed("b") + 0.2) << "the face gives something back";
+  // Faster than the restitution was measured at.
+  const Outcome fast = command(blow + (dir / "c").string() + " --set delivery.club_speed_mps=70");
+  EXPECT_EQ(fast.status, 2);
+  EXPECT_NE(fast.text.find("'my-face' saw impact speeds"), std::string::npos) << fast.text;
+  EXPECT_NE(fast.text.find("`extrapolate = true`"), std::string::npos) << fast.text;
+  const std::string listed = command("list").text;
+  EXPECT_NE(listed.find(file.string()), std::string::npos) << listed;
+}
+
+TEST_F(Adopt, NamesAreKept) {
+  const fs::path out = finished("calibrate-face");
+  EXPECT_EQ(adopt(out, "--as 'My Face'").status, 2);
+  EXPECT_NE(adopt(out, "--as modern-driver").text.find("shipped library has a face of this name"), std::string::npos);
+  ASSERT_EQ(adopt(out, "--as mine").status, 0);
+  const Outcome again = adopt(out, "--as mine");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.text.find("--force replaces it"), std::string::npos) << again.text;
+  EXPECT_EQ(adopt(out, "--as mine --force").status, 0);
+}
+
+TEST_F(Adopt, OnlyWhatAFinishedRunOffers) {
+  write(dir / "blow" / "case.toml", kEccentricBlow);
+  ASSERT_EQ(command("run " + (dir / "blow").string() + " --quiet --out " + (dir / "out").string()).status, 0);
+  const Outcome none = adopt(dir / "out", "--as mine");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.text.find("offers nothing to the library"), std::string::npos) << none.text;
+  EXPECT_NE(adopt(dir / "nowhere", "--as mine").text.find("no finished run"), std::string::npos);
+}
+
+/// A loop on rigid bodies finds that the ball gives tangential impulse back; the next case starts from it.
+TEST_F(Adopt, ALoopsContactIsAnotherKindsModel) {
+  const fs::path out = finished("loop-irons");
+  const Outcome made = adopt(out, "--as irons");
+  ASSERT_EQ(made.status, 0) << made.text;
+  ASSERT_TRUE(fs::exists(dir / "library" / "contacts" / "irons.toml")) << made.text;
+  const NamedContact contact = library_contact("irons");
+  ASSERT_TRUE(contact.law);
+  EXPECT_GT(contact.law->tangential_restitution, 0.2);
+  ASSERT_TRUE(contact.seen.spin_loft);
+  EXPECT_FALSE(contact.seen.clubs.empty());
+  write(dir / "blow" / "case.toml",
+        "kind = \"impact\"\nmodels = [\"rigid-eccentric\"]\n[delivery]\nclub_speed_mps = 37\ndynamic_loft_deg = 23\n"
+        "[head]\nname = \"iron-7\"\n[contact]\nname = \"irons\"\n");
+  const std::string blow = "run " + (dir / "blow").string() + " --quiet --out ";
+  ASSERT_EQ(command(blow + (dir / "a").string()).status, 0);
+  const Outcome driver =
+      command(blow + (dir / "b").string() + " --set delivery.dynamic_loft_deg=3 --set delivery.club_speed_mps=34");
+  EXPECT_EQ(driver.status, 2);
+  EXPECT_NE(driver.text.find("contact.name: 'irons' saw spin lofts"), std::string::npos) << driver.text;
+}
+
+/// Every digit of a ball goes through its file.
+TEST(Offer, ABallGoesThroughItsFile) {
+  const fs::path dir = fresh_directory("offer_ball");
+  setenv("HOSEL_LIBRARY", dir.c_str(), 1);
+  const BallEntry shipped = library_ball("three-piece");
+  write(dir / "balls" / "copy.toml",
+        "what = \"a copy\"\n[provenance]\nsource = \"a test\"\n" + ball_tables(shipped.body, shipped.layers));
+  const BallEntry copy = library_ball("copy");
+  unsetenv("HOSEL_LIBRARY");
+  ASSERT_EQ(copy.layers.layers.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(copy.layers.layers[k].radius, shipped.layers.layers[k].radius);
+    // Through megapascals and back: a digit of the last place may move.
+    EXPECT_NEAR(copy.layers.layers[k].material.instant_shear(), shipped.layers.layers[k].material.instant_shear(),
+                1e-15 * shipped.layers.layers[k].material.instant_shear() * 4);
+  }
+}
+
+}  // namespace
