@@ -25,7 +25,8 @@ struct Reduced {
 Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target) {
   double speed = 0, spin = 0;
   for (const Launch& l : target) speed += l.ball_speed(), spin += l.spin_rate();
-  const double n = double(target.size()), speed_sd = 0.005 * speed / n, angle_sd = radians(0.3), spin_sd = 0.03 * spin / n;
+  const double n = double(target.size()), speed_sd = 0.005 * speed / n, angle_sd = radians(0.3),
+               spin_sd = 0.03 * spin / n;
   const auto residuals = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r) {
     r.resize(Eigen::Index(6 * target.size()));
     for (std::size_t k = 0; k < target.size(); ++k) {
@@ -42,7 +43,9 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
     }
     return true;
   };
-  return solvers::least_squares(residuals, int(6 * target.size()), model.start, model.bounds, {.starts = 1, .iterations = 400}).parameters;
+  return solvers::least_squares(residuals, int(6 * target.size()), model.start, model.bounds,
+                                {.starts = 1, .iterations = 400})
+      .parameters;
 }
 
 ReducedBand band(const std::string& name, const ImpactModel& model, const std::vector<Blow>& blows,
@@ -73,7 +76,8 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   for_all(std::size_t{0}, blows.size(), [&](std::size_t k) { out.launches[k] = model.launch(blows[k]); });
 
   const auto law = [&](const Eigen::VectorXd& x) {
-    return ContactLaw{.restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = fe.friction};
+    return ContactLaw{
+        .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = fe.friction};
   };
   const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
                       Eigen::Vector3d(0.86, -0.0029, 0.2),
@@ -97,7 +101,10 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
     return v;
   };
   const Reduced volumetric{
-      {{std::log(1e8), std::log(1e11), 1}, {0, 0.05, 0.005}, {std::log(0.5), std::log(1e4), 1}, {std::log(1e-4), std::log(1.0), 1},
+      {{std::log(1e8), std::log(1e11), 1},
+       {0, 0.05, 0.005},
+       {std::log(0.5), std::log(1e4), 1},
+       {std::log(1e-4), std::log(1.0), 1},
        {3e-4, 8e-3, 1e-3}},
       (Eigen::VectorXd(5) << std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3).finished(),
       [&](const Eigen::VectorXd& x, const Blow& blow) { return volumetric_impact(blow, volume(x)).launch; }};
@@ -106,9 +113,10 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   const auto hertz = [&](const Eigen::VectorXd& x) {
     return HertzMawLaw{.modulus = std::exp(x[0]), .poisson = x[1], .friction = fe.friction, .damping = x[2]};
   };
-  const Reduced maw{{{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
-                    Eigen::Vector3d(std::log(85e6), 0.4, 6e-3),
-                    [&](const Eigen::VectorXd& x, const Blow& blow) { return hertz_maw_impact(blow, hertz(x)).launch; }};
+  const Reduced maw{
+      {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
+      Eigen::Vector3d(std::log(85e6), 0.4, 6e-3),
+      [&](const Eigen::VectorXd& x, const Blow& blow) { return hertz_maw_impact(blow, hertz(x)).launch; }};
   out.hertz = hertz(fitted(maw, blows, out.launches));
 
   std::vector<Blow> ruled = blows;

@@ -20,17 +20,17 @@ struct ReducedBand {
 };
 
 struct ReducedCalibration {
-  ContactLaw law;           ///< of the rigid models
-  VolumetricLaw volume;     ///< its face is that of the blows
+  ContactLaw law;        ///< of the rigid models
+  VolumetricLaw volume;  ///< its face is that of the blows
   HertzMawLaw hertz;
   std::vector<Launch> launches;  ///< of the finite elements, free body, in the order of the blows
   std::vector<ReducedBand> bands;
 };
 
 /// Least squares over the blows: restitution (level and slope), tangential restitution; stiffness, damping, joint and
-/// cover of the volumetric ball; modulus, damping and Poisson's ratio of Hertz and Maw. Coulomb's coefficient is that of
-/// the finite elements in all of them. Differences are measured against 0.5 % of ball speed, 0.3 deg of direction and
-/// 3 % of the mean spin. Throws what the models throw, std::invalid_argument where there are fewer than four blows.
+/// cover of the volumetric ball; modulus, damping and Poisson's ratio of Hertz and Maw. Coulomb's coefficient is that
+/// of the finite elements in all of them. Differences are measured against 0.5 % of ball speed, 0.3 deg of direction
+/// and 3 % of the mean spin. Throws what the models throw, std::invalid_argument where there are fewer than four blows.
 ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vector<Blow>& blows);
 
 }  // namespace hosel::models

@@ -33,9 +33,9 @@ std::string channel_names();                         ///< for messages
 /// One measured quantity of a launch.
 struct MeasuredValue {
   const Channel* channel;
-  double value;               ///< SI
-  double uncertainty = 0;     ///< one standard deviation, SI; 0: not stated
-  std::string explained = {}; ///< why a model may lie outside it
+  double value;                ///< SI
+  double uncertainty = 0;      ///< one standard deviation, SI; 0: not stated
+  std::string explained = {};  ///< why a model may lie outside it
 };
 using Measured = std::vector<MeasuredValue>;
 /// nullptr where it was not measured.
@@ -63,8 +63,8 @@ struct MeasuredOblique {
 /// by how many of its standard deviations the last model is off; then the flights, where the columns have them.
 TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured& measured = {},
                        const MeasuredOblique& ranges = {}, Units units = Units::metric);
-/// Sentences about the quantities in which a launch is more than two standard deviations off the measurement, or outside
-/// the range that others measured.
+/// Sentences about the quantities in which a launch is more than two standard deviations off the measurement, or
+/// outside the range that others measured.
 std::vector<std::string> outside(const LaunchColumn& column, const Measured& measured, const MeasuredOblique& ranges);
 /// {"ball_speed_mps": ..., ...}, all channels and the head after the blow.
 nlohmann::json to_json(const Launch& launch);

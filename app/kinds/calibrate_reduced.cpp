@@ -43,9 +43,10 @@ class CalibrateReducedJob final : public Job {
 
   void run(Output& out) override {
     nlohmann::json summary;
-    std::string toml, csv =
-        "set,model,ball_speed_rms_mps,ball_speed_max_mps,launch_angle_rms_deg,launch_angle_max_deg,azimuth_rms_deg,"
-        "azimuth_max_deg,spin_rms_rpm,spin_max_rpm\n";
+    std::string toml,
+        csv =
+            "set,model,ball_speed_rms_mps,ball_speed_max_mps,launch_angle_rms_deg,launch_angle_max_deg,azimuth_rms_deg,"
+            "azimuth_max_deg,spin_rms_rpm,spin_max_rpm\n";
     post::TextTable page{{{"set", "model", "ball speed [m/s]", "launch angle [deg]", "azimuth [deg]", "spin [rpm]"}}};
     out.say("set        model            ball speed [m/s]  launch [deg]  azimuth [deg]      spin [rpm]   (rms, max)");
     Progress progress = out.progress("sets");
@@ -60,11 +61,12 @@ class CalibrateReducedJob final : public Job {
                             degrees(b.launch_angle_max), degrees(b.azimuth_rms), degrees(b.azimuth_max), spin_rms,
                             spin_max));
         page.rows.push_back({set.name, b.model, fmt::format("{:.2f}", b.ball_speed_rms),
-                             fmt::format("{:.2f}", degrees(b.launch_angle_rms)), fmt::format("{:.2f}", degrees(b.azimuth_rms)),
-                             fmt::format("{:.0f}", spin_rms)});
+                             fmt::format("{:.2f}", degrees(b.launch_angle_rms)),
+                             fmt::format("{:.2f}", degrees(b.azimuth_rms)), fmt::format("{:.0f}", spin_rms)});
         csv += fmt::format("{},{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g}\n", post::csv_cell(set.name),
                            b.model, b.ball_speed_rms, b.ball_speed_max, degrees(b.launch_angle_rms),
-                           degrees(b.launch_angle_max), degrees(b.azimuth_rms), degrees(b.azimuth_max), spin_rms, spin_max);
+                           degrees(b.launch_angle_max), degrees(b.azimuth_rms), degrees(b.azimuth_max), spin_rms,
+                           spin_max);
         summary["sets"][set.name][b.model] = {{"ball_speed_rms_mps", b.ball_speed_rms},
                                               {"launch_angle_rms_deg", degrees(b.launch_angle_rms)},
                                               {"azimuth_rms_deg", degrees(b.azimuth_rms)},
@@ -91,7 +93,8 @@ class CalibrateReducedJob final : public Job {
     set.name = t.text({"name", "of the set of parameters"});
     set.changes =
         t.texts({"set", "keys of the case that the set's club changes, table.key=value"}, std::vector<std::string>{});
-    const auto speeds = t.quantities({"club_speeds", "of the grid, at the centre of the face"}, "mps", 0, limits::club_speed);
+    const auto speeds =
+        t.quantities({"club_speeds", "of the grid, at the centre of the face"}, "mps", 0, limits::club_speed);
     set.lofts = t.quantities({"lofts", "of the grid"}, "deg", 0, limits::angle);
     const auto toes = t.quantities({"impact_toes", "of the strikes off centre, each with its height"}, "mm", 0,
                                    limits::impact_place, std::vector<double>{});
@@ -133,10 +136,11 @@ class CalibrateReducedJob final : public Job {
         "joint_stiffness_N_m_per_rad = {:.6g}\njoint_damping_N_m_s_per_rad = {:.6g}\ncover_thickness_mm = {:.6g}\n"
         "volume_exponent = {:.6g}\n[reduced.hertz_maw]\nmodulus_MPa = {:.6g}\npoisson = {:.6g}\nfriction = {:.6g}\n"
         "damping_s_per_m = {:.6g}\n",
-        set.name, degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces), fit.law.friction,
-        fit.law.restitution, fit.law.restitution_slope, fit.law.tangential_restitution, fit.law.friction, v.stiffness,
-        v.damping, v.friction, v.transition_speed, v.joint_stiffness, v.joint_damping, 1e3 * v.cover_thickness,
-        v.volume_exponent, 1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction, fit.hertz.damping);
+        set.name, degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces),
+        fit.law.friction, fit.law.restitution, fit.law.restitution_slope, fit.law.tangential_restitution,
+        fit.law.friction, v.stiffness, v.damping, v.friction, v.transition_speed, v.joint_stiffness, v.joint_damping,
+        1e3 * v.cover_thickness, v.volume_exponent, 1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction,
+        fit.hertz.damping);
   }
 
   std::vector<Set> sets_;

@@ -95,11 +95,12 @@ class ImpactJob final : public Job {
       }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
-    const ImpactStory story{blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(),
-                            flight_.has_value(), record_.vtk};
+    const ImpactStory story{
+        blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(), flight_.has_value(), record_.vtk};
     if (matched_) {
       std::string lofts;
-      for (const auto& c : columns) lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
+      for (const auto& c : columns)
+        lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
       out.say(fmt::format("dynamic loft that gives the measured launch angle [deg]: {}", lofts));
     }
     for (const std::string& sentence : post::outside(columns.back(), measured_, ranges_)) out.say(sentence);
@@ -187,12 +188,11 @@ class ImpactJob final : public Job {
   Blow at_measured_launch(const Entry& entry, const Blow& blow) const {
     if (!matched_) return blow;
     const bool coarse = entry.fe() && entry.companion;
-    Blow found = models::match_launch_angle(coarse ? *entry.companion : *entry.model, blow, *launch_angle(),
-                                            radians(0.03))
-                     .blow;
+    Blow found =
+        models::match_launch_angle(coarse ? *entry.companion : *entry.model, blow, *launch_angle(), radians(0.03)).blow;
     if (coarse)
-      found.delivery.dynamic_loft +=
-          (*launch_angle() - entry.model->launch(found).launch_angle()) / models::kLaunchPerLoft;
+      found.delivery.dynamic_loft += (*launch_angle() - entry.model->launch(found).launch_angle()) /
+                                     models::kLaunchPerLoft;
     return found;
   }
 
@@ -211,7 +211,8 @@ class ImpactJob final : public Job {
     for_all(std::size_t{0}, count, [&](std::size_t k) {
       const Entry& entry = side.models[k];
       blows[k] = at_measured_launch(entry, side.blow);
-      columns[first + k] = {fmt::format("{}: {}", side.name, entry.name), models::checked_launch(*entry.model, blows[k])};
+      columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
+                            models::checked_launch(*entry.model, blows[k])};
     });
     for (std::size_t k = 0; k < count; ++k) {
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
@@ -223,7 +224,8 @@ class ImpactJob final : public Job {
   /// What a driver-like head loses by a rigid face, along the normal.
   std::string rigid_face_costs() const {
     const models::Striker ball = models::golf_ball(own_.blow.ball);
-    const double mass = models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
+    const double mass =
+        models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
     const FaceCompliance face = find_face("modern-driver")->face;
     const double shape = face.shape(-own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high).value;
     const double speed = models::encounter(own_.blow).normal_speed;
