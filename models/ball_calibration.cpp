@@ -166,9 +166,8 @@ class Fit {
   }
   /// A parameter that no other seen shot tells anything of.
   bool own(const Parameter& p, std::size_t shot) const {
-    return p.of_shots() && concerns(p, shot) && std::ranges::count_if(p.shots, [&](std::size_t s) {
-                                                  return problem_.shots[s].seen;
-                                                }) == 1;
+    return p.of_shots() && concerns(p, shot) &&
+           std::ranges::count_if(p.shots, [&](std::size_t s) { return problem_.shots[s].seen; }) == 1;
   }
 
  private:
@@ -250,8 +249,7 @@ class Fit {
   void put_priors(const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
     Eigen::Index row = rows_;
     for (std::size_t c = 0; c < problem_.free.size(); ++c)
-      if (const Parameter& p = problem_.free[c]; std::isfinite(p.sd))
-        r[row++] = (x[Eigen::Index(c)] - p.prior) / p.sd;
+      if (const Parameter& p = problem_.free[c]; std::isfinite(p.sd)) r[row++] = (x[Eigen::Index(c)] - p.prior) / p.sd;
   }
 
   const BallCalibrationProblem& problem_;

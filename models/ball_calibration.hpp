@@ -10,9 +10,9 @@
 
 namespace hosel::models {
 
-/// What the ball shall do at the wall: restitution level + slope v at the speeds, or a figure of its own at each; contact
-/// time at one of them. Where no oblique blow is given, spin and tangential data have no part: what the ball says about
-/// them is a prediction.
+/// What the ball shall do at the wall: restitution level + slope v at the speeds, or a figure of its own at each;
+/// contact time at one of them. Where no oblique blow is given, spin and tangential data have no part: what the ball
+/// says about them is a prediction.
 struct NormalImpactTarget {
   std::vector<double> speeds{20, 30, 40, 50};  ///< [m/s]
   double restitution = 0.86;                   ///< level [-]
@@ -125,8 +125,8 @@ struct BallCalibrationProblem {
 /// One normal impact on a wall.
 NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball, double speed);
 
-/// Fits the free parameters by Ceres. `progress` hears of every evaluation of all residuals. Throws std::invalid_argument
-/// with the first of the faults, NonConvergence where there is no impact to begin with.
+/// Fits the free parameters by Ceres. `progress` hears of every evaluation of all residuals. Throws
+/// std::invalid_argument with the first of the faults, NonConvergence where there is no impact to begin with.
 BallCalibration calibrate_ball(const BallCalibrationProblem& problem,
                                const std::function<void(int evaluations, double cost)>& progress = {});
 

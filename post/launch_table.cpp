@@ -93,9 +93,9 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
     if (!beside) continue;
     const MeasuredValue* const m = find(measured, measured_as);
     row.push_back(m ? fmt::format("{:.{}f}", m->value / channel.si, channel.decimals) : "-");
-    if (m && m->uncertainty > 0)
-      row.back() += fmt::format(" +-{:.{}f}", m->uncertainty / channel.si, channel.decimals);
-    if (judged) row.push_back(m && m->uncertainty > 0 ? fmt::format("{:+.1f}", off_by(columns.back().launch, *m)) : "-");
+    if (m && m->uncertainty > 0) row.back() += fmt::format(" +-{:.{}f}", m->uncertainty / channel.si, channel.decimals);
+    if (judged)
+      row.push_back(m && m->uncertainty > 0 ? fmt::format("{:+.1f}", off_by(columns.back().launch, *m)) : "-");
   }
   const auto add = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
     if (!range && std::ranges::none_of(columns, [&](const LaunchColumn& c) { return (c.oblique.*value).has_value(); }))

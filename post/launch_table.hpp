@@ -33,9 +33,9 @@ std::string channel_names();                         ///< for messages
 /// One measured quantity of a launch.
 struct MeasuredValue {
   const Channel* channel;
-  double value;               ///< SI
-  double uncertainty = 0;     ///< one standard deviation, SI; 0: not stated
-  std::string explained = {}; ///< why a model may lie outside it
+  double value;                ///< SI
+  double uncertainty = 0;      ///< one standard deviation, SI; 0: not stated
+  std::string explained = {};  ///< why a model may lie outside it
 };
 using Measured = std::vector<MeasuredValue>;
 /// nullptr where it was not measured.

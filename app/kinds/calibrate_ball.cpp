@@ -40,30 +40,27 @@ class CalibrateBallJob final : public Job {
     if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
     check_memory(root, options);
     if (auto time = root.optional_table("time")) {
-      options.steps_per_contact =
-          int(time->integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000,
-                            options.steps_per_contact));
-      options.newton_relative = time->number(
-          {"newton_relative", "residual at which Newton stops, over the size of the forces"}, {1e-14, 1e-2},
-          options.newton_relative);
-      options.after = time->number({"after", "time computed after contact, over the contact time"}, {0, 10},
-                                   options.after);
+      options.steps_per_contact = int(time->integer(
+          {"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000, options.steps_per_contact));
+      options.newton_relative =
+          time->number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
+                       {1e-14, 1e-2}, options.newton_relative);
+      options.after =
+          time->number({"after", "time computed after contact, over the contact time"}, {0, 10}, options.after);
     }
     for (Table& t : root.tables("free")) problem_.free.push_back(read_free(t));
     if (problem_.free.empty()) root.fail("free", "name at least one parameter to fit: [[free]] with `what`");
-    problem_.leave_one_out =
-        root.flag({"leave_one_out", "every seen shot is predicted by a fit without it, one Gauss-Newton step away"},
-                  false);
+    problem_.leave_one_out = root.flag(
+        {"leave_one_out", "every seen shot is predicted by a fit without it, one Gauss-Newton step away"}, false);
     if (const auto faults = options.faults(); !faults.empty()) root.fail("ball", faults.front());
     if (const auto faults = problem_.faults(); !faults.empty()) root.fail("free", faults.front());
   }
 
   void run(Output& out) override {
     Progress progress = out.progress("calibrating");
-    const models::BallCalibration fit =
-        models::calibrate_ball(problem_, [&](int n, double cost) {
-          progress.update(std::min(0.99, n / expected_blows()), fmt::format("{} blows, cost {:.3f}", n, cost));
-        });
+    const models::BallCalibration fit = models::calibrate_ball(problem_, [&](int n, double cost) {
+      progress.update(std::min(0.99, n / expected_blows()), fmt::format("{} blows, cost {:.3f}", n, cost));
+    });
     progress.finish();
     nlohmann::json summary{
         {"converged", fit.converged}, {"cost", fit.cost}, {"blows", fit.evaluations}, {"solver", fit.report}};
@@ -71,10 +68,12 @@ class CalibrateBallJob final : public Job {
     for (std::size_t p = 0; p < fit.names.size(); ++p) {
       const double sd = sigma(fit, p);
       const std::string unit = additive(p) ? "" : " %";
-      summary["parameters"].push_back({{"name", fit.names[p]}, {"start", fit.start[p]}, {"value", fit.values[p]},
+      summary["parameters"].push_back({{"name", fit.names[p]},
+                                       {"start", fit.start[p]},
+                                       {"value", fit.values[p]},
                                        {additive(p) ? "sigma" : "relative_sigma", sd}});
-      out.say(fmt::format("{:<{}} {:12.5g}  +- {:.{}g}{}", fit.names[p], std::max<std::size_t>(32, width), fit.values[p],
-                          additive(p) ? sd : 100 * sd, additive(p) ? 2 : 3, unit));
+      out.say(fmt::format("{:<{}} {:12.5g}  +- {:.{}g}{}", fit.names[p], std::max<std::size_t>(32, width),
+                          fit.values[p], additive(p) ? sd : 100 * sd, additive(p) ? 2 : 3, unit));
       // A name ends with its unit: moduli are read in MPa.
       const std::string name = fit.names[p].substr(0, fit.names[p].find(" ["));
       const bool modulus = fit.names[p].ends_with("[Pa]");
@@ -155,8 +154,8 @@ class CalibrateBallJob final : public Job {
           target.numbers({"restitutions", "one for each speed, in place of a law"}, wall.speeds.size(), {0, 1});
     } else {
       wall.restitution = target.number({"restitution", "of the target law at 0 m/s"}, {0, 1}, wall.restitution);
-      wall.restitution_slope = target.quantity({"restitution_slope", "of the target law"}, "s_per_m", {-0.1, 0.1},
-                                               wall.restitution_slope);
+      wall.restitution_slope =
+          target.quantity({"restitution_slope", "of the target law"}, "s_per_m", {-0.1, 0.1}, wall.restitution_slope);
     }
     wall.restitution_sigma = target.number({"restitution_sigma", "standard error of the restitution wanted"}, {1e-6, 1},
                                            wall.restitution_sigma);
@@ -180,13 +179,12 @@ class CalibrateBallJob final : public Job {
     o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
     o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
                               {0.01, 1}, o.mesh.pole);
-    o.mesh.skin =
-        mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
+    o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
     if (problem_.shots.empty() && !problem_.bounce) return;
     o.harmonics = int(mesh.integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
-    o.antisymmetric = int(mesh.integer(
-        {"antisymmetric", "harmonics across the plane of the slip in shots without a plane of symmetry"}, 1, 16,
-        o.harmonics));
+    o.antisymmetric = int(
+        mesh.integer({"antisymmetric", "harmonics across the plane of the slip in shots without a plane of symmetry"},
+                     1, 16, o.harmonics));
   }
 
   /// Measured shots beside the bounce; each with its own head and delivery, and with the case's face, shaft and hosel
@@ -198,8 +196,9 @@ class CalibrateBallJob final : public Job {
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
     const ClubGeometry geometry = read_club_geometry(root, false);
+    std::vector<std::string> taken;
     for (Table t : tables) {
-      models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
+      models::ObliqueTarget shot{.name = t.name({"name", "of the shot or club"}, taken)};
       groups_.push_back(t.text({"group", "of shots whose errors are summed up together"}, ""));
       shot.seen = t.flag({"seen", "false: predicted, not fitted"}, true);
       shot.blow.ball = problem_.ball;
@@ -281,8 +280,8 @@ class CalibrateBallJob final : public Job {
     std::string csv =
         "fit,name,group,dynamic_loft_deg,spin_rate_rpm,spin_off_percent,ball_speed_mps,ball_speed_off_percent,"
         "tangential_restitution,launch_ratio\n";
-    post::TextTable page{{{"fit", "shot", "loft [deg]", "spin [rpm]", "off [%]", "ball speed [m/s]", "off [%]", "e_t",
-                           "launch ratio"}}};
+    post::TextTable page{
+        {{"fit", "shot", "loft [deg]", "spin [rpm]", "off [%]", "ball speed [m/s]", "off [%]", "e_t", "launch ratio"}}};
     const auto rows = [&](const std::string& title, const Points& points) {
       if (points.empty()) return;
       out.say(fmt::format("{:<{}} {:>7} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6}", title, width, "loft", "measured",
@@ -294,8 +293,9 @@ class CalibrateBallJob final : public Job {
         out.say(fmt::format("{:<{}} {:7.2f} {:9.0f} {:7.0f} {:+7.1f} {:8.2f} {:>7} {:7.3f} {:6.3f}", p.name, width,
                             degrees(p.loft), rpm(t.spin_rate), rpm(p.spin_rate), spin, p.ball_speed, speed,
                             p.tangential_restitution, p.launch_ratio));
-        page.rows.push_back({title, p.name, fmt::format("{:.2f}", degrees(p.loft)), fmt::format("{:.0f}", rpm(p.spin_rate)),
-                             fmt::format("{:+.1f}", spin), fmt::format("{:.2f}", p.ball_speed), speed,
+        page.rows.push_back({title, p.name, fmt::format("{:.2f}", degrees(p.loft)),
+                             fmt::format("{:.0f}", rpm(p.spin_rate)), fmt::format("{:+.1f}", spin),
+                             fmt::format("{:.2f}", p.ball_speed), speed,
                              fmt::format("{:.3f}", p.tangential_restitution), fmt::format("{:.3f}", p.launch_ratio)});
         csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{:.4g},{:.4g}\n", title, post::csv_cell(p.name),
                            post::csv_cell(group_of(p)), degrees(p.loft), rpm(p.spin_rate), spin, p.ball_speed,
@@ -365,7 +365,9 @@ class CalibrateBallJob final : public Job {
   }
 
   post::Figure shot_figure(const models::BallCalibration& fit) const {
-    post::Figure f{.title = "measured shots at their launch angle", .columns = 2, .panel_width = 560,
+    post::Figure f{.title = "measured shots at their launch angle",
+                   .columns = 2,
+                   .panel_width = 560,
                    .panel_height = 130 + 22 * int(problem_.shots.size())};
     post::Panel spin{.x_label = "spin, off by [%]"}, speed{.x_label = "ball speed, off by [%]"};
     for (const auto& shot : problem_.shots) spin.y_names.push_back(shot.name);
@@ -420,7 +422,8 @@ class CalibrateBallJob final : public Job {
                           : fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p], 100 * sigma(fit, p));
     text += "# covariance (logarithms of factors; strikes in cm, masses in 10 g):";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
-    text += fmt::format("\n\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", problem_.ball.mass, 1e3 * problem_.ball.radius);
+    text +=
+        fmt::format("\n\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", problem_.ball.mass, 1e3 * problem_.ball.radius);
     for (const models::BallLayer& layer : fit.ball.layers) {
       const auto& law = *layer.material.elastic.as<fem::Hyperelastic>();
       std::vector<double> moduli, times;

@@ -21,6 +21,7 @@
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/file.hpp"
 #include "hosel/post/impact_recorder.hpp"
 #include "hosel/post/launch_table.hpp"
 
@@ -39,8 +40,9 @@ class ImpactJob final : public Job {
     if (auto measured = root.optional_table("measured")) read_measured(*measured);
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
     flight_ = read_optional_flight(root);
+    std::vector<std::string> taken;
     for (Table t : root.tables("compare")) {
-      const std::string name = t.text({"name", "of the columns that stand before the case's own"});
+      const std::string name = t.name({"name", "of the columns that stand before the case's own"}, taken);
       std::vector<std::string> set = t.texts({"set", "keys in which it differs from the case, table.key=value"});
       set.insert(set.end(), file.overrides().begin(), file.overrides().end());  // the command line has the last word
       CaseFile other(file, set);
@@ -64,10 +66,10 @@ class ImpactJob final : public Job {
       nlohmann::json& said = summary["models"][entry.name];
       if (const models::FeModel* model = entry.fe()) {
         const models::FeOutcome outcome = run_fe(out, entry.name, *model, blow, home(out, entry), files, runs);
-        models::check_launch(blow, outcome.launch);
+        models::check_launch(*model, blow, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
         said = post::to_json(outcome.launch);
-        said["solution"] = solution(out, entry.name, blow, outcome.result);
+        said["solution"] = solution(out, entry.name, blow, outcome);
         if (entry.companion) {
           columns.back().coarser = models::checked_launch(*entry.companion, blow);
           nlohmann::json& error = said["numerical_error"];
@@ -95,11 +97,12 @@ class ImpactJob final : public Job {
       }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
-    const ImpactStory story{blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(),
-                            flight_.has_value(), record_.vtk};
+    const ImpactStory story{
+        blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(), flight_.has_value(), record_.vtk};
     if (matched_) {
       std::string lofts;
-      for (const auto& c : columns) lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
+      for (const auto& c : columns)
+        lofts += fmt::format("{}{} {:.2f}", lofts.empty() ? "" : ", ", c.title, *c.loft_deg);
       out.say(fmt::format("dynamic loft that gives the measured launch angle [deg]: {}", lofts));
     }
     for (const std::string& sentence : post::outside(columns.back(), measured_, ranges_)) out.say(sentence);
@@ -107,7 +110,7 @@ class ImpactJob final : public Job {
     show_impact(out, story);
     out.write_summary(summary);
     for (const Entry& entry : own_.models)  // only now: a disk too full for the summary must not cost the run
-      if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
+      if (entry.fe()) post::remove_file(home(out, entry) / "checkpoint.cbor");
   }
 
  private:
@@ -187,12 +190,11 @@ class ImpactJob final : public Job {
   Blow at_measured_launch(const Entry& entry, const Blow& blow) const {
     if (!matched_) return blow;
     const bool coarse = entry.fe() && entry.companion;
-    Blow found = models::match_launch_angle(coarse ? *entry.companion : *entry.model, blow, *launch_angle(),
-                                            radians(0.03))
-                     .blow;
+    Blow found =
+        models::match_launch_angle(coarse ? *entry.companion : *entry.model, blow, *launch_angle(), radians(0.03)).blow;
     if (coarse)
-      found.delivery.dynamic_loft +=
-          (*launch_angle() - entry.model->launch(found).launch_angle()) / models::kLaunchPerLoft;
+      found.delivery.dynamic_loft += (*launch_angle() - entry.model->launch(found).launch_angle()) /
+                                     models::kLaunchPerLoft;
     return found;
   }
 
@@ -211,7 +213,8 @@ class ImpactJob final : public Job {
     for_all(std::size_t{0}, count, [&](std::size_t k) {
       const Entry& entry = side.models[k];
       blows[k] = at_measured_launch(entry, side.blow);
-      columns[first + k] = {fmt::format("{}: {}", side.name, entry.name), models::checked_launch(*entry.model, blows[k])};
+      columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
+                            models::checked_launch(*entry.model, blows[k])};
     });
     for (std::size_t k = 0; k < count; ++k) {
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
@@ -223,7 +226,8 @@ class ImpactJob final : public Job {
   /// What a driver-like head loses by a rigid face, along the normal.
   std::string rigid_face_costs() const {
     const models::Striker ball = models::golf_ball(own_.blow.ball);
-    const double mass = models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
+    const double mass =
+        models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
     const FaceCompliance face = find_face("modern-driver")->face;
     const double shape = face.shape(-own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high).value;
     const double speed = models::encounter(own_.blow).normal_speed;
@@ -245,9 +249,9 @@ class ImpactJob final : public Job {
 
   models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const Blow& blow,
                            const fs::path& home, std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
-    if (out.force()) fs::remove(home / "checkpoint.cbor");
+    if (out.force()) post::remove_file(home / "checkpoint.cbor");
     post::ImpactRecorder recorder(home, blow, record_,
-                                  fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
+                                  fmt::format("{}\n{}\n{}", name, program_version(), out.fingerprint()));
     if (const models::ImpactCheckpoint* from = recorder.resume())
       out.tell(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
                            1e3 * from->solver.state.time));
@@ -294,7 +298,8 @@ class ImpactJob final : public Job {
 
   /// What the solution was and how well its energy adds up: for the person and the summary.
   nlohmann::json solution(Output& out, const std::string& name, const Blow& blow,
-                          const models::FeImpactResult& r) const {
+                          const models::FeOutcome& outcome) const {
+    const models::FeImpactResult& r = outcome.result;
     const double closure = r.ledger.closure / r.ledger.initial;
     // What the blow can change is the energy of the relative motion, not that of a head that flies on.
     const models::Encounter e = models::encounter(blow);
@@ -309,6 +314,12 @@ class ImpactJob final : public Job {
     doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
     doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
           "a higher contact.tangential_penalty");
+    // A centred sphere that only normal forces push cannot be spun: what turns it is the mesh, not quite a sphere.
+    if (const double spin = outcome.launch.spin.norm(); own_.fe.friction == 0 && spin > 1)
+      out.warn(
+          fmt::format("{}: without friction nothing spins the ball: the {:.1f} rad/s ({:.0f} rpm) with which it "
+                      "leaves are the mesh's own: a finer accuracy has less",
+                      name, spin, rpm(spin)));
     out.say(fmt::format(
         "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
         "energy closes to {:.1e} of the initial",

@@ -132,7 +132,8 @@ std::string shaft_sentence(const ImpactStory& s) {
   if (!club || !head) return {};
   const Launch &a = club->launch, &b = head->launch;
   std::vector<std::string> parts{fmt::format("{:+.2f} m/s of ball speed", a.ball_speed() - b.ball_speed())};
-  if (!s.matched) parts.push_back(fmt::format("{:+.2f} deg of launch angle", degrees(a.launch_angle() - b.launch_angle())));
+  if (!s.matched)
+    parts.push_back(fmt::format("{:+.2f} deg of launch angle", degrees(a.launch_angle() - b.launch_angle())));
   parts.push_back(fmt::format("{:+.0f} rpm of backspin", rpm(a.backspin() - b.backspin())));
   parts.push_back(fmt::format("{:+.0f} rpm of sidespin", rpm(a.sidespin() - b.sidespin())));
   if (club->flight && head->flight)
@@ -148,7 +149,8 @@ void show_impact(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   answer(out, s);
   if (const std::string effect = shaft_sentence(s); !effect.empty())
-    page.section("", fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
+    page.section("",
+                 fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
   page.section("The launch", fmt::format("<p class='soft'>The numbers above are those of {}.</p>",
                                          post::escape_html(s.columns.back().title)) +
                                  s.table.html());

@@ -30,8 +30,8 @@ struct ImpactStory {
   const std::vector<FeRun>& runs;
   bool matched;  ///< every model stands at the loft that gives the measured launch angle
   bool yields;   ///< the face does
-  bool flies;   ///< the case asks for the flight
-  bool vtk;     ///< there are series
+  bool flies;    ///< the case asks for the flight
+  bool vtk;      ///< there are series
 };
 
 /// What the full club does beside its head alone, in a sentence; empty where the two are not among the columns.
