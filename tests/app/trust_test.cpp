@@ -438,62 +438,6 @@ TEST(Terminal, AnAddressLimitIsRefusedAndNotWaitedFor) {
   }
 }
 
-/// What the loop makes of the measured irons, their table written anew by `change`.
-json irons_report(const std::string& name, const std::function<void(post::Sheet&)>& change) {
-  const fs::path dir = fresh_directory(name), source = fs::path(HOSEL_SOURCE_DIR) / "cases/loop-irons";
-  fs::copy(source, dir / "case");
-  post::Sheet sheet = post::read_csv(source / "shots.csv");
-  change(sheet);
-  std::string text;
-  const auto cells = [&](const auto& of) {
-    for (std::size_t c = 0; c < sheet.names.size(); ++c) text += (c ? "," : "") + post::csv_cell(of(c));
-    text += '\n';
-  };
-  cells([&](std::size_t c) { return sheet.names[c]; });
-  for (std::size_t row = 0; row < sheet.columns[0].size(); ++row)
-    cells([&](std::size_t c) { return sheet.columns[c][row]; });
-  write(dir / "case/shots.csv", text);
-  const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "out").string());
-  EXPECT_EQ(o.status, 0) << name << ": " << o.text;
-  return json::parse(content(dir / "out/report.json"));
-}
-
-/// Units and rows that say nothing new do not matter to what is found.
-TEST(Loop, SaysTheSameOfTheSameShots) {
-  const json as_recorded = irons_report("irons", [](post::Sheet&) {});
-  ASSERT_FALSE(as_recorded.at("verdict").get<std::string>().empty());
-  const json doubled = irons_report("irons_doubled", [](post::Sheet& s) {
-    for (auto& column : s.columns) {
-      const auto once = column;
-      column.insert(column.end(), once.begin(), once.end());
-    }
-  });
-  const json radians_of = irons_report("irons_radians", [](post::Sheet& s) {
-    const auto at = std::ranges::find(s.names, "dynamic_loft_deg");
-    ASSERT_NE(at, s.names.end());
-    auto& column = s.columns[std::size_t(at - s.names.begin())];
-    *at = "dynamic_loft_rad";
-    for (std::string& cell : column) cell = fmt::format("{}", std::stod(cell) * 3.14159265358979323846 / 180);
-  });
-  for (const json* other : {&doubled, &radians_of})
-    for (const char* key : {"verdict", "adopted", "ties"}) EXPECT_EQ(other->at(key), as_recorded.at(key)) << key;
-  EXPECT_NE(doubled.dump().find("each shot is counted once"), std::string::npos);
-}
-
-TEST(Loop, ASpinThatNoBallHasIsACellAndNoLog) {
-  const fs::path dir = fresh_directory("spin"), source = fs::path(HOSEL_SOURCE_DIR) / "cases/loop-irons";
-  fs::copy(source, dir / "case");
-  std::string text = content(dir / "case/shots.csv");
-  const std::size_t at = text.find(",3875,");
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, 6, ",1e308,");
-  write(dir / "case/shots.csv", text);
-  const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "out").string());
-  EXPECT_EQ(o.status, 0) << o.text;
-  EXPECT_EQ(o.text, "") << "no solver's log";
-  EXPECT_NE(content(dir / "out/report.json").find("none that a ball can have"), std::string::npos);
-}
-
 TEST(Impact, SpinWithoutFrictionIsSaidToBeTheMeshs) {
   const fs::path out = fresh_directory("frictionless") / "out";
   const Outcome o = command(
