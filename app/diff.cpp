@@ -52,7 +52,11 @@ Run read(const fs::path& directory) {
     throw InputError(fmt::format("{}: summary.json: {}", directory.string(), e.what()));
   }
   const fs::path resolved = directory / "case.resolved.toml";
-  leaves(parse_toml(post::read_file(resolved), resolved.string()), "", run.inputs);
+  std::string text;
+  try {
+    text = post::read_file(resolved);
+  } catch (const std::runtime_error& e) { throw InputError(e.what()); }
+  leaves(parse_toml(text, resolved.string()), "", run.inputs);
   return run;
 }
 

@@ -4,11 +4,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <optional>
 #include <stdexcept>
 
 #include "hosel/app/reader.hpp"
@@ -42,25 +44,60 @@ void refuse_links(const fs::path& directory) {
   if (error) throw InputError(fmt::format("{}: cannot be looked through: {}", directory.string(), error.message()));
 }
 
-DirectoryLock::DirectoryLock(const fs::path& directory) {
+namespace {
+
+/// The status of what DESCRIPTOR holds, where FILE is its name.
+std::optional<struct stat> held_as(const fs::path& file, int descriptor) {
+  struct stat named {
+  }, held{};
+  const bool same = ::lstat(file.c_str(), &named) == 0 && ::fstat(descriptor, &held) == 0 &&
+                    named.st_dev == held.st_dev && named.st_ino == held.st_ino && S_ISREG(held.st_mode);
+  return same ? std::optional(held) : std::nullopt;
+}
+
+}  // namespace
+
+DirectoryLock::DirectoryLock(const fs::path& directory) : directory_(fs::absolute(directory)) {
   refuse_links(directory);
   const fs::path file = directory / ".lock";
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (descriptor_ < 0)
+  const auto fail = [&] {
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  };
+  // A file with another name (a hard link) is not this run's to write: whoever holds it puts a new one in its place.
+  for (int tries = 0; tries < 100; ++tries) {
+    if (const auto status = fs::symlink_status(file); fs::exists(status) && !fs::is_regular_file(status))
+      throw InputError(fmt::format("{}: no regular file; remove it, or name another --out", file.string()));
+    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
+    if (descriptor_ < 0) fail();
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(descriptor_);
+      const std::string name = post::read_file(file);
+      throw InputError(fmt::format("{}: another run is at work here ({}); wait for it, or name another --out",
+                                   directory.string(), name.empty() ? "of an unknown process" : name));
+    }
+    const auto held = held_as(file, descriptor_);
+    if (held && held->st_nlink == 1) {
+      const std::string name = owner();
+      if (::ftruncate(descriptor_, 0) == 0 &&
+          ::pwrite(descriptor_, name.data(), name.size(), 0) == ssize_t(name.size()))
+        return;
+      const int reason = errno;
+      ::close(descriptor_);
+      errno = reason;
+      fail();
+    }
+    if (held) post::write_file(file, "", false);
     ::close(descriptor_);
-    const std::string name = post::read_file(file);
-    throw InputError(fmt::format("{}: another run is at work here ({}); wait for it, or name another --out",
-                                 directory.string(), name.empty() ? "of an unknown process" : name));
   }
-  const std::string name = owner();
-  if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, name.data(), name.size(), 0) != ssize_t(name.size())) {
-    ::close(descriptor_);
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
-  }
+  throw std::runtime_error(fmt::format("{}: cannot be locked", file.string()));
 }
 
 DirectoryLock::~DirectoryLock() { ::close(descriptor_); }
+
+void DirectoryLock::verify() const {
+  if (!held_as(directory_ / ".lock", descriptor_))
+    throw std::runtime_error(
+        fmt::format("{}: was renamed or removed while this run was at work in it", directory_.string()));
+}
 
 }  // namespace hosel::app

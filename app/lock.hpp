@@ -17,8 +17,11 @@ class DirectoryLock {
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
+  /// Throws std::runtime_error where the directory is no longer the one that is held: renamed, removed, or another's.
+  void verify() const;
 
  private:
+  std::filesystem::path directory_;
   int descriptor_;
 };
 

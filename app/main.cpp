@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/command_help.hpp"
 #include "hosel/app/diff.hpp"
 #include "hosel/app/import/import.hpp"
@@ -18,6 +21,7 @@
 #include "hosel/app/paraview.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep.hpp"
+#include "hosel/app/terminal.hpp"
 #include "hosel/app/version.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -51,7 +55,7 @@ void run(const Arguments& a) {
                                : a.units == "golf" ? std::optional(post::Units::golf)
                                                    : std::optional(post::Units::metric),
                       .strict = a.strict},
-                     file.resolved());
+                     file);
   job->run(output);
 }
 
@@ -85,6 +89,16 @@ void adopt(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::open_standard_streams();
+  // OpenBLAS's threads were started before this line, and wait for ever for memory that they are refused: nothing that
+  // ends in the usual way would end.
+  if (constexpr double least = 250e6; app::address_limit() < least) {
+    std::fputs(fmt::format("hosel: the address space is limited to {:.0f} MB (ulimit -v); {:.0f} MB are the least\n",
+                           1e-6 * app::address_limit(), 1e-6 * least)
+                   .c_str(),
+               stderr);
+    std::_Exit(2);
+  }
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, said in words
   CLI::App cli{"hosel: what does the ball do after this blow, and how much of it is the shaft's doing?"};
   cli.name("hosel");
@@ -190,29 +204,29 @@ int main(int argc, char** argv) {
         "{}", of->get_formatter()->make_help(of, of == &cli ? "hosel" : "hosel " + a.from, CLI::AppFormatMode::Normal));
   });
 
+  const auto ends = [](int status, std::string_view why) {
+    std::fputs(("hosel: " + app::one_line(why) + '\n').c_str(), stderr);
+    return status;
+  };
   try {
-    cli.parse(argc, argv);
+    try {
+      cli.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      // Help and version are printed; of a mistake the sentence is ours: it may hold what was typed.
+      if (e.get_exit_code() != 0) return ends(2, std::string(e.what()) + " (hosel help)");
+      cli.exit(e);
+    }
+    app::flush_output();
     return 0;
-  } catch (const CLI::CallForHelp& e) { return cli.exit(e); } catch (const CLI::ParseError& e) {
-    cli.exit(e);
-    return e.get_exit_code() == 0 ? 0 : 2;
-  } catch (const app::Stopped& e) {
-    fmt::print(stderr, "hosel: {}\n", e.what());
-    return 128 + e.signal();
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "hosel: out of memory: a coarser mesh, fewer harmonics or fewer rows need less\n");
-    return 1;
-  } catch (const app::InputError& e) {
-    fmt::print(stderr, "hosel: {}\n", e.what());
-    return 2;
-  } catch (const solvers::NonConvergence& e) {
-    fmt::print(stderr, "hosel: no convergence: {}\n", e.what());
-    return 3;
+  } catch (const app::Stopped& e) { return ends(128 + e.signal(), e.what()); } catch (const std::bad_alloc&) {
+    return ends(1, "out of memory: a coarser mesh, fewer harmonics or fewer rows need less");
+  } catch (const app::InputError& e) { return ends(2, e.what()); } catch (const solvers::NonConvergence& e) {
+    return ends(3, fmt::format("no convergence: {}", e.what()));
   } catch (const std::invalid_argument& e) {
-    fmt::print(stderr, "hosel: {}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "hosel: {}\n", e.what());
-    return 1;
-  }
+    return ends(2, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    // A name that no disk stores is a mistake of whoever typed it.
+    const bool typed = e.code() == std::errc::filename_too_long || e.code() == std::errc::too_many_symbolic_link_levels;
+    return ends(typed ? 2 : 1, e.what());
+  } catch (const std::exception& e) { return ends(1, e.what()); }
 }

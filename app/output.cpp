@@ -1,18 +1,23 @@
 #include "hosel/app/output.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "hosel/app/lock.hpp"
-#include "hosel/app/reader.hpp"
+#include "hosel/app/terminal.hpp"
+#include "hosel/golf/data_error.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/file.hpp"
 #include "hosel/solvers/errors.hpp"
 
@@ -82,18 +87,87 @@ void Progress::finish(std::string_view note) {
   std::fflush(stderr);
 }
 
+namespace {
+
+/// A log in a file that is written new: whatever had this name is untouched.
+class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit LogSink(const fs::path& file) : file_(file) {}
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    file_.append({line.data(), line.size()});
+  }
+  void flush_() override {}
+  post::GrowingFile file_;
+};
+
+constexpr const char* kLogPattern = "%Y-%m-%d %H:%M:%S.%e %l %v";
+
+/// `--log FILE` may replace an earlier log, or an empty file, and nothing else that a person has.
+void refuse_other_than_log(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(file, error);
+  if (!fs::exists(status)) return;
+  if (!fs::is_regular_file(status))
+    throw InputError(fmt::format("--log {}: there already, and no regular file", file.string()));
+  const std::string text = post::read_file(file);
+  // As kLogPattern writes it: "2024-05-06 07:08:09.012 info ...".
+  constexpr std::string_view form = "dddd-dd-dd dd:dd:dd.ddd ";
+  bool log = text.size() > form.size();
+  for (std::size_t i = 0; log && i < form.size(); ++i)
+    log = form[i] == 'd' ? std::isdigit(static_cast<unsigned char>(text[i])) != 0 : text[i] == form[i];
+  if (!log && !text.empty())
+    throw InputError(fmt::format("--log {}: there already, and no log of a run: it stays as it is", file.string()));
+}
+
+/// What a run reads must not lie where it writes.
+void refuse_inputs_below(const fs::path& out, const Inputs& inputs) {
+  std::error_code error;
+  const fs::path home = fs::weakly_canonical(out, error);
+  for (const fs::path& file : inputs.files()) {
+    const fs::path inside = fs::weakly_canonical(file, error).lexically_relative(home);
+    if (!error && !inside.empty() && *inside.begin() != "..")
+      throw InputError(fmt::format("{}: this run would write over what it reads ({}); name another --out", out.string(),
+                                   file.string()));
+  }
+}
+
+}  // namespace
+
 struct Output::State {
   OutputOptions options;
+  std::shared_ptr<const Inputs> inputs;
   std::unique_ptr<DirectoryLock> lock;
-  std::vector<std::string> doubts;
-  std::string resolved;
+  std::unique_ptr<post::WrittenFiles> written;
+  std::vector<std::string> doubts, lacks;
+  std::map<std::string, std::string, std::less<>> file_names;  // by what they are made of
+  std::string resolved, fingerprint;
   RunPage page;
   std::shared_ptr<spdlog::logger> logger;
 };
 
+Output::Output(OutputOptions options, const CaseFile& file) : state_(std::make_unique<State>()) {
+  state_->options = std::move(options);
+  state_->inputs = file.inputs();
+  begin(file.resolved());
+}
+
 Output::Output(OutputOptions options, std::string_view resolved) : state_(std::make_unique<State>()) {
   state_->options = std::move(options);
+  const auto inputs = std::make_shared<Inputs>();
+  inputs->resolved(resolved);
+  state_->inputs = inputs;
+  begin(resolved);
+}
+
+void Output::begin(std::string_view resolved) {
   const fs::path& out = directory();
+  state_->fingerprint = state_->inputs->fingerprint();
+  refuse_inputs_below(out, *state_->inputs);
+  if (!state_->options.log.empty()) refuse_other_than_log(state_->options.log);
   if (fs::exists(out / "summary.json") && !state_->options.force)
     throw InputError(
         fmt::format("{}: a finished run lies here; name another --out or overwrite it with --force", out.string()));
@@ -101,18 +175,20 @@ Output::Output(OutputOptions options, std::string_view resolved) : state_(std::m
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
   state_->lock = std::make_unique<DirectoryLock>(out);
+  state_->written = std::make_unique<post::WrittenFiles>(out);
   post::remove_unfinished(out);
   // What told of the run that lay here would stand beside this one's unfinished files.
   for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
-  const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), true);
-  std::vector<spdlog::sink_ptr> sinks{sink};
-  if (!state_->options.log.empty())
-    sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(state_->options.log.string(), true));
+  std::vector<spdlog::sink_ptr> sinks{std::make_shared<LogSink>(out / "log.txt")};
+  if (!state_->options.log.empty()) sinks.push_back(std::make_shared<LogSink>(state_->options.log));
   state_->logger = std::make_shared<spdlog::logger>("hosel", sinks.begin(), sinks.end());
-  state_->logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
-  state_->logger->flush_on(spdlog::level::info);
+  state_->logger->set_pattern(kLogPattern);
+  state_->logger->set_error_handler([](const std::string&) {});  // a full disk is said where a result is written
   state_->resolved = resolved;
   write("case.resolved.toml", resolved);
+  if (state_->options.durable)
+    for (const auto& [copy, file] : state_->inputs->copies())
+      post::write_file(path(copy.string()), post::read_file(file), state_->options.durable);
 }
 
 Output::~Output() = default;
@@ -126,6 +202,8 @@ fs::path Output::path(std::string_view name) const {
 
 const std::string& Output::resolved_case() const { return state_->resolved; }
 
+const std::string& Output::fingerprint() const { return state_->fingerprint; }
+
 bool Output::quiet() const { return state_->options.quiet; }
 std::optional<post::Units> Output::asked_units() const { return state_->options.units; }
 post::Units Output::units() const { return state_->options.units.value_or(post::Units::metric); }
@@ -136,7 +214,7 @@ post::Units Output::page_units() const {
 bool Output::force() const { return state_->options.force; }
 
 void Output::tell(std::string_view line) {
-  if (!quiet()) fmt::print("{}\n", line);
+  if (!quiet()) std::fputs((printable(line) + '\n').c_str(), stdout);
   std::fflush(stdout);
   log(line);
 }
@@ -153,7 +231,11 @@ void Output::show(const post::TextTable& table, std::string_view heading) {
 }
 
 void Output::draw(const post::Figure& figure, std::string_view name, bool on_page) {
-  if (const std::string why = post::draw(figure, path(name), on_page); !why.empty()) say(why);
+  if (!post::shows(figure)) {
+    say(fmt::format("no picture: there is nothing to show in {}", path(name).string()));
+    return;
+  }
+  if (const std::string why = post::draw(figure, path(name), on_page, directory()); !why.empty()) lack(why);
   else if (on_page) state_->page.figure(figure, path(name));
   else state_->page.link(fmt::format("{}.png", name));
 }
@@ -164,20 +246,46 @@ void Output::warn(std::string_view doubt) {
   if (state_->options.strict) throw solvers::NonConvergence(fmt::format("--strict: {}", doubt));
   state_->doubts.emplace_back(doubt);
   state_->page.doubt(doubt);
-  if (!quiet()) fmt::print(stderr, "warning: {}\n", doubt);
+  if (!quiet()) std::fputs(("warning: " + one_line(doubt) + '\n').c_str(), stderr);
   log(fmt::format("warning: {}", doubt));
 }
 
-void Output::log(std::string_view line) { state_->logger->info("{}", line); }
+void Output::lack(std::string_view sentence) {
+  state_->lacks.emplace_back(sentence);
+  state_->page.print(sentence);
+  std::fputs(("warning: " + one_line(sentence) + '\n').c_str(), stderr);
+  log(fmt::format("warning: {}", sentence));
+}
+
+void Output::log(std::string_view line) { state_->logger->info("{}", printable(line)); }
 
 Progress Output::progress(std::string what) const { return Progress(std::move(what), quiet()); }
 
 void Output::write(std::string_view name, std::string_view content) const {
+  if (name.ends_with(".csv")) {
+    try {
+      post::parse_csv(std::string(content), std::string(name));
+    } catch (const DataError& e) { throw std::logic_error(fmt::format("a broken table: {}", e.what())); }
+  }
   post::write_file(path(name), content, state_->options.durable);
 }
 
+std::string Output::file_name(std::string_view name) {
+  if (const auto known = state_->file_names.find(name); known != state_->file_names.end()) return known->second;
+  constexpr std::size_t most = 80;  // with a folder's, a suffix's and a number's room below the 255 bytes of a disk
+  std::string plain;
+  for (const char c : name.substr(0, most)) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+  const auto taken = [&](const std::string& file) {
+    return std::ranges::any_of(state_->file_names, [&](const auto& entry) { return entry.second == file; });
+  };
+  std::string file = plain;
+  for (int k = 2; file.empty() || taken(file); ++k) file = fmt::format("{}_{}", plain, k);
+  return state_->file_names.emplace(name, file).first->second;
+}
+
 void Output::write_json(std::string_view name, const nlohmann::json& content) const {
-  write(name, content.dump(1) + "\n");
+  // A path need not be UTF-8.
+  write(name, content.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 namespace {
@@ -196,11 +304,21 @@ std::string not_finite(const nlohmann::json& j, const std::string& name) {
 void Output::write_summary(const nlohmann::json& summary) const {
   if (const std::string name = not_finite(summary, ""); !name.empty())
     throw solvers::NonConvergence(fmt::format("'{}' of the result is not finite: no summary.json is written", name));
+  state_->inputs->verify();
   nlohmann::json all = summary;
   if (!state_->doubts.empty()) all["doubts"] = state_->doubts;
+  if (!state_->lacks.empty()) all["lacks"] = state_->lacks;
   if (state_->options.durable)
     write("report.html", state_->page.html(resolved_case(), state_->options.command, directory()));
+  const auto whole = [&] {
+    if (const fs::path gone = state_->written->missing(); !gone.empty())
+      throw std::runtime_error(fmt::format(
+          "{}: was written by this run and is gone: something else is at work in its directory", gone.string()));
+    state_->lock->verify();
+  };
+  whole();
   write_json("summary.json", all);
+  whole();
 }
 
 void Output::skip(const fs::path& missing) {

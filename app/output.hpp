@@ -10,6 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "hosel/app/reader.hpp"
 #include "hosel/app/run_page.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -45,8 +46,11 @@ class Progress {
 
 class Output {
  public:
-  /// Creates OUT (refused with InputError where a finished run lies there, unless forced, or where another process is
-  /// at work), writes `case.resolved.toml` and opens `log.txt`.
+  /// Creates OUT (refused with InputError where a finished run lies there, unless forced, where another process is at
+  /// work, or where something lies that the case reads), writes `case.resolved.toml` and opens `log.txt`. `--log FILE`
+  /// replaces a log of an earlier run and nothing else.
+  Output(OutputOptions options, const CaseFile& file);
+  /// Of a case that reads no files.
   Output(OutputOptions options, std::string_view resolved_case);
   ~Output();
   Output(const Output&) = delete;
@@ -55,6 +59,7 @@ class Output {
   const std::filesystem::path& directory() const;
   std::filesystem::path path(std::string_view name) const;  ///< OUT/name, parent folders made
   const std::string& resolved_case() const;                 ///< as written to `case.resolved.toml`
+  const std::string& fingerprint() const;                   ///< of everything that the run reads: Inputs::fingerprint
   bool quiet() const;
   std::optional<post::Units> asked_units() const;  ///< on the command line
   post::Units units() const;                       ///< of tables
@@ -74,19 +79,28 @@ class Output {
   /// A doubt about the numbers: for the person, the log and `summary.json`. Throws solvers::NonConvergence where the
   /// run is strict.
   void warn(std::string_view doubt);
+  /// What the run could not do and its numbers do not suffer from: for the person, even a quiet one's, the page, the
+  /// log and `summary.json`.
+  void lack(std::string_view sentence);
   /// A line for the log alone.
   void log(std::string_view line);
   Progress progress(std::string what) const;
-  /// See post::write_file: a killed run or a full disk never leaves half a file.
+  /// See post::write_file: a killed run or a full disk never leaves half a file. A table (NAME.csv) must be one: as
+  /// many cells in every row as in its head, none of whose names stands twice; else std::logic_error.
   void write(std::string_view name, std::string_view content) const;
+  /// A name from a case as part of a file's: letters, digits and hyphens, no longer than a disk stores, and another one
+  /// for every other name.
+  std::string file_name(std::string_view name);
   void write_json(std::string_view name, const nlohmann::json& content) const;
   /// Writes the page and the summary: `summary.json` marks the run as finished. Throws solvers::NonConvergence where a
-  /// number in it is not finite.
+  /// number in it is not finite, InputError where a file that the case names has changed since it was read, and
+  /// std::runtime_error where something that the run has written is gone.
   void write_summary(const nlohmann::json& summary) const;
   /// Finishes a run whose measured data are not there.
   void skip(const std::filesystem::path& missing);
 
  private:
+  void begin(std::string_view resolved);
   struct State;
   std::unique_ptr<State> state_;
 };

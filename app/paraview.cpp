@@ -5,26 +5,18 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "build_info.hpp"
 #include "hosel/app/command_help.hpp"
 #include "hosel/app/reader.hpp"
+#include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-bool installed(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::stringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-  return false;
-}
 
 /// The tree's script first (a build in its checkout), then the installed one.
 fs::path script() {
@@ -44,7 +36,8 @@ void open_in_paraview(const fs::path& out) {
   std::ranges::sort(folders);
   if (folders.empty())
     throw InputError(fmt::format("{}: no series for ParaView (vtk/*.pvd) in this run", out.string()));
-  if (!installed("paraview")) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
+  const fs::path program = post::find_program("paraview", out);
+  if (program.empty()) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) {
     // Each kind of run has a script that draws without a screen, by the series that it is about.
     for (const auto& [series, maker] : {std::pair{"ball", "impact"}, {"face", "face"}, {"shaft", "swing"}}) {
@@ -61,7 +54,7 @@ void open_in_paraview(const fs::path& out) {
   std::fflush(stdout);
   setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, ":")).c_str(), 1);
   const std::string argument = "--script=" + script().string();
-  execlp("paraview", "paraview", argument.c_str(), static_cast<char*>(nullptr));
+  execl(program.c_str(), program.c_str(), argument.c_str(), static_cast<char*>(nullptr));
   throw std::runtime_error("ParaView could not be started");
 }
 

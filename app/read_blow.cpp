@@ -15,6 +15,20 @@ namespace {
 constexpr double kInf = limits::inf;
 }
 
+Range limits::of(Input input) {
+  switch (input) {
+    case Input::club_speed: return club_speed;
+    case Input::attack_angle:
+    case Input::club_path:
+    case Input::face_angle:
+    case Input::dynamic_loft: return angle;
+    case Input::impact_toe:
+    case Input::impact_high: return impact_place;
+    case Input::head_mass: return head_mass;
+  }
+  return Range::finite();
+}
+
 Ball read_ball(Table table) {
   const std::optional<std::string> named = named_entry(table, "model", Shelf::balls);
   const Ball standard = named ? library_ball(*named).body : Ball{};
@@ -137,12 +151,14 @@ std::vector<std::string> read_models(Table root) {
   for (const auto& m : models::registry()) known.emplace_back(m.name);
   std::vector<std::string> wanted = root.texts({"models", "the models that answer (`hosel list`)"});
   if (wanted.empty()) root.fail("models", "name at least one model");
-  for (const std::string& m : wanted)
+  for (const std::string& m : wanted) {
+    if (std::ranges::count(wanted, m) > 1) root.fail("models", fmt::format("'{}' is there twice", m));
     if (!models::find(m)) {
       const std::string near = nearest(m, known);
       root.fail("models", near.empty() ? fmt::format("no model '{}'; `hosel list` shows them", m)
                                        : fmt::format("no model '{}'; did you mean '{}'?", m, near));
     }
+  }
   return wanted;
 }
 

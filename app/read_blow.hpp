@@ -7,6 +7,7 @@
 
 #include "hosel/app/reader.hpp"
 #include "hosel/golf/blow.hpp"
+#include "hosel/golf/quantities.hpp"
 
 namespace hosel::app {
 
@@ -24,6 +25,8 @@ inline constexpr Range head_place = Range{-0.3, 0.3}.because("a clubhead is no l
 /// A head's own radius of gyration [m].
 inline constexpr Range gyration = Range{1e-3, 0.3}.because("a clubhead is no larger");
 inline constexpr Range spin = Range{-1e3, 1e3}.because("a swung head turns at 40 rad/s");
+/// Of what is told of each blow, whether in a case, in a table or from Python.
+Range of(Input input);
 inline constexpr Range face_radius = Range{0.01, 1e4}.or_infinite().because("inf is a flat face");
 }  // namespace limits
 

@@ -89,8 +89,8 @@ models::Wind read_wind(Table table) {
   return w;
 }
 
-models::LaunchError read_launch_error(Table table) {
-  models::LaunchError e{.source = table.text({"source", "where these standard errors come from"})};
+models::LaunchError read_launch_error(Table table, std::vector<std::string>& taken) {
+  models::LaunchError e{.source = table.name({"source", "where these standard errors come from"}, taken)};
   e.ball_speed =
       table.quantity({"ball_speed", "standard error of the measured ball speed"}, "mps", Range::non_negative(), 0);
   e.launch_angle =
@@ -103,12 +103,6 @@ models::LaunchError read_launch_error(Table table) {
   e.spin_axis =
       table.quantity({"spin_axis", "standard error of the measured spin axis"}, "deg", Range::non_negative(), 0);
   return e;
-}
-
-std::string file_name(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-  return name;
 }
 
 }  // namespace
@@ -143,7 +137,8 @@ FlightSetup read_flight(Table table) {
     s.turf = t;
     if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
   }
-  for (const Table& t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t));
+  std::vector<std::string> taken;
+  for (const Table& t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t, taken));
   return s;
 }
 
@@ -203,7 +198,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
                     "to {:.3f})",
                     name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
                     flight.spin.low, flight.spin.high));
-  const std::string file = file_name(name);
+  const std::string file = out.file_name(name);
   out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)
       .write(flight.time, post::trajectory_mesh(flight));

@@ -11,17 +11,25 @@
 #include <sstream>
 #include "build_info.hpp"
 #include "hosel/app/parse_toml.hpp"
+#include "hosel/app/terminal.hpp"
 #include "hosel/post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
 
 namespace detail {
+
+/// A run leaves copies of what its case names beside `case.resolved.toml`, in this folder, so that this case runs again
+/// wherever OUT has been taken.
+constexpr const char* kInputs = "inputs";
+constexpr const char* kResolved = "case.resolved.toml";
+
 struct Document {
   fs::path directory, file;
   std::string text;  // of the file
   std::vector<std::string> overrides;
-  std::vector<fs::path> named_files;
+  std::shared_ptr<Inputs> inputs = std::make_shared<Inputs>();
+  fs::path copies = kInputs;  // folder below OUT for what this case names
   std::vector<Declared> declared;
   std::set<std::string> looked_for;  // keys whose presence decided something, as the reference shows them
   toml::table root, resolved;
@@ -32,6 +40,23 @@ struct Document {
 }  // namespace detail
 
 namespace {
+
+/// How the copy of a file is called that a case names so: as the file, behind a digest where the name has folders.
+std::string copy_name(const std::string& named) {
+  const fs::path path = named;
+  return path.has_parent_path() ? post::digest(named).substr(0, 8) + "-" + path.filename().string() : named;
+}
+
+/// Where below OUT the copy belongs; empty where none is wanted.
+fs::path copy_of(const detail::Document& d, const std::string& named) {
+  return d.copies.empty() ? fs::path() : d.copies / copy_name(named);
+}
+
+/// The copy beside a resolved case; empty where the case is another one or there is none.
+fs::path copied(const detail::Document& d, const std::string& named) {
+  const fs::path copy = d.directory / detail::kInputs / copy_name(named);
+  return d.file.filename() == detail::kResolved && fs::exists(copy) ? copy : fs::path();
+}
 
 toml::table& as_table(void* node) { return *static_cast<toml::table*>(node); }
 
@@ -270,6 +295,13 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
 
 }  // namespace
 
+namespace {
+
+/// A number as the resolved case has it: with it a default is the same when that case is read.
+double as_echoed(double x) { return std::isfinite(x) ? std::stod(fmt::format("{:.15g}", x)) : x; }
+
+}  // namespace
+
 double Table::quantity(Key key, std::string_view unit, Range si, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
@@ -280,8 +312,9 @@ double Table::quantity(Key key, std::string_view unit, Range si, std::optional<d
                 .range = si,
                 .si = f.unit->si});
   if (!f.node) {
-    access.echo(f.key, *standard / f.unit->si);
-    return *standard;
+    const double x = as_echoed(*standard / f.unit->si);
+    access.echo(f.key, x);
+    return x * f.unit->si;
   }
   const double x = read_number(*this, f.key, *f.node);
   if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
@@ -306,9 +339,13 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
                         : list && !list->empty() ? list->size()
                                                  : 1});
   if (!f.node) {
-    for (double x : *standard) echoed.push_back(x / f.unit->si);
+    for (const double standing : *standard) {
+      const double x = as_echoed(standing / f.unit->si);
+      echoed.push_back(x);
+      out.push_back(x * f.unit->si);
+    }
     access.echo(f.key, std::move(echoed));
-    return *standard;
+    return out;
   }
   if (!list || (size && list->size() != size))
     fail(f.key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
@@ -442,7 +479,17 @@ std::string Table::read_text(std::string_view key, const std::optional<std::stri
 
 std::string Table::text(Key key, const std::optional<std::string>& standard) {
   declare(key, {.type = "text", .standard = standard});
-  return read_text(key.name, standard);
+  std::string x = printable(read_text(key.name, standard));
+  std::ranges::replace(x, '\n', ' ');
+  return x;
+}
+
+std::string Table::name(Key key, std::vector<std::string>& taken) {
+  const std::string x = text(key);
+  if (x.find_first_not_of(" \t\r\n") == std::string::npos) fail(key.name, "a name is wanted here");
+  if (std::ranges::find(taken, x) != taken.end()) fail(key.name, fmt::format("'{}' is there twice", x));
+  taken.push_back(x);
+  return x;
 }
 
 std::string Table::choice(Key key, const std::vector<std::string>& allowed,
@@ -505,9 +552,10 @@ std::vector<std::string> Table::scalars(Key key) {
 
 fs::path Table::file(Key key) {
   declare(key, {.type = "file"});
-  const fs::path path = document_->directory / read_text(key.name, {});
+  const std::string name = read_text(key.name, {});
+  const fs::path copy = copied(*document_, name), path = copy.empty() ? document_->directory / name : copy;
   if (!fs::is_regular_file(path)) fail(key.name, fmt::format("no file '{}'", path.string()));
-  document_->named_files.push_back(path);
+  document_->inputs->file(path, copy_of(*document_, name));
   return path;
 }
 
@@ -517,7 +565,8 @@ fs::path Table::data_file(Key key) {
 }
 
 fs::path Table::data_path(std::string_view key, const std::string& name) {
-  const fs::path own = document_->directory / name, home = data_directory();
+  const fs::path copy = copied(*document_, name), own = copy.empty() ? document_->directory / name : copy,
+                 home = data_directory();
   const auto found = [&](const fs::path& file) {
     if (fs::exists(file) && !fs::is_regular_file(file)) fail(key, fmt::format("'{}' is not a file", file.string()));
     return fs::exists(file);
@@ -546,7 +595,8 @@ fs::path Table::data_path(std::string_view key, const std::string& name) {
       }
     }
   }
-  document_->named_files.push_back(file);
+  // A measured file is found again by HOSEL_DATA.
+  document_->inputs->file(file, file == own ? copy_of(*document_, name) : fs::path());
   return file;
 }
 
@@ -597,10 +647,7 @@ Table Table::default_table(std::string_view key) {
   return *optional_table(key);
 }
 
-void Table::note_file(const fs::path& file) {
-  if (std::ranges::find(document_->named_files, file) == document_->named_files.end())
-    document_->named_files.push_back(file);
-}
+void Table::note_file(const fs::path& file) { document_->inputs->file(file); }
 
 std::vector<Table> Table::tables(std::string_view key) {
   Access access{*document_, as_table(node_)};
@@ -703,6 +750,10 @@ void apply_override(detail::Document& document, const std::string& text) {
         doubled = std::string(other.str());
     if (!doubled.empty()) at->erase(doubled);
   }
+  // Likewise what says the same another way: the layers of a ball and its name in the library.
+  if (path.size() == 2 && path[0] == "ball")
+    for (const auto& [one, other] : {std::pair{"layers", "model"}, {"model", "layers"}})
+      if (path[1] == one) at->erase(other), at->erase("digest");
   if (const toml::node* old = at->get(path.back())) document.set.erase(old);
   at->insert_or_assign(path.back(), *parsed.get("value"));
   document.set[at->get(path.back())] = text;
@@ -736,8 +787,28 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
 
 CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overrides)
     : document_(std::make_shared<detail::Document>()) {
+  document_->overrides = overrides;
+  open(where);
+}
+
+CaseFile::CaseFile(const fs::path& where, const CaseFile& by, const std::string& named)
+    : document_(std::make_shared<detail::Document>()) {
+  document_->inputs = by.document_->inputs;
+  const fs::path folder = named.empty() ? fs::path() : by.document_->copies / copy_name(named);
+  document_->copies = named.empty() ? fs::path() : folder / detail::kInputs;  // a shipped one is there again
+  open(where);
+  if (!named.empty()) document_->inputs->case_file(document_->file, folder / detail::kResolved);
+}
+
+fs::path CaseFile::case_beside(const std::string& named) const {
+  const detail::Document& d = *document_;
+  if (const fs::path copy = copied(d, named); !copy.empty()) return copy / detail::kResolved;
+  const fs::path beside = d.directory / named;
+  return fs::exists(beside) ? beside : fs::path();
+}
+
+void CaseFile::open(const fs::path& where) {
   detail::Document& d = *document_;
-  d.overrides = overrides;
   d.file = fs::is_directory(where) ? where / "case.toml" : where;
   d.directory = d.file.parent_path();
   if (d.directory.empty()) d.directory = ".";
@@ -747,6 +818,7 @@ CaseFile::CaseFile(const fs::path& where, const std::vector<std::string>& overri
     throw InputError(
         fmt::format("{}: more than 1 MiB: this is no case; tables belong into files that it names", d.file.string()));
   d.text = post::read_file(d.file);
+  d.inputs->case_file(d.file);
   parse();
 }
 
@@ -755,6 +827,8 @@ CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrid
   document_->file = read.document_->file;
   document_->directory = read.document_->directory;
   document_->text = read.document_->text;
+  document_->inputs = read.document_->inputs;
+  document_->copies = read.document_->copies;
   document_->overrides = overrides;
   parse();
 }
@@ -772,13 +846,55 @@ const fs::path& CaseFile::directory() const { return document_->directory; }
 const fs::path& CaseFile::file() const { return document_->file; }
 const std::vector<std::string>& CaseFile::overrides() const { return document_->overrides; }
 const std::vector<Declared>& CaseFile::declared() const { return document_->declared; }
-const std::vector<fs::path>& CaseFile::named_files() const { return document_->named_files; }
-void CaseFile::finish() { find_unknown(document_, document_->root, ""); }
+const std::shared_ptr<Inputs>& CaseFile::inputs() const { return document_->inputs; }
+void CaseFile::finish() {
+  find_unknown(document_, document_->root, "");
+  document_->inputs->resolved(resolved());
+}
+
+namespace {
+
+/// TOML with every number outside a text in the fewest digits that give it back to the last bit: toml++ has six, which
+/// are too few to run the case again, or seventeen, which nobody reads.
+std::string with_short_numbers(const std::string& toml) {
+  std::string out;
+  char quote = 0;
+  for (std::size_t i = 0; i < toml.size();) {
+    const char c = toml[i];
+    if (quote) {
+      if (c == '\\' && quote == '"' && i + 1 < toml.size()) out += toml[i++];
+      else if (c == quote) quote = 0;
+      out += toml[i++];
+      continue;
+    }
+    if (c == '"' || c == '\'') quote = c;
+    const bool begins = std::isdigit(static_cast<unsigned char>(c)) || c == '-' || c == '+';
+    const bool inside = !out.empty() && (std::isalnum(static_cast<unsigned char>(out.back())) || out.back() == '_' ||
+                                         out.back() == '-' || out.back() == '.');
+    if (!begins || inside) {
+      out += c;
+      ++i;
+      continue;
+    }
+    const std::size_t end = std::min(toml.find_first_not_of("+-.0123456789eE", i), toml.size());
+    const std::string number = toml.substr(i, end - i);
+    char* stop = nullptr;
+    const double x = std::strtod(number.c_str(), &stop);
+    const bool real = number.find_first_of(".eE") != std::string::npos && *stop == 0 && std::isfinite(x);
+    std::string text = real ? fmt::format("{}", x) : number;
+    if (real && text.find_first_of(".e") == std::string::npos) text += ".0";
+    out += text;
+    i = end;
+  }
+  return out;
+}
+
+}  // namespace
 
 std::string CaseFile::resolved() const {
   std::ostringstream out;
-  out << toml::toml_formatter(document_->resolved, toml::format_flags::relaxed_float_precision) << '\n';
-  return out.str();
+  out << toml::toml_formatter(document_->resolved, toml::format_flags{}) << '\n';
+  return with_short_numbers(out.str());
 }
 
 }  // namespace hosel::app

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hosel/app/inputs.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/golf/vector.hpp"
 
@@ -100,7 +101,11 @@ class Table {
                               std::optional<std::vector<double>> standard = {});
   long integer(Key key, long min, long max, std::optional<long> standard = {});
   bool flag(Key key, std::optional<bool> standard = {});
+  /// One line: control characters and line breaks in it are blanks.
   std::string text(Key key, const std::optional<std::string>& standard = {});
+  /// What an entry of a list is called: an error where it is empty or one of `taken`, to which it is added. Two of one
+  /// name would be one entry of a summary.
+  std::string name(Key key, std::vector<std::string>& taken);
   /// One of the words, else an error that names the nearest.
   std::string choice(Key key, const std::vector<std::string>& allowed, const std::optional<std::string>& standard = {});
   std::vector<std::string> texts(Key key, std::optional<std::vector<std::string>> standard = {});
@@ -150,23 +155,31 @@ class CaseFile {
   /// `overrides` are `dotted.key=value` in TOML syntax (bare words are taken as strings); `layers[2].law=yeoh` is a
   /// key of the second table of a list.
   explicit CaseFile(const std::filesystem::path& where, const std::vector<std::string>& overrides = {});
-  /// The case as `read` found it, whatever has become of the file since, with other overrides.
+  /// The case as `read` found it, whatever has become of the file since, with other overrides. What it reads counts
+  /// among the inputs of the first.
   CaseFile(const CaseFile& read, const std::vector<std::string>& overrides);
+  /// Another case that `by` is made with: what it reads counts among the inputs of `by`. `named`: how `by` names it
+  /// where it lies beside it, and not among the shipped ones.
+  CaseFile(const std::filesystem::path& where, const CaseFile& by, const std::string& named);
 
   Table root();
   const std::filesystem::path& directory() const;
   const std::filesystem::path& file() const;
+  /// Another case that this one names: beside it, or among the inputs beside a resolved case; empty: neither.
+  std::filesystem::path case_beside(const std::string& named) const;
   const std::vector<std::string>& overrides() const;
-  /// The files that the case names and that have been asked for, in the order of asking.
-  const std::vector<std::filesystem::path>& named_files() const;
+  /// Everything read by this case and the cases made of it.
+  const std::shared_ptr<Inputs>& inputs() const;
   /// Every key that was read or left to its default, in the order of asking.
   const std::vector<Declared>& declared() const;
-  /// Every key that was not read is an error. Call it when reading is complete.
+  /// Every key that was not read is an error. Call it when reading is complete: what the case says then counts among
+  /// the inputs.
   void finish();
   /// The case with every default filled in, as TOML text.
   std::string resolved() const;
 
  private:
+  void open(const std::filesystem::path& where);
   void parse();
   std::shared_ptr<detail::Document> document_;
 };

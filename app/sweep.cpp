@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "hosel/app/lock.hpp"
 #include "hosel/app/stop.hpp"
 #include "hosel/app/sweep_store.hpp"
+#include "hosel/app/terminal.hpp"
 #include "hosel/app/version.hpp"
 #include "hosel/golf/parallel.hpp"
 #include "hosel/post/file.hpp"
@@ -27,9 +29,8 @@ struct Plan {
   std::size_t points = 0;
 };
 
-Plan plan_of(const PointJob& job, const std::string& resolved_case) {
-  const std::string version = program_version();
-  return {post::digest(version + '\n' + resolved_case + '\n' + job.identity()), version, job.size()};
+Plan plan_of(const PointJob& job, const std::string& fingerprint) {
+  return {fingerprint, program_version(), job.size()};
 }
 
 /// The points of this shard that no shard has finished yet, on all cores.
@@ -120,7 +121,7 @@ Planned read_planned(const fs::path& where, const std::vector<std::string>& over
   if (!p.points)
     throw InputError(fmt::format("{}: a case of this kind is one piece of work; sweeps and face maps have points",
                                  p.file->file().string()));
-  p.plan = plan_of(*p.points, p.file->resolved());
+  p.plan = plan_of(*p.points, p.file->inputs()->fingerprint());
   return p;
 }
 
@@ -153,32 +154,34 @@ Planned open_plan(const fs::path& out) {
 
 void PointJob::run(Output& out) {
   if (out.force()) fs::remove_all(out.directory() / "shards");
-  const Plan plan = plan_of(*this, post::read_file(out.path("case.resolved.toml")));
+  const Plan plan = plan_of(*this, out.fingerprint());
   compute_missing(*this, plan, out.directory(), {}, out);
   report_all(*this, all_points(plan, out.directory()), out);
 }
 
 Shard parse_shard(const std::string& text) {
-  std::size_t index = 0, count = 0, end = 0;
+  std::size_t index = 0, count = 0;
   const std::size_t slash = text.find('/');
-  try {
-    index = std::stoul(text.substr(0, slash), &end);
-    const bool clean = end == slash;
-    count = std::stoul(text.substr(slash + 1), &end);
-    if (!clean || end != text.size() - slash - 1) index = 0;
-  } catch (const std::exception&) { index = 0; }
-  if (slash == std::string::npos || index < 1 || index > count)
+  const auto whole = [](std::string_view digits, std::size_t& number) {
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return error == std::errc() && stop == digits.data() + digits.size();
+  };
+  const bool good = slash != std::string::npos && whole(std::string_view(text).substr(0, slash), index) &&
+                    whole(std::string_view(text).substr(slash + 1), count);
+  if (!good || index < 1 || index > count)
     throw InputError(fmt::format("--shard {}: expected k/n with k from 1 to n, e.g. 2/8", text));
   return {index, count};
 }
 
 void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides, const OutputOptions& options) {
   const fs::path found = find_case(where.string());
+  if (const std::string path = fs::canonical(found).string(); printable(path) != path)
+    throw InputError(fmt::format("{}: a plan names its case, and this path is no text", path));
   const Planned p = read_planned(found, overrides);
   const fs::path root = options.directory;
   if (fs::exists(root / "shards") && options.force) fs::remove_all(root / "shards");
   read_points(root / "shards", p.plan.fingerprint, p.plan.points);  // refuses a directory with other points
-  Output out(options, p.file->resolved());
+  Output out(options, *p.file);
   out.write_json("plan.json", sealed({{"case", fs::canonical(found).string()},
                                       {"set", overrides},
                                       {"points", p.plan.points},
@@ -192,14 +195,14 @@ void sweep_run(const fs::path& root, Shard shard, bool quiet) {
   refuse_links(root);
   // A directory of its own: shards run side by side and share no file.
   Output out({.directory = root / "shards" / fmt::format("{}-of-{}", shard.index, shard.count), .quiet = quiet},
-             p.file->resolved());
+             *p.file);
   compute_missing(*p.points, p.plan, root, shard, out);
 }
 
 void sweep_merge(const fs::path& root, bool force, bool quiet) {
   const Planned p = open_plan(root);
   const auto points = all_points(p.plan, root);
-  Output out({.directory = root, .force = force, .quiet = quiet}, p.file->resolved());
+  Output out({.directory = root, .force = force, .quiet = quiet}, *p.file);
   report_all(*p.points, points, out);
 }
 

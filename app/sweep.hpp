@@ -20,8 +20,6 @@ namespace hosel::app {
 class PointJob : public Job {
  public:
   virtual std::size_t size() const = 0;
-  /// What decides the results besides the resolved case and the program: other cases, data files.
-  virtual std::string identity() const { return {}; }
   /// One point as a JSON object. Pure and callable from any thread; whatever it writes goes below
   /// `scratch`, which is its own. Throws solvers::NonConvergence or std::invalid_argument where the
   /// point has no answer: that is recorded as the point's result, {"error": "..."}.

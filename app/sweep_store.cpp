@@ -31,14 +31,6 @@ nlohmann::json unsealed(std::string_view text) {
   return entry;
 }
 
-std::string digest_of_files(const std::vector<fs::path>& files) {
-  std::string all;
-  for (const fs::path& file : files)
-    all += file.filename().string() + '\n' +
-           (fs::is_regular_file(file) ? post::digest(post::read_file(file)) : "none") + '\n';
-  return post::digest(all);
-}
-
 std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, const std::string& fingerprint,
                                                   std::size_t size) {
   std::map<std::size_t, nlohmann::json> points;
@@ -84,47 +76,41 @@ std::map<std::size_t, nlohmann::json> read_points(const fs::path& directory, con
   return points;
 }
 
-PointStore::PointStore(const fs::path& directory, const std::string& fingerprint)
-    : file_((directory / "points.jsonl").string()),
-      descriptor_(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)) {
-  if (descriptor_ < 0) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+namespace {
+
+[[noreturn]] void held(const fs::path& file) {
+  throw InputError(fmt::format("{}: another process is computing this shard", file.string()));
+}
+
+}  // namespace
+
+PointStore::PointStore(const fs::path& directory, const std::string& fingerprint) {
+  const fs::path file = directory / "points.jsonl";
+  std::string whole;
+  const int old = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   try {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      throw InputError(fmt::format("{}: another process is computing this shard", file_));
-    const std::string text = post::read_file(file_);
-    const std::size_t last = text.rfind('\n');
-    const std::size_t whole = last == std::string::npos ? 0 : last + 1;
-    if (::ftruncate(descriptor_, off_t(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
-      throw std::runtime_error(fmt::format("{}: cannot be written", file_));
-    if (whole == 0) write_line(sealed({{"fingerprint", fingerprint}, {"version", program_version()}}).dump());
+    if (old < 0 && errno != ENOENT)
+      throw std::runtime_error(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    if (old >= 0) {
+      if (::flock(old, LOCK_EX | LOCK_NB) != 0) held(file);
+      const std::string text = post::read_file(file);
+      const std::size_t last = text.rfind('\n');
+      whole = text.substr(0, last == std::string::npos ? 0 : last + 1);
+    }
+    if (whole.empty()) whole = sealed({{"fingerprint", fingerprint}, {"version", program_version()}}).dump() + '\n';
+    file_ = std::make_unique<post::GrowingFile>(file, whole, true);
+    if (::flock(file_->descriptor(), LOCK_EX | LOCK_NB) != 0) held(file);
   } catch (...) {
-    ::close(descriptor_);
+    if (old >= 0) ::close(old);
     throw;
   }
+  if (old >= 0) ::close(old);
 }
-
-PointStore::~PointStore() { ::close(descriptor_); }
 
 void PointStore::append(std::size_t point, double seconds, const nlohmann::json& result) {
-  const std::string line = sealed({{"point", point}, {"seconds", seconds}, {"result", result}}).dump();
+  const std::string line = sealed({{"point", point}, {"seconds", seconds}, {"result", result}}).dump() + '\n';
   const std::lock_guard lock(mutex_);
-  write_line(line);
-}
-
-void PointStore::write_line(const std::string& line) {
-  // One write a line: a kill leaves it whole or cuts the last one short, and that is seen by its end.
-  const std::string text = line + "\n";
-  const off_t before = ::lseek(descriptor_, 0, SEEK_END);
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t n = ::write(descriptor_, text.data() + done, text.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int reason = errno;
-      if (::ftruncate(descriptor_, before) != 0) {}  // half a line would damage the one after it
-      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file_, std::strerror(reason)));
-    }
-    done += std::size_t(n);
-  }
+  file_->append(line);
 }
 
 }  // namespace hosel::app

@@ -4,16 +4,16 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace hosel::app {
+#include "hosel/post/file.hpp"
 
-/// Digest of the contents of files; a missing one counts as such.
-std::string digest_of_files(const std::vector<std::filesystem::path>& files);
+namespace hosel::app {
 
 /// The entry with a digest of itself, under "check".
 nlohmann::json sealed(nlohmann::json entry);
@@ -29,19 +29,16 @@ std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& d
 /// The points file of one shard, held by one process at a time.
 class PointStore {
  public:
-  /// Opens DIRECTORY/points.jsonl for appending, behind its last whole line. Throws InputError where
-  /// another process holds it.
+  /// DIRECTORY/points.jsonl with the whole lines of what stood there, in a new file: another name of the old one keeps
+  /// what it had. Throws InputError where another process holds it.
   PointStore(const std::filesystem::path& directory, const std::string& fingerprint);
-  ~PointStore();
   PointStore(const PointStore&) = delete;
   PointStore& operator=(const PointStore&) = delete;
   /// On disk when it returns. Thread-safe.
   void append(std::size_t point, double seconds, const nlohmann::json& result);
 
  private:
-  void write_line(const std::string& line);
-  std::string file_;
-  int descriptor_;
+  std::unique_ptr<post::GrowingFile> file_;
   std::mutex mutex_;
 };
 

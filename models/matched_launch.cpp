@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::models {
@@ -11,7 +12,7 @@ MatchedLaunch match_launch_angle(const ImpactModel& model, Blow blow, double lau
   double& loft = out.blow.delivery.dynamic_loft;
   double slope = kLaunchPerLoft, last_loft = 0, last_angle = 0;
   while (out.blows < 8) {
-    out.launch = model.launch(out.blow);
+    out.launch = checked_launch(model, out.blow);
     const double angle = out.launch.launch_angle();
     if (std::abs(angle - launch_angle) <= tolerance) return ++out.blows, out;
     if (out.blows++ > 0 && loft != last_loft) slope = (angle - last_angle) / (loft - last_loft);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hosel/golf/first_contact.hpp"
+#include "hosel/models/checked_launch.hpp"
 
 namespace hosel::models {
 
@@ -29,7 +30,7 @@ Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double a
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = speed;  // the plate moves, the ball rests: the same thing
   blow.delivery.club_path = angle;
-  const Launch launch = model.launch(blow);
+  const Launch launch = checked_launch(model, blow);
   const Vec3 n = first_contact(blow).normal, before = -blow.delivery.velocity();
   const Vec3 after = launch.velocity + before;
   const double v_n = -before.dot(n);

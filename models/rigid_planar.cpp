@@ -33,6 +33,7 @@ Launch RigidPlanar::launch(const Blow& blow) const {
   out.spin = Vec3(0, -spin, 0);
   const Vec3 head_in = d.club_speed * Vec3(std::cos(d.attack_angle), 0, std::sin(d.attack_angle));
   out.head_velocity = head_in - m / M * out.velocity;
+  out.head_spin = d.head_angular_velocity;  // a blow in the plane of the centres turns no head
   return out;
 }
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <limits>
+
+#include "hosel/post/file.hpp"
 
 namespace hosel::post {
 namespace {
@@ -24,17 +24,24 @@ void trim(std::string& s) {
 }  // namespace
 
 Sheet read_csv(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::error_code error;
   // A pipe or a device may never end.
-  if (!in || !std::filesystem::is_regular_file(path))
-    throw DataError(fmt::format("{}: cannot be read{}", path.string(), in ? ": not a regular file" : ""));
-  if (std::filesystem::file_size(path) > kMostBytes)
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw DataError(fmt::format("{}: cannot be read: not a regular file", path.string()));
+  if (const auto size = std::filesystem::file_size(path, error); !error && size > kMostBytes)
     throw DataError(fmt::format("{}: more than {} bytes: too large for a table", path.string(), kMostBytes));
-  std::string text((std::istreambuf_iterator<char>(in)), {});
+  std::string text;
+  try {
+    text = read_file(path);
+  } catch (const std::runtime_error& e) { throw DataError(e.what()); }
+  return parse_csv(std::move(text), path.string());
+}
+
+Sheet parse_csv(std::string text, const std::string& name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte-order mark of spreadsheet programs
 
   Sheet sheet;
-  sheet.file = path.string();
+  sheet.file = name;
   const auto fail = [&](std::size_t line, std::string_view what) {
     throw DataError(fmt::format("{}:{}: {}", sheet.file, line, what));
   };
@@ -128,9 +135,13 @@ int decimals(const std::string& cell) {
 }
 
 std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string cell(text);
+  if (!cell.empty() && std::string_view("=@+-\t\r\n").find(cell.front()) != std::string_view::npos && !number(cell))
+    cell.insert(0, 1, '\'');
+  const bool blank = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ' || cell.back() == '\t');
+  if (!blank && cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
   std::string out = "\"";
-  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
+  for (const char c : cell) out.append(c == '"' ? 2 : 1, c);
   return out + '"';
 }
 

@@ -25,13 +25,17 @@ struct Sheet {
 /// passed over. Throws DataError on a missing file or one that is none (a pipe), text that is not UTF-8, an
 /// empty or doubled header, a row of the wrong length, an open quote.
 Sheet read_csv(const std::filesystem::path& file);
+/// The same of a text; `name` stands for the file in errors.
+Sheet parse_csv(std::string text, const std::string& name);
 
 /// A whole cell as a number; nothing where it is text. "nan" and "inf" are numbers here.
 std::optional<double> number(const std::string& cell);
 /// Digits after the decimal point ("-1.3e2" counts as -1: the exponent moves the point).
 int decimals(const std::string& cell);
 
-/// A text as a cell of RFC 4180: in quotes where it holds a comma, a quote or a line break.
+/// A text as a cell of RFC 4180: in quotes where it holds a comma, a quote, a line break or a blank at an end. A text
+/// that a spreadsheet would compute (it begins with =, @, +, - or a control and is no number) gets an apostrophe in
+/// front, by which such programs know a text.
 std::string csv_cell(std::string_view text);
 
 }  // namespace hosel::post

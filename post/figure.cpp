@@ -7,19 +7,24 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
+
+#include "hosel/post/file.hpp"
 
 extern char** environ;
 
 namespace hosel::post {
+namespace fs = std::filesystem;
 namespace {
 
 /// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is. A line break would end the
-/// string and let what follows be executed: it and its kind become blanks.
+/// string and let what follows be executed: it and its kind become blanks. gnuplot hands on to its SVG what begins an
+/// entity (&#) or ends a section (]]>): a blank parts them.
 std::string literal(std::string_view text) {
   std::string out = "'";
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if ((c == '#' && out.ends_with('&')) || (c == '>' && out.ends_with("]]"))) out += ' ';
     out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
     if (c == '\'') out += '\'';
   }
@@ -84,7 +89,7 @@ std::string title(std::string_view text, int width) {
   return out;
 }
 
-bool shows(const Panel& p) {
+bool shows_something(const Panel& p) {
   return !p.map.empty() || std::ranges::any_of(p.series, [](const Series& s) { return !s.x.empty(); });
 }
 
@@ -191,9 +196,9 @@ constexpr const char* kLook =
 
 std::vector<PanelFile> panel_files(const Figure& f, std::string_view stem) {
   std::vector<PanelFile> out;
-  const auto n = std::ranges::count_if(f.panels, shows);
+  const auto n = std::ranges::count_if(f.panels, shows_something);
   for (const Panel& p : f.panels) {
-    if (!shows(p)) continue;
+    if (!shows_something(p)) continue;
     std::string file(stem);
     if (n > 1) {
       file += fmt::format("/{}-", out.size() + 1);
@@ -217,7 +222,7 @@ std::string gnuplot_script(const Figure& f, std::string_view stem, bool each) {
   std::string data;
   std::vector<std::string> panels;
   for (const Panel& p : f.panels) {
-    if (!shows(p)) continue;
+    if (!shows_something(p)) continue;
     auto [block, words] = panel_script(p, static_cast<int>(panels.size()), f.panel_width);
     data += block;
     panels.push_back(std::move(words));
@@ -251,27 +256,63 @@ std::string gnuplot_script(const Figure& f, std::string_view stem, bool each) {
   return s + "unset output\n";
 }
 
-std::string draw(const Figure& figure, const std::filesystem::path& stem, bool panels) {
-  if (std::ranges::none_of(figure.panels, shows)) return "no picture: there is nothing to show in " + stem.string();
-  if (panels && panel_files(figure, "").size() > 1) std::filesystem::create_directories(stem);
-  std::filesystem::path gp = stem;
+namespace {
+
+/// Whether a picture is whole: each of its formats says where it ends.
+bool has_its_end(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  const std::string_view last = std::string_view(bytes).substr(bytes.size() - std::min<std::size_t>(bytes.size(), 32));
+  const std::string kind = file.extension();
+  return last.find(kind == ".svg" ? "</svg>" : kind == ".png" ? "IEND" : "%%EOF") != std::string_view::npos;
+}
+
+}  // namespace
+
+bool shows(const Figure& figure) { return std::ranges::any_of(figure.panels, shows_something); }
+
+std::string draw(const Figure& figure, const fs::path& stem, bool panels, const fs::path& outside) {
+  if (!shows(figure)) return "no picture: there is nothing to show in " + stem.string();
+  fs::path gp = stem;
   gp += ".gp";
-  const std::string name = stem.filename().string(), place = stem.parent_path().empty() ? "." : stem.parent_path();
-  if (std::ofstream out(gp); !(out << gnuplot_script(figure, name, panels)) || !out.flush())
-    throw std::runtime_error("cannot write " + gp.string());
-  // gnuplot works beside the script: no path of the person's ever becomes program text.
-  std::string program = "gnuplot", script = "./" + name + ".gp";
-  char* argv[] = {program.data(), script.data(), nullptr};
+  const std::string name = stem.filename().string();
+  const fs::path place = stem.parent_path().empty() ? fs::path(".") : stem.parent_path();
+  write_file(gp, gnuplot_script(figure, name, panels), false);
+  const fs::path program = find_program("gnuplot", outside.empty() ? place : outside);
+  if (program.empty())
+    return "no picture: gnuplot is not installed where PATH says absolutely (the script is " + gp.string() + ")";
+  const WorkFolder work(place);
+  std::vector<std::string> made = {name + ".png"};
+  const auto files = panel_files(figure, name);
+  if (panels && files.size() > 1) {
+    fs::create_directories(work.path() / name);
+    fs::create_directories(stem);
+  }
+  for (const PanelFile& file : files) {
+    if (!panels) break;
+    made.push_back(file.pdf);
+    if (!file.map || files.size() > 1) made.push_back(file.picture);
+  }
+  // gnuplot works below the script: no path of the person's ever becomes program text.
+  std::string word = program.string(), script = "../" + name + ".gp";
+  char* argv[] = {word.data(), script.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, place.c_str());
+  posix_spawn_file_actions_addchdir_np(&actions, work.path().c_str());
   pid_t child = 0;
-  const int refused = posix_spawnp(&child, "gnuplot", &actions, nullptr, argv, environ);
+  const int refused = posix_spawn(&child, word.c_str(), &actions, nullptr, argv, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (refused) return "no picture: gnuplot is not installed (the script is " + gp.string() + ")";
   int status = 0;
-  if (waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  if (refused || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
     return "no picture: gnuplot could not draw " + gp.string();
+  for (const std::string& file : made) {
+    if (!fs::is_regular_file(fs::symlink_status(work.path() / file)))
+      return "no picture: gnuplot could not draw " + gp.string();
+    // gnuplot ends with 0 on a disk that is full.
+    if (!has_its_end(work.path() / file))
+      throw std::runtime_error(
+          fmt::format("{}: cannot be written: gnuplot wrote a part of it: is the disk full?", (place / file).string()));
+  }
+  for (const std::string& file : made) move_file(work.path() / file, place / file);
   return {};
 }
 

@@ -53,8 +53,14 @@ struct PanelFile {
 std::string gnuplot_script(const Figure& figure, std::string_view stem, bool panels = true);
 std::vector<PanelFile> panel_files(const Figure& figure, std::string_view stem);
 
-/// Writes `stem`.gp and lets gnuplot draw it. Returns an empty string, or a sentence why there is no picture (gnuplot
-/// absent or refusing, nothing to show); the script stays. Throws as gnuplot_script.
-std::string draw(const Figure& figure, const std::filesystem::path& stem, bool panels = true);
+/// Whether there is anything to draw.
+bool shows(const Figure& figure);
+
+/// Writes `stem`.gp and lets gnuplot draw it, in a folder of its own: pictures are put in place when they are whole,
+/// over whatever had their names. Returns an empty string, or a sentence why there is no picture (gnuplot absent or
+/// refusing, nothing to show); the script stays. A gnuplot below `outside` is a file of the run and not started. Throws
+/// as gnuplot_script.
+std::string draw(const Figure& figure, const std::filesystem::path& stem, bool panels = true,
+                 const std::filesystem::path& outside = {});
 
 }  // namespace hosel::post

@@ -2,15 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/uuid_io.hpp>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <map>
+#include <mutex>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -33,28 +38,162 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-}  // namespace
+/// Every watched directory, and the files written below it.
+struct Watched {
+  std::mutex mutex;
+  std::map<std::string, std::set<fs::path>> files;
 
-void write_file(const fs::path& file, std::string_view bytes, bool durable) {
+  static Watched& all() {
+    static Watched watched;
+    return watched;
+  }
+  static std::string name(const fs::path& path) { return fs::absolute(path).lexically_normal().string(); }
+  /// The innermost watch around a file; null where there is none.
+  std::set<fs::path>* around(const std::string& file) {
+    std::set<fs::path>* found = nullptr;
+    std::size_t longest = 0;
+    for (auto& [directory, below] : files)
+      if (directory.size() >= longest && file.starts_with(directory)) longest = directory.size(), found = &below;
+    return found;
+  }
+  void note(const fs::path& file) {
+    const std::lock_guard lock(mutex);
+    if (files.empty()) return;
+    const std::string full = name(file);
+    if (std::set<fs::path>* watch = around(full)) watch->insert(full);
+  }
+};
+
+/// A name of this process, which no other gives.
+fs::path unfinished_in(const fs::path& directory) {
   static std::atomic<unsigned> count = 0;
-  const fs::path beside = fmt::format("{}.{}-{}{}", file.string(), ::getpid(), count++, kUnfinished);
-  const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) refuse(file, "written");
-  const bool good = write_all(descriptor, bytes) && (!durable || ::fsync(descriptor) == 0);
-  const int reason = errno;
-  if ((::close(descriptor) != 0 || !good) || ::rename(beside.c_str(), file.c_str()) != 0) {
-    if (!good) errno = reason;
-    const int kept = errno;
-    ::unlink(beside.c_str());
-    errno = kept;
-    refuse(file, "written");
+  return directory / fmt::format("{}-{}{}", ::getpid(), count++, kUnfinished);
+}
+
+/// A new file in the directory of FILE.
+struct Beside {
+  fs::path path;
+  int descriptor;
+};
+
+Beside open_beside(const fs::path& file) {
+  for (;;) {
+    Beside b{unfinished_in(file.parent_path()), -1};
+    b.descriptor = ::open(b.path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (b.descriptor >= 0) return b;
+    if (errno != EEXIST) refuse(file, "written");
   }
 }
 
+/// The bytes in a new file under the name of FILE; its descriptor, where it is to stay open.
+int written_new(const fs::path& file, std::string_view bytes, bool durable, bool open) {
+  const Beside beside = open_beside(file);
+  bool good = write_all(beside.descriptor, bytes) && (!durable || ::fsync(beside.descriptor) == 0);
+  int reason = errno;
+  // What a network's disk refuses it says at the close.
+  if ((!good || !open) && ::close(beside.descriptor) != 0 && good) good = false, reason = errno;
+  if (good && ::rename(beside.path.c_str(), file.c_str()) != 0) {
+    good = false, reason = errno;
+    if (open) ::close(beside.descriptor);
+  }
+  if (good) {
+    Watched::all().note(file);
+    return beside.descriptor;
+  }
+  ::unlink(beside.path.c_str());
+  errno = reason;
+  refuse(file, "written");
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, std::string_view bytes, bool durable) {
+  written_new(file, bytes, durable, false);
+}
+
+GrowingFile::GrowingFile(const fs::path& file, std::string_view beginning, bool durable)
+    : file_(file), descriptor_(written_new(file, beginning, durable, true)) {}
+
+GrowingFile::~GrowingFile() { ::close(descriptor_); }
+
+void GrowingFile::append(std::string_view bytes) {
+  const off_t before = ::lseek(descriptor_, 0, SEEK_END);
+  if (before >= 0 && write_all(descriptor_, bytes)) return;
+  const int reason = errno;
+  if (::ftruncate(descriptor_, before) != 0) {}  // half a line would damage the one after it
+  errno = reason;
+  refuse(file_, "written");
+}
+
 std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || fs::is_directory(file)) refuse(file, "read");
-  return {std::istreambuf_iterator<char>(in), {}};
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) refuse(file, "read");
+  struct stat is {};
+  if (::fstat(descriptor, &is) != 0 || !S_ISREG(is.st_mode)) {
+    ::close(descriptor);
+    throw std::runtime_error(fmt::format("{}: cannot be read: not a regular file", file.string()));
+  }
+  std::string text;
+  std::vector<char> buffer(std::size_t(std::clamp<off_t>(is.st_size + 1, 1 << 12, 1 << 26)));
+  for (;;) {
+    const ssize_t n = ::read(descriptor, buffer.data(), buffer.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n > 0) text.append(buffer.data(), std::size_t(n));
+    if (n > 0) continue;
+    const int reason = errno;
+    ::close(descriptor);
+    errno = reason;
+    if (n < 0) refuse(file, "read");
+    return text;
+  }
+}
+
+fs::path find_program(std::string_view name, const fs::path& outside) {
+  const char* path = std::getenv("PATH");
+  std::stringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
+  std::error_code ignored;
+  const fs::path around = outside.empty() ? fs::path() : fs::weakly_canonical(outside, ignored);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!folder.starts_with('/')) continue;
+    const fs::path program = fs::weakly_canonical(fs::path(folder) / name, ignored);
+    if (ignored || !fs::is_regular_file(program, ignored) || ::access(program.c_str(), X_OK) != 0) continue;
+    if (!around.empty() && !program.lexically_relative(around).empty() &&
+        *program.lexically_relative(around).begin() != "..")
+      continue;
+    return fs::path(folder) / name;
+  }
+  return {};
+}
+
+WrittenFiles::WrittenFiles(const fs::path& directory) : directory_(Watched::name(directory / "")) {
+  const std::lock_guard lock(Watched::all().mutex);
+  Watched::all().files[directory_];
+}
+
+WrittenFiles::~WrittenFiles() {
+  const std::lock_guard lock(Watched::all().mutex);
+  Watched::all().files.erase(directory_);
+}
+
+fs::path WrittenFiles::missing() const {
+  const std::lock_guard lock(Watched::all().mutex);
+  for (const fs::path& file : Watched::all().files.at(directory_))
+    if (!fs::is_regular_file(fs::symlink_status(file))) return file;
+  return {};
+}
+
+void move_file(const fs::path& from, const fs::path& to) {
+  if (!fs::is_regular_file(fs::symlink_status(from)))
+    throw std::runtime_error(fmt::format("{}: was not made", to.string()));
+  if (::rename(from.c_str(), to.c_str()) != 0) refuse(to, "written");
+  Watched::all().note(to);
+}
+
+void remove_file(const fs::path& file) {
+  fs::remove(file);
+  const std::lock_guard lock(Watched::all().mutex);
+  const std::string full = Watched::name(file);
+  if (std::set<fs::path>* watch = Watched::all().around(full)) watch->erase(full);
 }
 
 void remove_unfinished(const fs::path& directory) {
@@ -62,7 +201,17 @@ void remove_unfinished(const fs::path& directory) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(directory, ignored))
     if (entry.path().extension() == kUnfinished) found.push_back(entry.path());
-  for (const fs::path& file : found) fs::remove(file, ignored);
+  for (const fs::path& file : found) fs::remove_all(file, ignored);
+}
+
+WorkFolder::WorkFolder(const fs::path& directory) {
+  do path_ = unfinished_in(directory);
+  while (!fs::create_directory(path_));
+}
+
+WorkFolder::~WorkFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
 }
 
 std::string digest(std::string_view text) {

@@ -7,16 +7,71 @@
 
 namespace hosel::post {
 
-/// Replaces FILE: written beside it under a name of this process, renamed when complete. `durable` waits for the disk
-/// before the rename, so that not even a loss of power leaves half a file. Throws std::runtime_error with the
-/// system's reason; what stood in FILE is then untouched.
+/// Replaces FILE: written new beside it, renamed when complete. What stood in FILE is never opened: another name of it
+/// (a hard link) keeps what it had, a pipe is waited for by nobody. `durable` waits for the disk before the rename, so
+/// that not even a loss of power leaves half a file. Throws std::runtime_error with the system's reason; what stood in
+/// FILE is then untouched.
 void write_file(const std::filesystem::path& file, std::string_view bytes, bool durable = true);
 
-/// The whole of FILE. Throws std::runtime_error where it cannot be read.
+/// A file that grows while it is written: begun as write_file does, then kept open.
+class GrowingFile {
+ public:
+  explicit GrowingFile(const std::filesystem::path& file, std::string_view beginning = {}, bool durable = false);
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+  /// At once on disk, so that a killed run keeps it. Throws as write_file; then nothing of `bytes` is in the file.
+  void append(std::string_view bytes);
+  int descriptor() const { return descriptor_; }
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_;
+};
+
+/// The whole of FILE. Throws std::runtime_error where it cannot be read or is no regular file: a pipe may never end.
 std::string read_file(const std::filesystem::path& file);
+
+/// The absolute path of a program in the folders that PATH names absolutely, none of them in OUTSIDE: a program that
+/// lies among the files of a run is somebody's data. Empty where there is none.
+std::filesystem::path find_program(std::string_view name, const std::filesystem::path& outside = {});
+
+/// Watches the files that write_file and GrowingFile leave below DIRECTORY, in this process, as long as it lives. Where
+/// one watch lies in another's directory, a file belongs to the inner one.
+class WrittenFiles {
+ public:
+  explicit WrittenFiles(const std::filesystem::path& directory);
+  ~WrittenFiles();
+  WrittenFiles(const WrittenFiles&) = delete;
+  WrittenFiles& operator=(const WrittenFiles&) = delete;
+  /// The first that is gone, though nobody here removed it; empty where all are there.
+  std::filesystem::path missing() const;
+
+ private:
+  std::string directory_;
+};
+
+/// Puts a file that another program has made in the place of TO, as write_file does with its own.
+void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Removes a file that this process has written, and is not to miss.
+void remove_file(const std::filesystem::path& file);
 
 /// What a killed process left of files it was writing in DIRECTORY. To be called by whoever holds it alone.
 void remove_unfinished(const std::filesystem::path& directory);
+
+/// A new folder in DIRECTORY, gone with its content when this dies; after a kill, by remove_unfinished.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::filesystem::path& directory);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 /// Name-based UUID (SHA-1) of a text: tells damage and change, keeps no secret.
 std::string digest(std::string_view text);

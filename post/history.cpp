@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "hosel/post/file.hpp"
+#include "hosel/post/csv.hpp"
 
 namespace hosel::post {
 namespace {
@@ -17,10 +17,12 @@ struct Beginning {
 
 Beginning beginning(const std::filesystem::path& file, long rows) {
   Beginning b;
-  std::ifstream in(file);
-  for (std::string line; b.rows < rows && std::getline(in, line) && !in.eof(); ++b.rows) {
-    b.text += line + "\n";
-    b.digest = digest(b.digest + line + "\n");
+  if (!std::filesystem::is_regular_file(file)) return b;
+  const std::string all = read_file(file);
+  for (std::size_t at = 0, end; b.rows < rows && (end = all.find('\n', at)) != all.npos; at = end + 1, ++b.rows) {
+    const std::string line = all.substr(at, end + 1 - at);
+    b.text += line;
+    b.digest = digest(b.digest + line);
   }
   return b;
 }
@@ -34,26 +36,24 @@ bool History::holds(const std::filesystem::path& file, const Mark& mark) {
 
 History::History(const std::filesystem::path& file, const std::vector<std::string>& columns, const Mark* kept)
     : file_(file.string()), columns_(columns.size()) {
-  const std::string header = fmt::format("{}\n", fmt::join(columns, ","));
+  std::vector<std::string> cells;
+  for (const std::string& name : columns) cells.push_back(csv_cell(name));
+  std::string beginning_of = fmt::format("{}\n", fmt::join(cells, ","));
+  mark_ = {0, digest(beginning_of)};
   if (kept) {
-    const Beginning b = beginning(file, kept->rows);
+    Beginning b = beginning(file, kept->rows);
     if (b.digest != kept->digest) throw std::runtime_error(fmt::format("{}: is not what it was", file_));
-    write_file(file, b.text);
+    beginning_of = std::move(b.text);
     mark_ = *kept;
-  } else {
-    write_file(file, header);
-    mark_ = {0, digest(header)};
   }
-  out_.open(file, std::ios::app);
-  if (!out_) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+  out_ = std::make_unique<GrowingFile>(file, beginning_of);
 }
 
 void History::write(std::span<const double> values) {
   if (values.size() != columns_)
     throw std::invalid_argument(fmt::format("{}: {} values for {} columns", file_, values.size(), columns_));
   const std::string line = fmt::format("{:.9g}\n", fmt::join(values, ","));
-  out_ << line << std::flush;  // a killed run keeps it
-  if (!out_) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+  out_->append(line);
   ++mark_.rows;
   mark_.digest = digest(mark_.digest + line);
 }

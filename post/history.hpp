@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "hosel/post/file.hpp"
 
 namespace hosel::post {
 
@@ -28,7 +30,7 @@ class History {
   static bool holds(const std::filesystem::path& file, const Mark& mark);
 
  private:
-  std::ofstream out_;
+  std::unique_ptr<GrowingFile> out_;
   std::string file_;
   std::size_t columns_;
   Mark mark_;

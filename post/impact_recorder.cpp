@@ -115,7 +115,7 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   if (options.checkpoints) s.resumed = load_checkpoint(s.checkpoint(), s.run);
   if (!s.resumed || !s.whole(*s.resumed)) {
     s.resumed.reset();
-    fs::remove(s.checkpoint());
+    remove_file(s.checkpoint());
     return;
   }
   s.start = Pose{s.resumed->face_centre, s.resumed->face_axes};

@@ -30,7 +30,7 @@ using Texts = std::vector<std::string>;
 void run(const std::string& where, const std::filesystem::path& out, const Texts& set, bool force, bool quiet) {
   app::CaseFile file(app::find_case(where), set);
   const auto job = app::read_job(file);
-  app::Output output({.directory = out, .force = force, .quiet = quiet}, file.resolved());
+  app::Output output({.directory = out, .force = force, .quiet = quiet}, file);
   job->run(output);
 }
 
@@ -57,15 +57,28 @@ class Model {
 
   /// Columns of `inputs` are named by `names`, each with its unit; rows are blows. Columns of the result: channels().
   py::array_t<double> launch(const Texts& names, const py::array_t<double, py::array::c_style>& inputs) const {
+    if (inputs.ndim() != 2 || inputs.shape(1) != py::ssize_t(names.size()))
+      throw app::InputError(fmt::format("{} names, so a table of as many columns is wanted", names.size()));
     std::vector<std::pair<Input, double>> columns;
     for (const std::string& name : names) {
       const SplitName split = split_unit(name);
       const std::optional<Input> input = input_of(split.stem);
       if (!input || !split.unit || split.unit->dimension != quantity(*input).dimension)
         throw app::InputError(unknown(name));
+      for (const auto& [other, si] : columns)
+        if (other == *input)
+          throw app::InputError(fmt::format("'{}': {} is given twice, in two units", name, stem(other)));
       columns.emplace_back(*input, split.unit->si);
     }
     const auto in = inputs.unchecked<2>();
+    // As in a case: a value outside what the reader allows is an error, and the first one is named.
+    for (py::ssize_t i = 0; i < in.shape(0); ++i)
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const app::Range range = app::limits::of(columns[c].first);
+        if (const double x = in(i, py::ssize_t(c)); !range.contains(x * columns[c].second))
+          throw app::InputError(
+              fmt::format("blow {}: {}: {:g} is {}", i, names[c], x, range.sentence(split_unit(names[c]).unit)));
+      }
     const auto channels = post::channels();
     py::array_t<double> answers({in.shape(0), py::ssize_t(channels.size())});
     auto out = answers.mutable_unchecked<2>();

@@ -11,6 +11,7 @@
 #include "hosel/app/read_options.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/solvers/errors.hpp"
 
 namespace hosel::app {
@@ -56,8 +57,9 @@ class BallRuleJob final : public Job {
     limit_ = rule.quantity({"limit", "longest allowed total distance"}, "yd", {50, 500});
     old_ = read_test(rule.table("old"));
     new_ = read_test(rule.table("new"));
+    std::vector<std::string> taken;
     for (Table t : root.tables("player")) {
-      players_.push_back({t.text({"name", "of the player"}),
+      players_.push_back({t.name({"name", "of the player"}, taken),
                           t.quantity({"club_speed", "of the player"}, "mph", {10, 100}),
                           t.quantity({"dynamic_loft", "of the player's club"}, "deg", {0, kPi / 2}),
                           {}});
@@ -117,7 +119,7 @@ class BallRuleJob final : public Job {
                              fmt::format("{:.1f}", shot.flight.carry / yard()),
                              fmt::format("{:.1f}", shot.run->total / yard())});
       std::vector<std::string>& line = losses.rows.back();
-      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}", p.name, p.club_speed / kMpsPerMph,
+      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}", post::csv_cell(p.name), p.club_speed / kMpsPerMph,
                          launch.ball_speed() / kMpsPerMph, shot.flight.carry / yard(), shot.run->total / yard());
       for (std::size_t k = 0; k < changed.size(); ++k) {
         const double loss = (shot.run->total - total(changed[k], drive(p, changed[k]))) / yard();

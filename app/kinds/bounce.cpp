@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_options.hpp"
@@ -15,6 +16,7 @@
 #include "hosel/models/elastic_plate.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/labels.hpp"
 
@@ -55,6 +57,7 @@ struct Thrown {
 class BounceJob final : public Job {
  public:
   explicit BounceJob(CaseFile& file) {
+    const BlowsBeside beside;
     Table root = file.root();
     title_ = root.text({"title", "of tables, pages and figures"}, "");
     const std::vector<std::string> names = read_models(root);
@@ -126,10 +129,11 @@ class BounceJob final : public Job {
       progress.finish();
     }
     std::string csv = "ball,speed_mps,angle_deg";
-    for (const BounceQuantity& q : kBounceQuantities) csv += "," + with_unit(q);
+    for (const BounceQuantity& q : kBounceQuantities) csv += "," + post::csv_cell(with_unit(q));
     csv += '\n';
     for (std::size_t k = 0; k < count; ++k) {
-      csv += fmt::format("{},{:.6g},{:.6g}", thrown_[k / grid].name, bounces[k].speed, degrees(bounces[k].angle));
+      csv += fmt::format("{},{:.6g},{:.6g}", post::csv_cell(thrown_[k / grid].name), bounces[k].speed,
+                         degrees(bounces[k].angle));
       for (const BounceQuantity& q : kBounceQuantities) csv += fmt::format(",{:.6g}", bounces[k].*q.value / q.si);
       csv += '\n';
     }

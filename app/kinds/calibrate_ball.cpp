@@ -238,8 +238,9 @@ class CalibrateBallJob final : public Job {
     std::optional<Shaft> shaft;
     if (auto t = root.optional_table("shaft")) shaft = read_shaft(*t);
     const ClubGeometry geometry = read_club_geometry(root, false);
+    std::vector<std::string> taken;
     for (Table t : tables) {
-      models::ObliqueTarget shot{.name = t.text({"name", "of the shot or club"})};
+      models::ObliqueTarget shot{.name = t.name({"name", "of the shot or club"}, taken)};
       groups_.push_back(t.text({"group", "of shots whose errors are summed up together"}, ""));
       shot.seen = t.flag({"seen", "false: predicted, not fitted"}, true);
       shot.blow.ball = problem_.ball;

@@ -293,7 +293,7 @@ class ClubsJob final : public Job {
       progress.update(double(recorded.size()) / double(clubs.size()), c.name);
       recorded.push_back({c.blow, models::checked_launch(*model, c.blow)});
       const auto found = models::match_launch_angle(*model, c.blow, radians(c.mean[2]), radians(0.05));
-      models::check_launch(found.blow, found.launch);
+      models::check_launch(*model, found.blow, found.launch);
       matched.push_back({found.blow, found.launch});
     }
     progress.finish();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/library.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
@@ -17,6 +18,7 @@
 #include "hosel/golf/parallel.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -61,6 +63,7 @@ CrossPrediction answer(const models::ImpactModel& model, const Blow& blow) {
 class CrossCheckJob final : public Job {
  public:
   explicit CrossCheckJob(CaseFile& file) {
+    const BlowsBeside beside;
     Table root = file.root();
     title_ = root.text({"title", "of tables, pages and figures"}, "");
     models_ = read_models(root);
@@ -117,7 +120,7 @@ class CrossCheckJob final : public Job {
     std::string csv = "model,channel,unit,mean,rms,largest";
     for (const Axis& a : axes_) csv += "," + column(*a.parameter);
     for (const ComparedQuantity& q : kComparedQuantities)
-      csv += fmt::format(",{} [{}] difference there [%]", q.name, q.unit);
+      csv += "," + post::csv_cell(fmt::format("{} [{}] difference there [%]", q.name, q.unit));
     csv += '\n';
 
     for (std::size_t m = 0; m < models_.size(); ++m) {

@@ -16,6 +16,7 @@
 #include "hosel/models/hertz_maw.hpp"
 #include "hosel/models/registry.hpp"
 #include "hosel/models/stick_slip.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -93,7 +94,7 @@ class CurvesJob final : public Job {
                                          f / family_.si, column(*x_.parameter), x / x_.si, e.what()));
             continue;
           }
-          csv += fmt::format("{},{:.8g},{:.8g}", models_[m], f / family_.si, x / x_.si);
+          csv += fmt::format("{},{:.8g},{:.8g}", post::csv_cell(models_[m]), f / family_.si, x / x_.si);
           for (std::size_t c = 0; c < channels_.size(); ++c) {
             csv += fmt::format(",{:.8g}", values[c]);
             lines[c].x.push_back(x / x_.si);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_face_map.hpp"
 #include "hosel/app/read_flight.hpp"
@@ -14,7 +15,6 @@
 #include "hosel/app/stop.hpp"
 #include "hosel/app/stored_launch.hpp"
 #include "hosel/app/sweep.hpp"
-#include "hosel/app/sweep_store.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/fe_impact.hpp"
 #include "hosel/models/hosel_load.hpp"
@@ -54,6 +54,7 @@ struct Pair {
 class FaceMapJob final : public PointJob {
  public:
   explicit FaceMapJob(CaseFile& file) {
+    const BlowsBeside beside;
     Settings s = read(file.root());
     grid_ = s.grid;
     reference_ = s.reference;
@@ -82,11 +83,9 @@ class FaceMapJob final : public PointJob {
         for (const std::size_t p : post::coarse_points(grid_)) work_.push_back({layer, p});
       else
         for (std::size_t p = 0; p < grid_.size(); ++p) work_.push_back({layer, p});
-    identity_ += digest_of_files(file.named_files());
   }
 
   std::size_t size() const override { return work_.size(); }
-  std::string identity() const override { return identity_; }
 
   json compute(std::size_t point, const std::filesystem::path&) const override {
     const auto& [layer, place] = work_[point];
@@ -167,9 +166,11 @@ class FaceMapJob final : public PointJob {
   /// Every key that a face map knows.
   static Settings read(Table root) {
     Settings s;
-    for (const std::string& m : read_models(root)) s.variants.push_back({m, m, {}});
+    std::vector<std::string> names = read_models(root);
+    for (const std::string& m : names) s.variants.push_back({m, m, {}});
     for (Table v : root.tables("variants")) {
-      const std::string name = v.text({"name", "of the map"}), model = v.text({"model", "that answers for this map"});
+      const std::string name = v.name({"name", "of the map"}, names),
+                        model = v.text({"model", "that answers for this map"});
       if (!models::find(model)) v.fail("model", fmt::format("no model '{}'; `hosel list` shows them", model));
       s.variants.push_back(
           {name, model, v.texts({"set", "keys that this map changes, table.key=value"}),
@@ -177,12 +178,6 @@ class FaceMapJob final : public PointJob {
     }
     constexpr std::size_t most = 1000;  // each is read once for every one
     if (s.variants.size() > most) root.fail("variants", fmt::format("more than {}: sweep a key instead", most));
-    std::vector<std::string> names;
-    for (const MapVariant& v : s.variants) {
-      if (std::ranges::find(names, v.title) != names.end())
-        root.fail("models", fmt::format("'{}' is there twice", v.title));
-      names.push_back(v.title);
-    }
     const std::string reference =
         root.choice({"reference", "the map that the others are compared with"}, names, names.front());
     s.reference = std::size_t(std::ranges::find(names, reference) - names.begin());
@@ -241,7 +236,6 @@ class FaceMapJob final : public PointJob {
     const Settings own = read(root);
     Layer layer{variant.title, models::find(variant.model)->make(own.options), own.blow, own.flight, refined};
     again.finish();
-    identity_ += variant.title + '\n' + variant.model + '\n' + again.resolved();
     layers_.push_back(std::move(layer));
   }
 
@@ -278,7 +272,7 @@ class FaceMapJob final : public PointJob {
     }
     picture(out, figure,
             fmt::format("figures/{}{}{}", of_flight ? "flight-" : "", reference ? "difference-" : "map-",
-                        file_name(map.title)),
+                        out.file_name(map.title)),
             on_page);
   }
 
@@ -306,7 +300,7 @@ class FaceMapJob final : public PointJob {
       }
     }
     if (!any) return;
-    const std::string name = file_name(layers_[layer].title);
+    const std::string name = out.file_name(layers_[layer].title);
     out.write(fmt::format("hosel-{}.csv", name), csv);
     post::Figure figure{.title = fmt::format("{}: impulse of the shaft on the head at the hosel, face axes; {}",
                                              layers_[layer].title, post::kFaceView),
@@ -322,12 +316,6 @@ class FaceMapJob final : public PointJob {
 
   void picture(Output& out, const post::Figure& figure, const std::string& stem, bool on_page = true) const {
     if (figures_) out.draw(figure, stem, on_page);
-  }
-
-  static std::string file_name(std::string title) {
-    for (char& c : title)
-      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-    return title;
   }
 
   json effect(Output& out, const std::vector<post::FaceMap>& all, std::size_t m) const {
@@ -350,7 +338,7 @@ class FaceMapJob final : public PointJob {
            .panels = {post::face_panel(grid_, grams, label, label, false)},
            .panel_width = 1100,
            .panel_height = 620},
-          "figures/equivalent-mass-" + file_name(map.title));
+          "figures/equivalent-mass-" + out.file_name(map.title));
     }
     // The same figures from the nine coarse points, as computed and with finer numerics: their
     // difference is the numerical uncertainty.
@@ -443,7 +431,7 @@ class FaceMapJob final : public PointJob {
                                                      : fmt::format("{:.0f} % are left", 100 * product / square),
                                                  fmt::format("[{}]", unit), true));
     }
-    picture(out, figure, "figures/kept-" + file_name(map.title));
+    picture(out, figure, "figures/kept-" + out.file_name(map.title));
     return j;
   }
 
@@ -463,7 +451,6 @@ class FaceMapJob final : public PointJob {
   std::vector<Layer> layers_;
   std::vector<Pair> pairs_;
   std::vector<Work> work_;
-  std::string identity_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/launch_table.hpp"
 
 namespace hosel::app {
@@ -42,10 +43,9 @@ class FlightJob final : public Job {
     Table root = file.root();
     setup_ = root.has("flight") ? read_flight(root.table("flight")) : FlightSetup{};
     if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
+    std::vector<std::string> taken;
     for (Table t : root.tables("launch")) {
-      Shot s{t.text({"name", "of the shot"}), read_launch(t), {}};
-      if (std::ranges::find(shots_, s.name, &Shot::name) != shots_.end())
-        t.fail("name", fmt::format("'{}' is there twice", s.name));
+      Shot s{t.name({"name", "of the shot"}, taken), read_launch(t), {}};
       if (auto measured = t.optional_table("measured"))
         for (const post::FlightChannel& c : post::flight_channels(setup_.unit))
           if (measured->has_quantity(c.name))
@@ -76,7 +76,7 @@ class FlightJob final : public Job {
       j["budget"] = report_flight(out, setup_, s.name, s.launch, ball_);
       compare(out, s, shot, j);
       const auto row = [&](const std::string& law, const post::ShotFlight& f) {
-        csv += fmt::format("{},{}", s.name, law);
+        csv += post::csv_cell(s.name) + "," + post::csv_cell(law);
         for (const post::FlightChannel& c : channels) {
           const auto x = c.value(f);
           csv += x ? fmt::format(",{:.8g}", *x / c.si) : std::string(",");

@@ -21,6 +21,7 @@
 #include "hosel/models/matched_launch.hpp"
 #include "hosel/models/oblique.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/file.hpp"
 #include "hosel/post/impact_recorder.hpp"
 #include "hosel/post/launch_table.hpp"
 
@@ -39,8 +40,9 @@ class ImpactJob final : public Job {
     if (auto measured = root.optional_table("measured")) read_measured(*measured);
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
     flight_ = read_optional_flight(root);
+    std::vector<std::string> taken;
     for (Table t : root.tables("compare")) {
-      const std::string name = t.text({"name", "of the columns that stand before the case's own"});
+      const std::string name = t.name({"name", "of the columns that stand before the case's own"}, taken);
       std::vector<std::string> set = t.texts({"set", "keys in which it differs from the case, table.key=value"});
       set.insert(set.end(), file.overrides().begin(), file.overrides().end());  // the command line has the last word
       CaseFile other(file, set);
@@ -64,10 +66,10 @@ class ImpactJob final : public Job {
       nlohmann::json& said = summary["models"][entry.name];
       if (const models::FeModel* model = entry.fe()) {
         const models::FeOutcome outcome = run_fe(out, entry.name, *model, blow, home(out, entry), files, runs);
-        models::check_launch(blow, outcome.launch);
+        models::check_launch(*model, blow, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
         said = post::to_json(outcome.launch);
-        said["solution"] = solution(out, entry.name, blow, outcome.result);
+        said["solution"] = solution(out, entry.name, blow, outcome);
         if (entry.companion) {
           columns.back().coarser = models::checked_launch(*entry.companion, blow);
           nlohmann::json& error = said["numerical_error"];
@@ -108,7 +110,7 @@ class ImpactJob final : public Job {
     show_impact(out, story);
     out.write_summary(summary);
     for (const Entry& entry : own_.models)  // only now: a disk too full for the summary must not cost the run
-      if (entry.fe()) fs::remove(home(out, entry) / "checkpoint.cbor");
+      if (entry.fe()) post::remove_file(home(out, entry) / "checkpoint.cbor");
   }
 
  private:
@@ -247,9 +249,9 @@ class ImpactJob final : public Job {
 
   models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const Blow& blow,
                            const fs::path& home, std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
-    if (out.force()) fs::remove(home / "checkpoint.cbor");
+    if (out.force()) post::remove_file(home / "checkpoint.cbor");
     post::ImpactRecorder recorder(home, blow, record_,
-                                  fmt::format("{}\n{}\n{}", name, program_version(), out.resolved_case()));
+                                  fmt::format("{}\n{}\n{}", name, program_version(), out.fingerprint()));
     if (const models::ImpactCheckpoint* from = recorder.resume())
       out.tell(fmt::format("{}: goes on from t = {:.3f} ms, where an earlier run was stopped", name,
                            1e3 * from->solver.state.time));
@@ -296,7 +298,8 @@ class ImpactJob final : public Job {
 
   /// What the solution was and how well its energy adds up: for the person and the summary.
   nlohmann::json solution(Output& out, const std::string& name, const Blow& blow,
-                          const models::FeImpactResult& r) const {
+                          const models::FeOutcome& outcome) const {
+    const models::FeImpactResult& r = outcome.result;
     const double closure = r.ledger.closure / r.ledger.initial;
     // What the blow can change is the energy of the relative motion, not that of a head that flies on.
     const models::Encounter e = models::encounter(blow);
@@ -311,6 +314,12 @@ class ImpactJob final : public Job {
     doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
     doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
           "a higher contact.tangential_penalty");
+    // A centred sphere that only normal forces push cannot be spun: what turns it is the mesh, not quite a sphere.
+    if (const double spin = outcome.launch.spin.norm(); own_.fe.friction == 0 && spin > 1)
+      out.warn(
+          fmt::format("{}: without friction nothing spins the ball: the {:.1f} rad/s ({:.0f} rpm) with which it "
+                      "leaves are the mesh's own: a finer accuracy has less",
+                      name, spin, rpm(spin)));
     out.say(fmt::format(
         "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "
         "energy closes to {:.1e} of the initial",

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_face_map.hpp"
 #include "hosel/app/read_options.hpp"
@@ -17,7 +18,6 @@
 #include "hosel/app/stop.hpp"
 #include "hosel/app/stored_launch.hpp"
 #include "hosel/app/sweep.hpp"
-#include "hosel/app/sweep_store.hpp"
 #include "hosel/models/checked_launch.hpp"
 #include "hosel/models/fe_full_club.hpp"
 #include "hosel/models/shaft_coupled.hpp"
@@ -84,6 +84,7 @@ struct Named {
 class LoadedFaceMapJob final : public PointJob {
  public:
   explicit LoadedFaceMapJob(CaseFile& file) {
+    const BlowsBeside beside;
     const Settings s = read(file.root());
     grid_ = s.grid;
     claims_ = s.claims;
@@ -124,7 +125,6 @@ class LoadedFaceMapJob final : public PointJob {
   }
 
   std::size_t size() const override { return work_.size(); }
-  std::string identity() const override { return identity_; }
 
   json compute(std::size_t point, const std::filesystem::path&) const override {
     const LoadedLayer& layer = layers_[work_[point].layer];
@@ -172,13 +172,14 @@ class LoadedFaceMapJob final : public PointJob {
                                       "where the effect is taken apart: at every point of the grid, or at its "
                                       "corners, edge middles and centre alone"},
                                      {"grid", "nine-places"}, "grid") == "grid";
+    std::vector<std::string> swings, assumptions;
     for (Table t : root.tables("swings"))
-      s.swings.push_back(
-          {t.text({"name", "of the swing"}), t.texts({"set", "keys that make it this swing, table.key=value"})});
+      s.swings.push_back({t.name({"name", "of the swing"}, swings),
+                          t.texts({"set", "keys that make it this swing, table.key=value"})});
     if (s.swings.empty()) root.fail("swings", "name at least one swing in [[swings]]");
     for (Table t : root.tables("assumptions"))
-      s.assumptions.push_back(
-          {t.text({"name", "of what else may be true"}), t.texts({"set", "keys that it changes, table.key=value"})});
+      s.assumptions.push_back({t.name({"name", "of what else may be true"}, assumptions),
+                               t.texts({"set", "keys that it changes, table.key=value"})});
     if (auto r = root.optional_table("refinement"))
       s.refinement = r->texts({"set", "keys that refine the numerics, table.key=value"});
     s.claims = read_statements(root, post::shaft_effect_names());
@@ -213,7 +214,6 @@ class LoadedFaceMapJob final : public PointJob {
     root.text({"title", "of tables, pages and figures"}, "");
     Settings s = read(root);
     again.finish();
-    identity_ += again.resolved() + digest_of_files(again.named_files());
     return std::move(s.setup);
   }
 
@@ -534,7 +534,6 @@ class LoadedFaceMapJob final : public PointJob {
   std::vector<Assumption> assumptions_;  // each under each assumption
   std::vector<LoadedLayer> layers_;
   std::vector<Work> work_;
-  std::string identity_;
 };
 
 }  // namespace

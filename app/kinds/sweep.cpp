@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
 #include "hosel/app/cases.hpp"
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/sweep.hpp"
-#include "hosel/app/sweep_store.hpp"
 #include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/file.hpp"
@@ -79,12 +78,13 @@ class Nesting {
 class SweepJob final : public PointJob {
  public:
   explicit SweepJob(CaseFile& file) {
+    const BlowsBeside beside;
     Table root = file.root();
     Nesting nesting(root, file.file());
     title_ = root.text({"title", "of tables, pages and figures"}, "");
     const std::string named = root.text({"case", "the case whose keys are swept: beside this one, or a shipped one"});
-    const fs::path beside = file.directory() / named;
-    case_ = fs::exists(beside) ? beside : find_case(named);
+    const fs::path own = file.case_beside(named);
+    case_ = own.empty() ? find_case(named) : own;
     set_ = root.texts({"set", "keys changed in every point, table.key=value"}, std::vector<std::string>{});
     record_ = root.texts({"record", "entries of the points' summaries that the table holds; empty: all"},
                          std::vector<std::string>{});
@@ -115,21 +115,15 @@ class SweepJob final : public PointJob {
     }
     sampled_ = sample.has_value();
     // Every point is read now: a value that the case refuses is an error before anything is computed.
-    swept_ = std::make_unique<CaseFile>(case_);
+    swept_ = std::make_unique<CaseFile>(case_, file, own.empty() ? std::string() : named);
     for (std::size_t point = 0; point < size_; ++point) {
       nesting.count(root);
       CaseFile one(*swept_, overrides(point));
       read_job(one);
-      identities_.push_back(identity_of(one));
     }
   }
 
   std::size_t size() const override { return size_; }
-  std::string identity() const override {
-    std::string all;
-    for (const std::string& one : identities_) all += one;
-    return all;
-  }
 
   json compute(std::size_t point, const fs::path& scratch) const override {
     // A killed process may have finished the point, but only what is in the store is sealed: computed again.
@@ -137,20 +131,13 @@ class SweepJob final : public PointJob {
     CaseFile file(*swept_, overrides(point));
     const auto job = read_job(file);
     {
-      Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file.resolved());
+      Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file);
       job->run(out);
     }
-    if (identity_of(file) != identities_[point])
-      throw InputError(
-          fmt::format("{}: a file that this case names has changed since the sweep began: its points "
-                      "would not belong together; run the sweep again",
-                      file.file().string()));
-    std::ifstream in(scratch / "summary.json");
     json result = json::object();
-    const json said = json::parse(in);
+    const json said = json::parse(post::read_file(scratch / "summary.json"));
     flatten(said, "", result);
     if (said.contains("skipped")) result["skipped"] = said["skipped"];
-    in.close();
     if (!keep_outputs_) fs::remove_all(scratch);
     return result;
   }
@@ -166,8 +153,8 @@ class SweepJob final : public PointJob {
       for (const auto& [name, value] : all.items()) columns.push_back(name);
     }
     std::string csv = "point";
-    for (const Parameter& p : parameters_) csv += "," + p.key;
-    for (const std::string& c : columns) csv += "," + c;
+    for (const Parameter& p : parameters_) csv += "," + post::csv_cell(p.key);
+    for (const std::string& c : columns) csv += "," + post::csv_cell(c);
     csv += ",error\n";
     json summary = {{"points", size_}, {"failed", 0}};
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -212,11 +199,6 @@ class SweepJob final : public PointJob {
   }
 
  private:
-  /// What one point is computed from besides the program.
-  static std::string identity_of(const CaseFile& one) {
-    return post::digest(one.resolved()) + digest_of_files(one.named_files());
-  }
-
   /// The same key, or the same quantity in another unit.
   static bool same_quantity(const std::string& a, const std::string& b) {
     const SplitName x = split_unit(a), y = split_unit(b);
@@ -417,7 +399,6 @@ class SweepJob final : public PointJob {
   bool keep_outputs_ = false, sampled_ = false;
   std::vector<Parameter> parameters_;
   std::size_t size_ = 0;
-  std::vector<std::string> identities_;  ///< of the points
 };
 
 }  // namespace

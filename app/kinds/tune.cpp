@@ -15,8 +15,10 @@
 #include "hosel/golf/parallel.hpp"
 #include "hosel/golf/units.hpp"
 #include "hosel/loop/shots/shots.hpp"
+#include "hosel/models/checked_launch.hpp"
 #include "hosel/models/loaded_shaft.hpp"
 #include "hosel/models/registry.hpp"
+#include "hosel/post/csv.hpp"
 #include "hosel/post/figure.hpp"
 #include "hosel/post/labels.hpp"
 #include "hosel/post/launch_table.hpp"
@@ -261,7 +263,7 @@ class TuneJob final : public Job {
     std::vector<double> out(channels_.size(), kNaN);
     if (!blow.club.head.faults().empty() && model_ != "rigid-planar") return out;
     try {
-      const Launch l = models::find(model_)->make(options)->launch(blow);
+      const Launch l = models::checked_launch(*models::find(model_)->make(options), blow);
       for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = channels_[c].channel.value(l);
     } catch (const std::exception&) {}
     return out;
@@ -367,7 +369,8 @@ class TuneJob final : public Job {
     post::Figure figure{.title = fmt::format("{} tuned: model minus measured", model_), .columns = 3};
     std::string rows_csv = "shot,set";
     for (const TuneChannel& c : channels_)
-      rows_csv += fmt::format(",{}__measured,{}__before,{}__after", c.name, c.name, c.name);
+      for (const char* what : {"measured", "before", "after"})
+        rows_csv += "," + post::csv_cell(fmt::format("{}__{}", c.name, what));
     rows_csv += '\n';
     csv = "set,channel,rows,before_mean,before_sd,before_mae,after_mean,after_sd,after_mae\n";
     post::TextTable table{
@@ -389,7 +392,7 @@ class TuneJob final : public Job {
       int lost = 0;
       for (std::size_t i = 0; i < rows->size(); ++i) {
         const std::size_t row = (*rows)[i];
-        rows_csv += fmt::format("{},{}", id_[row], set);
+        rows_csv += fmt::format("{},{}", post::csv_cell(id_[row]), set);
         for (std::size_t c = 0; c < channels_.size(); ++c) {
           const double b = error(row, c, model_before[i]), a = error(row, c, model_after[i]);
           if (std::isfinite(a) && std::isfinite(b)) before[c].push_back(b), after[c].push_back(a);

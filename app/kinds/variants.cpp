@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosel/app/check_memory.hpp"
 #include "hosel/app/read_blow.hpp"
 #include "hosel/app/read_flight.hpp"
 #include "hosel/app/read_options.hpp"
@@ -50,6 +51,7 @@ struct Prediction {
 class VariantsJob final : public Job {
  public:
   explicit VariantsJob(CaseFile& file) {
+    const BlowsBeside beside;
     const std::vector<Variant> first = read(file.root());
     for (std::size_t i = 0; i < first.size(); ++i) {
       std::vector<std::string> overrides = first[i].set;  // the command line has the last word
@@ -95,9 +97,10 @@ class VariantsJob final : public Job {
            "turn the inner layers' loss until the ball bounces at this speed as the first variant's does"},
           "mps", {1, 100});
     std::vector<Variant> out;
+    std::vector<std::string> taken;
     for (Table t : root.tables("variants")) {
       Variant v = base;
-      v.name = t.text({"name", "of the variant"});
+      v.name = t.name({"name", "of the variant"}, taken);
       v.range = t.text({"range", "where its figures come from"}, "");
       v.set = t.texts({"set", "keys that the variant changes, table.key=value"}, std::vector<std::string>{});
       if (auto own = t.optional_table("measured")) v.seen = read_seen(*own);

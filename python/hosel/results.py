@@ -87,7 +87,7 @@ class Run:
 
     @property
     def tables(self):
-        return self._files("*.csv")
+        return [t for t in self._files("*.csv") if not t.startswith("inputs/")]
 
     @property
     def figures(self):

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -31,13 +32,21 @@ struct Outcome {
   std::string text;  ///< both streams
 };
 
-inline Outcome command(const std::string& arguments) {
-  FILE* pipe = popen((std::string(HOSEL_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+/// The command of this build; HOSEL_OTHER names another one, to see what it makes of the same tests.
+inline std::string hosel_command() {
+  const char* other = std::getenv("HOSEL_OTHER");
+  return other ? other : HOSEL_COMMAND;
+}
+
+inline Outcome shell(const std::string& line) {
+  FILE* pipe = popen(("{ " + line + "; } 2>&1").c_str(), "r");
   std::string text;
   std::array<char, 4096> buffer;
   while (fgets(buffer.data(), int(buffer.size()), pipe)) text += buffer.data();
   return {WEXITSTATUS(pclose(pipe)), text};
 }
+
+inline Outcome command(const std::string& arguments) { return shell(hosel_command() + " " + arguments); }
 
 /// An empty directory of this process, gone when it ends.
 inline std::filesystem::path fresh_directory(const std::string& name) {

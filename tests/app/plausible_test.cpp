@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "command.hpp"
 #include "hosel/app/output.hpp"
@@ -98,18 +99,90 @@ TEST(Plausible, TheGateKeepsOutWhatCreatesEnergy) {
   ASSERT_GT(launch.ball_speed(), 50);
   Launch faster = launch;
   faster.velocity *= 1.5;  // 2.25 times the ball's energy: more than the blow lost
-  EXPECT_THROW(models::check_launch(blow, faster), solvers::NonConvergence);
+  EXPECT_THROW(models::check_launch(models::RigidEccentric(), blow, faster), solvers::NonConvergence);
   Launch broken = launch;
   broken.spin.x() = NAN;
-  EXPECT_THROW(models::check_launch(blow, broken), solvers::NonConvergence);
+  EXPECT_THROW(models::check_launch(models::RigidEccentric(), blow, broken), solvers::NonConvergence);
   broken = launch;
   broken.peak_force = INFINITY;
-  EXPECT_THROW(models::check_launch(blow, broken), solvers::NonConvergence);
+  EXPECT_THROW(models::check_launch(models::RigidEccentric(), blow, broken), solvers::NonConvergence);
   // A wall: the ball leaves it no faster than it came.
   blow.club.head.mass = INFINITY;
   launch = models::checked_launch(models::RigidEccentric(), blow);
   launch.velocity *= 1.3;
-  EXPECT_THROW(models::check_launch(blow, launch), solvers::NonConvergence);
+  EXPECT_THROW(models::check_launch(models::RigidEccentric(), blow, launch), solvers::NonConvergence);
+}
+
+/// What a blow may not gain is judged by what the ball brings, not by what the head has.
+TEST(Plausible, TheGateIsAsNarrowForEveryModelThatHasNoShaft) {
+  Blow blow;
+  blow.delivery = {.club_speed = 45, .dynamic_loft = 0.2};
+  blow.club.head = {.mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal()};
+  blow.contact.restitution = blow.contact.tangential_restitution = 1;  // nothing is lost
+  blow.contact.restitution_slope = blow.contact.restitution_falloff = 0;
+  const models::RigidEccentric model;
+  Launch launch = models::checked_launch(model, blow);
+  // One per cent of the ball's energy too much, which the head pays with its momentum: 0.5 % of all that flies.
+  const double gain = 1.01;
+  const Vec3 impulse = (std::sqrt(gain) - 1) * blow.ball.mass * launch.velocity;
+  launch.velocity *= std::sqrt(gain);
+  launch.head_velocity -= impulse / blow.club.head.mass;
+  EXPECT_THROW(models::check_launch(model, blow, launch), solvers::NonConvergence);
+  // A shaft in the case that the model does not ask opens nothing.
+  blow.club.shaft = Shaft{};
+  EXPECT_THROW(models::check_launch(model, blow, launch), solvers::NonConvergence);
+  // A head that turns turns on after a blow in the plane: what it has is no energy to spend.
+  blow.delivery.head_angular_velocity = Vec3(0, 0, 300);
+  const models::RigidPlanar planar;
+  Launch flat = models::checked_launch(planar, blow);
+  EXPECT_EQ(flat.head_spin, blow.delivery.head_angular_velocity);
+  flat.velocity *= std::sqrt(1.1);
+  EXPECT_THROW(models::check_launch(planar, blow, flat), solvers::NonConvergence);
+}
+
+/// Three hundred blows with wide contact laws: a launch that the gate lets through has no energy that was not there.
+TEST(Plausible, WideContactLawsCreateNoEnergyOrAreRefused) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto between = [&](double low, double high) { return low + (high - low) * unit(random); };
+  const models::RigidPlanar planar;
+  const models::RigidEccentric eccentric;
+  const models::StickSlip stick_slip;
+  int passed = 0, refused = 0;
+  for (int k = 0; k < 300; ++k) {
+    Blow blow;
+    blow.delivery = {.club_speed = between(5, 70), .dynamic_loft = between(0, 1)};
+    blow.delivery.impact_toe = between(-0.03, 0.03);
+    blow.club.head = {
+        .mass = between(0.1, 0.4), .cg = Vec3(-0.03, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal()};
+    blow.contact.restitution = between(0.7, 1);
+    blow.contact.tangential_restitution = between(0, 1);
+    blow.contact.normal_force_offset = between(-0.5, 0.5);
+    blow.contact.friction = between(0, 2);
+    for (const models::ImpactModel* model :
+         std::initializer_list<const models::ImpactModel*>{&planar, &eccentric, &stick_slip}) {
+      Launch l;
+      try {
+        l = models::checked_launch(*model, blow);
+      } catch (const std::exception&) {
+        ++refused;
+        continue;
+      }
+      ++passed;
+      // In the frame of the head before the blow, counted here by itself.
+      const Vec3 frame = blow.delivery.velocity();
+      const Mat3 axes = blow.delivery.face_to_global();
+      const Vec3 turn = axes.transpose() * l.head_spin;
+      const double before = 0.5 * blow.ball.mass * frame.squaredNorm(),
+                   after = 0.5 * blow.ball.mass * (l.velocity - frame).squaredNorm() +
+                           0.5 * blow.ball.inertia() * l.spin.squaredNorm() +
+                           0.5 * blow.club.head.mass * (l.head_velocity - frame).squaredNorm() +
+                           0.5 * turn.dot(blow.club.head.inertia * turn);
+      EXPECT_LT(after, before * 1.0051) << "blow " << k;  // the gate's 0.5 %, and round-off
+    }
+  }
+  EXPECT_GT(passed, 500);
+  EXPECT_GT(refused, 10) << "laws that create energy are among them";
 }
 
 TEST(Plausible, NoReducedModelTakesARestitutionThatNoContactHas) {

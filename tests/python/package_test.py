@@ -41,6 +41,14 @@ class Launches(unittest.TestCase):
                               ({"dynamic_loft_deg": [10.0, 179.0]}, "blow 1")]:
             with self.assertRaisesRegex(ValueError, words):
                 model.launch(**inputs)
+        for inputs, words in [({"club_speed_mph": 100.0, "club_speed_mps": 40.0}, "club_speed is given twice"),
+                              ({"dynamic_loft_deg": [10.0, 370.0]}, "blow 1: dynamic_loft_deg: 370 is out of range"),
+                              ({"head_mass_kg": 1e9}, "head_mass_kg: 1e\\+09 is out of range"),
+                              ({"club_speed_mps": float("nan")}, "out of range")]:
+            with self.assertRaisesRegex(hosel.InputError, words):
+                model.launch(**inputs)
+        with self.assertRaisesRegex(ValueError, "2 names, so a table of as many columns"):
+            model._model.launch(["club_speed_mps", "head_mass_kg"], np.zeros((3, 1)))
         with self.assertRaisesRegex(ValueError, "did you mean"):
             hosel.Model("driver-to")
         with self.assertRaisesRegex(hosel.InputError, "head.mass_kg"):

@@ -1,0 +1,75 @@
+#include "hosel/app/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hosel/app/reader.hpp"
+#include "hosel/app/version.hpp"
+#include "hosel/post/file.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+namespace {
+
+std::string digest_of(const fs::path& file) {
+  return fs::is_regular_file(file) ? post::digest(post::read_file(file)) : "none";
+}
+
+[[noreturn]] void refuse_changed(const fs::path& file) {
+  throw InputError(fmt::format("{}: has changed since this run began: its results would not belong together; run again",
+                               file.string()));
+}
+
+}  // namespace
+
+void Inputs::file(const fs::path& file, const fs::path& copy) {
+  const std::string digest = digest_of(file);
+  const std::lock_guard lock(mutex_);
+  const auto [it, fresh] = digests_.emplace(file, digest);
+  if (!fresh && it->second != digest) refuse_changed(file);
+  if (!copy.empty() && digest != "none") copies_[copy] = file;
+}
+
+void Inputs::case_file(const fs::path& file, const fs::path& copy) {
+  const std::lock_guard lock(mutex_);
+  if (!copy.empty()) copies_[copy] = file;
+  if (std::ranges::find(cases_, file) == cases_.end()) cases_.push_back(file);
+}
+
+void Inputs::resolved(std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  if (fingerprint_.empty()) all_ = post::digest(all_ + post::digest(text));
+}
+
+std::string Inputs::fingerprint() const {
+  const std::lock_guard lock(mutex_);
+  if (fingerprint_.empty()) {
+    std::string text = program_version() + '\n' + all_ + '\n';
+    // By name and content: the same case elsewhere is the same run.
+    for (const auto& [file, digest] : digests_) text += file.filename().string() + '\n' + digest + '\n';
+    fingerprint_ = post::digest(text);
+  }
+  return fingerprint_;
+}
+
+void Inputs::verify() const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [file, digest] : digests_)
+    if (digest_of(file) != digest) refuse_changed(file);
+}
+
+std::map<fs::path, fs::path> Inputs::copies() const {
+  const std::lock_guard lock(mutex_);
+  return copies_;
+}
+
+std::vector<fs::path> Inputs::files() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<fs::path> all = cases_;
+  for (const auto& [file, digest] : digests_)
+    if (digest != "none") all.push_back(file);
+  return all;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,43 @@
+/// Everything that a run reads, in one place: its case with every default filled in, the cases made of it, and what
+/// stands in the files that they name.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hosel::app {
+
+/// Shared by a case file and every case file made of it: whoever reads a case may name files from any thread.
+class Inputs {
+ public:
+  /// A file that a case names; a missing one counts as such. Throws InputError where it is no longer what it was when
+  /// this run named it first. `copy`: where below OUT a copy belongs, for the resolved case to run again; empty:
+  /// nowhere.
+  void file(const std::filesystem::path& file, const std::filesystem::path& copy = {});
+  /// A case file itself. What it says counts by what is resolved of it; it is listed since no run may overwrite it.
+  void case_file(const std::filesystem::path& file, const std::filesystem::path& copy = {});
+  /// A case, read to its end. Counts until the fingerprint is asked for.
+  void resolved(std::string_view text);
+
+  /// Digest of the program, of every case and of every file: what was computed under another one is of another run.
+  std::string fingerprint() const;
+  /// Throws InputError where a file is no longer what was read.
+  void verify() const;
+  std::vector<std::filesystem::path> files() const;
+  /// Where below OUT copies belong, and of what.
+  std::map<std::filesystem::path, std::filesystem::path> copies() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::filesystem::path, std::string> digests_;  // in the order of their names, whichever thread came first
+  std::vector<std::filesystem::path> cases_;
+  std::map<std::filesystem::path, std::filesystem::path> copies_;
+  std::string all_;
+  mutable std::string fingerprint_;  // once asked for
+};
+
+}  // namespace hosel::app

@@ -1,0 +1,462 @@
+// What a run reads is what its results are of, and what it writes is its own: nothing mixed, nothing overwritten,
+// nothing lost without a word.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "command.hpp"
+#include "hosel/post/csv.hpp"
+
+namespace hosel::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json summary(const fs::path& out) { return json::parse(content(out / "summary.json")); }
+
+/// Starts the command and ends it by SIGTERM once `there` holds; returns how it ended.
+int ended_when(const std::string& arguments, const std::function<bool()>& there) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", ("exec " + hosel_command() + " " + arguments + " >/dev/null 2>&1").c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  while (!there() && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_TRUE(there()) << arguments;
+  kill(child, SIGTERM);
+  waitpid(child, &status, 0);
+  return status;
+}
+
+/// Status 124 where the command has not ended after ten seconds.
+Outcome within_ten_seconds(const std::string& arguments) {
+  return shell("timeout 10 " + hosel_command() + " " + arguments);
+}
+
+/// A shaft of two stations; the butt's stiffness is what the tests change.
+std::string shaft_csv(double butt) {
+  return fmt::format(
+      "arc_length_mm,bending_stiffness_N_m2,torsional_stiffness_N_m2,mass_per_length_g_per_m,mean_radius_mm\n"
+      "0,{},{},70,7\n1100,20,20,50,4.5\n",
+      butt, butt);
+}
+
+/// A coarse blow with a club whose shaft is a CSV beside it.
+void write_club_case(const fs::path& dir, double butt) {
+  write(dir / "shaft.csv", shaft_csv(butt));
+  write(dir / "case.toml", R"(kind = "impact"
+models = ["fe-full-club"]
+accuracy = "look"
+error_estimate = false
+[delivery]
+club_speed_mps = 50.0
+dynamic_loft_deg = 10.0
+impact_toe_mm = 20.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 4.0]
+inertia_kg_m2 = [[2.0e-4, 0, 0], [0, 3.0e-4, 0], [0, 0, 4.5e-4]]
+[shaft]
+damping_ratio = 0.01
+damping_frequency_Hz = 1000
+[shaft.table]
+file = "shaft.csv"
+[hosel]
+position_mm = [-15.0, 55.0, 10.0]
+lie_deg = 58.0
+lean_deg = 10.0
+[contact]
+face_friction = 0.4
+[mesh]
+harmonics = 2
+antisymmetric = 2
+[output]
+steps_per_frame = 1
+)");
+}
+
+TEST(Inputs, ABlowDoesNotGoOnWithAnotherShaftsCheckpoint) {
+  const fs::path dir = fresh_directory("shaft_changed"), out = dir / "out";
+  write_club_case(dir / "case", 60);
+  const std::string run = "run " + (dir / "case").string() + " --quiet --out " + out.string();
+  const int status = ended_when(run, [&] { return fs::exists(out / "vtk/ball/ball_0012.vtu"); });
+  ASSERT_TRUE(WIFEXITED(status));
+  ASSERT_EQ(WEXITSTATUS(status), 143);
+  ASSERT_TRUE(fs::exists(out / "checkpoint.cbor"));
+  write_club_case(dir / "case", 25);
+  ASSERT_EQ(command(run).status, 0);
+  ASSERT_EQ(command("run " + (dir / "case").string() + " --quiet --out " + (dir / "afresh").string()).status, 0);
+  const json mixed = summary(out), right = summary(dir / "afresh");
+  EXPECT_EQ(mixed, right);
+  EXPECT_EQ(content(out / "log.txt").find("goes on from"), std::string::npos);
+}
+
+/// A map whose variant alone names a file.
+void write_map_case(const fs::path& dir, double butt) {
+  write(dir / "shaft.csv", shaft_csv(butt));
+  std::string text = kEccentricBlow;
+  text.replace(text.find("\"impact\""), 8, "\"face-map\"");
+  write(dir / "case.toml", text + R"([grid]
+columns = 3
+rows = 3
+[shaft]
+name = "composite-driver"
+[hosel]
+position_mm = [-15.0, 55.0, 10.0]
+lie_deg = 58.0
+[[variants]]
+name = "own shaft"
+model = "shaft-coupled"
+set = ["shaft={table={file=\"shaft.csv\"}}"]
+)");
+}
+
+TEST(Inputs, AMapTakesNoPointsOfAnotherShaft) {
+  const fs::path dir = fresh_directory("map_changed");
+  write_map_case(dir / "case", 60);
+  const std::string out = (dir / "out").string();
+  ASSERT_EQ(command("sweep plan " + (dir / "case").string() + " --out " + out).status, 0);
+  ASSERT_EQ(command("sweep run " + out + " --shard 1/2 --quiet").status, 0);
+  write_map_case(dir / "case", 25);
+  const Outcome second = command("sweep run " + out + " --shard 2/2 --quiet");
+  EXPECT_EQ(second.status, 2) << second.text;
+  EXPECT_NE(second.text.find("has changed since it was planned"), std::string::npos) << second.text;
+  EXPECT_EQ(command("sweep merge " + out + " --quiet").status, 2);
+  // Nor without a plan.
+  const Outcome run = command("run " + (dir / "case").string() + " --quiet --out " + out);
+  EXPECT_EQ(run.status, 2) << run.text;
+  EXPECT_NE(run.text.find("holds points of another case"), std::string::npos) << run.text;
+}
+
+TEST(Inputs, ShardsOfASweepAreOfOneTable) {
+  const fs::path dir = fresh_directory("sweep_changed");
+  write(dir / "club/shaft.csv", shaft_csv(60));
+  write(dir / "club/case.toml",
+        kEccentricBlow +
+            "[shaft.table]\nfile = \"shaft.csv\"\n[hosel]\nposition_mm = [-15.0, 55.0, 10.0]\nlie_deg = 58.0\n");
+  write(dir / "sweep/case.toml",
+        "kind = \"sweep\"\ncase = \"../club\"\nset = ['models=[\"shaft-coupled\"]']\n"
+        "[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0, 41.0, 42.0]\n");
+  const std::string out = (dir / "out").string();
+  const Outcome planned = command("sweep plan " + (dir / "sweep").string() + " --out " + out);
+  ASSERT_EQ(planned.status, 0) << planned.text;
+  ASSERT_EQ(command("sweep run " + out + " --shard 1/2 --quiet").status, 0);
+  write(dir / "club/shaft.csv", shaft_csv(25));
+  EXPECT_EQ(command("sweep run " + out + " --shard 2/2 --quiet").status, 2);
+  write(dir / "club/shaft.csv", shaft_csv(60));
+  EXPECT_EQ(command("sweep run " + out + " --shard 2/2 --quiet").status, 0) << "the same content is the same input";
+  EXPECT_EQ(command("sweep merge " + out + " --quiet").status, 0);
+}
+
+TEST(Inputs, AreNotOverwritten) {
+  const fs::path dir = fresh_directory("own_folder");
+  write(dir / "case/case.toml", kEccentricBlow);
+  const std::string before = content(dir / "case/case.toml");
+  // OUT is the case's folder: what a case names there could have the name of an output.
+  for (const std::string& out : {(dir / "case").string(), dir.string()}) {
+    const Outcome o = command("run " + (dir / "case").string() + " --quiet --force --out " + out);
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_NE(o.text.find("would write over what it reads"), std::string::npos) << o.text;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir / "case"), {}), 1);
+  // A log replaces a log, and nothing else.
+  const std::string run = "run " + (dir / "case").string() + " --quiet --force --out " + (dir / "out").string();
+  write(dir / "thesis.tex", "years");
+  for (const fs::path& file : {dir / "case/case.toml", dir / "thesis.tex"}) {
+    const Outcome o = command(run + " --log " + file.string());
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_NE(o.text.find("no log of a run"), std::string::npos) << o.text;
+  }
+  EXPECT_EQ(content(dir / "case/case.toml"), before);
+  EXPECT_EQ(content(dir / "thesis.tex"), "years");
+  for (int again = 0; again < 2; ++again) {
+    const Outcome o = command(run + " --log " + (dir / "own.log").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+  }
+  EXPECT_EQ(content(dir / "own.log"), content(dir / "out/log.txt"));
+}
+
+TEST(OwnFiles, WhatIsLinkedToAFileOfOutIsUntouched) {
+  const fs::path dir = fresh_directory("hard_links"), out = dir / "out";
+  std::string map = kEccentricBlow;
+  map.replace(map.find("\"impact\""), 8, "\"face-map\"");
+  write(dir / "case/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
+  const std::string run = "run " + (dir / "case").string() + " --quiet --force --out " + out.string();
+  ASSERT_EQ(command(run).status, 0);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(out))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  ASSERT_GT(files.size(), 20u) << "log, lock, points, table, series, script, pictures";
+  // A victim under the name of every file that a run leaves.
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path victim = dir / fmt::format("victim_{}", i);
+    write(victim, "years");
+    fs::remove(files[i]);
+    fs::create_hard_link(victim, files[i]);
+  }
+  const Outcome o = command(run);
+  EXPECT_EQ(o.status, 0) << o.text;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    EXPECT_EQ(content(dir / fmt::format("victim_{}", i)), "years") << files[i];
+  EXPECT_TRUE(fs::exists(out / "summary.json"));
+}
+
+TEST(OwnFiles, APipeIsWaitedForByNobody) {
+  const fs::path dir = fresh_directory("pipes"), out = dir / "out";
+  write(dir / "case/case.toml", kEccentricBlow);
+  const std::string run = "run " + (dir / "case").string() + " --quiet --force --out " + out.string();
+  ASSERT_EQ(command(run).status, 0);
+  const auto pipe_at = [](const fs::path& file) {
+    fs::remove(file);
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  };
+  pipe_at(out / "log.txt");
+  EXPECT_EQ(within_ten_seconds(run).status, 0);
+  EXPECT_TRUE(fs::is_regular_file(out / "log.txt"));
+  for (const char* name : {"history.csv", "report.html", "case.resolved.toml"}) {
+    pipe_at(out / name);
+    EXPECT_EQ(within_ten_seconds(run).status, 0) << name;
+    fs::remove(out / name);
+  }
+  pipe_at(out / ".lock");
+  EXPECT_EQ(within_ten_seconds(run).status, 2);
+  fs::remove(out / ".lock");
+  pipe_at(dir / "log");
+  EXPECT_EQ(within_ten_seconds(run + " --log " + (dir / "log").string()).status, 2);
+  ASSERT_EQ(command(run).status, 0);
+  for (const char* name : {"summary.json", "case.resolved.toml"}) {
+    fs::remove_all(dir / "other");
+    fs::copy(out, dir / "other", fs::copy_options::recursive);
+    pipe_at(dir / "other" / name);
+    const Outcome o = within_ten_seconds("diff " + out.string() + " " + (dir / "other").string());
+    EXPECT_EQ(o.status, 2) << name << ": " << o.text;
+  }
+}
+
+TEST(OwnFiles, AGnuplotAmongTheFilesOfARunIsNotStarted) {
+  const fs::path dir = fresh_directory("own_gnuplot"), out = dir / "out";
+  write(dir / "case/case.toml", R"(kind = "material-point"
+[material]
+young_MPa = 100.0
+poisson = 0.4
+[path]
+kind = "shear"
+shear = 0.1
+duration_ms = 1.0
+)");
+  for (const fs::path& place : {out, out / "bin", dir}) {
+    write(place / "gnuplot", "#!/bin/sh\ntouch " + (dir / "executed").string() + "\n");
+    fs::permissions(place / "gnuplot", fs::perms::owner_all);
+  }
+  const std::string run = hosel_command() + " run " + (dir / "case").string() + " --quiet --force --out " +
+                          out.string();
+  for (const std::string& path : {std::string("."), out.string(), (out / "bin").string(), std::string("")}) {
+    const Outcome o = shell("cd " + dir.string() + " && PATH=" + path + ":$PATH " + run);
+    EXPECT_EQ(o.status, 0) << o.text;
+    EXPECT_FALSE(fs::exists(dir / "executed")) << "PATH begins with '" << path << "'";
+    EXPECT_TRUE(fs::exists(out / "curve.png")) << "the one that is installed is found";
+    fs::remove(out / "curve.png");
+  }
+  // None at all: said, even to a quiet person, on the page and in the summary.
+  const Outcome none = shell("PATH=. " + run);
+  EXPECT_EQ(none.status, 0);
+  EXPECT_NE(none.text.find("no picture: gnuplot is not installed"), std::string::npos) << none.text;
+  EXPECT_NE(summary(out).dump().find("no picture"), std::string::npos);
+  EXPECT_NE(content(out / "report.html").find("no picture"), std::string::npos);
+}
+
+TEST(OwnFiles, ADirectoryThatGoesAwayIsNoFinishedRun) {
+  const fs::path dir = fresh_directory("gone");
+  write_club_case(dir / "case", 60);
+  const auto run = [&](const fs::path& out) {
+    return "run " + (dir / "case").string() + " --quiet --out " + out.string();
+  };
+  // A folder of OUT, all of OUT, or its name, while the run is at work.
+  for (const char* what : {"rm -rf OUT/vtk/ball", "rm -rf OUT/vtk", "rm -rf OUT", "mv OUT OUT.moved"}) {
+    const fs::path out = dir / "out";
+    fs::remove_all(out);
+    fs::remove_all(dir / "out.moved");
+    std::string act = what;
+    for (std::size_t at; (at = act.find("OUT")) != std::string::npos;) act.replace(at, 3, out.string());
+    const Outcome o = shell(hosel_command() + " " + run(out) + " & pid=$!; while [ ! -e " + out.string() +
+                            "/vtk/ball/ball_0006.vtu ]; do sleep 0.01; done; " + act + "; wait $pid");
+    EXPECT_NE(o.status, 0) << what << ": " << o.text;
+    EXPECT_NE(o.text.find("hosel: "), std::string::npos) << what << ": " << o.text;
+  }
+}
+
+TEST(Tables, NamesAreCellsWhateverStandsInThem) {
+  const fs::path dir = fresh_directory("names");
+  const std::vector<std::string> names = {"7-iron, \"soft\"",
+                                          "=1+1",
+                                          "@SUM(A1)",
+                                          "+cmd",
+                                          "-cmd",
+                                          "a b",
+                                          "a_b",
+                                          "]]> & <b>",
+                                          "&#x0; x",
+                                          std::string(200, 'n'),
+                                          "\xC3\xA9t\xC3\xA9"};
+  std::string flight = "kind = \"flight\"\n", variants = kEccentricBlow;
+  variants.replace(variants.find("\"impact\""), 8, "\"variants\"");
+  for (const std::string& n : names) {
+    const std::string quoted = "'''" + n + "'''";
+    flight += "[[launch]]\nname = " + quoted +
+              "\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
+    variants += "[[variants]]\nname = " + quoted + "\nset = [\"delivery.club_speed_mps=44.0\"]\n";
+  }
+  write(dir / "flight/case.toml", flight);
+  write(dir / "variants/case.toml", variants);
+  for (const auto& [kind, table] : {std::pair{"flight", "flights.csv"}, {"variants", "variants.csv"}}) {
+    const fs::path out = dir / kind / "../out" / kind;
+    const Outcome o = command("run " + (dir / kind).string() + " --quiet --out " + out.string());
+    ASSERT_EQ(o.status, 0) << kind << ": " << o.text;
+    const post::Sheet sheet = post::read_csv(out / table);
+    std::set<std::string> seen(sheet.columns[0].begin(), sheet.columns[0].end());
+    EXPECT_EQ(seen.size(), names.size()) << kind;
+    for (const std::string& cell : sheet.columns[0])
+      EXPECT_EQ(std::string_view("=@+-").find(cell.front()), std::string_view::npos) << cell;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      EXPECT_TRUE(sheet.columns[0][i] == names[i] || sheet.columns[0][i] == "'" + names[i]) << names[i];
+    const json said = summary(out).at(std::string(kind) == "flight" ? "launches" : "variants");
+    EXPECT_EQ(said.size(), names.size()) << kind;
+    if (std::string(kind) != "flight") continue;
+    std::size_t series = 0, pictures = 0;
+    for (const auto& entry : fs::directory_iterator(out / "vtk")) series += entry.path().extension() == ".pvd";
+    for (const auto& entry : fs::recursive_directory_iterator(out / "figures")) {
+      pictures += entry.path().extension() == ".png";
+      if (entry.path().extension() != ".svg") continue;
+      EXPECT_EQ(shell("xmllint --noout " + entry.path().string() +
+                      " 2>/dev/null || python3 -c 'import sys, "
+                      "xml.dom.minidom as m; m.parse(sys.argv[1])' " +
+                      entry.path().string())
+                    .status,
+                0)
+          << entry.path() << " is well-formed";
+    }
+    EXPECT_EQ(series, names.size()) << "a series of each";
+    EXPECT_EQ(pictures, names.size() + 1) << "a picture of each, and one of all";
+  }
+}
+
+TEST(Tables, TwoOfOneNameAreRefused) {
+  const fs::path dir = fresh_directory("doubled");
+  const auto refused = [&](const char* kind, const std::string& text) {
+    write(dir / kind / "case.toml", text);
+    const Outcome o = command("run " + (dir / kind).string() + " --quiet --out " + (dir / "out").string());
+    EXPECT_EQ(o.status, 2) << kind << ": " << o.text;
+    EXPECT_NE(o.text.find("is there twice"), std::string::npos) << kind << ": " << o.text;
+  };
+  std::string variants = kEccentricBlow;
+  variants.replace(variants.find("\"impact\""), 8, "\"variants\"");
+  for (int k = 0; k < 2; ++k) variants += "[[variants]]\nname = \"soft\"\n";
+  refused("variants", variants);
+  std::string flight = "kind = \"flight\"\n[flight]\n";
+  for (int k = 0; k < 2; ++k) flight += "[[flight.launch_error]]\nsource = \"monitor\"\nball_speed_mps = 0.1\n";
+  flight += "[[launch]]\nname = \"a\"\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
+  refused("flight", flight);
+  std::string models = kEccentricBlow;
+  models.replace(models.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-eccentric\", \"rigid-eccentric\"]");
+  refused("models", models);
+  std::string rule = content(fs::path(HOSEL_SOURCE_DIR) / "cases/rollback/case.toml");
+  const std::size_t player = rule.find("[[player]]");
+  ASSERT_NE(player, std::string::npos);
+  const std::string one = rule.substr(player, rule.find("[[player]]", player + 1) - player);
+  refused("rule", rule + "\n" + one);
+}
+
+TEST(Terminal, WhatCannotBePrintedIsAnError) {
+  const fs::path dir = fresh_directory("full_device");
+  write(dir / "case/case.toml", kEccentricBlow);
+  const std::string run = hosel_command() + " run " + (dir / "case").string() + " --force --out " +
+                          (dir / "out").string();
+  for (const std::string& line : {hosel_command() + " check " + (dir / "case").string(), hosel_command() + " help",
+                                  hosel_command() + " man", hosel_command() + " list", run}) {
+    const Outcome o = shell(line + " >/dev/full");
+    EXPECT_EQ(o.status, 1) << line;
+    EXPECT_NE(o.text.find("hosel: "), std::string::npos) << line << ": " << o.text;
+  }
+  // Streams that are closed are nobody's files.
+  const Outcome closed = shell(run + " <&- >&- 2>&-");
+  EXPECT_EQ(closed.status, 0);
+  EXPECT_EQ(content(dir / "out/report.html").rfind("<!doctype html>", 0), 0u);
+  EXPECT_EQ(shell("tail -c 8 " + (dir / "out/report.html").string()).text, "</html>\n");
+  json::parse(content(dir / "out/summary.json"));
+}
+
+TEST(Terminal, TextsOfACaseMoveNoCursor) {
+  const fs::path dir = fresh_directory("escapes");
+  write(dir / "case/case.toml",
+        "kind = \"flight\"\n[[launch]]\nname = \"a\\u001b[2Jb\\nc\\u0085d\\u2028e\\u202ef\"\n"
+        "ball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n");
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("a [2Jb c d e f"), std::string::npos) << o.text;
+  for (const char* moves : {"\x1b", "\xC2\x85", "\xE2\x80\xA8", "\xE2\x80\xAE"})
+    EXPECT_EQ(o.text.find(moves), std::string::npos);
+}
+
+TEST(Terminal, AMistakeIsOneLineOfAReadableLength) {
+  const fs::path dir = fresh_directory("one_line");
+  for (const std::string& value : {std::string(5000, 'x'), std::string("a\\nb"), std::string("a\\u2028b\\u0085c")}) {
+    std::string text = kEccentricBlow;
+    text.replace(text.find("\"impact\""), 8, '"' + value + '"');
+    write(dir / "case/case.toml", text);
+    const Outcome o = command("check " + (dir / "case").string());
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
+    EXPECT_LT(o.text.size(), 1100u);
+    for (const char* moves : {"\xC2\x85", "\xE2\x80\xA8"}) EXPECT_EQ(o.text.find(moves), std::string::npos);
+  }
+  // Of names that no disk stores, and of bytes that are no text, likewise.
+  for (const std::string& name : {std::string(300, 'n'), std::string(5000, 'n'), std::string("'\xFF\xFE'")}) {
+    const Outcome o = command("run " + name);
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
+  }
+}
+
+TEST(Terminal, AnAddressLimitIsRefusedAndNotWaitedFor) {
+  const std::string fe =
+      " run driver-toe --set accuracy=look --set 'models=[\"fe-free-body\"]' --quiet --force --out " +
+      (fresh_directory("address") / "out").string();
+  for (const int megabytes : {150, 200, 300, 400, 500}) {
+    const Outcome o =
+        shell(fmt::format("ulimit -v {}; timeout -s KILL 20 {}{}", 1000 * megabytes, hosel_command(), fe));
+    EXPECT_EQ(o.status, 2) << megabytes << " MB: " << o.text;
+    EXPECT_NE(o.text.find("address space"), std::string::npos) << o.text;
+  }
+}
+
+TEST(Impact, SpinWithoutFrictionIsSaidToBeTheMeshs) {
+  const fs::path out = fresh_directory("frictionless") / "out";
+  const Outcome o = command(
+      "run driver-toe --set 'models=[\"fe-free-body\"]' --set accuracy=look --set output.vtk=false --set "
+      "contact.face_friction=0 --out " +
+      out.string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const double spin = summary(out).at("models").at("fe-free-body").at("spin_rate_rpm");
+  ASSERT_GT(spin, 10);  // it is there: 6 to 11 rad/s
+  EXPECT_NE(o.text.find("without friction nothing spins the ball"), std::string::npos) << o.text;
+}
+
+TEST(Shards, AreCountedFromOne) {
+  for (const char* shard : {"-1/-1", "0/1", "2/1", "+1/2", "1/2x", "1/"}) {
+    const Outcome o = command(std::string("sweep run nowhere --shard ") + shard);
+    EXPECT_EQ(o.status, 2) << shard;
+    EXPECT_NE(o.text.find("expected k/n"), std::string::npos) << o.text;
+  }
+}
+
+}  // namespace
+}  // namespace hosel::test
