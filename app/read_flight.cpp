@@ -52,15 +52,22 @@ models::FlightLaw read_law(Table& table) {
            .decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})}};
   } else {
     law = published(table, "law", name);
-    if (table.has("spin_decay_per_s"))
+    if (table.has("spin_decay_per_s")) {
       law.decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})};
+      // The last coefficient of an inferred law is its decay, which is told now.
+      constexpr int n = models::kInferredCoefficients;
+      for (int k = 0; k < n && !law.covariance.empty(); ++k)
+        law.covariance[std::size_t(k * n + n - 1)] = law.covariance[std::size_t((n - 1) * n + k)] = 0;
+    }
   }
   law.drag_scale = table.number({"drag_scale", "factor on the drag coefficient"}, {0, 10}, 1.0);
   law.lift_scale = table.number({"lift_scale", "factor on the lift coefficient"}, {0, 10}, 1.0);
   return law;
 }
 
-models::Air read_air(Table& table) {
+}  // namespace
+
+models::Air read_air(Table table) {
   if (table.has_quantity("density"))
     return {.density = table.quantity({"density", "of the air; instead of weather"}, "kg_per_m3", {0, 5}),
             .viscosity = models::Air{}.viscosity};
@@ -73,6 +80,8 @@ models::Air read_air(Table& table) {
                               {2e4, 1.2e5}, models::standard_pressure(altitude));
   return models::air(w);
 }
+
+namespace {
 
 models::Wind read_wind(Table table) {
   models::Wind w;

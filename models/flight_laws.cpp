@@ -144,6 +144,20 @@ FlightLaw libgolf() {
       .decay = {.travel = 2e-5}};
 }
 
+/// PLACEHOLDER
+FlightLaw radar_2022() {
+  return {.name = "radar-2022",
+          .source = "",
+          .reynolds = {8e4, 2.1e5},
+          .spin = {0.05, 0.2},
+          .form = SurfaceLaw{.drag = {0.22996, 0.029153, -0.045803, -0.0082896, -0.045551, -0.11134},
+                             .lift = {0.17813, 0.038557, -0.044392, -0.040157, -0.10649, -0.039444},
+                             .reynolds = {6e4, 8e4, 2.1e5, 2.7e5},
+                             .spin = {0.03, 0.05, 0.2, 0.28},
+                             .outside = std::get<RampLaw>(libgolf().form)},
+          .decay = {.travel = 1.75e-5}};
+}
+
 constexpr std::array kLaws = {
     FlightLawEntry{"ferguson-2022", "polynomials in the spin ratio, from tracked shots of all clubs", ferguson_2022},
     FlightLawEntry{"smits-smith-1994", "driver shots in a wind tunnel", smits_smith_1994},
@@ -153,6 +167,8 @@ constexpr std::array kLaws = {
                    nathan_earlier},
     FlightLawEntry{"nathan-2023", "the same spreadsheet fitted to seven clubs, driver to 5-iron", nathan_2023},
     FlightLawEntry{"libgolf", "an open-source library, set to a tour's mean shots", libgolf},
+    FlightLawEntry{"radar-2022", "inferred from drives that a radar followed on a tour, with its covariance",
+                   radar_2022},
 };
 
 /// The spin ratio at one end of the measured rows, at any Reynolds number.
@@ -197,6 +213,21 @@ std::vector<std::string> TableLaw::faults() const {
 bool FlightLaw::holds(double re, double s) const {
   if (const auto* table = std::get_if<TableLaw>(&form)) return table->holds(re, s);
   return reynolds.low <= re && re <= reynolds.high && spin.low <= s && s <= spin.high;
+}
+
+std::string_view inferred_coefficient_name(int k) {
+  static constexpr std::array<std::string_view, kInferredCoefficients> names = {
+      "drag",      "drag_s",    "drag_ss", "drag_x",  "drag_xx", "drag_sx", "lift",
+      "lift_s",    "lift_ss",   "lift_x",  "lift_xx", "lift_sx", "spin_decay_travel"};
+  return names.at(std::size_t(k));
+}
+
+double& inferred_coefficient(FlightLaw& law, int k) {
+  auto& surface = std::get<SurfaceLaw>(law.form);
+  constexpr int terms = int(std::tuple_size_v<SurfaceLaw::Terms>);
+  if (k < terms) return surface.drag.at(std::size_t(k));
+  if (k < 2 * terms) return surface.lift.at(std::size_t(k - terms));
+  return law.decay.travel;
 }
 
 std::span<const FlightLawEntry> flight_laws() { return kLaws; }

@@ -233,11 +233,17 @@ TEST(Flight, DoesNotStartIntoTheGround) {
   EXPECT_GT(models::fly(launch_of(50, -2, 2000), {}, c).carry, 20);
 }
 
-TEST(Flight, JacobianIsTheDerivative) {
+/// By the published default, then through an inferred surface and across its margins.
+class FlightJacobianBy : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Laws, FlightJacobianBy, testing::Values("ferguson-2022", "radar-2022"),
+                         [](const auto& p) { return std::string(p.param).substr(0, 5); });
+
+TEST_P(FlightJacobianBy, IsTheDerivative) {
   for (const Launch& l : {kDrive, launch_of(52, 17, 6900, -700, 3)}) {
     Launch with_rifle = l;
     with_rifle.spin.x() = 20;
-    const FlightConditions c = windy();
+    FlightConditions c = windy();
+    c.law = models::find_flight_law(GetParam())->make();
     const auto exact = models::flight_jacobian(with_rifle, {}, c, {.tolerance = 1e-11});
     const auto answers = [&](int k, double by) {
       std::array<double, 6> q = {with_rifle.ball_speed(), with_rifle.launch_angle(), with_rifle.azimuth(),
