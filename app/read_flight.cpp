@@ -150,7 +150,8 @@ FlightSetup read_flight(Table table) {
     t.rolling_low = turf->number({"rolling_low", "lower end of what rolling may be"}, {0.01, t.rolling}, t.rolling_low);
     t.rolling_high = turf->number({"rolling_high", "upper end of what rolling may be"}, {t.rolling, 2}, t.rolling_high);
     s.turf = t;
-    if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
+    if (std::abs(std::tan(s.conditions.ground.slope)) >= t.rolling_low)
+      table.fail("turf", "on this slope a rolling ball does not come to rest: leave out [flight.turf] or its slope");
   }
   for (const Table& t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t));
   return s;

@@ -127,8 +127,7 @@ class FlightLawJob final : public Job {
   }
 
   void draw_law(Output& out, const FlightLaw& law) const {
-    post::Figure figure{.title = "drag and lift over the spin ratio: inferred (lines, from the window's edge dashed by "
-                                 "points) beside published laws at Re = 140,000",
+    post::Figure figure{.title = "drag and lift over the spin ratio: inferred (lines) and published at Re = 140000 (points)",
                         .columns = 2};
     post::Panel drag{.x_label = "spin ratio [-]", .y_label = "drag coefficient [-]"},
         lift{.x_label = "spin ratio [-]", .y_label = "lift coefficient [-]"};
@@ -146,7 +145,6 @@ class FlightLawJob final : public Job {
     };
     for (const double re : {1e5, 1.4e5, 1.9e5}) add(law, re, fmt::format("inferred, Re {:.0f}", re), "lines");
     for (const FlightLaw& o : others_) add(o, 1.4e5, o.name, "points");
-    figure.title = "drag and lift over the spin ratio: inferred (lines) and published at Re = 140000 (points)";
     figure.panels = {drag, lift};
     out.draw(figure, "figures/law");
   }

@@ -30,7 +30,7 @@ class LoopFlightJob final : public Job {
     Table root = file.root();
     read_loop_case(root, case_, acts_on_flights);
     if (auto ball = root.optional_table("ball")) case_.ball = read_ball(*ball);
-    FlightSetup setup = read_flight(root.table("flight"));
+    FlightSetup setup = read_flight(root.default_table("flight"));
     if (setup.turf) root.table("flight").fail("turf", "the loop compares flights, which end at the first landing");
     case_.conditions = std::move(setup.conditions);
     if (root.has("paths")) {

@@ -350,7 +350,7 @@ std::vector<FlightProblem::Block> FlightProblem::blocks(const std::vector<int>& 
       }
       S(a, a) += std::pow(channel(c).noise, 2);
     }
-    const Eigen::LLT<Eigen::MatrixXd> llt(S.selfadjointView<Eigen::Lower>());
+    const Eigen::LLT<Eigen::MatrixXd> llt(S);  // of its lower half
     if (llt.info() != Eigen::Success) throw DataError("the readings' covariance is not positive: declare their noise");
     b.factor = llt.matrixL();
   });
@@ -597,7 +597,10 @@ double FlightProblem::update_noise(const Fit& selected, const Fit&) {
   expand(selected.model, selected.p);
   double change = 0;
   for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
-  return change;
+  // What is unknown weighs otherwise about an effect.
+  const bool anew = !updated_ && !selected.model.forms.empty();
+  updated_ = true;
+  return anew ? std::numeric_limits<double>::infinity() : change;
 }
 
 StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,

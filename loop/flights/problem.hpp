@@ -4,6 +4,7 @@
 /// over all readings of a group, N the noise, D the variances of the unknowns. u0 is found anew in every pass.
 #pragma once
 
+#include <map>
 #include <set>
 
 #include "hosel/loop/flights/case.hpp"
@@ -105,6 +106,7 @@ class FlightProblem final : public Problem {
   std::vector<Flag> flags_;
   std::map<std::string, int> unused_;
   std::vector<Regressor> regressors_;
+  bool updated_ = false;
 };
 
 }  // namespace hosel::loop
