@@ -55,10 +55,12 @@ class Estimate {
   PathFit run() {
     // The law is let free once the shots lie about right: far from them its slopes mean nothing.
     for (int i = 0; i < 4; ++i) step(false);
-    constexpr int most = 40;
+    constexpr int most = 80;
     const bool law = !law_sd_.empty();
-    for (double change = 1; change > 0.02;) {
-      if (fit_.iterations == most) throw solvers::NonConvergence("flight paths: the estimate does not settle");
+    for (double change = 1; change > 0.03;) {
+      if (fit_.iterations == most)
+        throw solvers::NonConvergence(
+            fmt::format("flight paths: after {} steps the estimate still moves by {:.2g} standard errors", most, change));
       change = step(law);
     }
     return std::move(fit_);
@@ -104,7 +106,8 @@ class Estimate {
     return out;
   }
 
-  /// One Gauss-Newton step of everything; returns the largest change of what is shared, in its standard errors.
+  /// One Gauss-Newton step of everything; returns the largest change of what is shared, in its standard errors, or a fifth
+  /// of that of what a shot has of its own, in the standard deviations told of it.
   double step(bool law) {
     const int shared = winds() + coefficients(law);
     std::vector<Linear> at(shots_.size());
@@ -134,7 +137,13 @@ class Estimate {
     if (solver.info() != Eigen::Success) throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
     const Eigen::VectorXd d = -solver.solve(g);
     const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(shared, shared));
-    for (std::size_t i = 0; i < shots_.size(); ++i) fit_.shots[i] -= own[i].constant + own[i].slope * d;
+    double largest = d.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
+    for (std::size_t i = 0; i < shots_.size(); ++i) {
+      const ShotUnknowns change = own[i].constant + own[i].slope * d;
+      fit_.shots[i] -= change;
+      for (int k = 0; k < kShotUnknowns && fit_.weight[i] > 0.5; ++k)
+        if (shots_[i].sd[k] > 0) largest = std::max(largest, 0.2 * std::abs(change[k]) / shots_[i].sd[k]);
+    }
     fit_.wind_sd.clear();
     for (std::size_t k = 0; k < fit_.winds.size(); ++k) {
       if (!hold_winds_) fit_.winds[k] += d.segment<2>(2 * Eigen::Index(k));
@@ -146,7 +155,7 @@ class Estimate {
       fit_.law.covariance.assign(of_law.data(), of_law.data() + of_law.size());
     }
     ++fit_.iterations;
-    return d.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
+    return largest;
   }
 
   void reweigh(const std::vector<Linear>& at) {

@@ -48,7 +48,7 @@ class FlightLawJob final : public Job {
  public:
   explicit FlightLawJob(CaseFile& file) {
     Table root = file.root();
-    title_ = root.text({"title", "of tables, pages and figures"}, "");
+    root.text({"title", "of tables, pages and figures"}, "");
     Ball ball;
     if (auto table = root.optional_table("ball")) ball = read_ball(*table);
     data_ = read_paths(root.table("paths"), ball);
@@ -295,7 +295,6 @@ class FlightLawJob final : public Job {
     out.draw(residuals, "figures/residuals");
   }
 
-  std::string title_;
   RadarPaths data_;
   FlightLaw start_;
   std::vector<double> law_sd_;

@@ -3,6 +3,7 @@
 // integration of the test's own.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -139,12 +140,12 @@ double value(const LoopResult& r, const std::string& parameter) {
   return std::nan("");
 }
 
-struct Known {
+struct Undeclared {
   std::string effect;
   Hidden hidden;
   double wind;  ///< of the groups: where an undeclared wind is sought, theirs is little
 };
-std::vector<Known> effects_hidden() {
+std::vector<Undeclared> effects_hidden() {
   return {{"drag-level", {.drag = 0.06}, 1.5},     {"lift-law", {.lift = -0.1}, 1.5},
           {"spin-decay", {.decay = 0.12}, 1.5},    {"air-density", {.density = -0.08}, 1.5},
           {"wind", {.wind_along = -2, .wind_right = 2.5}, 0.5}, {"spin-axis-bias", {.axis = radians(4)}, 1.5}};
@@ -191,7 +192,7 @@ TEST(FlightBase, NamesTheMisreadAxis) {
 /// Six effects, ten sets of 60 to 150 flights each, and thirty without any.
 TEST(SlowFlightBase, NamesWhatIsHidden) {
   int sets = 0, found = 0, wrong = 0;
-  for (const Known& k : effects_hidden())
+  for (const Undeclared& k : effects_hidden())
     for (unsigned seed = 0; seed < 6; ++seed) {
       const LoopResult r = run(drives(k.hidden, 60 + 18 * int(seed), 100 + seed, k.wind));
       const Said said = what(r, k.effect);

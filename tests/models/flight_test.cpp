@@ -395,13 +395,14 @@ TEST(FlightLaw, ARadarsDriveAndWhatIsMissing) {
     const char* law;
     double carry, apex, time;
   };
-  constexpr std::array<Miss, 7> misses = {{{"ferguson-2022", 7.8, 0.2, 0.55},
+  constexpr std::array<Miss, 8> misses = {{{"ferguson-2022", 7.8, 0.2, 0.55},
                                            {"smits-smith-1994", -28.2, 3.3, 0.67},
                                            {"lyu-2018", 24.3, 1.4, 1.02},
                                            {"bearman-harvey-1976", -15.6, -1.4, 0.44},
                                            {"nathan-earlier", 5.8, 0.5, 0.80},
                                            {"nathan-2023", 1.3, -12.3, -1.15},
-                                           {"libgolf", -0.1, 1.2, 0.55}}};
+                                           {"libgolf", -0.1, 1.2, 0.55},
+                                           {"radar-2022", 0.0, 0.0, 0.0}}};
   ASSERT_EQ(misses.size(), models::flight_laws().size());
   for (const Miss& m : misses) {
     FlightConditions c;
