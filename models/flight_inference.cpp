@@ -13,11 +13,15 @@
 namespace hosel::models {
 namespace {
 
-constexpr FlightOptions kExact = {.tolerance = 1e-9};  // differences of paths are taken
+constexpr FlightOptions kExact = {.tolerance = 1e-7};  // differences of paths are taken: they are 1e4 times that
 
 /// Steps of the differences: they move a path by centimetres, far above the integration's error.
 constexpr std::array<double, kShotUnknowns> kStep = {1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-4, 1e-4, 2e-2, 2e-2};
 constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient's standard deviation
+
+constexpr double kFarthest = 1;  // of a shot's step, standard deviations told of an unknown
+constexpr int kFullSteps = 6;    // of the search, before half ones
+constexpr int kWeighing = 16;    // steps after which the weights stay: then one sum is brought down
 
 /// Student weight of a shot by its misfit over the median one: half at six times it.
 double student(double over_median) { return 1 / (1 + std::pow(over_median / 6, 2)); }
@@ -135,11 +139,18 @@ class Estimate {
     add_priors(H, g, law);
     const Eigen::LLT<Eigen::MatrixXd> solver(H);
     if (solver.info() != Eigen::Success) throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
-    const Eigen::VectorXd d = -solver.solve(g);
+    // Full steps overshoot where shots go on to bend as the law moves: they end in two points by turns.
+    const double share = fit_.iterations < kFullSteps ? 1 : 0.5;
+    const Eigen::VectorXd d = -solver.solve(g) * share;
     const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(shared, shared));
     double largest = d.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
     for (std::size_t i = 0; i < shots_.size(); ++i) {
-      const ShotUnknowns change = own[i].constant + own[i].slope * d;
+      ShotUnknowns change = share * own[i].constant + own[i].slope * d;
+      // A trust region: far from its path a shot's slopes say little of where it would go.
+      double far = 0;
+      for (int k = 0; k < kShotUnknowns; ++k)
+        if (shots_[i].sd[k] > 0) far = std::max(far, std::abs(change[k]) / shots_[i].sd[k]);
+      if (far > kFarthest) change *= kFarthest / far;
       fit_.shots[i] -= change;
       for (int k = 0; k < kShotUnknowns && fit_.weight[i] > 0.5; ++k)
         if (shots_[i].sd[k] > 0) largest = std::max(largest, 0.2 * std::abs(change[k]) / shots_[i].sd[k]);
@@ -171,7 +182,7 @@ class Estimate {
     const double median = sorted[sorted.size() / 2];
     for (std::size_t i = 0; i < at.size(); ++i) {
       // Below the noise a misfit is no reason to doubt a shot more than another.
-      fit_.weight[i] = median > 0 ? student(fit_.misfit[i] / median) : 1;
+      if (fit_.iterations < kWeighing) fit_.weight[i] = median > 0 ? student(fit_.misfit[i] / median) : 1;
       square += fit_.weight[i] * at[i].r.squaredNorm();
       readings += fit_.weight[i] * double(at[i].r.size());
     }
