@@ -49,7 +49,8 @@ const std::vector<std::string>& text_column(Table& table, std::string_view key, 
 /// Standard deviations of what a shot has of its own.
 models::ShotUnknowns read_own(Table t) {
   models::ShotUnknowns sd;
-  sd[models::kAxis] = t.quantity({"axis", "tilt of the spin, which is not recorded"}, "deg", Range::non_negative(), 0.15);
+  sd[models::kAxis] =
+      t.quantity({"axis", "tilt of the spin, which is not recorded"}, "deg", Range::non_negative(), 0.15);
   sd[models::kLogSpin] = 0;  // by how the spin was found
   sd[models::kOwnDrag] = t.number({"drag", "share by which a ball's drag differs from the law's"}, {0, 1}, 0.03);
   sd[models::kOwnLift] = t.number({"lift", "share by which a ball's lift differs from the law's"}, {0, 1}, 0.03);
@@ -84,7 +85,8 @@ std::vector<const RadarFlight*> RadarPaths::flights_of(bool held) const {
 
 RadarPaths read_paths(Table table, const Ball& ball) {
   RadarPaths out;
-  const auto file = table.data_file({"file", "CSV of the followed flights: x0 to x6, y, z [m], powers of the time [s]"});
+  const auto file =
+      table.data_file({"file", "CSV of the followed flights: x0 to x6, y, z [m], powers of the time [s]"});
   const std::vector<std::string> group_by =
       table.texts({"group_by", "columns whose values together name a group with a wind of its own"});
   if (group_by.empty()) table.fail("group_by", "name at least one column");
@@ -92,17 +94,18 @@ RadarPaths read_paths(Table table, const Ball& ball) {
   const double least_time = table.quantity({"least_time", "a shot must have been followed so long"}, "s", {0, 20}, 3.0),
                least_carry = table.quantity({"least_carry", "and carry so far"}, "m", Range::non_negative(), 180.0),
                least_angle = table.quantity({"least_launch_angle", "and start so high"}, "deg", {-0.5, 1}, radians(4));
-  const double tracked = table.number({"tracked_spin_error", "relative error of a spin that was tracked"}, {0, 1}, 0.01),
-               estimated =
-                   table.number({"estimated_spin_error", "relative error of one that the radar estimated"}, {0, 1}, 0.1);
+  const double tracked =
+                   table.number({"tracked_spin_error", "relative error of a spin that was tracked"}, {0, 1}, 0.01),
+               estimated = table.number({"estimated_spin_error", "relative error of one that the radar estimated"},
+                                        {0, 1}, 0.1);
   const double least_spin = table.quantity({"least_spin", "below it an estimated spin is none"}, "rpm",
                                            Range::non_negative(), 1200 * kRadPerSecPerRpm);
   const std::vector<double> decay = table.numbers(
       {"credible_decay_per_s", "of a tracked spin: least and most relative loss"}, 2, {0, 10}, std::vector{0.02, 0.2});
   out.model.ball = ball;
   out.model.noise = table.quantity({"noise", "of a position, each axis"}, "m", Range::positive(), out.model.noise);
-  out.model.wind_sd =
-      table.quantity({"wind", "standard deviation of a group's wind, each direction"}, "mps", Range::positive(), out.model.wind_sd);
+  out.model.wind_sd = table.quantity({"wind", "standard deviation of a group's wind, each direction"}, "mps",
+                                     Range::positive(), out.model.wind_sd);
   out.model.mean_wind_sd = table.quantity({"mean_wind", "of the mean of all groups' winds, each direction"}, "mps",
                                           Range::positive(), out.model.mean_wind_sd);
   const models::ShotUnknowns own = read_own(table.default_table("own"));

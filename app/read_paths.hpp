@@ -17,16 +17,16 @@ struct RadarFlight {
   models::MeasuredPath path;
   std::string player, group;
   bool held_out = false;
-  bool spin_tracked = false;  ///< else estimated by the radar
+  bool spin_tracked = false;                       ///< else estimated by the radar
   double carry = 0, side = 0, apex = 0, time = 0;  ///< where it is at the height of its launch again [m, s]
 };
 
 struct RadarPaths {
   std::vector<RadarFlight> flights;
-  std::vector<std::string> groups;            ///< by the number in MeasuredPath::group
-  std::map<std::string, int> left_out;        ///< reason, rows
+  std::vector<std::string> groups;      ///< by the number in MeasuredPath::group
+  std::map<std::string, int> left_out;  ///< reason, rows
   models::PathModel model;
-  std::filesystem::path missing;              ///< not empty: the file is not on this machine, and nothing else is here
+  std::filesystem::path missing;  ///< not empty: the file is not on this machine, and nothing else is here
 
   std::vector<models::MeasuredPath> paths(bool held_out) const;
   std::vector<const RadarFlight*> flights_of(bool held_out) const;

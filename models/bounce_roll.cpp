@@ -31,8 +31,8 @@ void bounce(Body& b, const Ball& ball, const BounceRoll& turf) {
 }
 
 /// Rolling on a plane tilted by `slope` about Y, in the plane's own axes (x up the slope): friction against the motion
-/// and weight along it, both by 5/7 of what a body that slides would have. Closed form along the slope's line or on level
-/// ground, else small steps.
+/// and weight along it, both by 5/7 of what a body that slides would have. Closed form along the slope's line or on
+/// level ground, else small steps.
 Vec3 rest(Vec3 from, Vec3 velocity, double rolling, double slope) {
   const double friction = 5.0 / 7.0 * rolling * kGravity * std::cos(slope),
                weight = -5.0 / 7.0 * kGravity * std::sin(slope);

@@ -236,7 +236,10 @@ std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const Fl
   if (times.empty()) return out;
   solvers::Cvode solver(
       kStates, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 1,
-      [](double, const double*, double* g) { g[0] = 1; /* nothing stops it */ }, solution(options, kStates));
+      [](double, const double*, double* g) {
+        g[0] = 1; /* nothing stops it */
+      },
+      solution(options, kStates));
   while (out.size() < times.size() && times[out.size()] <= 0) out.push_back(motion.point(times[out.size()], y0.data()));
   solver.start(0, y0);
   const auto watch = [&](double t, const double*) {

@@ -63,8 +63,8 @@ class Estimate {
     const bool law = !law_sd_.empty();
     for (double change = 1; change > 0.03;) {
       if (fit_.iterations == most)
-        throw solvers::NonConvergence(
-            fmt::format("flight paths: after {} steps the estimate still moves by {:.2g} standard errors", most, change));
+        throw solvers::NonConvergence(fmt::format(
+            "flight paths: after {} steps the estimate still moves by {:.2g} standard errors", most, change));
       change = step(law);
     }
     return std::move(fit_);
@@ -76,8 +76,8 @@ class Estimate {
 
   Eigen::VectorXd residual(std::size_t i, const ShotUnknowns& own, const GroupWind& wind, const FlightLaw& law) const {
     const MeasuredPath& s = shots_[i];
-    const auto at = models::follow(launched(s.launch, own), model_.ball, conditions_of(s, model_, law, own, wind), s.times,
-                                   kExact);
+    const auto at =
+        models::follow(launched(s.launch, own), model_.ball, conditions_of(s, model_, law, own, wind), s.times, kExact);
     Eigen::VectorXd r(3 * Eigen::Index(s.times.size()));
     for (std::size_t k = 0; k < s.times.size(); ++k)
       r.segment<3>(3 * Eigen::Index(k)) = (at[k].position - s.positions[k]) / model_.noise;
@@ -110,8 +110,8 @@ class Estimate {
     return out;
   }
 
-  /// One Gauss-Newton step of everything; returns the largest change of what is shared, in its standard errors, or a fifth
-  /// of that of what a shot has of its own, in the standard deviations told of it.
+  /// One Gauss-Newton step of everything; returns the largest change of what is shared, in its standard errors, or a
+  /// fifth of that of what a shot has of its own, in the standard deviations told of it.
   double step(bool law) {
     const int shared = winds() + coefficients(law);
     std::vector<Linear> at(shots_.size());
@@ -138,7 +138,8 @@ class Estimate {
     }
     add_priors(H, g, law);
     const Eigen::LLT<Eigen::MatrixXd> solver(H);
-    if (solver.info() != Eigen::Success) throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
+    if (solver.info() != Eigen::Success)
+      throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
     // Full steps overshoot where shots go on to bend as the law moves: they end in two points by turns.
     const double share = fit_.iterations < kFullSteps ? 1 : 0.5;
     const Eigen::VectorXd d = -solver.solve(g) * share;

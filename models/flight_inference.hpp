@@ -43,10 +43,10 @@ struct MeasuredPath {
 
 struct PathModel {
   Ball ball;
-  Wind profile;  ///< height and roughness of every wind; its speed and direction are not looked at
-  double noise = 0.3;          ///< of a position, each axis [m]
-  double wind_sd = 3;          ///< of a group's wind about none, each direction [m/s]
-  double mean_wind_sd = 0.5;   ///< of the mean wind over all groups about none, each direction [m/s]
+  Wind profile;               ///< height and roughness of every wind; its speed and direction are not looked at
+  double noise = 0.3;         ///< of a position, each axis [m]
+  double wind_sd = 3;         ///< of a group's wind about none, each direction [m/s]
+  double mean_wind_sd = 0.5;  ///< of the mean wind over all groups about none, each direction [m/s]
 };
 
 /// Further conditions on top of those given: a wind that adds to the one there, the ball's own drag and lift.
@@ -63,7 +63,7 @@ struct PathFit {
   std::vector<Eigen::Vector2d> wind_sd;  ///< the law's own uncertainty included, where it was fitted
   std::vector<double> weight;            ///< of each shot; small: nothing explains its path
   std::vector<double> misfit;            ///< sum of its squares (data and unknowns) over the number of its readings
-  double rms = 0;                        ///< of the distances of computed from measured positions, weighted, per axis [m]
+  double rms = 0;  ///< of the distances of computed from measured positions, weighted, per axis [m]
   int iterations = 0;
 };
 

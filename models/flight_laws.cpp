@@ -146,40 +146,42 @@ FlightLaw libgolf() {
 
 /// The lower half of the covariance of radar-2022's coefficients, in the order of `inferred_coefficient`.
 constexpr std::array kRadarCovariance = {
-    8.12932e-06,
-    3.34806e-07, 2.69647e-05,
-    -4.41124e-06, -6.31078e-06, 8.3163e-05,
-    -1.3471e-05, 2.35823e-05, -4.98083e-06, 4.76296e-05,
-    3.55561e-06, -3.50111e-05, 5.4558e-05, -4.39853e-05, 0.000143646,
-    -8.85518e-06, -4.59282e-05, 0.000137422, -3.78796e-05, 0.000163505, 0.000312493,
-    6.75548e-06, -3.7205e-07, -9.42855e-07, -1.26875e-05, 7.80682e-06, -1.9023e-06, 6.72859e-06,
-    1.9468e-06, 1.63282e-05, -3.63029e-06, 1.15006e-05, -2.52572e-05, -3.49154e-05, 1.41949e-06, 1.82651e-05,
-    -1.9288e-06, -1.93399e-07, 2.34736e-05, 1.36114e-06, 8.52424e-06, 3.24854e-05, -3.46109e-06, 2.17243e-07, 4.89209e-05,
-    -1.26454e-05, 1.35528e-05, -3.20747e-06, 3.60044e-05, -3.69821e-05, -2.69667e-05, -1.205e-05, 1.14128e-05, 1.67792e-06, 3.54747e-05,
-    -6.63403e-06, -2.61982e-05, 1.23295e-05, -1.44741e-05, 4.60059e-05, 6.92222e-05, -8.66013e-06, -2.35635e-05, 2.61004e-05, -5.49586e-06, 9.72836e-05,
-    -5.54241e-06, -3.36597e-05, 3.60696e-05, -2.44676e-05, 6.87439e-05, 0.000116457, -7.04437e-06, -2.86244e-05, 7.22671e-05, -1.71416e-05, 0.000104257, 0.000187114,
-    2.02587e-09, -6.10918e-09, -7.24862e-10, -1.22706e-08, 1.78107e-08, 1.40655e-08, 2.64638e-09, -6.06755e-09, 4.68105e-10, -9.76399e-09, 9.02641e-09, 1.51285e-08, 1.51855e-11,
+    8.12932e-06,  3.34806e-07,  2.69647e-05,  -4.41124e-06, -6.31078e-06, 8.3163e-05,   -1.3471e-05,  2.35823e-05,
+    -4.98083e-06, 4.76296e-05,  3.55561e-06,  -3.50111e-05, 5.4558e-05,   -4.39853e-05, 0.000143646,  -8.85518e-06,
+    -4.59282e-05, 0.000137422,  -3.78796e-05, 0.000163505,  0.000312493,  6.75548e-06,  -3.7205e-07,  -9.42855e-07,
+    -1.26875e-05, 7.80682e-06,  -1.9023e-06,  6.72859e-06,  1.9468e-06,   1.63282e-05,  -3.63029e-06, 1.15006e-05,
+    -2.52572e-05, -3.49154e-05, 1.41949e-06,  1.82651e-05,  -1.9288e-06,  -1.93399e-07, 2.34736e-05,  1.36114e-06,
+    8.52424e-06,  3.24854e-05,  -3.46109e-06, 2.17243e-07,  4.89209e-05,  -1.26454e-05, 1.35528e-05,  -3.20747e-06,
+    3.60044e-05,  -3.69821e-05, -2.69667e-05, -1.205e-05,   1.14128e-05,  1.67792e-06,  3.54747e-05,  -6.63403e-06,
+    -2.61982e-05, 1.23295e-05,  -1.44741e-05, 4.60059e-05,  6.92222e-05,  -8.66013e-06, -2.35635e-05, 2.61004e-05,
+    -5.49586e-06, 9.72836e-05,  -5.54241e-06, -3.36597e-05, 3.60696e-05,  -2.44676e-05, 6.87439e-05,  0.000116457,
+    -7.04437e-06, -2.86244e-05, 7.22671e-05,  -1.71416e-05, 0.000104257,  0.000187114,  2.02587e-09,  -6.10918e-09,
+    -7.24862e-10, -1.22706e-08, 1.78107e-08,  1.40655e-08,  2.64638e-09,  -6.06755e-09, 4.68105e-10,  -9.76399e-09,
+    9.02641e-09,  1.51285e-08,  1.51855e-11,
 };
 
 /// [@radar-flights], by `hosel run radar-law`.
 FlightLaw radar_2022() {
-  FlightLaw law = {
-      .name = "radar-2022",
-      .source = "inferred by the case radar-law from tour drives that a radar followed in January 2022 (Waialae, Kapalua; half of "
-                "the players), jointly with each hole's wind and each shot's axis and ball; one model of ball unknown; the level of "
-                "drag rests on a mean wind of none; outside its window libgolf",
-      .reynolds = {8e4, 2.1e5},
-      .spin = {0.05, 0.2},
-      .form = SurfaceLaw{.drag = {0.229808, 0.0295812, -0.0445973, -0.00763936, -0.0457719, -0.110211},
-                         .lift = {0.177911, 0.0396094, -0.0429553, -0.0392211, -0.107794, -0.0403554},
-                         .reynolds = {6e4, 8e4, 2.1e5, 2.7e5},
-                         .spin = {0.03, 0.05, 0.2, 0.28},
-                         .outside = std::get<RampLaw>(libgolf().form)},
-      .decay = {.travel = 1.69627e-05}};
+  FlightLaw law = {.name = "radar-2022",
+                   .source =
+                       "inferred by the case radar-law from tour drives that a radar followed in January 2022 "
+                       "(Waialae, Kapalua; half of "
+                       "the players), jointly with each hole's wind and each shot's axis and ball; one model of ball "
+                       "unknown; the level of "
+                       "drag rests on a mean wind of none; outside its window libgolf",
+                   .reynolds = {8e4, 2.1e5},
+                   .spin = {0.05, 0.2},
+                   .form = SurfaceLaw{.drag = {0.229808, 0.0295812, -0.0445973, -0.00763936, -0.0457719, -0.110211},
+                                      .lift = {0.177911, 0.0396094, -0.0429553, -0.0392211, -0.107794, -0.0403554},
+                                      .reynolds = {6e4, 8e4, 2.1e5, 2.7e5},
+                                      .spin = {0.03, 0.05, 0.2, 0.28},
+                                      .outside = std::get<RampLaw>(libgolf().form)},
+                   .decay = {.travel = 1.69627e-05}};
   law.covariance.resize(kInferredCoefficients * kInferredCoefficients);
   for (std::size_t i = 0, k = 0; i < kInferredCoefficients; ++i)
     for (std::size_t j = 0; j <= i; ++j)
-      law.covariance[i * kInferredCoefficients + j] = law.covariance[j * kInferredCoefficients + i] = kRadarCovariance.at(k++);
+      law.covariance[i * kInferredCoefficients + j] = law.covariance[j * kInferredCoefficients + i] =
+          kRadarCovariance.at(k++);
   return law;
 }
 
@@ -242,8 +244,8 @@ bool FlightLaw::holds(double re, double s) const {
 
 std::string_view inferred_coefficient_name(int k) {
   static constexpr std::array<std::string_view, kInferredCoefficients> names = {
-      "drag",      "drag_s",    "drag_ss", "drag_x",  "drag_xx", "drag_sx", "lift",
-      "lift_s",    "lift_ss",   "lift_x",  "lift_xx", "lift_sx", "spin_decay_travel"};
+      "drag",   "drag_s",  "drag_ss", "drag_x",  "drag_xx", "drag_sx",          "lift",
+      "lift_s", "lift_ss", "lift_x",  "lift_xx", "lift_sx", "spin_decay_travel"};
   return names.at(std::size_t(k));
 }
 

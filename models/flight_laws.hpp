@@ -123,7 +123,9 @@ struct SurfaceLaw {
     if (share <= 0.0) return outside.at(re, s);
     using std::log;
     const T x = log(re / kReynolds), y = log(s / kSpin);
-    const auto surface = [&](const Terms& c) { return T(c[0] + y * (c[1] + c[2] * y + c[5] * x) + x * (c[3] + c[4] * x)); };
+    const auto surface = [&](const Terms& c) {
+      return T(c[0] + y * (c[1] + c[2] * y + c[5] * x) + x * (c[3] + c[4] * x));
+    };
     const Coefficients<T> in = {surface(drag), surface(lift)};
     if (share >= 1.0) return in;
     const Coefficients<T> out = outside.at(re, s);

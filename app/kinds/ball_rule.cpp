@@ -171,7 +171,8 @@ class BallRuleJob final : public Job {
       setup_.conditions.law = law;
       std::vector<std::string> row = {law.name};
       try {
-        const Change today{.drag = solve(kRemedies[0], {}, old_, reach_)}, then{.drag = solve(kRemedies[0], today, new_, new_limit_)};
+        const Change today{.drag = solve(kRemedies[0], {}, old_, reach_)},
+            then{.drag = solve(kRemedies[0], today, new_, new_limit_)};
         row.insert(row.end(), {fmt::format("{:.3f}", today.drag), fmt::format("x {:.3f}", then.drag / today.drag)});
         for (const Player& p : players_) {
           const double loss = (total(today, drive(p, today)) - total(then, drive(p, then))) / yard();

@@ -53,8 +53,8 @@ class FlightLawJob final : public Job {
     if (auto table = root.optional_table("ball")) ball = read_ball(*table);
     data_ = read_paths(root.table("paths"), ball);
     Table law = root.table("law");
-    const std::string start = law.text({"start", "inferred law whose form, window and margins are used (`hosel list`)"},
-                                       "radar-2022");
+    const std::string start =
+        law.text({"start", "inferred law whose form, window and margins are used (`hosel list`)"}, "radar-2022");
     const auto* entry = models::find_flight_law(start);
     if (!entry || !std::holds_alternative<models::SurfaceLaw>(entry->make().form))
       law.fail("start", fmt::format("'{}' is no law that was inferred from flights", start));
@@ -70,8 +70,7 @@ class FlightLawJob final : public Job {
     start_.decay = {.travel = law.number({"decay_travel", "share of the spin lost per radius of path"}, {0, 1e-3})};
     const double sd = law.number({"sd", "standard deviation of each term about these"}, Range::positive());
     law_sd_.assign(models::kInferredCoefficients, sd);
-    law_sd_.back() =
-        law.number({"decay_travel_sd", "of the decay about that"}, {0, 1e-3, true});
+    law_sd_.back() = law.number({"decay_travel_sd", "of the decay about that"}, {0, 1e-3, true});
     for (const std::string& name :
          law.texts({"beside", "published laws that are judged on the same players"}, std::vector<std::string>{})) {
       const auto* other = models::find_flight_law(name);
@@ -110,8 +109,7 @@ class FlightLawJob final : public Job {
     csv += '\n';
     for (int k = 0; k < n; ++k) {
       const std::string name(models::inferred_coefficient_name(k));
-      const double value = models::inferred_coefficient(law, k),
-                   sd = std::sqrt(law.covariance[std::size_t(k * n + k)]);
+      const double value = models::inferred_coefficient(law, k), sd = std::sqrt(law.covariance[std::size_t(k * n + k)]);
       table.rows.push_back({name, fmt::format("{:.4g}", value), fmt::format("{:.2g}", sd),
                             fmt::format("{:.4g}", models::inferred_coefficient(shipped, k))});
       csv += fmt::format("{},{:.9g}", name, value);
@@ -127,8 +125,9 @@ class FlightLawJob final : public Job {
   }
 
   void draw_law(Output& out, const FlightLaw& law) const {
-    post::Figure figure{.title = "drag and lift over the spin ratio: inferred (lines) and published at Re = 140000 (points)",
-                        .columns = 2};
+    post::Figure figure{
+        .title = "drag and lift over the spin ratio: inferred (lines) and published at Re = 140000 (points)",
+        .columns = 2};
     post::Panel drag{.x_label = "spin ratio [-]", .y_label = "drag coefficient [-]"},
         lift{.x_label = "spin ratio [-]", .y_label = "lift coefficient [-]"};
     const auto add = [&](const FlightLaw& l, double re, const std::string& label, const char* style) {
@@ -196,17 +195,19 @@ class FlightLawJob final : public Job {
     sound_.clear();
     for (const double w : best.weight) sound_.push_back(w > 0.5);
     const auto lost = std::ranges::count(sound_, false);
-    out.say(fmt::format("\nplayers left out, computed minus radar at the height of the launch; {} of {} shots, whose "
-                        "path no ball and wind of their own explain, are not counted",
-                        lost, held.size()));
+    out.say(
+        fmt::format("\nplayers left out, computed minus radar at the height of the launch; {} of {} shots, whose "
+                    "path no ball and wind of their own explain, are not counted",
+                    lost, held.size()));
     post::TextTable table{.rows = {{"", "carry bias [m]", "carry rms [m]", "apex rms [m]", "time bias [s]",
                                     "time rms [s]", "side rms [m]"}},
                           .first_width = 44,
                           .least_width = 14};
     const auto row = [&](const std::string& name, const char* key, const std::string& law, const Misses& m) {
-      table.rows.push_back({name, fmt::format("{:+.2f}", Misses::mean(m.carry)), fmt::format("{:.2f}", Misses::rms(m.carry)),
-                            fmt::format("{:.2f}", Misses::rms(m.apex)), fmt::format("{:+.3f}", Misses::mean(m.time)),
-                            fmt::format("{:.3f}", Misses::rms(m.time)), fmt::format("{:.1f}", Misses::rms(m.side))});
+      table.rows.push_back({name, fmt::format("{:+.2f}", Misses::mean(m.carry)),
+                            fmt::format("{:.2f}", Misses::rms(m.carry)), fmt::format("{:.2f}", Misses::rms(m.apex)),
+                            fmt::format("{:+.3f}", Misses::mean(m.time)), fmt::format("{:.3f}", Misses::rms(m.time)),
+                            fmt::format("{:.1f}", Misses::rms(m.side))});
       summary["left_out"][key][law] = to_json(m);
     };
     std::vector<FlightLaw> laws = others_;
@@ -228,7 +229,8 @@ class FlightLawJob final : public Job {
     draw(out, found, shots, held);
   }
 
-  void draw(Output& out, const PathFit& found, const PathFit& shots, const std::vector<models::MeasuredPath>& held) const {
+  void draw(Output& out, const PathFit& found, const PathFit& shots,
+            const std::vector<models::MeasuredPath>& held) const {
     const auto flights = data_.flights_of(true);
     const models::ShotUnknowns none = models::ShotUnknowns::Zero();
     // Paths of a few shots, by the radar (points) and computed.
@@ -238,18 +240,18 @@ class FlightLawJob final : public Job {
     for (std::size_t i = 0; i < held.size() && drawn < 5; i += std::max<std::size_t>(1, held.size() / 6)) {
       if (!sound_[i]) continue;
       ++drawn;
-      post::Series radar{.label = drawn == 1 ? "radar" : "", .style = "points"}, radar_above = radar,
-                   line{.label = drawn == 1 ? "computed" : ""}, line_above = line;
+      post::Series radar{.label = drawn == 1 ? "radar" : "", .style = "points"},
+          radar_above = radar, line{.label = drawn == 1 ? "computed" : ""}, line_above = line;
       for (const Vec3& x : held[i].positions) {
         radar.x.push_back(x.x());
         radar.y.push_back(x.z());
         radar_above.x.push_back(x.x());
         radar_above.y.push_back(-x.y());
       }
-      const models::Flight f = models::fly(
-          models::launched(held[i].launch, shots.shots[i]), data_.model.ball,
-          models::conditions_of(held[i], data_.model, found.law, shots.shots[i], shots.winds[std::size_t(held[i].group)]),
-          {.sample = 0.1});
+      const models::Flight f = models::fly(models::launched(held[i].launch, shots.shots[i]), data_.model.ball,
+                                           models::conditions_of(held[i], data_.model, found.law, shots.shots[i],
+                                                                 shots.winds[std::size_t(held[i].group)]),
+                                           {.sample = 0.1});
       for (const models::FlightPoint& p : f.path) {
         line.x.push_back(p.position.x());
         line.y.push_back(p.position.z());
@@ -259,18 +261,23 @@ class FlightLawJob final : public Job {
       side.series.insert(side.series.end(), {radar, line});
       above.series.insert(above.series.end(), {radar_above, line_above});
     }
-    post::Figure paths{.title = "paths of players left out, by the radar (points) and computed (lines)", .columns = 1,
-                       .panel_width = 900, .panel_height = 340};
+    post::Figure paths{.title = "paths of players left out, by the radar (points) and computed (lines)",
+                       .columns = 1,
+                       .panel_width = 900,
+                       .panel_height = 340};
     paths.panels = {side, above};
     out.draw(paths, "figures/paths");
 
     // Residual by spin ratio, and where the shots end.
     post::Panel by_spin{.title = "carry, computed minus radar, without any unknown of the shot",
-                        .x_label = "spin ratio at launch [-]", .y_label = "carry [m]"},
+                        .x_label = "spin ratio at launch [-]",
+                        .y_label = "carry [m]"},
         fairway{.title = "where the drives of players left out end, at the height of their launch",
-                .x_label = "right of the target [m]", .y_label = "distance [m]"};
-    post::Series tracked{.label = "spin tracked", .style = "points"}, estimated{.label = "spin estimated", .style = "points"},
-        radar{.label = "radar", .style = "points"}, computed{.label = "computed: axis, ball, wind by the path", .style = "points"};
+                .x_label = "right of the target [m]",
+                .y_label = "distance [m]"};
+    post::Series tracked{.label = "spin tracked", .style = "points"},
+        estimated{.label = "spin estimated", .style = "points"}, radar{.label = "radar", .style = "points"},
+        computed{.label = "computed: axis, ball, wind by the path", .style = "points"};
     for (std::size_t i = 0; i < held.size(); ++i) {
       if (!sound_[i]) continue;
       const auto fly = [&](const models::ShotUnknowns& own, const GroupWind& wind) {
@@ -282,7 +289,9 @@ class FlightLawJob final : public Job {
       of.x.push_back(held[i].launch.spin_rate() * data_.model.ball.radius / held[i].launch.ball_speed());
       of.y.push_back(fly(none, found.winds[group]).carry - flights[i]->carry);
       const models::Flight f = fly(shots.shots[i], shots.winds[group]);
-      const auto forward = [](double carry, double across) { return std::sqrt(std::max(0.0, carry * carry - across * across)); };
+      const auto forward = [](double carry, double across) {
+        return std::sqrt(std::max(0.0, carry * carry - across * across));
+      };
       radar.x.push_back(flights[i]->side);
       radar.y.push_back(forward(flights[i]->carry, flights[i]->side));
       computed.x.push_back(f.side);

@@ -17,7 +17,7 @@ namespace {
 
 struct Launched {
   Launch launch;
-  double time;      ///< measured [s]
+  double time;       ///< measured [s]
   double own, same;  ///< by the law, in the site's own air and in that of the first site [s]
 };
 
@@ -60,16 +60,19 @@ class LandingTimesJob final : public Job {
     if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
     conditions_ = read_flight(root.table("flight")).conditions;
     Table t = root.table("times");
-    const auto path = t.data_file({"file", "CSV with event, speed_mps, launch_deg, azimuth_deg, landing_time_s, "
-                                           "measured_time_s (how long each was followed)"});
+    const auto path = t.data_file({"file",
+                                   "CSV with event, speed_mps, launch_deg, azimuth_deg, landing_time_s, "
+                                   "measured_time_s (how long each was followed)"});
     spin_ = t.quantity({"spin_rate", "of every shot: it is not recorded"}, "rpm", Range::positive());
     const std::vector<double> speed = t.quantities({"ball_speed", "least and most"}, "mps", 2, {0, 120}),
                               angle = t.quantities({"launch_angle", "least and most"}, "deg", 2, {-kPi / 2, kPi / 2}),
                               time = t.quantities({"time", "in the air, least and most"}, "s", 2, {0, 60});
     const double followed = t.number({"followed", "least share of its time that a shot was followed"}, {0, 2}, 0.8);
     for (Table s : t.tables("site")) {
-      Site site{.event = s.text({"event", "value of the column `event`"}), .name = s.text({"name", "of the site"}),
-                .air = {}, .shots = {}};
+      Site site{.event = s.text({"event", "value of the column `event`"}),
+                .name = s.text({"name", "of the site"}),
+                .air = {},
+                .shots = {}};
       site.air = read_air(s);
       sites_.push_back(std::move(site));
     }
@@ -88,8 +91,9 @@ class LandingTimesJob final : public Job {
     for (std::size_t i = 0; i < sheet.rows(); ++i) {
       const auto site = std::ranges::find(sites_, events[i], &Site::event);
       const double a = radians(up[i]), b = radians(right[i]);
-      if (site == sites_.end() || !(v[i] >= speed[0] && v[i] <= speed[1] && a >= angle[0] && a <= angle[1] &&
-                                    landed[i] >= time[0] && landed[i] <= time[1] && seen[i] >= followed * landed[i]) ||
+      if (site == sites_.end() ||
+          !(v[i] >= speed[0] && v[i] <= speed[1] && a >= angle[0] && a <= angle[1] && landed[i] >= time[0] &&
+            landed[i] <= time[1] && seen[i] >= followed * landed[i]) ||
           !std::isfinite(b))
         continue;
       Launched l{.launch = {}, .time = landed[i], .own = 0, .same = 0};
@@ -143,8 +147,9 @@ class LandingTimesJob final : public Job {
     for (std::size_t k = 1; k < sites_.size(); ++k) {
       const double difference = measured[k].value - measured[0].value, remains = left[k].value - left[0].value,
                    error = std::hypot(left[k].error, left[0].error);
-      out.say(fmt::format("{} less {}, at equal launch: measured {:+.3f} s, by density {:+.3f} s, left {:+.3f} +- {:.3f} s",
-                          sites_[k].name, sites_[0].name, difference, carried[k] - carried[0], remains, error));
+      out.say(
+          fmt::format("{} less {}, at equal launch: measured {:+.3f} s, by density {:+.3f} s, left {:+.3f} +- {:.3f} s",
+                      sites_[k].name, sites_[0].name, difference, carried[k] - carried[0], remains, error));
       summary["differences"][sites_[k].name] = {
           {"measured_s", difference}, {"density_s", carried[k] - carried[0]}, {"left_s", remains}, {"error_s", error}};
     }

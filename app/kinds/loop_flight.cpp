@@ -62,8 +62,8 @@ class LoopFlightJob final : public Job {
  private:
   void read_unknown(Table t) {
     loop::FlightUnknowns& u = case_.unknown;
-    u.axis = t.quantity({"spin_axis", "standard deviation of a spin's tilt that is not recorded"}, "deg",
-                        {0, kPi / 2}, radians(8));
+    u.axis = t.quantity({"spin_axis", "standard deviation of a spin's tilt that is not recorded"}, "deg", {0, kPi / 2},
+                        radians(8));
     if (t.has_quantity("spin_rate")) {
       u.spin_rate = t.quantity({"spin_rate", "usual spin where none is recorded"}, "rpm", Range::positive());
       u.spin_rate_sd = t.number({"spin_rate_sd", "its relative standard deviation"}, {0, 1}, 0.2);
@@ -87,8 +87,8 @@ class LoopFlightJob final : public Job {
     std::filesystem::path points;
     if (data.has("paths")) {
       points = data.data_file({"paths", "CSV of positions: shot, time_s, along_m, right_m, up_m from the launch"});
-      case_.position_noise = data.quantity({"position_noise", "standard deviation of a position, each axis"}, "m",
-                                           Range::positive());
+      case_.position_noise =
+          data.quantity({"position_noise", "standard deviation of a position, each axis"}, "m", Range::positive());
     }
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) try {
@@ -108,8 +108,7 @@ class LoopFlightJob final : public Job {
           noise->fail(key, fmt::format("no launch or flight column of this name{}",
                                        near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
         }
-        case_.noise[key] =
-            noise->number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
+        case_.noise[key] = noise->number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
       }
     if (!points.empty() && skipped_.empty()) read_points(points);
   }
@@ -123,13 +122,14 @@ class LoopFlightJob final : public Job {
     const std::vector<double> time = column_with_gaps(sheet, "time_s");
     std::vector<double> instants;
     for (std::size_t i = 0; i < time.size(); ++i) {
-      if (!(time[i] > 0)) throw InputError(fmt::format("{}:{}: time_s: times are positive", sheet.file, sheet.lines[i]));
+      if (!(time[i] > 0))
+        throw InputError(fmt::format("{}:{}: time_s: times are positive", sheet.file, sheet.lines[i]));
       if (std::ranges::find(instants, time[i]) == instants.end()) instants.push_back(time[i]);
     }
     constexpr std::size_t most = 40;
     if (instants.size() > most)
-      throw InputError(fmt::format("{}: {} different times; all paths are read at the same ones, at most {}", sheet.file,
-                                   instants.size(), most));
+      throw InputError(fmt::format("{}: {} different times; all paths are read at the same ones, at most {}",
+                                   sheet.file, instants.size(), most));
     std::ranges::sort(instants);
     for (const double t : instants)
       for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
@@ -140,7 +140,8 @@ class LoopFlightJob final : public Job {
     for (std::size_t i = 0; i < ids.size(); ++i) {
       const auto row = std::ranges::find(case_.shots.id, ids[i]);
       if (row == case_.shots.id.end())
-        throw InputError(fmt::format("{}:{}: no shot '{}' in {}", sheet.file, sheet.lines[i], ids[i], case_.shots.file));
+        throw InputError(
+            fmt::format("{}:{}: no shot '{}' in {}", sheet.file, sheet.lines[i], ids[i], case_.shots.file));
       const auto k = std::ranges::find(instants, time[i]) - instants.begin();
       for (std::size_t axis = 0; axis < 3; ++axis)
         case_.positions(row - case_.shots.id.begin(), 3 * k + Eigen::Index(axis)) = x[axis][i];
@@ -149,10 +150,10 @@ class LoopFlightJob final : public Job {
 
   void read_radar(Table& root) {
     Table table = root.table("paths");
-    const std::string what = table.choice({"channels", "of the loop: where each flight ends, or its path"},
-                                          {"ends", "path"}, "ends");
-    const double every = table.quantity({"every", "interval of the positions that are channels of a path"}, "s",
-                                        {0.25, 5}, 1.0);
+    const std::string what =
+        table.choice({"channels", "of the loop: where each flight ends, or its path"}, {"ends", "path"}, "ends");
+    const double every =
+        table.quantity({"every", "interval of the positions that are channels of a path"}, "s", {0.25, 5}, 1.0);
     const RadarPaths data = read_paths(table, case_.ball);
     std::map<std::string, double> noise;
     if (what == "ends") {
@@ -171,17 +172,25 @@ class LoopFlightJob final : public Job {
     case_.noise = std::move(noise);
     case_.group_by = {"group"};
     case_.unknown.wind = data.model.wind_sd;
-    post::Sheet sheet{.file = "radar", .names = {"shot", "player", "group", "ball_speed_mps", "launch_angle_deg",
-                                                "azimuth_deg", "spin_rate_rpm"}, .columns = {}, .lines = {}};
+    post::Sheet sheet{
+        .file = "radar",
+        .names = {"shot", "player", "group", "ball_speed_mps", "launch_angle_deg", "azimuth_deg", "spin_rate_rpm"},
+        .columns = {},
+        .lines = {}};
     if (what == "ends") sheet.names.insert(sheet.names.end(), {"carry_m", "side_m", "apex_m", "flight_time_s"});
     sheet.columns.resize(sheet.names.size());
     for (const RadarFlight& f : data.flights) {
       const Launch& l = f.path.launch;
       const auto text = [](double x) { return fmt::format("{:.10g}", x); };
-      std::vector<std::string> cells = {f.path.id, f.player, f.group, text(l.ball_speed()),
-                                        text(degrees(l.launch_angle())), text(degrees(l.azimuth())),
+      std::vector<std::string> cells = {f.path.id,
+                                        f.player,
+                                        f.group,
+                                        text(l.ball_speed()),
+                                        text(degrees(l.launch_angle())),
+                                        text(degrees(l.azimuth())),
                                         text(l.spin_rate() / kRadPerSecPerRpm)};
-      if (what == "ends") for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
+      if (what == "ends")
+        for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
       for (std::size_t c = 0; c < cells.size(); ++c) sheet.columns[c].push_back(cells[c]);
       sheet.lines.push_back(sheet.lines.size() + 2);
       case_.air.push_back(f.path.air);

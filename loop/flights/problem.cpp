@@ -19,7 +19,7 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kFewestFlights = 8;  // training flights that can test anything
+constexpr std::size_t kFewestFlights = 8;                            // training flights that can test anything
 constexpr models::FlightOptions kExactFlight = {.tolerance = 1e-8};  // differences of flights are taken
 
 /// Steps of the differences, by ShotUnknown, then of a group's unknowns: a reading moves by far more than the
@@ -73,8 +73,8 @@ void FlightProblem::read() {
   }
   std::ranges::sort(instants_);
   if (channels_.empty())
-    throw DataError(fmt::format("{}: no reading of a flight: carry, side, apex, flight_time, landing_angle or a path",
-                                shots.file));
+    throw DataError(
+        fmt::format("{}: no reading of a flight: carry, side, apex, flight_time, landing_angle or a path", shots.file));
 
   const auto noise_of = [&](Output o) {  // SI
     const Column* c = shots.find_stem(stem(o));
@@ -125,8 +125,9 @@ void FlightProblem::read() {
     if (!rate) sd[models::kLogSpin] = case_.unknown.spin_rate_sd;
     else sd[models::kLogSpin] = (components ? noise_of(Output::backspin) : noise_of(Output::spin_rate)) / spin;
     if (!axis) sd[models::kAxis] = case_.unknown.axis;
-    else sd[models::kAxis] = components && has(Output::sidespin, row) ? noise_of(Output::sidespin) / spin
-                                                                      : noise_of(Output::spin_axis);
+    else
+      sd[models::kAxis] = components && has(Output::sidespin, row) ? noise_of(Output::sidespin) / spin
+                                                                   : noise_of(Output::spin_axis);
     if (!case_.deviations.empty()) sd = case_.deviations[row];
     t.shot.air = case_.air.empty() ? case_.conditions.air : case_.air[row];
     std::string group;
@@ -406,8 +407,7 @@ Eigen::VectorXd FlightProblem::whiten(Part part, const Eigen::MatrixXd& e) const
     const auto at = [&](std::size_t k) { return place.at(b.trials[std::size_t(b.readings[k].first)]); };
     for (std::size_t k = 0; k < b.readings.size(); ++k) r[Eigen::Index(k)] = e(at(k), b.readings[k].second);
     b.factor.triangularView<Eigen::Lower>().solveInPlace(r);
-    for (std::size_t k = 0; k < b.readings.size(); ++k)
-      z[at(k) * width() + b.readings[k].second] = r[Eigen::Index(k)];
+    for (std::size_t k = 0; k < b.readings.size(); ++k) z[at(k) * width() + b.readings[k].second] = r[Eigen::Index(k)];
   }
   return z;
 }
@@ -659,7 +659,8 @@ NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
   } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const Location& l = so_far.unexplained.front();
     next.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",
-                            l.regressor.empty() ? "one quantity" : l.regressor, l.channel.empty() ? "a reading" : l.channel);
+                            l.regressor.empty() ? "one quantity" : l.regressor,
+                            l.channel.empty() ? "a reading" : l.channel);
   } else if (so_far.verdict == Verdict::insufficient) {
     next.text = "more flights: the list of smallest effects says what these could have shown";
   } else {

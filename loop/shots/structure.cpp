@@ -129,8 +129,8 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
   for (int i = 0; i < n; ++i) order[i] = model.trial(i).order;
   std::vector<Regressor> all = regressors(shots, row_of, rows, lines, order);
   // Before what only the place in the session drives.
-  const auto session = std::ranges::find_if(
-      all, [](const Regressor& r) { return r.kind == "step" || r.kind == "oscillation"; });
+  const auto session =
+      std::ranges::find_if(all, [](const Regressor& r) { return r.kind == "step" || r.kind == "oscillation"; });
   std::vector<Regressor> responses;
   add_responses(model, rows, order, responses);
   all.insert(session, std::make_move_iterator(responses.begin()), std::make_move_iterator(responses.end()));
@@ -220,8 +220,8 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
     Eigen::VectorXd a = Eigen::VectorXd::Zero(std::ptrdiff_t(rows.size()) * model.width());
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (model.observed(rows[i], c))
-        a.segment(std::ptrdiff_t(i) * model.width(), model.width()) =
-            model.whitening(rows[i]).col(c) * value[std::ptrdiff_t(i)];
+        a.segment(std::ptrdiff_t(i) * model.width(), model.width()) = model.whitening(rows[i]).col(c) *
+                                                                      value[std::ptrdiff_t(i)];
     return a;
   };
   view.trusted = [&](int c) { return model.channel(c).trusted(); };

@@ -31,8 +31,8 @@ struct Line {
   bool foreign;       ///< see Finding
   Eigen::VectorXd x;  ///< per shot of the model, any unit
 };
-/// Regressors from such columns: trends, curvatures, products of two, groups of the text columns, steps and oscillations
-/// over the session (`order` per shot, 0 to 1).
+/// Regressors from such columns: trends, curvatures, products of two, groups of the text columns, steps and
+/// oscillations over the session (`order` per shot, 0 to 1).
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
                                   const std::vector<Line>& lines, const Eigen::VectorXd& order);
 

@@ -39,7 +39,8 @@ TEST(LoopFlight, SaysWhatIsWrong) {
   EXPECT_NE(error("--set 'data.group_by=[\"holes\"]'").find("no column 'holes'"), std::string::npos);
   EXPECT_NE(error("--set 'model.effects=[\"head-mass\"]'").find("no effect 'head-mass'"), std::string::npos);
   EXPECT_NE(error("--set flight.turf.rolling=0.1").find("end at the first landing"), std::string::npos);
-  EXPECT_NE(error("--set 'data.paths=\"shots.csv\"' --set data.position_noise_m=0.1").find("time_s"), std::string::npos);
+  EXPECT_NE(error("--set 'data.paths=\"shots.csv\"' --set data.position_noise_m=0.1").find("time_s"),
+            std::string::npos);
 }
 
 /// Positions at common instants are channels: three a time.
@@ -76,8 +77,8 @@ TEST(FlightLawCase, LeavesOutPlayersByTheirName) {
 
 TEST(FlightLawCase, SkipsWithoutTheData) {
   const fs::path out = fresh_directory("flight_law_skipped");
-  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() +
-                            " --force --out " + out.string() + " --set paths.file=not-there/t.csv");
+  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
+                            out.string() + " --set paths.file=not-there/t.csv");
   EXPECT_EQ(o.status, 0) << o.text;
   EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
 }
@@ -86,8 +87,8 @@ TEST(FlightLawCase, SkipsWithoutTheData) {
 /// does not reach.
 TEST(SlowFlightLawCase, InfersTheShippedLaw) {
   const fs::path out = fresh_directory("flight_law");
-  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() +
-                            " --force --out " + out.string() + " --set 'law.beside=[]'");
+  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
+                            out.string() + " --set 'law.beside=[]'");
   ASSERT_EQ(o.status, 0) << o.text;
   if (o.text.find("SKIPPED") != std::string::npos) GTEST_SKIP() << o.text;
   const auto summary = nlohmann::json::parse(content(out / "summary.json"));

@@ -1,6 +1,6 @@
-// The loop whose base is the flight alone: what the law, the air, the wind or the record of the spin's axis lack is named
-// from launches and landings, beside what every shot and every group of shots has of its own. The flights are made by an
-// integration of the test's own.
+// The loop whose base is the flight alone: what the law, the air, the wind or the record of the spin's axis lack is
+// named from launches and landings, beside what every shot and every group of shots has of its own. The flights are
+// made by an integration of the test's own.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -78,8 +78,8 @@ FlightCase drives(const Hidden& h, int flights, unsigned seed, double group_wind
   c.unknown.wind = group_wind;
   c.unknown.drag = 0.02;
   c.group_by = {"hole"};
-  c.noise = {{"ball_speed_mps", 0.15}, {"launch_angle_deg", 0.1}, {"azimuth_deg", 0.1},      {"spin_rate_rpm", 50},
-             {"spin_axis_deg", 1.5},   {"carry_m", 1.5},          {"side_m", 1.5},           {"apex_m", 0.4},
+  c.noise = {{"ball_speed_mps", 0.15}, {"launch_angle_deg", 0.1}, {"azimuth_deg", 0.1}, {"spin_rate_rpm", 50},
+             {"spin_axis_deg", 1.5},   {"carry_m", 1.5},          {"side_m", 1.5},      {"apex_m", 0.4},
              {"flight_time_s", 0.04},  {"landing_angle_deg", 0.7}};
   post::Sheet sheet{.file = "drives", .names = {"shot", "hole"}, .columns = {}, .lines = {}};
   for (const char* name : {"ball_speed_mps", "launch_angle_deg", "azimuth_deg", "spin_rate_rpm", "spin_axis_deg",
@@ -88,7 +88,8 @@ FlightCase drives(const Hidden& h, int flights, unsigned seed, double group_wind
   sheet.columns.resize(sheet.names.size());
   constexpr int groups = 5;
   std::array<double, groups> along{}, right{};
-  for (int g = 0; g < groups; ++g) along[std::size_t(g)] = group_wind * gauss(random), right[std::size_t(g)] = group_wind * gauss(random);
+  for (int g = 0; g < groups; ++g)
+    along[std::size_t(g)] = group_wind * gauss(random), right[std::size_t(g)] = group_wind * gauss(random);
   for (int i = 0; i < flights; ++i) {
     const auto g = std::size_t(i % groups);
     const double speed = 74 + 4 * gauss(random), up = radians(11.5 + 2.5 * gauss(random)),
@@ -96,13 +97,14 @@ FlightCase drives(const Hidden& h, int flights, unsigned seed, double group_wind
                  axis = radians(7 * gauss(random));
     const Vec3 v = speed * Vec3(std::cos(up) * std::cos(azimuth), -std::cos(up) * std::sin(azimuth), std::sin(up));
     const Vec3 w = spin * Vec3(0, -std::cos(axis + h.axis), -std::sin(axis + h.axis));
-    const Landing l = reference(v, w, c.ball, c.conditions.law, c.conditions.air, h, along[g], right[g],
-                                0.02 * gauss(random));
+    const Landing l =
+        reference(v, w, c.ball, c.conditions.law, c.conditions.air, h, along[g], right[g], 0.02 * gauss(random));
     const std::array<double, 10> read = {
-        speed + 0.15 * gauss(random),    degrees(up) + 0.1 * gauss(random),
+        speed + 0.15 * gauss(random),           degrees(up) + 0.1 * gauss(random),
         degrees(azimuth) + 0.1 * gauss(random), spin / kRadPerSecPerRpm + 50 * gauss(random),
-        degrees(axis) + 1.5 * gauss(random), l.carry + 1.5 * gauss(random), l.side + 1.5 * gauss(random),
-        l.apex + 0.4 * gauss(random),    l.time + 0.04 * gauss(random), degrees(l.angle) + 0.7 * gauss(random)};
+        degrees(axis) + 1.5 * gauss(random),    l.carry + 1.5 * gauss(random),
+        l.side + 1.5 * gauss(random),           l.apex + 0.4 * gauss(random),
+        l.time + 0.04 * gauss(random),          degrees(l.angle) + 0.7 * gauss(random)};
     sheet.columns[0].push_back(std::to_string(i + 1));
     sheet.columns[1].push_back(std::string("h") + std::to_string(g));
     for (std::size_t k = 0; k < read.size(); ++k) sheet.columns[k + 2].push_back(std::to_string(read[k]));
@@ -146,9 +148,12 @@ struct Undeclared {
   double wind;  ///< of the groups: where an undeclared wind is sought, theirs is little
 };
 std::vector<Undeclared> effects_hidden() {
-  return {{"drag-level", {.drag = 0.06}, 1.5},     {"lift-law", {.lift = -0.1}, 1.5},
-          {"spin-decay", {.decay = 0.12}, 1.5},    {"air-density", {.density = -0.08}, 1.5},
-          {"wind", {.wind_along = -2, .wind_right = 2.5}, 0.5}, {"spin-axis-bias", {.axis = radians(4)}, 1.5}};
+  return {{"drag-level", {.drag = 0.06}, 1.5},
+          {"lift-law", {.lift = -0.1}, 1.5},
+          {"spin-decay", {.decay = 0.12}, 1.5},
+          {"air-density", {.density = -0.08}, 1.5},
+          {"wind", {.wind_along = -2, .wind_right = 2.5}, 0.5},
+          {"spin-axis-bias", {.axis = radians(4)}, 1.5}};
 }
 
 TEST(FlightBase, TheReferenceIsTheFlight) {
@@ -160,8 +165,8 @@ TEST(FlightBase, TheReferenceIsTheFlight) {
   l.spin = Vec3(0, -280, -30);
   c.wind = {.speed = 3, .towards = radians(60)};
   const models::Flight f = models::fly(l, ball, c, {.tolerance = 1e-9});
-  const Landing r = reference(l.velocity, l.spin, ball, c.law, c.air, {}, 3 * std::cos(radians(60)),
-                              3 * std::sin(radians(60)), 0);
+  const Landing r =
+      reference(l.velocity, l.spin, ball, c.law, c.air, {}, 3 * std::cos(radians(60)), 3 * std::sin(radians(60)), 0);
   EXPECT_GT(f.carry, 200);
   EXPECT_NEAR(f.carry, r.carry, 0.02);
   EXPECT_NEAR(f.side, r.side, 0.02);

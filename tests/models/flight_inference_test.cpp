@@ -41,9 +41,9 @@ Flown flown(const FlightLaw& truth, int shots) {
     p.sd[models::kAxis] = 0.15;
     p.sd[models::kOwnDrag] = 0.03;
     for (int k = 1; k <= 12; ++k) p.times.push_back(0.5 * k);
-    for (const auto& at : models::follow(models::launched(p.launch, own), model.ball,
-                                         models::conditions_of(p, model, truth, own, out.winds[std::size_t(p.group)]),
-                                         p.times))
+    for (const auto& at :
+         models::follow(models::launched(p.launch, own), model.ball,
+                        models::conditions_of(p, model, truth, own, out.winds[std::size_t(p.group)]), p.times))
       p.positions.push_back(at.position + 0.05 * Vec3(gauss(random), gauss(random), gauss(random)));
     out.paths.push_back(p);
   }
