@@ -13,15 +13,16 @@
 namespace hosel::models {
 namespace {
 
-constexpr FlightOptions kExact = {.tolerance = 1e-7};  // differences of paths are taken: they are 1e4 times that
+constexpr FlightOptions kExact = {.tolerance = 1e-8};  // differences of paths are taken: they are 1e4 times that
 
 /// Steps of the differences: they move a path by centimetres, far above the integration's error.
 constexpr std::array<double, kShotUnknowns> kStep = {1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-4, 1e-4, 2e-2, 2e-2};
 constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient's standard deviation
 
-constexpr double kFarthest = 1;  // of a shot's step, standard deviations told of an unknown
-constexpr int kFullSteps = 6;    // of the search, before half ones
-constexpr int kWeighing = 16;    // steps after which the weights stay: then one sum is brought down
+constexpr double kFarthest = 1;   // of a shot's step, standard deviations told of an unknown
+constexpr double kSettled = 0.1;  // standard errors: a step below that is the estimate
+constexpr int kFullSteps = 6;     // of the search, before half ones
+constexpr int kWeighing = 16;     // steps after which the weights stay: then one sum is brought down
 
 /// Student weight of a shot by its misfit over the median one: half at six times it.
 double student(double over_median) { return 1 / (1 + std::pow(over_median / 6, 2)); }
@@ -61,7 +62,7 @@ class Estimate {
     for (int i = 0; i < 4; ++i) step(false);
     constexpr int most = 80;
     const bool law = !law_sd_.empty();
-    for (double change = 1; change > 0.03;) {
+    for (double change = 1; change > kSettled;) {
       if (fit_.iterations == most)
         throw solvers::NonConvergence(fmt::format(
             "flight paths: after {} steps the estimate still moves by {:.2g} standard errors", most, change));
