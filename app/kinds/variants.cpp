@@ -22,7 +22,7 @@ namespace hosel::app {
 namespace {
 
 /// What an instrument saw of the blow; absent where it did not look.
-struct Seen {
+struct AnswerSeen {
   std::optional<double> spin_rate, ball_speed, launch_angle;  ///< SI
   std::vector<double> launch_ratio;                           ///< of each instrument
 };
@@ -34,7 +34,7 @@ struct Variant {
   Blow blow;
   models::Options options;
   std::optional<FlightSetup> flight;
-  Seen seen;
+  AnswerSeen seen;
 };
 
 struct Prediction {
@@ -110,8 +110,8 @@ class VariantsJob final : public Job {
       root.fail("variants", "name at least one [[variants]]; the first is what the others are compared with");
     return out;
   }
-  static Seen read_seen(Table t) {
-    Seen s;
+  static AnswerSeen read_seen(Table t) {
+    AnswerSeen s;
     if (t.has_quantity("spin_rate")) s.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
     if (t.has_quantity("ball_speed")) s.ball_speed = t.quantity({"ball_speed", "measured"}, "mps", Range::positive());
     if (t.has_quantity("launch_angle")) s.launch_angle = t.quantity({"launch_angle", "measured"}, "deg", {-1.5, 1.5});
@@ -253,12 +253,13 @@ class VariantsJob final : public Job {
     };
     panel(
         "spin [1000 rpm]", [](const Prediction& a) { return 1e-3 * rpm(a.launch.spin_rate()); },
-        [&](const Seen& s) { return list(s.spin_rate, 1e3 / rpm(1)); });
+        [&](const AnswerSeen& s) { return list(s.spin_rate, 1e3 / rpm(1)); });
     panel(
         "ball speed [m/s]", [](const Prediction& a) { return a.launch.ball_speed(); },
-        [&](const Seen& s) { return list(s.ball_speed, 1); });
+        [&](const AnswerSeen& s) { return list(s.ball_speed, 1); });
     panel(
-        "launch ratio", [](const Prediction& a) { return a.ratio; }, [](const Seen& s) { return s.launch_ratio; });
+        "launch ratio", [](const Prediction& a) { return a.ratio; },
+        [](const AnswerSeen& s) { return s.launch_ratio; });
     return f;
   }
 
