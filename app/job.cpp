@@ -13,8 +13,10 @@
 #include "hosel/app/kinds/curves.hpp"
 #include "hosel/app/kinds/face_map.hpp"
 #include "hosel/app/kinds/flight.hpp"
+#include "hosel/app/kinds/flight_law.hpp"
 #include "hosel/app/kinds/identify_shaft.hpp"
 #include "hosel/app/kinds/impact.hpp"
+#include "hosel/app/kinds/landing_times.hpp"
 #include "hosel/app/kinds/loaded_club.hpp"
 #include "hosel/app/kinds/loaded_face_map.hpp"
 #include "hosel/app/kinds/loop.hpp"
@@ -41,6 +43,11 @@ constexpr std::array kKinds = {
          "What does the ball do after this blow?", read_impact},
     Kind{"flight", "where balls of given launches go, by several laws, with an error budget",
          "Where do these balls go, and how sure is that?", read_flights},
+    Kind{"flight-law", "a law of drag, lift and spin decay from followed flights, judged on players left out",
+         "What are drag and lift of a ball in flight, and does that hold for players that were not seen?",
+         read_flight_law},
+    Kind{"landing-times", "launches at several sites with the time of their landing, and what the air makes of it",
+         "Does the air's density carry what the sites differ by?", read_landing_times},
     Kind{"ball-rule", "a ball at a distance limit under old and new test conditions, and what players lose",
          "What must a ball at the limit give up, and who loses how much?", read_ball_rule},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by",

@@ -52,15 +52,22 @@ models::FlightLaw read_law(Table& table) {
            .decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})}};
   } else {
     law = published(table, "law", name);
-    if (table.has("spin_decay_per_s"))
+    if (table.has("spin_decay_per_s")) {
       law.decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})};
+      // The last coefficient of an inferred law is its decay, which is told now.
+      constexpr int n = models::kInferredCoefficients;
+      for (int k = 0; k < n && !law.covariance.empty(); ++k)
+        law.covariance[std::size_t(k * n + n - 1)] = law.covariance[std::size_t((n - 1) * n + k)] = 0;
+    }
   }
   law.drag_scale = table.number({"drag_scale", "factor on the drag coefficient"}, {0, 10}, 1.0);
   law.lift_scale = table.number({"lift_scale", "factor on the lift coefficient"}, {0, 10}, 1.0);
   return law;
 }
 
-models::Air read_air(Table& table) {
+}  // namespace
+
+models::Air read_air(Table table) {
   if (table.has_quantity("density"))
     return {.density = table.quantity({"density", "of the air; instead of weather"}, "kg_per_m3", {0, 5}),
             .viscosity = models::Air{}.viscosity};
@@ -73,6 +80,8 @@ models::Air read_air(Table& table) {
                               {2e4, 1.2e5}, models::standard_pressure(altitude));
   return models::air(w);
 }
+
+namespace {
 
 models::Wind read_wind(Table table) {
   models::Wind w;
@@ -135,7 +144,8 @@ FlightSetup read_flight(Table table) {
     t.rolling_low = turf->number({"rolling_low", "lower end of what rolling may be"}, {0.01, t.rolling}, t.rolling_low);
     t.rolling_high = turf->number({"rolling_high", "upper end of what rolling may be"}, {t.rolling, 2}, t.rolling_high);
     s.turf = t;
-    if (s.conditions.ground.slope != 0) table.fail("turf", "bounce and roll are for level ground: leave out its slope");
+    if (std::abs(std::tan(s.conditions.ground.slope)) >= t.rolling_low)
+      table.fail("turf", "on this slope a rolling ball does not come to rest: leave out [flight.turf] or its slope");
   }
   std::vector<std::string> taken;
   for (const Table& t : table.tables("launch_error")) s.errors.push_back(read_launch_error(t, taken));

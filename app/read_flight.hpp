@@ -23,6 +23,8 @@ struct FlightSetup {
   models::FlightBudget budget(const Launch& launch, const Ball& ball) const;
 };
 
+/// Density, or the weather that makes it.
+models::Air read_air(Table table);
 FlightSetup read_flight(Table table);
 std::optional<FlightSetup> read_optional_flight(Table root);
 

@@ -35,6 +35,16 @@ void Flight(benchmark::State& state) {
 }
 BENCHMARK(Flight)->ArgsProduct({{4, 5, 6, 8, 10}, {0, 1}})->Unit(benchmark::kMicrosecond);
 
+/// The law inferred from flights: two logarithms at every rate.
+void FlightByRadar(benchmark::State& state) {
+  const Launch l = drive();
+  models::FlightConditions c = conditions(false);
+  c.law = models::find_flight_law("radar-2022")->make();
+  for (auto _ : state) benchmark::DoNotOptimize(models::fly(l, {}, c).carry);
+  state.counters["flights_per_s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(FlightByRadar)->Unit(benchmark::kMicrosecond);
+
 void Jacobian(benchmark::State& state) {
   const Launch l = drive();
   const models::FlightConditions c = conditions(false);

@@ -58,6 +58,8 @@ struct Parametrisation {
   std::function<void(std::span<const double>, const Shot&, Launch&)> after;
   /// Shot: changes what the instrument shows of one output [SI].
   std::function<double(std::span<const double>, const Shot&, Output, double)> reading;
+  /// Shot: changes the launch that was seen, where the base is the flight alone.
+  std::function<void(std::span<const double>, Launch&)> seen;
   /// Shot: changes law, air or wind of the flight.
   std::function<void(std::span<const double>, models::FlightConditions&)> flight;
   /// Club test: changes club, clamp or sensors.
@@ -70,6 +72,7 @@ struct Setting {
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
   std::vector<Output> outputs;    ///< channels of the data, of the launch
   bool flies = false;             ///< and some of the flight
+  bool no_blow = false;           ///< the base is the flight alone, from the launch that was seen
   bool deformable = false;        ///< the base computes the ball's deformation: it has no impact law to change
   bool shaft = false;             ///< the case declares a shaft that such a base can hang on its free head
   bool full_club = false;         ///< such a base has its shaft already

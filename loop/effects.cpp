@@ -55,6 +55,8 @@ constexpr std::array kEffects = {
                 spin_decay},
     EffectEntry{"air-density", "the air is denser or thinner than declared", "temperature, pressure and humidity",
                 air_density},
+    EffectEntry{"spin-axis-bias", "the recorded tilt of the spin is not the spin's",
+                "tilt of the spin by a second instrument (high-speed video of a marked ball)", spin_axis_bias},
     EffectEntry{"wind", "a wind blows that is not declared", "wind at the height of the flight (anemometer)", wind},
     EffectEntry{"shaft-stiffness", "the shaft is stiffer or softer than its table",
                 "bending stiffness of the bare shaft (three-point bending)", shaft_stiffness, shaft_stiffness},

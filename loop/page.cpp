@@ -20,7 +20,7 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
   std::vector<double> sizes;
   for (const UsedRow& u : r.rows) {
     const double x = column.native(std::size_t(u.row));
-    if (!std::isfinite(x)) continue;
+    if (!std::isfinite(x) || !std::isfinite(u.before[channel]) || !std::isfinite(u.after[channel])) continue;
     x0 = std::min(x0, x);
     x1 = std::max(x1, x);
     sizes.push_back(std::max(std::abs(u.before[channel]), std::abs(u.after[channel])));

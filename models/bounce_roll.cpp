@@ -30,38 +30,59 @@ void bounce(Body& b, const Ball& ball, const BounceRoll& turf) {
   b.spin -= 2.5 / ball.radius * normal.cross(push);
 }
 
+/// Rolling on a plane tilted by `slope` about Y, in the plane's own axes (x up the slope): friction against the motion
+/// and weight along it, both by 5/7 of what a body that slides would have. Closed form along the slope's line or on
+/// level ground, else small steps.
+Vec3 rest(Vec3 from, Vec3 velocity, double rolling, double slope) {
+  const double friction = 5.0 / 7.0 * rolling * kGravity * std::cos(slope),
+               weight = -5.0 / 7.0 * kGravity * std::sin(slope);
+  velocity.z() = 0;
+  if (slope == 0) return from + velocity * velocity.norm() / (2 * friction);
+  if (std::abs(weight) >= friction)
+    throw std::invalid_argument("bounce and roll: on this slope a rolling ball does not come to rest");
+  constexpr double dt = 1e-3;  // [s]; a ball rolls for some seconds, and errs by a millimetre
+  for (double speed; (speed = velocity.norm()) > 0;) {
+    const Vec3 rate = -friction / speed * velocity + weight * Vec3::UnitX();
+    // Where it slows towards its rest, not through it: the slope alone would not start it again.
+    if (speed <= (friction + std::abs(weight)) * dt) break;
+    from += dt * (velocity + 0.5 * dt * rate);
+    velocity += dt * rate;
+  }
+  return from;
+}
+
 }  // namespace
 
 Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, const BounceRoll& turf) {
-  if (ground.slope != 0) throw std::invalid_argument("bounce and roll are for level ground: the landing has a slope");
   constexpr double last_hop = 5e-3;
   Run out;
-  Body b{landing.position, landing.velocity, landing.spin};
-  out.path.push_back(b.position);
+  // In the axes of the ground: x up the slope, z out of it.
+  const Mat3 turn = Eigen::AngleAxisd(ground.slope, Vec3::UnitY()).toRotationMatrix();
+  const auto global = [&](const Vec3& x) -> Vec3 { return landing.position + turn.transpose() * x; };
+  const Vec3 weight = turn * Vec3(0, 0, -kGravity);
+  Body b{Vec3::Zero(), turn * landing.velocity, turn * landing.spin};
+  out.path.push_back(landing.position);
   for (;;) {
     bounce(b, ball, turf);
-    const double up = b.velocity.z();
-    if (up * up / (2 * kGravity) < last_hop) break;
+    const double up = b.velocity.z(), hop = -2 * up / weight.z();
+    if (up * hop / 4 < last_hop) break;
     ++out.bounces;
-    const double hop = 2 * up / kGravity;
     const Vec3 from = b.position;
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
       const double t = share * hop;
-      b.position = from + t * b.velocity - Vec3(0, 0, 0.5 * kGravity * t * t);
-      out.path.push_back(b.position);
+      b.position = from + t * b.velocity + 0.5 * t * t * weight;
+      out.path.push_back(global(b.position));
     }
-    b.velocity.z() = -up;
+    b.velocity += hop * weight;
+    b.position.z() = 0;
   }
-  const Vec3 level(b.velocity.x(), b.velocity.y(), 0);
-  const auto rest = [&](double rolling) -> Vec3 {
-    return b.position + level * level.norm() / (2 * 5.0 / 7.0 * rolling * kGravity);
-  };
   const auto distance = [](const Vec3& x) { return std::hypot(x.x(), x.y()); };
-  out.path.push_back(rest(turf.rolling));
+  const auto at = [&](double rolling) { return global(rest(b.position, b.velocity, rolling, ground.slope)); };
+  out.path.push_back(at(turf.rolling));
   out.total = distance(out.path.back());
   out.side = -out.path.back().y();
-  out.total_firm = distance(rest(turf.rolling_low));
-  out.total_slow = distance(rest(turf.rolling_high));
+  out.total_firm = distance(at(turf.rolling_low));
+  out.total_slow = distance(at(turf.rolling_high));
   return out;
 }
 

@@ -1,9 +1,11 @@
-/// What the ball does after it lands on level turf: hops, each a rigid bounce, then rolling.
+/// What the ball does after it lands on turf, level or sloped along the target line: hops, each a rigid bounce, then
+/// rolling.
 ///
 /// Each bounce happens on a plane that the turf's crater tilts against the motion by
 ///   theta = 15.4 deg (v / 18.6 m/s) (phi / 44.4 deg), phi the path's angle from the vertical,
 /// with e = 0.510 - 0.0375 v_n + 0.000903 v_n^2 (0.120 above 20 m/s) across it and Coulomb friction along it; hops
-/// are free of air, and end below 5 mm; the ball then rolls with 5/7 rho g of deceleration.
+/// are free of air, and end below 5 mm; the ball then rolls with 5/7 rho g of deceleration. On a slope all of this
+/// holds in the axes of the ground, phi from its normal, and 5/7 of the weight along it acts on the rolling ball.
 /// Source: [@penner-2002]: one turf, and rolling resistance over its range on greens. Its author expects more on a
 /// fairway.
 #pragma once
@@ -28,7 +30,7 @@ struct Run {
   std::vector<Vec3> path;  ///< of the ball's centre from the landing to its rest
 };
 
-/// Throws std::invalid_argument on ground with a slope.
+/// Throws std::invalid_argument on a slope on which a ball rolls on for ever.
 Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, const BounceRoll& turf = {});
 
 }  // namespace hosel::models

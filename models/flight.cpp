@@ -224,6 +224,36 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
   }
 }
 
+std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
+                                std::span<const double> times, const FlightOptions& options) {
+  check(launch);
+  FlightConditions free = conditions;
+  free.ground = {};
+  const Departure<double> start = start_of(launch);
+  const Motion<double> motion(start, ball, free);
+  const auto y0 = state_of(start);
+  std::vector<FlightPoint> out;
+  if (times.empty()) return out;
+  solvers::Cvode solver(
+      kStates, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 1,
+      [](double, const double*, double* g) {
+        g[0] = 1; /* nothing stops it */
+      },
+      solution(options, kStates));
+  while (out.size() < times.size() && times[out.size()] <= 0) out.push_back(motion.point(times[out.size()], y0.data()));
+  solver.start(0, y0);
+  const auto watch = [&](double t, const double*) {
+    for (; out.size() < times.size() && times[out.size()] <= t;) {
+      std::array<double, kStates> between;
+      solver.interpolate(times[out.size()], between);
+      out.push_back(motion.point(times[out.size()], between.data()));
+    }
+  };
+  solver.run(times.back(), watch);
+  while (out.size() < times.size()) out.push_back(motion.point(times[out.size()], solver.state().data()));
+  return out;
+}
+
 FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
                                const FlightOptions& options) {
   check(launch);

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -68,6 +69,11 @@ struct Flight {
 /// it does not come down in a minute.
 Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
            const FlightOptions& options = {});
+
+/// Where the ball is at these rising times [s], whatever the ground does: heights of the wind count from the launch and
+/// are mirrored below it. `sample` is not looked at. Throws as `fly` does.
+std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
+                                std::span<const double> times, const FlightOptions& options = {});
 
 enum FlightAnswer { kCarry, kSide, kApex, kTime, kLandingAngle, kFlightAnswers };
 enum LaunchQuantity { kBallSpeed, kLaunchAngle, kAzimuth, kBackspin, kSidespin, kRiflespin, kLaunchQuantities };

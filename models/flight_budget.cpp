@@ -23,6 +23,26 @@ FlightAnswers variance(const Launch& l, const FlightJacobian& by, const LaunchEr
   return out;
 }
 
+/// By the covariance of the law's coefficients, with central differences a tenth of a standard deviation to each side.
+FlightAnswers by_law(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
+                     const FlightOptions& options) {
+  constexpr int n = kInferredCoefficients;
+  const Eigen::Map<const Eigen::Matrix<double, n, n>> covariance(conditions.law.covariance.data());
+  Eigen::Matrix<double, kFlightAnswers, n> by = decltype(by)::Zero();
+  const FlightOptions exact{.tolerance = 1e-3 * options.tolerance};
+  for (int k = 0; k < n; ++k) {
+    const double h = 0.1 * std::sqrt(covariance(k, k));
+    if (!(h > 0)) continue;  // told otherwise
+    const auto at = [&](double side) {
+      FlightConditions c = conditions;
+      inferred_coefficient(c.law, k) += side * h;
+      return answers(fly(launch, ball, c, exact));
+    };
+    by.col(k) = (at(1) - at(-1)) / (2 * h);
+  }
+  return (by * covariance * by.transpose()).diagonal().cwiseSqrt();
+}
+
 }  // namespace
 
 FlightAnswers answers(const Flight& f) { return {f.carry, f.side, f.apex, f.time, f.landing_angle}; }
@@ -44,6 +64,7 @@ FlightBudget flight_budget(const Launch& launch, const Ball& ball, const FlightC
     }
   }
   out.launch_total = total.cwiseSqrt();
+  if (!conditions.law.covariance.empty()) out.law = by_law(launch, ball, conditions, options);
   for (const FlightLaw& law : others) {
     FlightConditions c = conditions;
     c.law = law;

@@ -1,6 +1,7 @@
 /// How far a flight can be trusted: the integration, the laws, and the launch.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct FlightBudget {
   FlightAnswers value, numerical;     ///< with the asked tolerance, and what a ten-thousandth of it changes
   std::vector<FlightAnswers> launch;  ///< standard deviation of each source, by the flight's derivative
   FlightAnswers launch_total;
+  /// Standard deviation by the law's own coefficients, where it came with their covariance.
+  std::optional<FlightAnswers> law;
   struct Law {
     std::string name;
     FlightAnswers value;

@@ -144,6 +144,47 @@ FlightLaw libgolf() {
       .decay = {.travel = 2e-5}};
 }
 
+/// The lower half of the covariance of radar-2022's coefficients, in the order of `inferred_coefficient`.
+constexpr std::array kRadarCovariance = {
+    7.27099e-06,  -9.586e-07,   4.6916e-05,   -1.316e-05,   -5.15681e-05, 0.000187854,  -1.25077e-05, 4.33395e-05,
+    -2.73402e-05, 6.245e-05,    -8.26837e-07, -7.44638e-05, 0.000123922,  -7.04203e-05, 0.000203652,  -1.79253e-05,
+    -0.000129117, 0.000321493,  -9.0315e-05,  0.000301853,  0.000648991,  6.14759e-06,  -2.01906e-06, -8.17372e-06,
+    -1.27018e-05, 4.23855e-06,  -9.69853e-06, 6.52809e-06,  4.10249e-07,  2.74491e-05,  -2.13846e-05, 2.57296e-05,
+    -4.75572e-05, -7.11182e-05, 1.35183e-07,  4.4775e-05,   -1.16914e-05, -2.15074e-05, 6.42496e-05,  2.51093e-06,
+    3.8351e-05,   0.000118802,  -1.50965e-05, -4.80417e-05, 0.000182793,  -1.15036e-05, 2.7158e-05,   -3.91393e-06,
+    4.68236e-05,  -4.9567e-05,  -4.45493e-05, -1.1273e-05,  3.71237e-05,  -1.82963e-05, 5.43949e-05,  -7.6159e-06,
+    -4.81793e-05, 4.69054e-05,  -3.43733e-05, 8.88272e-05,  0.000144835,  -1.07355e-05, -6.99027e-05, 0.000114936,
+    -4.55768e-05, 0.000190645,  -1.56558e-05, -7.96476e-05, 0.000110208,  -4.67418e-05, 0.000143712,  0.000278542,
+    -1.96611e-05, -0.000125038, 0.000284496,  -7.90196e-05, 0.000289082,  0.000580849,  2.10317e-09,  -2.38748e-09,
+    -7.20674e-09, -8.48768e-09, 5.67718e-09,  -6.23721e-09, 2.7632e-09,   -7.41375e-09, -5.1784e-09,  -1.14835e-08,
+    9.11007e-09,  8.14449e-09,  6.88672e-12,
+};
+
+/// [@radar-flights], by `hosel run radar-law`.
+FlightLaw radar_2022() {
+  FlightLaw law = {.name = "radar-2022",
+                   .source =
+                       "inferred by the case radar-law from tour drives that a radar followed in January 2022 "
+                       "(Waialae, Kapalua; half of "
+                       "the players), jointly with each hole's wind and each shot's axis and ball; one model of ball "
+                       "unknown; the level of "
+                       "drag rests on a mean wind of none; outside its window libgolf",
+                   .reynolds = {8e4, 2.1e5},
+                   .spin = {0.05, 0.2},
+                   .form = SurfaceLaw{.drag = {0.230526, 0.0595972, -0.03433, 0.0148206, -0.0631741, -0.120096},
+                                      .lift = {0.183173, 0.0816399, -0.125602, -0.00382347, -0.173281, -0.173082},
+                                      .reynolds = {6e4, 8e4, 2.1e5, 2.7e5},
+                                      .spin = {0.03, 0.05, 0.2, 0.28},
+                                      .outside = std::get<RampLaw>(libgolf().form)},
+                   .decay = {.travel = 1.8687e-05}};
+  law.covariance.resize(kInferredCoefficients * kInferredCoefficients);
+  for (std::size_t i = 0, k = 0; i < kInferredCoefficients; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      law.covariance[i * kInferredCoefficients + j] = law.covariance[j * kInferredCoefficients + i] =
+          kRadarCovariance.at(k++);
+  return law;
+}
+
 constexpr std::array kLaws = {
     FlightLawEntry{"ferguson-2022", "polynomials in the spin ratio, from tracked shots of all clubs", ferguson_2022},
     FlightLawEntry{"smits-smith-1994", "driver shots in a wind tunnel", smits_smith_1994},
@@ -153,6 +194,8 @@ constexpr std::array kLaws = {
                    nathan_earlier},
     FlightLawEntry{"nathan-2023", "the same spreadsheet fitted to seven clubs, driver to 5-iron", nathan_2023},
     FlightLawEntry{"libgolf", "an open-source library, set to a tour's mean shots", libgolf},
+    FlightLawEntry{"radar-2022", "inferred from drives that a radar followed on a tour, with its covariance",
+                   radar_2022},
 };
 
 /// The spin ratio at one end of the measured rows, at any Reynolds number.
@@ -197,6 +240,21 @@ std::vector<std::string> TableLaw::faults() const {
 bool FlightLaw::holds(double re, double s) const {
   if (const auto* table = std::get_if<TableLaw>(&form)) return table->holds(re, s);
   return reynolds.low <= re && re <= reynolds.high && spin.low <= s && s <= spin.high;
+}
+
+std::string_view inferred_coefficient_name(int k) {
+  static constexpr std::array<std::string_view, kInferredCoefficients> names = {
+      "drag",   "drag_s",  "drag_ss", "drag_x",  "drag_xx", "drag_sx",          "lift",
+      "lift_s", "lift_ss", "lift_x",  "lift_xx", "lift_sx", "spin_decay_travel"};
+  return names.at(std::size_t(k));
+}
+
+double& inferred_coefficient(FlightLaw& law, int k) {
+  auto& surface = std::get<SurfaceLaw>(law.form);
+  constexpr int terms = int(std::tuple_size_v<SurfaceLaw::Terms>);
+  if (k < terms) return surface.drag.at(std::size_t(k));
+  if (k < 2 * terms) return surface.lift.at(std::size_t(k - terms));
+  return law.decay.travel;
 }
 
 std::span<const FlightLawEntry> flight_laws() { return kLaws; }

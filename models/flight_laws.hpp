@@ -89,6 +89,50 @@ struct RampLaw {
   }
 };
 
+/// Inferred from measured flights. Inside its window, with s = ln(S / 0.1) and x = ln(Re / 1.4e5), each coefficient is
+/// c0 + c1 s + c2 s^2 + c3 x + c4 x^2 + c5 s x; beyond the window's margins a published law, and across each margin a
+/// quintic step between the two, so that value, slope and curvature are continuous there.
+struct SurfaceLaw {
+  static constexpr double kSpin = 0.1, kReynolds = 1.4e5;  ///< where s and x are zero
+  using Terms = std::array<double, 6>;
+  /// The surface holds between `from` and `to`, the published law below `none_below` and above `none_above`.
+  struct Window {
+    double none_below, from, to, none_above;
+
+    template <class T>
+    T share(const T& at) const {
+      if (at <= none_below || at >= none_above) return T(0.0);
+      if (at < from) return step(T((at - none_below) / (from - none_below)));
+      if (at > to) return step(T((none_above - at) / (none_above - to)));
+      return T(1.0);
+    }
+
+   private:
+    template <class T>
+    static T step(const T& t) {
+      return t * t * t * (10.0 + t * (6.0 * t - 15.0));
+    }
+  };
+  Terms drag{}, lift{};
+  Window reynolds, spin;
+  RampLaw outside;
+
+  template <class T>
+  Coefficients<T> at(const T& re, const T& s) const {
+    const T share = reynolds.share(re) * spin.share(s);
+    if (share <= 0.0) return outside.at(re, s);
+    using std::log;
+    const T x = log(re / kReynolds), y = log(s / kSpin);
+    const auto surface = [&](const Terms& c) {
+      return T(c[0] + y * (c[1] + c[2] * y + c[5] * x) + x * (c[3] + c[4] * x));
+    };
+    const Coefficients<T> in = {surface(drag), surface(lift)};
+    if (share >= 1.0) return in;
+    const Coefficients<T> out = outside.at(re, s);
+    return {out.drag + share * (in.drag - out.drag), out.lift + share * (in.lift - out.lift)};
+  }
+};
+
 /// Measured coefficients: a row a Reynolds number, each with its own spin ratios. Straight lines between; beyond the
 /// outermost values these hold.
 struct TableLaw {
@@ -136,9 +180,11 @@ struct FlightLaw {
     double low, high;
   };
   Range reynolds, spin;  ///< where the source has it measured
-  std::variant<PolynomialLaw, SineLaw, RampLaw, TableLaw> form;
+  std::variant<PolynomialLaw, SineLaw, RampLaw, TableLaw, SurfaceLaw> form;
   SpinDecay decay;
   double drag_scale = 1, lift_scale = 1;
+  /// Of a law that was inferred: the covariance of its coefficients (`inferred_coefficient`), rows one after the other.
+  std::vector<double> covariance = {};
 
   bool holds(double re, double s) const;  ///< inside what the source has measured
   template <class T>
@@ -149,6 +195,12 @@ struct FlightLaw {
     return c;
   }
 };
+
+/// Drag's six terms, lift's six, then the decay of spin per radius of path.
+inline constexpr int kInferredCoefficients = 13;
+std::string_view inferred_coefficient_name(int k);
+/// Of a law whose form is a SurfaceLaw; std::bad_variant_access for any other.
+double& inferred_coefficient(FlightLaw& law, int k);
 
 struct FlightLawEntry {
   std::string_view name, what;

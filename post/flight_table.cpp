@@ -67,6 +67,7 @@ TextTable budget_table(const models::FlightBudget& b, const std::vector<models::
   auto& head = table.rows[0];
   for (const models::LaunchError& e : errors) head.push_back(e.source);
   if (errors.size() > 1) head.emplace_back("launch, all");
+  if (b.law) head.emplace_back("law");
   for (const auto& law : b.laws) head.push_back(law.name);
   const auto rows = answer_rows(unit);
   for (int a = 0; a < models::kFlightAnswers; ++a) {
@@ -76,6 +77,7 @@ TextTable budget_table(const models::FlightBudget& b, const std::vector<models::
            fmt::format("+- {:.0e}", b.numerical[a] / r.si)};
     for (const models::FlightAnswers& sd : b.launch) row.push_back(fmt::format("+- {:.2f}", sd[a] / r.si));
     if (errors.size() > 1) row.push_back(fmt::format("+- {:.2f}", b.launch_total[a] / r.si));
+    if (b.law) row.push_back(fmt::format("+- {:.2f}", (*b.law)[a] / r.si));
     for (const auto& law : b.laws) row.push_back(fmt::format("{:.2f}", law.value[a] / r.si));
   }
   if (!b.laws.empty()) {
@@ -96,6 +98,7 @@ nlohmann::json to_json(const models::FlightBudget& b, const std::vector<models::
     j = {{"value", b.value[a] / row.si}, {"integration", b.numerical[a] / row.si}};
     for (std::size_t i = 0; i < errors.size(); ++i) j["launch"][errors[i].source] = b.launch[i][a] / row.si;
     if (!errors.empty()) j["launch_total"] = b.launch_total[a] / row.si;
+    if (b.law) j["law"] = (*b.law)[a] / row.si;
     for (const auto& law : b.laws) j["laws"][law.name] = law.value[a] / row.si;
   }
   return out;

@@ -55,6 +55,10 @@ class BallRuleJob final : public Job {
     if (!setup_.turf) root.fail("flight", "the rule limits the total distance: a [flight.turf] is needed");
     Table rule = root.table("rule");
     limit_ = rule.quantity({"limit", "longest allowed total distance"}, "yd", {50, 500});
+    reach_ = rule.quantity({"reach", "of the ball in the old test: a ball in use need not be at the limit"}, "yd",
+                           {50, 500}, limit_);
+    new_limit_ = rule.quantity({"new_limit", "what the changed ball may reach in the new test: with a tolerance, say"},
+                               "yd", {50, 500}, limit_);
     old_ = read_test(rule.table("old"));
     new_ = read_test(rule.table("new"));
     std::vector<std::string> taken;
@@ -74,15 +78,15 @@ class BallRuleJob final : public Job {
   void run(Output& out) override {
     nlohmann::json summary;
     // The ball at the limit: its drag such that the old test ends there.
-    const Change today{.drag = solve(kRemedies[0], {}, old_)};
+    const Change today{.drag = solve(kRemedies[0], {}, old_, reach_)};
     const double reach = total(today, machine(new_, today));
     out.say(fmt::format(
-        "old test: {:.1f} mph of ball speed; the ball at the limit of {:.0f} yd has {:.3f} times the drag "
+        "old test: {:.1f} mph of ball speed; the ball that reaches {:.0f} yd has {:.3f} times the drag "
         "of {}\nnew test: {:.1f} mph of ball speed; the same ball reaches {:.1f} yd: {:.1f} too many",
-        machine(old_, today).ball_speed() / kMpsPerMph, limit_ / yard(), today.drag, setup_.conditions.law.name,
-        machine(new_, today).ball_speed() / kMpsPerMph, reach / yard(), (reach - limit_) / yard()));
+        machine(old_, today).ball_speed() / kMpsPerMph, reach_ / yard(), today.drag, setup_.conditions.law.name,
+        machine(new_, today).ball_speed() / kMpsPerMph, reach / yard(), (reach - new_limit_) / yard()));
     out.page().answer("a ball at the old limit, in the new test", fmt::format("{:.1f} yd", reach / yard()),
-                      fmt::format("{:.1f} too many for {:.0f}", (reach - limit_) / yard(), limit_ / yard()));
+                      fmt::format("{:.1f} too many for {:.0f}", (reach - new_limit_) / yard(), new_limit_ / yard()));
     summary["drag_at_the_limit"] = today.drag;
     summary["new_test_total_yd"] = reach / yard();
     post::TextTable losses{
@@ -94,7 +98,7 @@ class BallRuleJob final : public Job {
     std::vector<Change> changed;
     for (const Remedy& r : kRemedies) {
       Change c = today;
-      c.*r.factor = solve(r, today, new_);
+      c.*r.factor = solve(r, today, new_, new_limit_);
       changed.push_back(c);
       const double factor = c.*r.factor / (today.*r.factor);
       losses.rows[0].push_back(fmt::format("{} x {:.3f}", r.name, factor));
@@ -104,7 +108,8 @@ class BallRuleJob final : public Job {
     losses.rows[0].emplace_back("published");
     csv += ",published_low_yd,published_high_yd\n";
     post::Figure figure{
-        .title = fmt::format("a ball at {:.0f} yd under the old test, changed to be so under the new", limit_ / yard()),
+        .title = fmt::format("a ball at {:.0f} yd under the old test, changed to reach {:.0f} under the new",
+                             reach_ / yard(), new_limit_ / yard()),
         .panel_width = 900,
         .panel_height = 520};
     post::Panel panel{.x_label = "club speed [mph]", .y_label = "loss of total distance [yd]"};
@@ -143,6 +148,7 @@ class BallRuleJob final : public Job {
     }
     out.tell("");
     out.show(losses);
+    compare_laws(out, summary);
     if (!published.x.empty()) panel.series.push_back(published);
     figure.panels = {panel};
     out.write("losses.csv", csv);
@@ -151,6 +157,40 @@ class BallRuleJob final : public Job {
   }
 
  private:
+  /// The losses by more drag through every law of `beside`, each with its own ball at the limit: what the choice of the
+  /// law makes of them.
+  void compare_laws(Output& out, nlohmann::json& summary) {
+    if (setup_.others.empty()) return;
+    post::TextTable table{.rows = {{"loss by more drag [yd]", "drag at the limit", "more drag"}},
+                          .first_width = 28,
+                          .least_width = 12,
+                          .even = false};
+    for (const Player& p : players_) table.rows[0].push_back(p.name);
+    const models::FlightLaw own = setup_.conditions.law;
+    std::vector<models::FlightLaw> laws = {own};
+    laws.insert(laws.end(), setup_.others.begin(), setup_.others.end());
+    for (const models::FlightLaw& law : laws) {
+      setup_.conditions.law = law;
+      std::vector<std::string> row = {law.name};
+      try {
+        const Change today{.drag = solve(kRemedies[0], {}, old_, reach_)},
+            then{.drag = solve(kRemedies[0], today, new_, new_limit_)};
+        row.insert(row.end(), {fmt::format("{:.3f}", today.drag), fmt::format("x {:.3f}", then.drag / today.drag)});
+        for (const Player& p : players_) {
+          const double loss = (total(today, drive(p, today)) - total(then, drive(p, then))) / yard();
+          row.push_back(fmt::format("{:.1f}", loss));
+          summary["laws"][law.name][p.name] = loss;
+        }
+      } catch (const solvers::NonConvergence& e) {
+        out.say(fmt::format("{}: {}", law.name, e.what()));
+        continue;
+      }
+      table.rows.push_back(std::move(row));
+    }
+    setup_.conditions.law = own;
+    out.show(table, "By every law");
+  }
+
   static double yard() { return post::size(post::DistanceUnit::yards); }
 
   static Test read_test(Table t) {
@@ -189,17 +229,17 @@ class BallRuleJob final : public Job {
 
   /// The factor with which the test ends at the limit. A bounce more or less makes the total jump by centimetres: the
   /// factor is found as well as it can be.
-  double solve(const Remedy& r, Change c, const Test& test) const {
+  double solve(const Remedy& r, Change c, const Test& test, double wanted) const {
     const auto excess = [&](double factor) {
       c.*r.factor = factor;
-      return total(c, machine(test, c)) - limit_;
+      return total(c, machine(test, c)) - wanted;
     };
     const double low = excess(r.low), high = excess(r.high);
     if (low * high > 0)
       throw solvers::NonConvergence(
           fmt::format("no factor on {} from {:g} to {:g} brings the ball to the limit: {:.1f} "
                       "and {:.1f} yd",
-                      r.name, r.low, r.high, (low + limit_) / yard(), (high + limit_) / yard()));
+                      r.name, r.low, r.high, (low + wanted) / yard(), (high + wanted) / yard()));
     std::uintmax_t most = 200;
     const auto [a, b] = boost::math::tools::toms748_solve(excess, r.low, r.high, low, high,
                                                           boost::math::tools::eps_tolerance<double>(30), most);
@@ -209,7 +249,7 @@ class BallRuleJob final : public Job {
   Blow blow_;
   std::unique_ptr<models::ImpactModel> model_;
   FlightSetup setup_;
-  double limit_ = 0;
+  double limit_ = 0, reach_ = 0, new_limit_ = 0;
   Test old_{}, new_{};
   std::vector<Player> players_;
 };

@@ -12,6 +12,7 @@
 
 #include "hosel/app/kinds/loop_common.hpp"
 #include "hosel/app/kinds/loop_corrected.hpp"
+#include "hosel/app/kinds/loop_flight.hpp"
 #include "hosel/app/kinds/loop_history.hpp"
 #include "hosel/app/kinds/loop_offer.hpp"
 #include "hosel/app/library.hpp"
@@ -269,8 +270,9 @@ class LoopJob final : public Job {
 }  // namespace
 
 std::unique_ptr<Job> read_loop(CaseFile& file) {
-  if (file.root().table("model").text({"base", "the model whose missing effect is sought"}) == "shaft")
-    return read_loop_history(file);
+  const std::string base = file.root().table("model").text({"base", "the model whose missing effect is sought"});
+  if (base == "shaft") return read_loop_history(file);
+  if (base == "flight") return read_loop_flight(file);
   return std::make_unique<LoopJob>(file);
 }
 

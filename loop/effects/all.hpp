@@ -31,6 +31,7 @@ std::vector<Parametrisation> lift_law(const Setting&);
 std::vector<Parametrisation> spin_decay(const Setting&);
 std::vector<Parametrisation> air_density(const Setting&);
 std::vector<Parametrisation> wind(const Setting&);
+std::vector<Parametrisation> spin_axis_bias(const Setting&);
 
 std::vector<Parametrisation> shaft_stiffness(const HistorySetting&);
 std::vector<Parametrisation> shaft_damping(const HistorySetting&);

@@ -38,7 +38,7 @@ double evaluate(const Term& f, const std::vector<Source>& s, Eigen::Index i) {
   return x;
 }
 
-std::string name(const Term& f, const std::vector<Source>& s) {
+std::string term_name(const Term& f, const std::vector<Source>& s) {
   const std::string& a = s[std::size_t(f.a)].column->name;
   if (f.how == ' ') return a;
   return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
@@ -367,11 +367,11 @@ class Audit {
       if (logarithmic) {
         out.text = fmt::format("{:.5g}", std::exp(c[0]));
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          out.text += fmt::format(" * ({})^{:.4g}", loop::name(features[std::size_t(j - 1)], sources_), c[j]);
+          out.text += fmt::format(" * ({})^{:.4g}", term_name(features[std::size_t(j - 1)], sources_), c[j]);
       } else {
         out.text = fmt::format("{:.5g}", c[0]);
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          out.text += fmt::format(" {:+.5g} * {}", c[j], loop::name(features[std::size_t(j - 1)], sources_));
+          out.text += fmt::format(" {:+.5g} * {}", c[j], term_name(features[std::size_t(j - 1)], sources_));
       }
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it

@@ -405,29 +405,8 @@ StructureMap ShotProblem::structure(const Fit& fit, const Fit& near, const Eigen
 
 Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }
 
-/// What remains after the best model if a foreign column drives it, else the map of the base, before anything was
-/// fitted to it.
 std::vector<Location> ShotProblem::places(const Selection& s) const {
-  std::vector<Location> told;
-  const auto add = [&](const Finding* f) {
-    if (!f) return;
-    const Location l = place(*f);
-    const auto same = [&](const Location& k) { return k.channel == l.channel && k.regressor == l.regressor; };
-    if (std::ranges::none_of(told, same)) told.push_back(l);
-  };
-  const auto first = [](const StructureMap& map) -> const Finding* {
-    const auto it = std::ranges::find_if(map.findings, [](const Finding& f) { return f.channel >= 0; });
-    return it == map.findings.end() ? nullptr : &*it;
-  };
-  const Finding* left = first(s.after);
-  if (!left || !left->foreign) add(first(s.before));
-  add(left);
-  // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
-  for (const StructureMap* map : {&s.after, &s.before})
-    for (const Finding& f : map->findings)
-      if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
-          f.p_adjusted < 0.05)
-        add(&f);
+  std::vector<Location> told = plainest_places(*this, s);
   if (const auto two = two_populations(s)) told.push_back(*two);
   return told;
 }

@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "hosel/loop/result.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -109,21 +111,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
                                   const ShotModel& model) {
   const int n = model.shots();
-  std::vector<Regressor> all;
-  all.push_back({"constant", "constant", "", false, Eigen::VectorXd::Ones(n)});
-
-  struct Line {
-    std::string name;
-    bool foreign;
-    Eigen::VectorXd x;
-  };
   std::vector<Line> lines;
-  const auto add_line = [&](const std::string& name, bool foreign, Eigen::VectorXd x) {
-    if (!standardise(x, rows)) return;
-    x = ranks_clipped(x);
-    if (!standardise(x, rows)) return;
-    lines.push_back({name, foreign, x});
-  };
   for (const Column& c : shots.columns) {
     if (c.role == Role::output || !c.numeric || c.name == "shot") continue;
     if (c.role == Role::bookkeeping) continue;
@@ -135,10 +123,34 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
         for (int k = 0; k < kInputs; ++k)
           if (stem(Input(k)) == c.stem) x[i] = get(model.trial(i).blow, Input(k));
     }
-    add_line(c.name, c.role == Role::other, x);
+    lines.push_back({c.name, c.role == Role::other, std::move(x)});
   }
   Eigen::VectorXd order(n);
   for (int i = 0; i < n; ++i) order[i] = model.trial(i).order;
+  std::vector<Regressor> all = regressors(shots, row_of, rows, lines, order);
+  // Before what only the place in the session drives.
+  const auto session =
+      std::ranges::find_if(all, [](const Regressor& r) { return r.kind == "step" || r.kind == "oscillation"; });
+  std::vector<Regressor> responses;
+  add_responses(model, rows, order, responses);
+  all.insert(session, std::make_move_iterator(responses.begin()), std::make_move_iterator(responses.end()));
+  return all;
+}
+
+std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+                                  const std::vector<Line>& columns, const Eigen::VectorXd& order) {
+  const auto n = order.size();
+  std::vector<Regressor> all;
+  all.push_back({"constant", "constant", "", false, Eigen::VectorXd::Ones(n)});
+
+  std::vector<Line> lines;
+  const auto add_line = [&](const std::string& name, bool foreign, Eigen::VectorXd x) {
+    if (!standardise(x, rows)) return;
+    x = ranks_clipped(x);
+    if (!standardise(x, rows)) return;
+    lines.push_back({name, foreign, x});
+  };
+  for (const Line& l : columns) add_line(l.name, l.foreign, l.x);
   add_line("shot", true, order);
 
   for (const Line& l : lines) all.push_back({l.name, "trend", "", l.foreign, l.x});
@@ -166,7 +178,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     if (g.name.size() < 2 || g.name.size() > 40) continue;
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       Eigen::VectorXd x(n);
-      for (int i = 0; i < n; ++i) x[i] = g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k);
+      for (Eigen::Index i = 0; i < n; ++i) x[i] = g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k);
       double members = 0;
       for (const int i : rows) members += x[i];
       if (members < 2 || members > double(rows.size()) - 1) continue;
@@ -175,12 +187,10 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     }
   }
 
-  add_responses(model, rows, order, all);
-
   if (rows.size() >= 12) {
     for (int k = 1; k < 12; ++k) {
       Eigen::VectorXd x(n);
-      for (int i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
+      for (Eigen::Index i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
       if (standardise(x, rows))
         all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
     }
@@ -189,7 +199,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     for (int half = 2; half <= 2 * fastest; half += half < 12 ? 1 : 2)
       for (const bool sine : {true, false}) {
         Eigen::VectorXd x(n);
-        for (int i = 0; i < n; ++i) {
+        for (Eigen::Index i = 0; i < n; ++i) {
           const double phase = kPi * half * order[i];
           x[i] = sine ? std::sin(phase) : std::cos(phase);
         }
@@ -204,7 +214,25 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
                        const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
                        const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
                        unsigned long seed) {
-  const int n = int(rows.size()), m = model.width();
+  Whitened view{.width = model.width(), .order = {}, .column = {}, .trusted = {}};
+  for (const int i : rows) view.order.push_back(model.trial(i).order);
+  view.column = [&](int c, const Eigen::VectorXd& value) {
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(std::ptrdiff_t(rows.size()) * model.width());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (model.observed(rows[i], c))
+        a.segment(std::ptrdiff_t(i) * model.width(), model.width()) = model.whitening(rows[i]).col(c) *
+                                                                      value[std::ptrdiff_t(i)];
+    return a;
+  };
+  view.trusted = [&](int c) { return model.channel(c).trusted(); };
+  return structure(view, rows, z, noise, weights, nuisance, regressors, directions, flips, seed);
+}
+
+StructureMap structure(const Whitened& view, const std::vector<int>& rows, const Eigen::VectorXd& z,
+                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
+                       unsigned long seed) {
+  const int n = int(rows.size()), m = view.width;
   const Eigen::MatrixXd Q = orthonormal(nuisance);
 
   StructureMap map;
@@ -232,12 +260,9 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
   for (const Regressor& r : regressors)
     for (int c = 0; c < m; ++c) {
       if (r.channel >= 0 && r.channel != c) continue;
-      for (int i = 0; i < n; ++i) {
-        auto part = a.segment(std::ptrdiff_t(i) * m, m);
-        if (model.observed(rows[std::size_t(i)], c))
-          part = model.whitening(rows[std::size_t(i)]).col(c) * r.value[rows[std::size_t(i)]];
-        else part.setZero();
-      }
+      Eigen::VectorXd value(n);
+      for (int i = 0; i < n; ++i) value[i] = r.value[rows[std::size_t(i)]];
+      a = view.column(c, value);
       add(c, &r);
     }
   for (Eigen::Index k = 0; k < directions.cols(); ++k) {
@@ -249,7 +274,7 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
   // Neighbours alike: products of standardised residuals of successive shots, in session order.
   std::vector<int> by_order(rows.size());
   std::iota(by_order.begin(), by_order.end(), 0);
-  std::ranges::stable_sort(by_order, {}, [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
+  std::ranges::stable_sort(by_order, {}, [&](int i) { return view.order[std::size_t(i)]; });
   for (int c = 0; c < m && n >= 12; ++c) {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
     double square = 0;
@@ -306,11 +331,35 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
           (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
   bool all = true;
-  for (int c = 0; c < m; ++c) all = all && model.channel(c).trusted();
+  for (int c = 0; c < m; ++c) all = all && view.trusted(c);
   const auto known = std::ranges::find_if(
-      map.findings, [&](const Finding& f) { return f.channel >= 0 ? model.channel(f.channel).trusted() : all; });
+      map.findings, [&](const Finding& f) { return f.channel >= 0 ? view.trusted(f.channel) : all; });
   if (known != map.findings.end()) map.signal = std::abs(known->signal);
   return map;
+}
+
+std::vector<Location> plainest_places(const Problem& problem, const Selection& s) {
+  std::vector<Location> told;
+  const auto add = [&](const Finding* f) {
+    if (!f) return;
+    const Location l{problem.channel(f->channel).name, f->regressor, f->what()};
+    const auto same = [&](const Location& k) { return k.channel == l.channel && k.regressor == l.regressor; };
+    if (std::ranges::none_of(told, same)) told.push_back(l);
+  };
+  const auto first = [](const StructureMap& map) -> const Finding* {
+    const auto it = std::ranges::find_if(map.findings, [](const Finding& f) { return f.channel >= 0; });
+    return it == map.findings.end() ? nullptr : &*it;
+  };
+  const Finding* left = first(s.after);
+  if (!left || !left->foreign) add(first(s.before));
+  add(left);
+  // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
+  for (const StructureMap* map : {&s.after, &s.before})
+    for (const Finding& f : map->findings)
+      if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
+          f.p_adjusted < 0.05)
+        add(&f);
+  return told;
 }
 
 }  // namespace hosel::loop

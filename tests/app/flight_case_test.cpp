@@ -137,7 +137,7 @@ TEST(FlightCase, ABadTableIsOneLine) {
                                    {"units = \"feet\"\n", "allowed: yards, metres"},
                                    {"temperature_degC = 99.0\n", "out of range"},
                                    {"[flight.wind]\nspeed_mps = 3.0\n", "towards"},
-                                   {"[flight.turf]\n[flight.ground]\nslope_deg = 2.0\n", "level ground"}}) {
+                                   {"[flight.turf]\n[flight.ground]\nslope_deg = 5.0\n", "does not come to rest"}}) {
     const fs::path dir = fresh_directory("flight_bad");
     write(dir / "case.toml", kEccentricBlow + "[flight]\n" + text);
     const Outcome o = command("check " + dir.string());

@@ -1,0 +1,171 @@
+#include "hosel/app/kinds/landing_times.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
+#include "hosel/app/read_sheet.hpp"
+#include "hosel/golf/parallel.hpp"
+
+namespace hosel::app {
+namespace {
+
+struct Launched {
+  Launch launch;
+  double time;       ///< measured [s]
+  double own, same;  ///< by the law, in the site's own air and in that of the first site [s]
+};
+
+struct Site {
+  std::string event, name;
+  models::Air air;
+  std::vector<Launched> shots;
+};
+
+/// Huber's mean and its standard error, the scale by the median deviation.
+std::pair<double, double> robust_mean(std::vector<double> x) {
+  const auto middle = [](std::vector<double> v) {
+    std::ranges::nth_element(v, v.begin() + std::ptrdiff_t(v.size() / 2));
+    return v[v.size() / 2];
+  };
+  double mean = middle(x);
+  std::vector<double> size;
+  for (const double v : x) size.push_back(std::abs(v - mean));
+  const double knee = 1.5 * 1.4826 * middle(size);
+  double square = 0, weights = 0;
+  for (int pass = 0; pass < 30; ++pass) {
+    double sum = 0;
+    weights = square = 0;
+    for (const double v : x) {
+      const double w = std::abs(v - mean) > knee ? knee / std::abs(v - mean) : 1;
+      sum += w * v;
+      square += std::pow(w * (v - mean), 2);
+      weights += w;
+    }
+    mean = sum / weights;
+  }
+  return {mean, std::sqrt(square) / weights};
+}
+
+class LandingTimesJob final : public Job {
+ public:
+  explicit LandingTimesJob(CaseFile& file) {
+    Table root = file.root();
+    root.text({"title", "of tables, pages and figures"}, "");
+    if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
+    conditions_ = read_flight(root.table("flight")).conditions;
+    Table t = root.table("times");
+    const auto path = t.data_file({"file",
+                                   "CSV with event, speed_mps, launch_deg, azimuth_deg, landing_time_s, "
+                                   "measured_time_s (how long each was followed)"});
+    spin_ = t.quantity({"spin_rate", "of every shot: it is not recorded"}, "rpm", Range::positive());
+    const std::vector<double> speed = t.quantities({"ball_speed", "least and most"}, "mps", 2, {0, 120}),
+                              angle = t.quantities({"launch_angle", "least and most"}, "deg", 2, {-kPi / 2, kPi / 2}),
+                              time = t.quantities({"time", "in the air, least and most"}, "s", 2, {0, 60});
+    const double followed = t.number({"followed", "least share of its time that a shot was followed"}, {0, 2}, 0.8);
+    for (Table s : t.tables("site")) {
+      Site site{.event = s.text({"event", "value of the column `event`"}),
+                .name = s.text({"name", "of the site"}),
+                .air = {},
+                .shots = {}};
+      site.air = read_air(s);
+      sites_.push_back(std::move(site));
+    }
+    if (sites_.size() < 2) t.fail("site", "name at least two [[times.site]]");
+    if (!std::filesystem::exists(path)) {
+      missing_ = path;
+      return;
+    }
+    const post::Sheet sheet = read_sheet(path);
+    const auto event = std::ranges::find(sheet.names, "event");
+    if (event == sheet.names.end()) throw InputError(fmt::format("{}:1: no column 'event'", sheet.file));
+    const auto& events = sheet.columns[std::size_t(event - sheet.names.begin())];
+    const auto v = column_with_gaps(sheet, "speed_mps"), up = column_with_gaps(sheet, "launch_deg"),
+               right = column_with_gaps(sheet, "azimuth_deg"), landed = column_with_gaps(sheet, "landing_time_s"),
+               seen = column_with_gaps(sheet, "measured_time_s");
+    for (std::size_t i = 0; i < sheet.rows(); ++i) {
+      const auto site = std::ranges::find(sites_, events[i], &Site::event);
+      const double a = radians(up[i]), b = radians(right[i]);
+      if (site == sites_.end() ||
+          !(v[i] >= speed[0] && v[i] <= speed[1] && a >= angle[0] && a <= angle[1] && landed[i] >= time[0] &&
+            landed[i] <= time[1] && seen[i] >= followed * landed[i]) ||
+          !std::isfinite(b))
+        continue;
+      Launched l{.launch = {}, .time = landed[i], .own = 0, .same = 0};
+      l.launch.velocity = v[i] * Vec3(std::cos(a) * std::cos(b), -std::cos(a) * std::sin(b), std::sin(a));
+      l.launch.spin = Vec3(0, -spin_, 0);
+      site->shots.push_back(l);
+    }
+    for (const Site& s : sites_)
+      if (s.shots.size() < 30) t.fail("site", fmt::format("{}: {} shots are too few", s.name, s.shots.size()));
+  }
+
+  void run(Output& out) override {
+    if (!missing_.empty()) return out.skip(missing_);
+    for (Site& s : sites_)
+      for_all(std::size_t(0), s.shots.size(), [&](std::size_t i) {
+        models::FlightConditions c = conditions_;
+        c.air = s.air;
+        s.shots[i].own = models::fly(s.shots[i].launch, ball_, c).time;
+        c.air = sites_.front().air;
+        s.shots[i].same = models::fly(s.shots[i].launch, ball_, c).time;
+      });
+    post::TextTable table{.rows = {{"site", "shots", "air [kg/m^3]", "measured less law in one air [s]",
+                                    "law: own air less that one [s]", "measured less law in own air [s]"}},
+                          .first_width = 14};
+    nlohmann::json summary;
+    struct Mean {
+      double value, error;
+    };
+    std::vector<Mean> measured, left;
+    std::vector<double> carried;
+    for (const Site& s : sites_) {
+      std::vector<double> in_one, by_air, in_own;
+      for (const Launched& l : s.shots) {
+        in_one.push_back(l.time - l.same);
+        by_air.push_back(l.own - l.same);
+        in_own.push_back(l.time - l.own);
+      }
+      const auto [m, me] = robust_mean(in_one);
+      const auto [o, oe] = robust_mean(in_own);
+      measured.push_back({m, me});
+      left.push_back({o, oe});
+      double mean = 0;
+      for (const double d : by_air) mean += d / double(by_air.size());
+      carried.push_back(mean);
+      table.rows.push_back({s.name, fmt::format("{}", s.shots.size()), fmt::format("{:.3f}", s.air.density),
+                            fmt::format("{:+.3f} +- {:.3f}", m, me), fmt::format("{:+.3f}", mean),
+                            fmt::format("{:+.3f} +- {:.3f}", o, oe)});
+      summary["sites"][s.name] = {{"shots", s.shots.size()}, {"measured_less_law_s", o}, {"error_s", oe}};
+    }
+    out.show(table);
+    for (std::size_t k = 1; k < sites_.size(); ++k) {
+      const double difference = measured[k].value - measured[0].value, remains = left[k].value - left[0].value,
+                   error = std::hypot(left[k].error, left[0].error);
+      out.say(
+          fmt::format("{} less {}, at equal launch: measured {:+.3f} s, by density {:+.3f} s, left {:+.3f} +- {:.3f} s",
+                      sites_[k].name, sites_[0].name, difference, carried[k] - carried[0], remains, error));
+      summary["differences"][sites_[k].name] = {
+          {"measured_s", difference}, {"density_s", carried[k] - carried[0]}, {"left_s", remains}, {"error_s", error}};
+    }
+    out.write_summary(summary);
+  }
+
+ private:
+  Ball ball_;
+  models::FlightConditions conditions_;
+  double spin_ = 0;
+  std::vector<Site> sites_;
+  std::filesystem::path missing_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_landing_times(CaseFile& file) { return std::make_unique<LandingTimesJob>(file); }
+
+}  // namespace hosel::app

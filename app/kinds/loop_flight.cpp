@@ -1,0 +1,227 @@
+#include "hosel/app/kinds/loop_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "hosel/app/kinds/loop_common.hpp"
+#include "hosel/app/read_blow.hpp"
+#include "hosel/app/read_flight.hpp"
+#include "hosel/app/read_paths.hpp"
+#include "hosel/app/read_sheet.hpp"
+#include "hosel/loop/flights/run.hpp"
+
+namespace hosel::app {
+namespace {
+
+bool acts_on_flights(const loop::EffectEntry& e) {
+  return e.on_shots && std::ranges::any_of(e.on_shots({.flies = true, .no_blow = true}),
+                                           [](const auto& f) { return !f.before && !f.after && (f.seen || f.flight); });
+}
+
+constexpr std::array kAxes = {"along_m", "right_m", "up_m"};
+
+class LoopFlightJob final : public Job {
+ public:
+  explicit LoopFlightJob(CaseFile& file) {
+    Table root = file.root();
+    read_loop_case(root, case_, acts_on_flights);
+    if (auto ball = root.optional_table("ball")) case_.ball = read_ball(*ball);
+    FlightSetup setup = read_flight(root.default_table("flight"));
+    if (setup.turf) root.table("flight").fail("turf", "the loop compares flights, which end at the first landing");
+    case_.conditions = std::move(setup.conditions);
+    if (root.has("paths")) {
+      if (root.has("data")) root.fail("data", "the flights are those of [paths]: leave out one of the two");
+      read_radar(root);
+    } else {
+      read_shots(root);
+    }
+    if (auto split = root.optional_table("split")) {
+      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
+      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
+        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
+    }
+  }
+
+  void run(Output& out) override {
+    if (!skipped_.empty()) return out.skip(skipped_);
+    loop::LoopResult result;
+    case_.told = progress_of(out);
+    try {
+      result = loop::run(case_);
+    } catch (const DataError& e) { throw InputError(e.what()); }
+    case_.told = {};
+    report_loop(out, result, case_.shots, "flights");
+    for (const std::string& note : result.notes)
+      if (note.starts_with("wind")) out.log(note);
+  }
+
+ private:
+  void read_unknown(Table t) {
+    loop::FlightUnknowns& u = case_.unknown;
+    u.axis = t.quantity({"spin_axis", "standard deviation of a spin's tilt that is not recorded"}, "deg", {0, kPi / 2},
+                        radians(8));
+    if (t.has_quantity("spin_rate")) {
+      u.spin_rate = t.quantity({"spin_rate", "usual spin where none is recorded"}, "rpm", Range::positive());
+      u.spin_rate_sd = t.number({"spin_rate_sd", "its relative standard deviation"}, {0, 1}, 0.2);
+    }
+    u.drag = t.number({"drag", "relative standard deviation of a ball's drag about the law's"}, {0, 1}, 0.0);
+    u.lift = t.number({"lift", "the same of its lift"}, {0, 1}, 0.0);
+    u.gust = t.quantity({"gust", "standard deviation of a shot's wind about its group's, each direction"}, "mps",
+                        {0, 20}, 0.0);
+    u.wind = t.quantity({"wind", "standard deviation of a group's wind about the declared one, each direction"}, "mps",
+                        {0, 20}, 0.0);
+    u.slope = t.quantity({"slope", "standard deviation of the ground's slope where a group's shots land"}, "deg",
+                         {0, radians(20)}, 0.0);
+  }
+
+  void read_shots(Table& root) {
+    read_unknown(root.default_table("unknown"));
+    Table data = root.table("data");
+    const auto path = data.data_file({"shots", "CSV of the launches and what was measured of their flights"});
+    case_.group_by = data.texts({"group_by", "columns whose values together name a group with a wind of its own"},
+                                std::vector<std::string>{});
+    std::filesystem::path points;
+    if (data.has("paths")) {
+      points = data.data_file({"paths", "CSV of positions: shot, time_s, along_m, right_m, up_m from the launch"});
+      case_.position_noise =
+          data.quantity({"position_noise", "standard deviation of a position, each axis"}, "m", Range::positive());
+    }
+    if (!std::filesystem::exists(path)) skipped_ = path;
+    if (skipped_.empty()) try {
+        case_.shots = loop::read_shots(post::read_csv(path), true);
+      } catch (const DataError& e) { throw InputError(e.what()); }
+    for (const std::string& name : case_.group_by)
+      if (skipped_.empty() && !case_.shots.find(name))
+        data.fail("group_by", fmt::format("no column '{}' in the shots", name));
+    if (auto noise = data.optional_table("noise"))
+      for (const std::string& key : noise->keys()) {
+        const loop::Column* column = skipped_.empty() ? case_.shots.find(key) : nullptr;
+        if (skipped_.empty() && (!column || column->role != loop::Role::output)) {
+          std::vector<std::string> known;
+          for (const auto& c : case_.shots.columns)
+            if (c.role == loop::Role::output) known.push_back(c.name);
+          const std::string near = nearest(key, known);
+          noise->fail(key, fmt::format("no launch or flight column of this name{}",
+                                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+        }
+        case_.noise[key] = noise->number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
+      }
+    if (!points.empty() && skipped_.empty()) read_points(points);
+  }
+
+  /// Every instant that some shot has is a channel for each axis.
+  void read_points(const std::filesystem::path& file) {
+    const post::Sheet sheet = read_sheet(file);
+    const auto shot = std::ranges::find(sheet.names, "shot");
+    if (shot == sheet.names.end()) throw InputError(fmt::format("{}:1: no column 'shot'", sheet.file));
+    const auto& ids = sheet.columns[std::size_t(shot - sheet.names.begin())];
+    const std::vector<double> time = column_with_gaps(sheet, "time_s");
+    std::vector<double> instants;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      if (!(time[i] > 0))
+        throw InputError(fmt::format("{}:{}: time_s: times are positive", sheet.file, sheet.lines[i]));
+      if (std::ranges::find(instants, time[i]) == instants.end()) instants.push_back(time[i]);
+    }
+    constexpr std::size_t most = 40;
+    if (instants.size() > most)
+      throw InputError(fmt::format("{}: {} different times; all paths are read at the same ones, at most {}",
+                                   sheet.file, instants.size(), most));
+    std::ranges::sort(instants);
+    for (const double t : instants)
+      for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
+    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(case_.shots.rows()), Eigen::Index(case_.points.size()),
+                                                std::numeric_limits<double>::quiet_NaN());
+    std::array<std::vector<double>, 3> x;
+    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = column_with_gaps(sheet, kAxes[axis]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const auto row = std::ranges::find(case_.shots.id, ids[i]);
+      if (row == case_.shots.id.end())
+        throw InputError(
+            fmt::format("{}:{}: no shot '{}' in {}", sheet.file, sheet.lines[i], ids[i], case_.shots.file));
+      const auto k = std::ranges::find(instants, time[i]) - instants.begin();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        case_.positions(row - case_.shots.id.begin(), 3 * k + Eigen::Index(axis)) = x[axis][i];
+    }
+  }
+
+  void read_radar(Table& root) {
+    Table table = root.table("paths");
+    const std::string what =
+        table.choice({"channels", "of the loop: where each flight ends, or its path"}, {"ends", "path"}, "ends");
+    const double every =
+        table.quantity({"every", "interval of the positions that are channels of a path"}, "s", {0.25, 5}, 1.0);
+    const RadarPaths data = read_paths(table, case_.ball);
+    std::map<std::string, double> noise;
+    if (what == "ends") {
+      const auto sd = [&](const char* key, const char* of, std::string_view unit, const char* column, double si) {
+        noise[column] = table.quantity({key, of}, unit, Range::positive()) / si;
+      };
+      sd("carry_noise", "of the radar's carry", "m", "carry_m", 1);
+      sd("side_noise", "of the radar's side", "m", "side_m", 1);
+      sd("apex_noise", "of the radar's apex", "m", "apex_m", 1);
+      sd("time_noise", "of the radar's time in the air", "s", "flight_time_s", 1);
+    }
+    if (!data.missing.empty()) {
+      skipped_ = data.missing;
+      return;
+    }
+    case_.noise = std::move(noise);
+    case_.group_by = {"group"};
+    case_.unknown.wind = data.model.wind_sd;
+    post::Sheet sheet{
+        .file = "radar",
+        .names = {"shot", "player", "group", "ball_speed_mps", "launch_angle_deg", "azimuth_deg", "spin_rate_rpm"},
+        .columns = {},
+        .lines = {}};
+    if (what == "ends") sheet.names.insert(sheet.names.end(), {"carry_m", "side_m", "apex_m", "flight_time_s"});
+    sheet.columns.resize(sheet.names.size());
+    for (const RadarFlight& f : data.flights) {
+      const Launch& l = f.path.launch;
+      const auto text = [](double x) { return fmt::format("{:.10g}", x); };
+      std::vector<std::string> cells = {f.path.id,
+                                        f.player,
+                                        f.group,
+                                        text(l.ball_speed()),
+                                        text(degrees(l.launch_angle())),
+                                        text(degrees(l.azimuth())),
+                                        text(l.spin_rate() / kRadPerSecPerRpm)};
+      if (what == "ends")
+        for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
+      for (std::size_t c = 0; c < cells.size(); ++c) sheet.columns[c].push_back(cells[c]);
+      sheet.lines.push_back(sheet.lines.size() + 2);
+      case_.air.push_back(f.path.air);
+      case_.deviations.push_back(f.path.sd);
+    }
+    case_.shots = loop::read_shots(sheet, true);
+    if (what == "ends") return;
+    case_.position_noise = data.model.noise;
+    std::vector<double> instants;
+    for (double t = every; t <= 8; t += every) instants.push_back(t);
+    for (const double t : instants)
+      for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
+    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(data.flights.size()), Eigen::Index(case_.points.size()),
+                                                std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < data.flights.size(); ++i) {
+      const models::MeasuredPath& p = data.flights[i].path;
+      for (std::size_t k = 0; k < p.times.size(); ++k)
+        for (std::size_t j = 0; j < instants.size(); ++j)
+          if (std::abs(p.times[k] - instants[j]) < 1e-6) {
+            const Vec3& x = p.positions[k];
+            case_.positions.row(Eigen::Index(i)).segment<3>(3 * Eigen::Index(j)) << x.x(), -x.y(), x.z();
+          }
+    }
+  }
+
+  loop::FlightCase case_;
+  std::filesystem::path skipped_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_loop_flight(CaseFile& file) { return std::make_unique<LoopFlightJob>(file); }
+
+}  // namespace hosel::app

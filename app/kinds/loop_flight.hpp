@@ -1,0 +1,10 @@
+/// `kind = "loop"` with `base = "flight"`: measured flights, from launches that were seen.
+#pragma once
+
+#include "hosel/app/job.hpp"
+
+namespace hosel::app {
+
+std::unique_ptr<Job> read_loop_flight(CaseFile& file);
+
+}  // namespace hosel::app

@@ -1,0 +1,672 @@
+#include "hosel/loop/flights/problem.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "hosel/golf/data_error.hpp"
+#include "hosel/golf/parallel.hpp"
+#include "hosel/loop/median.hpp"
+#include "hosel/solvers/errors.hpp"
+#include "hosel/solvers/random.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kFewestFlights = 8;                            // training flights that can test anything
+constexpr models::FlightOptions kExactFlight = {.tolerance = 1e-8};  // differences of flights are taken
+
+/// Steps of the differences, by ShotUnknown, then of a group's unknowns: a reading moves by far more than the
+/// integration's error and by little of what is unknown.
+constexpr std::array<double, models::kShotUnknowns> kOwnStep = {1e-2, 1e-2, 1e-2, 1e-2, 0.1, 1e-3, 1e-3, 0.1, 0.1};
+constexpr std::array<double, 3> kGroupStep = {0.1, 0.1, 1e-3};
+
+int flight_answer(Output o) {
+  static_assert(int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle &&
+                int(Output::flight_time) - kLaunchOutputs == models::kTime);
+  return int(o) - kLaunchOutputs;
+}
+
+const char* path_axis(int axis) { return axis == 0 ? "along" : axis == 1 ? "right" : "up"; }
+
+}  // namespace
+
+FlightProblem::FlightProblem(const FlightCase& c) : case_(c) {
+  read();
+  split();
+  estimate_noise(nullptr);
+  expand({}, {});
+  estimate_noise(nullptr);
+  factor();
+}
+
+std::vector<Parametrisation> FlightProblem::forms() const {
+  std::vector<Parametrisation> all;
+  for (const EffectEntry& e : effects_with(case_.own))
+    if (e.on_shots)
+      for (Parametrisation& f : e.on_shots({.flies = true, .no_blow = true}))
+        if (!f.before && !f.after && !f.reading && (f.seen || f.flight)) all.push_back(std::move(f));
+  return all;
+}
+
+void FlightProblem::read() {
+  const Shots& shots = case_.shots;
+  for (const Column& c : shots.columns) {
+    const auto output = c.role == Role::output ? output_of(c.stem) : std::nullopt;
+    if (!output || !of_flight(*output)) continue;
+    Channel ch{.name = c.name, .si = c.si, .resolution = c.resolution / c.si};
+    if (const auto it = case_.noise.find(c.name); it != case_.noise.end()) ch.declared = it->second;
+    channels_.push_back(std::move(ch));
+    readings_.push_back({.answer = flight_answer(*output)});
+  }
+  for (const PathPoint& p : case_.points) {
+    channels_.push_back({.name = fmt::format("{}_at_{:g}_s_m", path_axis(p.axis), p.time),
+                         .declared = case_.position_noise > 0 ? std::optional(case_.position_noise) : std::nullopt});
+    readings_.push_back({.point = p});
+    if (std::ranges::find(instants_, p.time) == instants_.end()) instants_.push_back(p.time);
+  }
+  std::ranges::sort(instants_);
+  if (channels_.empty())
+    throw DataError(
+        fmt::format("{}: no reading of a flight: carry, side, apex, flight_time, landing_angle or a path", shots.file));
+
+  const auto noise_of = [&](Output o) {  // SI
+    const Column* c = shots.find_stem(stem(o));
+    if (!c) return 0.0;
+    const auto it = case_.noise.find(c->name);
+    return it == case_.noise.end() ? 0.0 : it->second * c->si;
+  };
+  const auto has = [&](Output o, std::size_t row) {
+    const Column* c = shots.find_stem(stem(o));
+    return c && c->numeric && std::isfinite(c->value[row]);
+  };
+  std::vector<Eigen::VectorXd> measured;
+  for (std::size_t row = 0; row < shots.rows(); ++row) {
+    Trial t{.row = int(row), .by_own = {}, .by_group = {}};
+    t.order = shots.rows() > 1 ? double(row) / double(shots.rows() - 1) : 0;
+    models::ShotUnknowns& sd = t.shot.sd;
+    sd[models::kOwnDrag] = case_.unknown.drag;
+    sd[models::kOwnLift] = case_.unknown.lift;
+    sd[models::kGustAlong] = sd[models::kGustRight] = case_.unknown.gust;
+    sd[models::kOwnSpeed] = noise_of(Output::ball_speed);
+    sd[models::kOwnAngle] = noise_of(Output::launch_angle);
+    sd[models::kOwnAzimuth] = noise_of(Output::azimuth);
+    const bool components = has(Output::backspin, row), rate = has(Output::spin_rate, row) || components;
+    const bool axis = (components && has(Output::sidespin, row)) || has(Output::spin_axis, row);
+    if (!has(Output::ball_speed, row) || !has(Output::launch_angle, row)) {
+      ++unused_["no launch"];
+      continue;
+    }
+    if (!rate && !(case_.unknown.spin_rate > 0)) {
+      ++unused_["no spin, and none is told in [unknown]"];
+      continue;
+    }
+    const auto seen = seen_launch(shots, row);
+    if (seen) {
+      t.shot.launch = *seen;
+    } else {
+      const auto value = [&](Output o) { return has(o, row) ? shots.find_stem(stem(o))->value[row] : 0.0; };
+      const double up = value(Output::launch_angle), right = value(Output::azimuth), tilt = value(Output::spin_axis);
+      t.shot.launch.velocity = value(Output::ball_speed) *
+                               Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
+      t.shot.launch.spin = case_.unknown.spin_rate * Vec3(0, -std::cos(tilt), -std::sin(tilt));
+    }
+    const double spin = t.shot.launch.spin_rate();
+    if (!(spin > 0)) {
+      ++unused_["a spin of zero: the lift has no direction"];
+      continue;
+    }
+    if (!rate) sd[models::kLogSpin] = case_.unknown.spin_rate_sd;
+    else sd[models::kLogSpin] = (components ? noise_of(Output::backspin) : noise_of(Output::spin_rate)) / spin;
+    if (!axis) sd[models::kAxis] = case_.unknown.axis;
+    else
+      sd[models::kAxis] = components && has(Output::sidespin, row) ? noise_of(Output::sidespin) / spin
+                                                                   : noise_of(Output::spin_axis);
+    if (!case_.deviations.empty()) sd = case_.deviations[row];
+    t.shot.air = case_.air.empty() ? case_.conditions.air : case_.air[row];
+    std::string group;
+    for (const std::string& name : case_.group_by) {
+      const Column* c = shots.find(name);
+      if (!c) throw DataError(fmt::format("{}:1: no column '{}' to group by", shots.file, name));
+      group += (group.empty() ? "" : "/") + (c->numeric ? fmt::format("{:g}", c->native(row)) : c->text[row]);
+    }
+    Eigen::VectorXd y(width());
+    bool any = false;
+    for (int c = 0; c < width(); ++c) {
+      const Reading& r = readings_[std::size_t(c)];
+      if (r.answer >= 0) {
+        const Column& column = *shots.find(channels_[std::size_t(c)].name);
+        y[c] = column.numeric ? column.native(row) : kNotMeasured;
+      } else {
+        y[c] = case_.positions(Eigen::Index(row), c - Eigen::Index(channels_.size() - case_.points.size()));
+      }
+      any = any || std::isfinite(y[c]);
+    }
+    if (!any) {
+      ++unused_["no reading of the flight"];
+      continue;
+    }
+    const auto known = std::ranges::find(groups_, group);
+    t.shot.group = int(known - groups_.begin());
+    if (known == groups_.end()) groups_.push_back(group);
+    if (const Eigen::VectorXd f = predict(t, {}, nullptr, t.own, GroupUnknowns::Zero()); !f.allFinite()) {
+      ++unused_["no flight from this launch"];
+      continue;
+    }
+    t.shot.id = shots.id[row];
+    trials_.push_back(std::move(t));
+    measured.push_back(std::move(y));
+  }
+  if (trials_.empty())
+    throw DataError(fmt::format("{}: no row holds a launch and a reading of its flight", shots.file));
+  measured_.resize(Eigen::Index(trials_.size()), width());
+  for (std::size_t i = 0; i < trials_.size(); ++i) measured_.row(Eigen::Index(i)) = measured[i].transpose();
+  group_.assign(groups_.size(), GroupUnknowns::Zero());
+}
+
+void FlightProblem::split() {
+  std::vector<int> usable;
+  for (int i = 0; i < int(trials_.size()); ++i)
+    if (!out_.contains(i)) usable.push_back(i);
+  std::vector<std::string> cluster;  // of each usable trial
+  if (!case_.split.by.empty()) {
+    const Column* by = case_.shots.find(case_.split.by);
+    if (!by) throw DataError(fmt::format("{}:1: no column '{}' to split by", case_.shots.file, case_.split.by));
+    const Groups g = groups(*by);
+    for (const int i : usable) {
+      const int k = g.of_row[std::size_t(trials_[std::size_t(i)].row)];
+      cluster.push_back(k < 0 ? fmt::format("row {}", i) : g.name[std::size_t(k)]);
+    }
+  } else {
+    for (const int i : usable) cluster.push_back(fmt::format("{}", trials_[std::size_t(i)].row));
+  }
+  std::vector<std::string> names;
+  for (const std::string& c : cluster)
+    if (std::ranges::find(names, c) == names.end()) names.push_back(c);
+  std::mt19937_64 random(case_.split.seed);
+  std::set<std::string> held;
+  double have = 0;
+  const double wanted = case_.split.holdout_fraction * double(usable.size());
+  for (const std::size_t k : solvers::shuffled(names.size(), random)) {
+    const double more = double(std::ranges::count(cluster, names[k]));
+    if (have + more > wanted + 0.5) continue;
+    held.insert(names[k]);
+    have += more;
+  }
+  train_.clear();
+  holdout_.clear();
+  for (std::size_t k = 0; k < usable.size(); ++k) (held.contains(cluster[k]) ? holdout_ : train_).push_back(usable[k]);
+}
+
+FlightProblem::GroupUnknowns FlightProblem::group_sd() const {
+  return {case_.unknown.wind, case_.unknown.wind, case_.unknown.slope};
+}
+
+Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const double* p,
+                                       const models::ShotUnknowns& own, const GroupUnknowns& group) const {
+  Launch launch = t.shot.launch;
+  models::FlightConditions c = case_.conditions;
+  c.air = t.shot.air;
+  for (const Parametrisation* f : model.forms) {
+    const std::span<const double> q(p, f->parameters.size());
+    if (f->seen) f->seen(q, launch);
+    if (f->flight) f->flight(q, c);
+    p += f->parameters.size();
+  }
+  launch = models::launched(launch, own);
+  c = models::with_own(std::move(c), own, group.head<2>());
+  c.ground.slope += group[2];
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(width(), kNotMeasured);
+  try {
+    if (channels_.size() > case_.points.size()) {
+      const models::FlightAnswers a = models::answers(models::fly(launch, case_.ball, c, kExactFlight));
+      for (int k = 0; k < width(); ++k)
+        if (const int answer = readings_[std::size_t(k)].answer; answer >= 0)
+          out[k] = a[answer] / channels_[std::size_t(k)].si;
+    }
+    if (!instants_.empty()) {
+      const auto path = models::follow(launch, case_.ball, c, instants_, kExactFlight);
+      for (int k = 0; k < width(); ++k) {
+        const Reading& r = readings_[std::size_t(k)];
+        if (r.answer >= 0) continue;
+        const Vec3& x = path[std::size_t(std::ranges::find(instants_, r.point.time) - instants_.begin())].position;
+        out[k] = r.point.axis == 0 ? x.x() : r.point.axis == 1 ? -x.y() : x.z();
+      }
+    }
+  } catch (const std::invalid_argument&) { out.setConstant(kNotMeasured); } catch (const solvers::NonConvergence&) {
+    out.setConstant(kNotMeasured);
+  }
+  return out;
+}
+
+/// The unknowns' most likely values under a model, the slopes there, and the factors of the covariances.
+void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
+  std::vector<int> all = train_;
+  all.insert(all.end(), holdout_.begin(), holdout_.end());
+  std::ranges::sort(all);
+  constexpr int most = 12;
+  for (int pass = 0; pass < most; ++pass) {
+    slopes(model, p);
+    Eigen::MatrixXd e;
+    if (!errors(all, model, p, e)) throw DataError("the model has no answer for these data");
+    double change = 0;
+    const GroupUnknowns of_group = group_sd();
+    std::map<int, Eigen::Index> place;
+    for (std::size_t k = 0; k < all.size(); ++k) place[all[k]] = Eigen::Index(k);
+    for (const Block& b : blocks(all)) {
+      Eigen::VectorXd r(Eigen::Index(b.readings.size()));
+      for (std::size_t k = 0; k < b.readings.size(); ++k)
+        r[Eigen::Index(k)] = e(place.at(b.trials[std::size_t(b.readings[k].first)]), b.readings[k].second);
+      const auto L = b.factor.triangularView<Eigen::Lower>();
+      L.solveInPlace(r);
+      L.transpose().solveInPlace(r);
+      GroupUnknowns group = GroupUnknowns::Zero();
+      std::vector<models::ShotUnknowns> own(b.trials.size(), models::ShotUnknowns::Zero());
+      for (std::size_t k = 0; k < b.readings.size(); ++k) {
+        const auto [i, c] = b.readings[k];
+        const Trial& t = trials_[std::size_t(b.trials[std::size_t(i)])];
+        group -= r[Eigen::Index(k)] * of_group.cwiseAbs2().cwiseProduct(t.by_group.row(c).transpose());
+        own[std::size_t(i)] -= r[Eigen::Index(k)] * t.shot.sd.cwiseAbs2().cwiseProduct(t.by_own.row(c).transpose());
+      }
+      const auto moved = [&](const auto& from, const auto& to, const auto& sd) {
+        for (Eigen::Index k = 0; k < from.size(); ++k)
+          if (sd[k] > 0) change = std::max(change, std::abs(to[k] - from[k]) / sd[k]);
+      };
+      GroupUnknowns& known = group_[std::size_t(trials_[std::size_t(b.trials.front())].shot.group)];
+      moved(known, group, of_group);
+      known = group;
+      for (std::size_t i = 0; i < b.trials.size(); ++i) {
+        Trial& t = trials_[std::size_t(b.trials[i])];
+        moved(t.own, own[i], t.shot.sd);
+        t.own = own[i];
+      }
+    }
+    if (change < 0.03) break;
+  }
+  slopes(model, p);
+  factor();
+}
+
+void FlightProblem::slopes(const Model& model, const Eigen::VectorXd& p) {
+  const GroupUnknowns sd = group_sd();
+  for_all(std::size_t(0), trials_.size(), [&](std::size_t i) {
+    Trial& t = trials_[i];
+    const GroupUnknowns& group = group_[std::size_t(t.shot.group)];
+    t.by_own = Eigen::MatrixXd::Zero(width(), models::kShotUnknowns);
+    t.by_group = Eigen::MatrixXd::Zero(width(), kGroup);
+    const auto difference = [&](const auto& at, double step, auto into) {
+      const Eigen::VectorXd d = (at(step) - at(-step)) / (2 * step);
+      if (d.allFinite()) into = d;
+    };
+    for (int k = 0; k < models::kShotUnknowns; ++k)
+      if (t.shot.sd[k] > 0)
+        difference(
+            [&](double h) {
+              models::ShotUnknowns own = t.own;
+              own[k] += h;
+              return predict(t, model, p.data(), own, group);
+            },
+            kOwnStep[std::size_t(k)], t.by_own.col(k));
+    for (int k = 0; k < kGroup; ++k)
+      if (sd[k] > 0)
+        difference(
+            [&](double h) {
+              GroupUnknowns g = group;
+              g[k] += h;
+              return predict(t, model, p.data(), t.own, g);
+            },
+            kGroupStep[std::size_t(k)], t.by_group.col(k));
+  });
+}
+
+std::vector<FlightProblem::Block> FlightProblem::blocks(const std::vector<int>& trials) const {
+  std::vector<Block> all(groups_.size());
+  for (const int i : trials) {
+    Block& b = all[std::size_t(trials_[std::size_t(i)].shot.group)];
+    for (int c = 0; c < width(); ++c)
+      if (std::isfinite(measured_(i, c))) b.readings.emplace_back(int(b.trials.size()), c);
+    b.trials.push_back(i);
+  }
+  std::erase_if(all, [](const Block& b) { return b.trials.empty(); });
+  const GroupUnknowns sd = group_sd();
+  for_all(std::size_t(0), all.size(), [&](std::size_t g) {
+    Block& b = all[g];
+    const auto n = Eigen::Index(b.readings.size());
+    Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const auto [i, c] = b.readings[std::size_t(a)];
+      const Trial& t = trials_[std::size_t(b.trials[std::size_t(i)])];
+      const Eigen::RowVectorXd own = t.by_own.row(c).cwiseProduct(t.shot.sd.cwiseAbs2().transpose()),
+                               group = t.by_group.row(c).cwiseProduct(sd.cwiseAbs2().transpose());
+      for (Eigen::Index k = 0; k <= a; ++k) {
+        const auto [j, d] = b.readings[std::size_t(k)];
+        const Trial& u = trials_[std::size_t(b.trials[std::size_t(j)])];
+        S(a, k) = group.dot(u.by_group.row(d)) + (i == j ? own.dot(t.by_own.row(d)) : 0.0);
+      }
+      S(a, a) += std::pow(channel(c).noise, 2);
+    }
+    const Eigen::LLT<Eigen::MatrixXd> llt(S);  // of its lower half
+    if (llt.info() != Eigen::Success) throw DataError("the readings' covariance is not positive: declare their noise");
+    b.factor = llt.matrixL();
+  });
+  return all;
+}
+
+void FlightProblem::factor() {
+  train_blocks_ = blocks(train_);
+  held_blocks_ = blocks(holdout_);
+  // What drives a residual: what was seen of the launch, and every column that no model knows.
+  std::vector<Line> lines;
+  std::vector<int> row_of;
+  Eigen::VectorXd order(Eigen::Index(trials_.size()));
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    row_of.push_back(trials_[i].row);
+    order[Eigen::Index(i)] = trials_[i].order;
+  }
+  for (const Column& c : case_.shots.columns) {
+    if (!c.numeric || c.name == "shot" || c.role == Role::bookkeeping) continue;
+    const auto output = c.role == Role::output ? output_of(c.stem) : std::nullopt;
+    if (output && of_flight(*output)) continue;
+    Eigen::VectorXd x(order.size());
+    for (std::size_t i = 0; i < trials_.size(); ++i) x[Eigen::Index(i)] = c.value[std::size_t(row_of[i])];
+    lines.push_back({c.name, !output, std::move(x)});
+  }
+  regressors_ = regressors(case_.shots, row_of, train_, lines, order);
+}
+
+bool FlightProblem::errors(const std::vector<int>& trials, const Model& model, const Eigen::VectorXd& p,
+                           Eigen::MatrixXd& e) const {
+  e.resize(Eigen::Index(trials.size()), width());
+  for_all(std::size_t(0), trials.size(), [&](std::size_t k) {
+    const Trial& t = trials_[std::size_t(trials[k])];
+    const GroupUnknowns& group = group_[std::size_t(t.shot.group)];
+    Eigen::VectorXd f = predict(t, model, p.data(), t.own, group);
+    if (t.by_own.size()) f -= t.by_own * t.own + t.by_group * group;
+    e.row(Eigen::Index(k)) = f.transpose() - measured_.row(trials[k]);
+    // Nothing is measured: no matter what the model says. Else it must say something.
+    for (int c = 0; c < width(); ++c)
+      if (std::isnan(e(Eigen::Index(k), c)) && std::isfinite(measured_(trials[k], c)))
+        e(Eigen::Index(k), c) = std::numeric_limits<double>::infinity();
+  });
+  return (e.array().isNaN() || e.array().isFinite()).all();
+}
+
+Eigen::VectorXd FlightProblem::whiten(Part part, const Eigen::MatrixXd& e) const {
+  const std::vector<int>& of = trials(part);
+  std::map<int, Eigen::Index> place;
+  for (std::size_t k = 0; k < of.size(); ++k) place[of[k]] = Eigen::Index(k);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(Eigen::Index(of.size()) * width());
+  for (const Block& b : blocks(part)) {
+    Eigen::VectorXd r(Eigen::Index(b.readings.size()));
+    const auto at = [&](std::size_t k) { return place.at(b.trials[std::size_t(b.readings[k].first)]); };
+    for (std::size_t k = 0; k < b.readings.size(); ++k) r[Eigen::Index(k)] = e(at(k), b.readings[k].second);
+    b.factor.triangularView<Eigen::Lower>().solveInPlace(r);
+    for (std::size_t k = 0; k < b.readings.size(); ++k) z[at(k) * width() + b.readings[k].second] = r[Eigen::Index(k)];
+  }
+  return z;
+}
+
+std::vector<Problem::Row> FlightProblem::rows() const {
+  std::vector<Row> all;
+  for (const auto* of : {&train_, &holdout_})
+    for (const int i : *of)
+      all.push_back({i, trials_[std::size_t(i)].row, trials_[std::size_t(i)].shot.id, of == &holdout_});
+  std::ranges::sort(all, {}, &Row::index);
+  return all;
+}
+
+std::vector<std::string> FlightProblem::notes() const {
+  std::vector<std::string> all;
+  for (std::size_t g = 0; g < groups_.size() && case_.unknown.wind > 0; ++g)
+    all.push_back(fmt::format("wind{}: {:+.1f} m/s along, {:+.1f} m/s to the right, under the model that is told",
+                              groups_[g].empty() ? "" : " of " + groups_[g], group_[g][0], group_[g][1]));
+  return all;
+}
+
+std::optional<std::string> FlightProblem::too_few() const {
+  if (train_.size() < kFewestFlights)
+    return fmt::format("{} flights to learn from: fewer than {} test nothing", train_.size(), kFewestFlights);
+  return {};
+}
+
+bool FlightProblem::whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                             double) const {
+  Eigen::MatrixXd e;
+  if (!errors(trials(part), model, p, e)) return false;
+  z = whiten(part, e);
+  return z.allFinite();
+}
+
+bool FlightProblem::linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
+                              Eigen::MatrixXd& jacobian, double window) const {
+  if (!whitened(part, model, p, z, window)) return false;
+  jacobian = this->jacobian(part, model, p);
+  return true;
+}
+
+/// Central, one-sided where a side is out of range or has no answer; zero where neither has one.
+Eigen::MatrixXd FlightProblem::jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const {
+  constexpr double step = 0.05;  // of a parameter's scale
+  Eigen::VectorXd z, low, high, x = p;
+  if (!whitened(part, model, p, z)) return {};
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(z.size(), p.size());
+  Eigen::Index k = 0;
+  for (const Parameter* q : model.parameters()) {
+    const auto look = [&](double steps, Eigen::VectorXd& out) {
+      x[k] = p[k] + steps * step * q->scale;
+      const bool good = x[k] >= q->min && x[k] <= q->max && whitened(part, model, x, out);
+      x[k] = p[k];
+      return good;
+    };
+    const bool up = look(1, high), down = look(-1, low);
+    if (up && down) J.col(k) = (high - low) / (2 * step);
+    else if (up) J.col(k) = (high - z) / step;
+    else if (down) J.col(k) = (z - low) / step;
+    ++k;
+  }
+  return J;
+}
+
+Eigen::MatrixXd FlightProblem::residuals(const Model& model, const Eigen::VectorXd& p) const {
+  std::vector<int> all(trials_.size());
+  std::iota(all.begin(), all.end(), 0);
+  Eigen::MatrixXd e;
+  if (!errors(all, model, p, e)) return {};
+  return e;
+}
+
+Problem::Density FlightProblem::density(Part part) const {
+  Density d;
+  for (const Block& b : blocks(part)) {
+    d.values += double(b.readings.size());
+    d.log_whitening -= b.factor.diagonal().array().log().sum();
+  }
+  return d;
+}
+
+std::vector<Stage> FlightProblem::stages() const {
+  const solvers::Loss loss = loss_of_shot(width());
+  return {{.loss = loss.uncapped()}, {.loss = loss}};
+}
+
+/// Flights that no model of the family explains: beyond what the noise allows once in a hundred such sets.
+bool FlightProblem::screen(const Selection& selection) {
+  constexpr double one_in = 0.01, most = 0.08;
+  const Fit& at = selection.richest;
+  std::set<int> now = out_;
+  const double n = double(train_.size() + holdout_.size());
+  std::vector<Flag> flags = flags_;
+  for (const Part part : {Part::train, Part::holdout}) {
+    const Eigen::VectorXd z = loop::whitened(*this, part, at.model, at.p);
+    if (!z.size()) continue;
+    for (std::size_t k = 0; k < trials(part).size(); ++k) {
+      const int i = trials(part)[k];
+      const auto zi = z.segment(Eigen::Index(k) * width(), width());
+      const auto observed = (measured_.row(i).array().isFinite()).count();
+      const double limit =
+          boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(observed)), one_in / n));
+      if (!(zi.squaredNorm() > limit)) continue;
+      Eigen::Index worst = 0;
+      zi.cwiseAbs().maxCoeff(&worst);
+      now.insert(i);
+      const Trial& t = trials_[std::size_t(i)];
+      flags.push_back({t.row, t.shot.id, channel(int(worst)).name,
+                       fmt::format("nothing explains this flight: {:.1f} standard deviations off", zi.norm()),
+                       int(flags.size()) + 1});
+    }
+  }
+  if (double(now.size()) > std::max(2.0, most * double(trials_.size()))) return true;  // no exceptions: not the rows
+  const bool same = now.size() == out_.size();
+  out_ = std::move(now);
+  flags_ = std::move(flags);
+  if (same) return true;
+  std::erase_if(train_, [&](int i) { return out_.contains(i); });
+  std::erase_if(holdout_, [&](int i) { return out_.contains(i); });
+  factor();
+  return false;
+}
+
+double FlightProblem::sigma(int trial, int c) const {
+  const Trial& t = trials_[std::size_t(trial)];
+  return std::sqrt(std::pow(channel(c).noise, 2) + t.by_own.row(c).cwiseProduct(t.shot.sd.transpose()).squaredNorm() +
+                   t.by_group.row(c).cwiseProduct(group_sd().transpose()).squaredNorm());
+}
+
+/// Of what a reading scatters once the others of its group have said what they know: the whitened residuals, which
+/// hold no wind and no ball twice.
+Scatter FlightProblem::scatter(int c, const Eigen::MatrixXd& residuals, int fitted) const {
+  Eigen::MatrixXd e(Eigen::Index(train_.size()), width());
+  if (!residuals.size()) return {};
+  for (std::size_t k = 0; k < train_.size(); ++k) e.row(Eigen::Index(k)) = residuals.row(train_[k]);
+  const Eigen::VectorXd z = whiten(Part::train, e);
+  double sum = 0, fourth = 0, n = 0;
+  for (std::size_t k = 0; k < train_.size(); ++k) {
+    if (!std::isfinite(measured_(train_[k], c))) continue;
+    const double s = std::min(std::pow(z[Eigen::Index(k) * width() + c], 2), 36.0);
+    sum += s;
+    fourth += s * s;
+    ++n;
+  }
+  Scatter out;
+  if (n < 3 || !(sum > 0)) return out;
+  const double dof = std::max(1.0, n - double(fitted) / width()), mean = sum / n;
+  out.ratio = std::sqrt(sum / dof);
+  out.error = std::max(std::sqrt(std::max(0.0, fourth / n - mean * mean) / n) / mean / 2, 1 / std::sqrt(2 * dof));
+  return out;
+}
+
+/// Noise that is not declared, or refuted.
+void FlightProblem::estimate_noise(const Fit* at) {
+  const Eigen::MatrixXd r = at ? residuals(at->model, at->p) : residuals({}, {});
+  for (int c = 0; c < width(); ++c) {
+    Channel& ch = channels_[std::size_t(c)];
+    if (ch.trusted()) {
+      ch.noise = *ch.declared;
+      continue;
+    }
+    double sd = 0;
+    if (at && ch.noise > 0) {
+      sd = ch.noise * scatter(c, r, at->size()).ratio;
+    } else {
+      std::vector<double> value, size;
+      for (const int i : train_)
+        if (std::isfinite(measured_(i, c))) value.push_back(r(i, c));
+      const double middle = median(value);
+      for (const double v : value) size.push_back(std::abs(v - middle));
+      sd = 1.4826 * median(size);
+      if (trials_.front().by_own.size()) {  // what is unknown is counted separately
+        double known = 0;
+        for (const int i : train_) known += std::pow(sigma(i, c), 2) - ch.noise * ch.noise;
+        sd = std::sqrt(std::max(sd * sd - known / double(train_.size()), 0.04 * sd * sd));
+      }
+    }
+    ch.noise = std::max({sd, ch.resolution / std::sqrt(12.0), 1e-9});
+  }
+}
+
+double FlightProblem::update_noise(const Fit& selected, const Fit&) {
+  std::vector<double> before;
+  for (const Channel& c : channels_) before.push_back(c.noise);
+  estimate_noise(&selected);
+  expand(selected.model, selected.p);
+  double change = 0;
+  for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
+  // What is unknown weighs otherwise about an effect.
+  const bool anew = !updated_ && !selected.model.forms.empty();
+  updated_ = true;
+  return anew ? std::numeric_limits<double>::infinity() : change;
+}
+
+StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
+                                      const Rules& rules) const {
+  const solvers::Loss loss = stages().back().loss;
+  const Eigen::VectorXd z = loop::whitened(*this, Part::select, fit.model, fit.p),
+                        noise = loop::whitened(*this, Part::select, near.model, near.p);
+  if (!z.size() || !noise.size()) return {};
+  Eigen::VectorXd weights(Eigen::Index(train_.size()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
+  Whitened view{.width = width(), .order = {}, .column = {}, .trusted = {}};
+  for (const int i : train_) view.order.push_back(trials_[std::size_t(i)].order);
+  view.column = [&](int c, const Eigen::VectorXd& value) {
+    Eigen::MatrixXd e = Eigen::MatrixXd::Zero(value.size(), width());
+    e.col(c) = value;
+    return whiten(Part::select, e);
+  };
+  view.trusted = [&](int c) { return channel(c).trusted(); };
+  return loop::structure(view, train_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
+                         directions, rules.flips, rules.seed);
+}
+
+/// The scatter is not what is declared of noise and unknowns, or too many flights are explained by nothing.
+std::vector<Location> FlightProblem::doubts(const Selection& s) const {
+  constexpr double lost_share = 0.2, wide = 1.75;
+  std::vector<Location> told;
+  const Eigen::MatrixXd r = residuals(s.chosen.model, s.chosen.p);
+  for (int c = 0; c < width(); ++c)
+    if (const double ratio = scatter(c, r, s.chosen.size()).ratio; channel(c).trusted() && ratio > wide)
+      told.push_back({channel(c).name, "",
+                      fmt::format("scatters {:.1f} times as much as declared noise and unknowns allow", ratio)});
+  const Eigen::VectorXd z = loop::whitened(*this, Part::train, s.chosen.model, s.chosen.p);
+  const solvers::Loss loss = stages().back().loss;
+  double lost = double(flags_.size());
+  for (std::size_t k = 0; k < train_.size(); ++k)
+    lost += z.segment(Eigen::Index(k) * width(), width()).squaredNorm() > loss.cap;
+  if (const double share = lost / double(flags_.size() + train_.size()); share >= lost_share)
+    told.push_back({"", "", fmt::format("{:.0f} % of the flights are flagged or explained by nothing", 100 * share)});
+  return told;
+}
+
+NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
+  NextExperiment next;
+  if (too_few()) {
+    next.text = "more flights";
+  } else if (so_far.verdict == Verdict::ambiguous) {
+    std::vector<std::string> names, sensors;
+    for (const auto& tie : so_far.ties)
+      for (const std::string& e : tie) {
+        names.push_back(e);
+        sensors.emplace_back(find_effect(e, case_.own)->sensor);
+      }
+    next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
+    next.text = fmt::format("these flights cannot separate {}: measure {}", fmt::join(names, ", "), *next.sensor);
+  } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
+    const Location& l = so_far.unexplained.front();
+    next.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",
+                            l.regressor.empty() ? "one quantity" : l.regressor,
+                            l.channel.empty() ? "a reading" : l.channel);
+  } else if (so_far.verdict == Verdict::insufficient) {
+    next.text = "more flights: the list of smallest effects says what these could have shown";
+  } else {
+    next.text = "nothing is tied; flights at other speeds and spins would narrow the parameters most";
+  }
+  return next;
+}
+
+}  // namespace hosel::loop

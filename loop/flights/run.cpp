@@ -1,0 +1,23 @@
+#include "hosel/loop/flights/run.hpp"
+
+#include "hosel/loop/flights/problem.hpp"
+#include "hosel/loop/verdict.hpp"
+
+namespace hosel::loop {
+
+LoopResult run(const FlightCase& c) {
+  FlightProblem problem(c);
+  LoopResult result;
+  result.title = c.title;
+  result.base = c.base;
+  result.seed = c.split.seed;
+  result.read = int(c.shots.rows());
+  result.unused = problem.unused();
+  result.forms = problem.forms();
+  result.notes = c.notes;
+  const Study study(problem, result.forms, c.effects, c.rules, c.told);
+  conclude(study, result);
+  return result;
+}
+
+}  // namespace hosel::loop

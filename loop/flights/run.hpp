@@ -1,0 +1,12 @@
+/// The loop on flights.
+#pragma once
+
+#include "hosel/loop/flights/case.hpp"
+#include "hosel/loop/result.hpp"
+
+namespace hosel::loop {
+
+/// Throws DataError where nothing can be compared.
+LoopResult run(const FlightCase& c);
+
+}  // namespace hosel::loop

@@ -1,0 +1,110 @@
+// Loops whose base is the flight and laws inferred from followed flights, as cases.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "build_info.hpp"
+#include "command.hpp"
+#include "hosel/app/read_paths.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel::test;
+
+const fs::path kCase = fs::path(HOSEL_SOURCE_DIR) / "cases" / "loop-flights";
+
+TEST(LoopFlight, TheShippedCaseNamesTheDrag) {
+  const fs::path out = fresh_directory("loop_flights");
+  const Outcome o = command("run " + kCase.string() + " --force --out " + out.string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto report = nlohmann::json::parse(content(out / "report.json"));
+  EXPECT_EQ(report["base"], "flight");
+  EXPECT_EQ(report["rows"]["used"], 80);
+  EXPECT_EQ(report["adopted"], nlohmann::json({"drag-level"}));
+  EXPECT_EQ(report["verdict"], "explained");
+  const auto& best = report["candidates"].front();
+  EXPECT_EQ(best["effects"], nlohmann::json({"drag-level"}));
+  EXPECT_NEAR(best["parameters"][0]["value"].get<double>(), 0.06, 0.015);
+  EXPECT_TRUE(fs::exists(out / "report.html"));
+}
+
+TEST(LoopFlight, SaysWhatIsWrong) {
+  const auto error = [&](const std::string& set) {
+    const Outcome o = command("check " + kCase.string() + " " + set);
+    EXPECT_EQ(o.status, 2) << o.text;
+    return o.text;
+  };
+  EXPECT_NE(error("--set data.noise.carry_yd=1").find("did you mean 'carry_m'"), std::string::npos);
+  EXPECT_NE(error("--set 'data.group_by=[\"holes\"]'").find("no column 'holes'"), std::string::npos);
+  EXPECT_NE(error("--set 'model.effects=[\"head-mass\"]'").find("no effect 'head-mass'"), std::string::npos);
+  EXPECT_NE(error("--set flight.turf.rolling=0.1").find("end at the first landing"), std::string::npos);
+  EXPECT_NE(error("--set 'data.paths=\"shots.csv\"' --set data.position_noise_m=0.1").find("time_s"),
+            std::string::npos);
+}
+
+/// Positions at common instants are channels: three a time.
+TEST(LoopFlight, PathsAreChannels) {
+  const fs::path dir = fresh_directory("loop_paths");
+  fs::create_directories(dir / "case");
+  std::string shots = "shot,ball_speed_mps,launch_angle_deg,spin_rate_rpm,spin_axis_deg\n",
+              paths = "shot,time_s,along_m,right_m,up_m\n";
+  for (int i = 0; i < 12; ++i) {
+    const double speed = 68 + i;
+    shots += std::to_string(i) + "," + std::to_string(speed) + ",11,2600,0\n";
+    for (const double t : {1.0, 2.0})  // no drag, no lift: nothing that flies so
+      paths += std::to_string(i) + "," + std::to_string(t) + "," + std::to_string(0.98 * speed * t) + ",0," +
+               std::to_string(0.19 * speed * t - 4.9 * t * t) + "\n";
+  }
+  write(dir / "case" / "shots.csv", shots);
+  write(dir / "case" / "paths.csv", paths);
+  write(dir / "case" / "case.toml",
+        "kind = \"loop\"\n[model]\nbase = \"flight\"\n[flight]\n[data]\nshots = \"shots.csv\"\npaths = \"paths.csv\"\n"
+        "position_noise_m = 0.3\n");
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto report = nlohmann::json::parse(content(dir / "out" / "report.json"));
+  ASSERT_EQ(report["channels"].size(), 6U);
+  EXPECT_EQ(report["channels"][0]["name"], "along_at_1_s_m");
+  EXPECT_NE(report["verdict"], "no-residual");
+}
+
+TEST(FlightLawCase, LeavesOutPlayersByTheirName) {
+  // FNV-1a of "a" is 0xe40c292c, of "b" 0xe70c2de5 (the function's published test values).
+  EXPECT_FALSE(hosel::app::held_out("a"));
+  EXPECT_TRUE(hosel::app::held_out("b"));
+}
+
+TEST(FlightLawCase, SkipsWithoutTheData) {
+  const fs::path out = fresh_directory("flight_law_skipped");
+  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
+                            out.string() + " --set paths.file=not-there/t.csv");
+  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
+}
+
+/// The shipped law is what the shipped case infers: to a tenth of its standard errors, which other processors' rounding
+/// does not reach.
+TEST(SlowFlightLawCase, InfersTheShippedLaw) {
+  const fs::path out = fresh_directory("flight_law");
+  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
+                            out.string() + " --set 'law.beside=[]'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  if (o.text.find("SKIPPED") != std::string::npos) GTEST_SKIP() << o.text;
+  const auto summary = nlohmann::json::parse(content(out / "summary.json"));
+  hosel::models::FlightLaw law = hosel::models::find_flight_law("radar-2022")->make();
+  constexpr int n = hosel::models::kInferredCoefficients;
+  for (int k = 0; k < n; ++k) {
+    const auto& c = summary["law"][std::string(hosel::models::inferred_coefficient_name(k))];
+    const double sd = c["sd"].get<double>();
+    EXPECT_NEAR(hosel::models::inferred_coefficient(law, k), c["value"].get<double>(), 0.1 * sd) << k;
+    EXPECT_NEAR(std::sqrt(law.covariance.at(std::size_t(k * (n + 1)))), sd, 0.05 * sd) << k;
+  }
+  const auto& by_path = summary["left_out"]["by_path"]["inferred"];
+  EXPECT_GT(by_path["shots"].get<int>(), 60);
+  EXPECT_LT(std::abs(by_path["carry_bias_m"].get<double>()), 1.5);
+  EXPECT_LT(by_path["apex_rms_m"].get<double>(), 1.2);
+  EXPECT_LT(by_path["time_rms_s"].get<double>(), 0.12);
+}
+
+}  // namespace
