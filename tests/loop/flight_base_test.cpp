@@ -194,7 +194,7 @@ TEST(FlightBase, NamesTheMisreadAxis) {
   EXPECT_NEAR(value(r, "tilt"), radians(4), radians(1));
 }
 
-/// Six effects, ten sets of 60 to 150 flights each, and thirty without any.
+/// Six effects, six sets of 60 to 150 flights each, and thirty without any.
 TEST(SlowFlightBase, NamesWhatIsHidden) {
   int sets = 0, found = 0, wrong = 0;
   for (const Undeclared& k : effects_hidden())
