@@ -53,8 +53,10 @@ std::string saw_tables(const Seen& seen, std::string_view table) {
 }  // namespace
 
 Origin origin_of(const CaseFile& file) {
-  return {fs::canonical(file.directory()).filename().string(),
-          post::digest(file.resolved() + digest_of_files(file.named_files()))};
+  std::string read = file.resolved();
+  for (const fs::path& named : file.inputs()->files())
+    if (fs::is_regular_file(named)) read += post::read_file(named);
+  return {fs::canonical(file.directory()).filename().string(), post::digest(read)};
 }
 
 std::string ball_tables(const Ball& body, const models::FeBall& layers) {

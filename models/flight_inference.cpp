@@ -1,6 +1,5 @@
 #include "hosel/models/flight_inference.hpp"
 
-#include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -51,9 +50,9 @@ class Estimate {
     fit_.misfit.assign(shots.size(), 0);
     for (const MeasuredPath& s : shots) {
       if (s.times.empty() || s.times.size() != s.positions.size())
-        throw std::invalid_argument(fmt::format("flight paths: shot {} has no readings, or not one a time", s.id));
+        throw std::invalid_argument("flight paths: shot " + s.id + " has no readings, or not one a time");
       if (s.group < 0 || s.group >= groups)
-        throw std::invalid_argument(fmt::format("flight paths: shot {} is of no group", s.id));
+        throw std::invalid_argument("flight paths: shot " + s.id + " is of no group");
     }
   }
 
@@ -64,8 +63,9 @@ class Estimate {
     const bool law = !law_sd_.empty();
     for (double change = 1; change > kSettled;) {
       if (fit_.iterations == most)
-        throw solvers::NonConvergence(fmt::format(
-            "flight paths: after {} steps the estimate still moves by {:.2g} standard errors", most, change));
+        throw solvers::NonConvergence(
+            "flight paths: after " + std::to_string(most) + " steps the estimate still moves by " +
+            std::to_string(change) + " standard errors");
       change = step(law);
     }
     return std::move(fit_);
@@ -260,8 +260,8 @@ PathFit fit_paths(const std::vector<MeasuredPath>& shots, int groups, const Path
                   const std::vector<double>& law_sd, std::vector<GroupWind> winds, bool hold_winds) {
   if (shots.empty()) throw std::invalid_argument("flight paths: there are none");
   if (!law_sd.empty() && law_sd.size() != kInferredCoefficients)
-    throw std::invalid_argument(fmt::format("flight paths: {} standard deviations for the {} coefficients of a law",
-                                            law_sd.size(), kInferredCoefficients));
+    throw std::invalid_argument("flight paths: " + std::to_string(law_sd.size()) + " standard deviations for the " +
+                                std::to_string(kInferredCoefficients) + " coefficients of a law");
   return Estimate(shots, groups, model, start, law_sd, std::move(winds), hold_winds).run();
 }
 

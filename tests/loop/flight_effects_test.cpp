@@ -78,7 +78,7 @@ LoopResult loop_on(const models::FlightConditions& truth, const std::string& onl
   return run(c);
 }
 
-double value(const LoopResult& r, const std::string& parameter) {
+double parameter_value(const LoopResult& r, const std::string& parameter) {
   const auto all = r.selection.chosen.model.parameters();
   for (std::size_t k = 0; k < all.size(); ++k)
     if (all[k]->name == parameter) return r.selection.chosen.p[Eigen::Index(k)];
@@ -98,7 +98,7 @@ TEST(FlightEffects, NamesDrag) {
   truth.law.drag_scale = 1.06;
   const LoopResult r = loop_on(truth);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"drag-level"});
-  EXPECT_NEAR(value(r, "relative_drag"), 0.06, 0.01);
+  EXPECT_NEAR(parameter_value(r, "relative_drag"), 0.06, 0.01);
 }
 
 TEST(FlightEffects, NamesLift) {
@@ -106,7 +106,7 @@ TEST(FlightEffects, NamesLift) {
   truth.law.lift_scale = 0.9;
   const LoopResult r = loop_on(truth);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"lift-law"});
-  EXPECT_NEAR(value(r, "relative_lift"), -0.1, 0.01);
+  EXPECT_NEAR(parameter_value(r, "relative_lift"), -0.1, 0.01);
 }
 
 TEST(FlightEffects, NamesDensity) {
@@ -114,7 +114,7 @@ TEST(FlightEffects, NamesDensity) {
   truth.air.density *= 0.92;
   const LoopResult r = loop_on(truth);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"air-density"});
-  EXPECT_NEAR(value(r, "relative_density"), -0.08, 0.01);
+  EXPECT_NEAR(parameter_value(r, "relative_density"), -0.08, 0.01);
 }
 
 TEST(FlightEffects, NamesWind) {
@@ -122,8 +122,8 @@ TEST(FlightEffects, NamesWind) {
   truth.wind = {.speed = 3, .towards = radians(120)};
   const LoopResult r = loop_on(truth);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"wind"});
-  EXPECT_NEAR(value(r, "wind_along"), 3 * std::cos(radians(120)), 0.3);
-  EXPECT_NEAR(value(r, "wind_to_the_right"), 3 * std::sin(radians(120)), 0.3);
+  EXPECT_NEAR(parameter_value(r, "wind_along"), 3 * std::cos(radians(120)), 0.3);
+  EXPECT_NEAR(parameter_value(r, "wind_to_the_right"), 3 * std::sin(radians(120)), 0.3);
 }
 
 /// One club and one swing: drag, lift, density and wind along the line all shorten the carry alike.
@@ -162,7 +162,7 @@ TEST(FlightEffects, NamesTheDecayOfSpin) {
   truth.law.decay.rate = 0.1;
   const LoopResult r = loop_on(truth);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"spin-decay"});
-  EXPECT_NEAR(value(r, "change_of_rate"), 0.1, 0.02);
+  EXPECT_NEAR(parameter_value(r, "change_of_rate"), 0.1, 0.02);
 }
 
 }  // namespace
