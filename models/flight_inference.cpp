@@ -1,6 +1,5 @@
 #include "hosel/models/flight_inference.hpp"
 
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -63,9 +62,9 @@ class Estimate {
     const bool law = !law_sd_.empty();
     for (double change = 1; change > kSettled;) {
       if (fit_.iterations == most)
-        throw solvers::NonConvergence(
-            "flight paths: after " + std::to_string(most) + " steps the estimate still moves by " +
-            std::to_string(change) + " standard errors");
+        throw solvers::NonConvergence("flight paths: after " + std::to_string(most) +
+                                      " steps the estimate still moves by " + std::to_string(change) +
+                                      " standard errors");
       change = step(law);
     }
     return std::move(fit_);

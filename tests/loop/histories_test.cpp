@@ -141,16 +141,16 @@ TEST(Histories, ColouredNoiseIsNoEffect) {
   }
 }
 
-struct Hidden {
+struct HiddenInRecords {
   const char* effect;
   Truth truth;
   double value, tolerance;  ///< printed unit
 };
 
-class HistoriesName : public testing::TestWithParam<Hidden> {};
+class HistoriesName : public testing::TestWithParam<HiddenInRecords> {};
 
 TEST_P(HistoriesName, TheHiddenEffect) {
-  const Hidden& h = GetParam();
+  const HiddenInRecords& h = GetParam();
   for (const bool declared : {true, false}) {
     const Bench b = bench(h.truth, declared);
     const LoopResult r = run(b.c);
@@ -169,12 +169,12 @@ TEST_P(HistoriesName, TheHiddenEffect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, HistoriesName,
-                         testing::Values(Hidden{"shaft-stiffness", {.stiffness = 1.5}, std::log(1.5), 1e-3},
-                                         Hidden{"shaft-stiffness", {.stiffness = 0.93}, std::log(0.93), 1e-3},
-                                         Hidden{"shaft-damping", {.ratio = 0.01}, 0.01, 1e-4},
-                                         Hidden{"tip-mass", {.tip_mass = 0.008}, 8, 0.1},
-                                         Hidden{"sensor-delay", {.delay = 4e-3}, 4, 0.02},
-                                         Hidden{"sensor-gain", {.gain = 0.06}, 0.06, 1e-3}),
+                         testing::Values(HiddenInRecords{"shaft-stiffness", {.stiffness = 1.5}, std::log(1.5), 1e-3},
+                                         HiddenInRecords{"shaft-stiffness", {.stiffness = 0.93}, std::log(0.93), 1e-3},
+                                         HiddenInRecords{"shaft-damping", {.ratio = 0.01}, 0.01, 1e-4},
+                                         HiddenInRecords{"tip-mass", {.tip_mass = 0.008}, 8, 0.1},
+                                         HiddenInRecords{"sensor-delay", {.delay = 4e-3}, 4, 0.02},
+                                         HiddenInRecords{"sensor-gain", {.gain = 0.06}, 0.06, 1e-3}),
                          [](const auto& p) {
                            std::string name = p.param.effect;
                            std::erase(name, '-');
