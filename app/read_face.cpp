@@ -32,15 +32,16 @@ std::optional<FaceCompliance> read_face(Table table) {
 }
 
 std::optional<FaceCompliance> read_club_face(Table root) {
-  if (auto t = root.optional_table("face"); t && !t->keys().empty()) return read_face(*t);
-  // The head's own is echoed as if the case had named it.
+  auto own = root.optional_table("face");
+  if (own && own->has("name")) return read_face(*own);
+  // The head's own is echoed as if the case had named it; single keys of [face] replace its values.
   if (auto head = root.optional_table("head"); head && head->has("name"))
     if (const std::string face = library_head(*named_entry(*head, "name", Shelf::heads)).face; !face.empty()) {
       Table t = root.default_table("face");
       t.text({"name", "a face of the library (`hosel list`)"}, face);
       return read_compliance(t, library_face(face).face);
     }
-  if (auto t = root.optional_table("face")) return read_face(*t);
+  if (own) return read_face(*own);
   return {};
 }
 

@@ -55,6 +55,7 @@ Vec3 rest(Vec3 from, Vec3 velocity, double rolling, double slope) {
 
 Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, const BounceRoll& turf) {
   constexpr double last_hop = 5e-3;
+  constexpr int most_bounces = 200;  // a ball that stops at all has stopped after a few dozen
   Run out;
   // In the axes of the ground: x up the slope, z out of it.
   const Mat3 turn = Eigen::AngleAxisd(ground.slope, Vec3::UnitY()).toRotationMatrix();
@@ -66,7 +67,8 @@ Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, 
     bounce(b, ball, turf);
     const double up = b.velocity.z(), hop = -2 * up / weight.z();
     if (up * hop / 4 < last_hop) break;
-    ++out.bounces;
+    if (++out.bounces > most_bounces)
+      throw std::invalid_argument("bounce and roll: on this slope a bouncing ball does not come to rest");
     const Vec3 from = b.position;
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
       const double t = share * hop;

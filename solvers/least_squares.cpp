@@ -152,6 +152,7 @@ LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen
 
 Eigen::MatrixXd covariance(const Eigen::MatrixXd& J, double least, const Eigen::MatrixXd* scores) {
   const Eigen::Index n = J.cols();
+  if (n == 0) return {};  // nothing was fitted
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeFullV);
   Eigen::MatrixXd known = Eigen::MatrixXd::Zero(n, n), unknown = known;
   for (Eigen::Index k = 0; k < n; ++k) {

@@ -89,10 +89,11 @@ TEST(CommandLine, OpenSaysWhatIsMissing) {
   const std::string open = HOSEL_COMMAND " open '" + home.string() + "'\n";
   EXPECT_NE(bash("PATH=/nowhere " + open).find("ParaView is not installed"), std::string::npos);
   // A program of that name, and no screen; then it is started with the script and the folder.
-  write(home / "bin" / "paraview", "#!/bin/sh\necho started \"$@\" $HOSEL_VTK\n");
-  fs::permissions(home / "bin" / "paraview", fs::perms::owner_all);
-  const std::string path = "PATH='" + (home / "bin").string() + ":/bin' ";
-  EXPECT_NE(bash("unset DISPLAY WAYLAND_DISPLAY\nPATH='" + (home / "bin").string() + "' " + open).find("no screen"),
+  const fs::path bin = fresh_directory("open_bin");  // a program inside OUT is not started
+  write(bin / "paraview", "#!/bin/sh\necho started \"$@\" $HOSEL_VTK\n");
+  fs::permissions(bin / "paraview", fs::perms::owner_all);
+  const std::string path = "PATH='" + bin.string() + ":/bin' ";
+  EXPECT_NE(bash("unset DISPLAY WAYLAND_DISPLAY\nPATH='" + bin.string() + "' " + open).find("no screen"),
             std::string::npos);
   const std::string started = bash("DISPLAY=:0 " + path + open);
   EXPECT_NE(started.find("open.py"), std::string::npos) << started;

@@ -105,7 +105,9 @@ void write_map_case(const fs::path& dir, double butt) {
   write(dir / "shaft.csv", shaft_csv(butt));
   std::string text = kEccentricBlow;
   text.replace(text.find("\"impact\""), 8, "\"face-map\"");
-  write(dir / "case.toml", text + R"([grid]
+  write(dir / "case.toml", text + R"([volumetric]
+published = "driver"
+[grid]
 columns = 3
 rows = 3
 [shaft]
@@ -142,7 +144,8 @@ TEST(Inputs, ShardsOfASweepAreOfOneTable) {
   write(dir / "club/shaft.csv", shaft_csv(60));
   write(dir / "club/case.toml",
         kEccentricBlow +
-            "[shaft.table]\nfile = \"shaft.csv\"\n[hosel]\nposition_mm = [-15.0, 55.0, 10.0]\nlie_deg = 58.0\n");
+            "[volumetric]\npublished = \"driver\"\n[shaft.table]\nfile = \"shaft.csv\"\n[hosel]\n"
+            "position_mm = [-15.0, 55.0, 10.0]\nlie_deg = 58.0\n");
   write(dir / "sweep/case.toml",
         "kind = \"sweep\"\ncase = \"../club\"\nset = ['models=[\"shaft-coupled\"]']\n"
         "[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0, 41.0, 42.0]\n");

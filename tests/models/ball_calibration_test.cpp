@@ -40,6 +40,7 @@ FeImpactOptions true_ball(FeImpactOptions o) {
 /// What that ball does at the wall: a line through two speeds is a line through all there are.
 NormalImpactTarget at_the_wall(FeImpactOptions truth) {
   truth.harmonics = 0;
+  truth.steps_per_contact = 120;  // as the calibration meets the wall
   const NormalImpactPoint slow = normal_impact(truth, {}, 25), fast = normal_impact(truth, {}, 45);
   const double slope = (fast.restitution - slow.restitution) / 20;
   return {.speeds = {25, 45},
