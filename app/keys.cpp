@@ -46,6 +46,7 @@ std::vector<Sample> samples() {
        {"flight.spin_decay_per_s=0.04", "flight.wind={speed_mps=3, towards_deg=0}",
         "flight.ground={height_m=0, slope_deg=0}"}},
       {"launch-ratio", {"keep_bounce_mps=40"}},
+      {"calibrate-tour", {"free=[{what='head-mass', shots=['driver 2023']}]"}},
       {"loop-flights", {"data.paths='not-there/paths.csv'", "data.position_noise_m=0.1", "unknown.spin_rate_rpm=2600"}},
       {"loop-flights-waialae",
        {"paths.channels=ends", "paths.carry_noise_m=1", "paths.side_noise_m=1", "paths.apex_noise_m=1",

@@ -162,6 +162,7 @@ Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
   read_origin(root);
   Entry entry = read(root);
   if constexpr (requires { entry.seen; }) entry.seen = read_saw(root);
+  else read_saw(root);  // of a head: for the reader
   text.finish();
   return entry;
 }

@@ -168,7 +168,8 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   const bool overlap = asked("volumetric") || asked("shaft-coupled");
   // A case with finite-element tables keeps them where only its other models are asked.
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
-  const bool there = root.has("mesh") || (root.has("contact") && root.table("contact").has("face_friction"));
+  const bool there = root.has("accuracy") || root.has("mesh") ||
+                     (root.has("contact") && root.table("contact").has("face_friction"));
   std::optional<NamedContact> named;
   if (overlap || asked("hertz-maw")) named = named_contact(root);
   std::optional<FaceCompliance> face;

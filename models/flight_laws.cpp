@@ -194,7 +194,9 @@ constexpr std::array kLaws = {
                    nathan_earlier},
     FlightLawEntry{"nathan-2023", "the same spreadsheet fitted to seven clubs, driver to 5-iron", nathan_2023},
     FlightLawEntry{"libgolf", "an open-source library, set to a tour's mean shots", libgolf},
-    FlightLawEntry{"radar-2022", "inferred from drives that a radar followed on a tour, with its covariance",
+    FlightLawEntry{"radar-2022",
+                   "provisional (two estimators disagree on its slopes): inferred from drives that a radar followed, "
+                   "with covariance",
                    radar_2022},
 };
 

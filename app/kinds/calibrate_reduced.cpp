@@ -88,7 +88,7 @@ class CalibrateReducedJob final : public Job {
     const Blow base = read_blow(root, models);
     set.fe = read_options(root, models).fe;
     if (auto face = root.optional_table("face"); face && face->has("name"))
-      set.faces.push_back(face->text({"name", "a face of the library"}));
+      set.faces.push_back(face->text({"name", "a face of the library (`hosel list`)"}));
     Table t = root.tables("sets")[index];
     set.name = t.text({"name", "of the set of parameters"});
     set.changes =

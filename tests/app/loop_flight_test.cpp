@@ -83,28 +83,4 @@ TEST(FlightLawCase, SkipsWithoutTheData) {
   EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
 }
 
-/// The shipped law is what the shipped case infers: to a tenth of its standard errors, which other processors' rounding
-/// does not reach.
-TEST(SlowFlightLawCase, InfersTheShippedLaw) {
-  const fs::path out = fresh_directory("flight_law");
-  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
-                            out.string() + " --set 'law.beside=[]'");
-  ASSERT_EQ(o.status, 0) << o.text;
-  if (o.text.find("SKIPPED") != std::string::npos) GTEST_SKIP() << o.text;
-  const auto summary = nlohmann::json::parse(content(out / "summary.json"));
-  hosel::models::FlightLaw law = hosel::models::find_flight_law("radar-2022")->make();
-  constexpr int n = hosel::models::kInferredCoefficients;
-  for (int k = 0; k < n; ++k) {
-    const auto& c = summary["law"][std::string(hosel::models::inferred_coefficient_name(k))];
-    const double sd = c["sd"].get<double>();
-    EXPECT_NEAR(hosel::models::inferred_coefficient(law, k), c["value"].get<double>(), 0.1 * sd) << k;
-    EXPECT_NEAR(std::sqrt(law.covariance.at(std::size_t(k * (n + 1)))), sd, 0.05 * sd) << k;
-  }
-  const auto& by_path = summary["left_out"]["by_path"]["inferred"];
-  EXPECT_GT(by_path["shots"].get<int>(), 60);
-  EXPECT_LT(std::abs(by_path["carry_bias_m"].get<double>()), 1.5);
-  EXPECT_LT(by_path["apex_rms_m"].get<double>(), 1.2);
-  EXPECT_LT(by_path["time_rms_s"].get<double>(), 0.12);
-}
-
 }  // namespace

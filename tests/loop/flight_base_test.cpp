@@ -175,51 +175,10 @@ TEST(FlightBase, TheReferenceIsTheFlight) {
   EXPECT_NEAR(f.landing_angle, r.angle, 1e-3);
 }
 
-TEST(FlightBase, NothingHiddenNothingNamed) {
-  const LoopResult r = run(drives({}, 60, 1));
-  EXPECT_EQ(r.used, 60);
-  EXPECT_TRUE(r.adopted.empty()) << told(r);
-  EXPECT_EQ(r.verdict, Verdict::no_residual) << told(r);
-}
-
 TEST(FlightBase, NamesDragAndItsSize) {
   const LoopResult r = run(drives({.drag = 0.06}, 90, 2));
   EXPECT_EQ(what(r, "drag-level"), Said::alone) << told(r);
   EXPECT_NEAR(value(r, "relative_drag"), 0.06, 0.015);
-}
-
-TEST(FlightBase, NamesTheMisreadAxis) {
-  const LoopResult r = run(drives({.axis = radians(4)}, 60, 3));
-  EXPECT_EQ(what(r, "spin-axis-bias"), Said::alone) << told(r);
-  EXPECT_NEAR(value(r, "tilt"), radians(4), radians(1));
-}
-
-/// Six effects, six sets of 60 to 150 flights each, and thirty without any.
-TEST(SlowFlightBase, NamesWhatIsHidden) {
-  int sets = 0, found = 0, wrong = 0;
-  for (const Undeclared& k : effects_hidden())
-    for (unsigned seed = 0; seed < 6; ++seed) {
-      const LoopResult r = run(drives(k.hidden, 60 + 18 * int(seed), 100 + seed, k.wind));
-      const Said said = what(r, k.effect);
-      ++sets;
-      found += said == Said::alone || said == Said::tied;
-      wrong += said == Said::wrong;
-      if (said != Said::alone) std::printf("%s, set %u: %s\n", k.effect.c_str(), seed, told(r).c_str());
-    }
-  std::printf("%d of %d named alone or in a tie, %d wrong\n", found, sets, wrong);
-  EXPECT_GE(found, 0.9 * sets);
-  EXPECT_EQ(wrong, 0);
-}
-
-TEST(SlowFlightBase, ThirtyWithoutAnEffect) {
-  int clean = 0;
-  for (unsigned seed = 0; seed < 30; ++seed) {
-    const LoopResult r = run(drives({}, 60 + 4 * int(seed), 300 + seed));
-    clean += r.adopted.empty() && r.ties.empty();
-    if (!r.adopted.empty() || !r.ties.empty() || r.verdict != Verdict::no_residual)
-      std::printf("set %u: %s\n", seed, told(r).c_str());
-  }
-  EXPECT_EQ(clean, 30);
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ import sys
 from paraview.simple import *  # noqa: F403  (the way ParaView scripts are written)
 
 directory = sys.argv[1]
-series = sorted(glob.glob(os.path.join(directory, "*.pvd")))
+# A flight is lines at one time, without a displacement.
+series = sorted(p for p in glob.glob(os.path.join(directory, "*.pvd")) if not os.path.basename(p).startswith("flight-"))
 if not series:
     sys.exit("no series in " + directory)
 for path in series:
