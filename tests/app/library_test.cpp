@@ -66,6 +66,7 @@ TEST(Library, EveryShippedEntryIsRead) {
 TEST(Library, ConstantsAreWhatTheReaderReads) {
   std::size_t faces = 0;
   for (const LibraryEntry& e : library(Shelf::faces)) {
+    if (!e.shipped) continue;
     const FaceCompliance read = library_face(e.name).face;
     const NamedFace* constant = find_face(e.name);
     ASSERT_NE(constant, nullptr) << e.name;
