@@ -69,8 +69,8 @@ void read_origin(Table root) {
   root.text({"what", "one sentence for `hosel list`"});
   Table p = root.table("provenance");
   p.text({"source", "where the numbers come from"});
-  p.text({"case", "that found them"}, "");
-  p.text({"inputs", "digest of the resolved case"}, "");
+  p.text({"case", "that found them: its title or its name"}, "");
+  p.text({"inputs", "digest of everything that the case reads"}, "");
   p.text({"build", "of the program that found them"}, "");
   if (auto fit = root.optional_table("fit")) {
     const auto parameters = fit->texts({"parameters", "that were fitted, each with its unit"});

@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <toml++/toml.h>
 
 #include "hosel/app/sweep_store.hpp"
 #include "hosel/app/version.hpp"
@@ -51,13 +52,6 @@ std::string saw_tables(const Seen& seen, std::string_view table) {
 }
 
 }  // namespace
-
-Origin origin_of(const CaseFile& file) {
-  std::string read = file.resolved();
-  for (const fs::path& named : file.inputs()->files())
-    if (fs::is_regular_file(named)) read += post::read_file(named);
-  return {fs::canonical(file.directory()).filename().string(), post::digest(read)};
-}
 
 std::string ball_tables(const Ball& body, const models::FeBall& layers) {
   std::string text = fmt::format("\n[ball]\nmass_kg = {}\nradius_mm = {}\ninertia_factor = {}\n", body.mass,
@@ -129,10 +123,11 @@ std::string contact_tables(const NamedContact& c) {
   return text;
 }
 
-void offer(Output& out, const Origin& origin, Shelf shelf, const Offer& o, const std::string& tables) {
+void offer(Output& out, Shelf shelf, const Offer& o, const std::string& tables) {
   std::string text = fmt::format("what = {}\n\n[provenance]\nsource = {}\ncase = {}\ninputs = {}\nbuild = {}\n",
-                                 toml_text(o.what), toml_text(o.source), toml_text(origin.name),
-                                 toml_text(origin.inputs), toml_text(program_version()));
+                                 toml_text(o.what), toml_text(o.source),
+                                 toml_text(toml::parse(out.resolved_case())["title"].value_or(std::string())),
+                                 toml_text(out.fingerprint()), toml_text(program_version()));
   if (!o.parameters.empty()) {
     // Infinite along what the data do not show: such a parameter is uncertain by itself.
     Eigen::MatrixXd covariance = o.covariance;

@@ -12,13 +12,6 @@
 
 namespace hosel::app {
 
-/// Which case a run answers: its name, and a digest of the resolved case and the files that it names.
-struct Origin {
-  std::string name, inputs;
-};
-/// When the case has been read.
-Origin origin_of(const CaseFile& file);
-
 /// What is told of an entry beside its values.
 struct Offer {
   std::string what;    ///< one sentence for `hosel list`
@@ -40,7 +33,7 @@ std::string head_tables(const Head& head, std::string_view face, const std::opti
 std::string contact_tables(const NamedContact& contact);
 
 /// Writes OUT/entries/<shelf>.toml and reads it again by the library's reader: what it would refuse is a logic_error.
-void offer(Output& out, const Origin& origin, Shelf shelf, const Offer& offer, const std::string& tables);
+void offer(Output& out, Shelf shelf, const Offer& offer, const std::string& tables);
 /// Nothing is offered: entries of an earlier run in OUT go.
 void withdraw_offers(Output& out);
 

@@ -56,7 +56,6 @@ class CalibrateBallJob final : public Job {
         {"leave_one_out", "every seen shot is predicted by a fit without it, one Gauss-Newton step away"}, false);
     if (const auto faults = options.faults(); !faults.empty()) root.fail("ball", faults.front());
     if (const auto faults = problem_.faults(); !faults.empty()) root.fail("free", faults.front());
-    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -180,11 +179,11 @@ class CalibrateBallJob final : public Job {
     o.seen.impact_speed = use.impact_speed;
     if (oblique) o.seen.spin_loft = use.spin_loft;
     else o.seen.not_for.emplace_back("a claim about spin: no oblique blow was seen");
-    offer(out, origin_, Shelf::balls, o, ball_tables(problem_.ball, fit.ball));
+    offer(out, Shelf::balls, o, ball_tables(problem_.ball, fit.ball));
     if (std::ranges::any_of(problem_.free, [](const auto& p) { return p.what == What::friction; })) {
       NamedContact contact;
       contact.face_friction = fit.friction;
-      offer(out, origin_, Shelf::contacts, o, contact_tables(contact));
+      offer(out, Shelf::contacts, o, contact_tables(contact));
     }
   }
 
@@ -483,7 +482,6 @@ class CalibrateBallJob final : public Job {
     return text;
   }
 
-  Origin origin_;
   models::BallCalibrationProblem problem_;
   std::vector<std::string> groups_;  // of the shots
 };

@@ -39,7 +39,6 @@ class CalibrateFaceJob final : public Job {
     target_.mass = target.quantity({"effective_mass", "of the face, as estimated"}, "g", {1e-3, 0.04});
     target_.mass_sigma =
         target.quantity({"effective_mass_sigma", "standard error of the effective mass"}, "g", Range::positive());
-    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -71,7 +70,7 @@ class CalibrateFaceJob final : public Job {
     out.draw(figure(f), "times");
     out.write("face.toml", toml);
     withdraw_offers(out);
-    offer(out, origin_, Shelf::faces, offered(fit), face_tables(fit.face));
+    offer(out, Shelf::faces, offered(fit), face_tables(fit.face));
     out.write_summary(summary);
   }
 
@@ -127,7 +126,6 @@ class CalibrateFaceJob final : public Job {
     return out;
   }
 
-  Origin origin_;
   Ball ball_;
   Head head_;
   double radius_ = 0;

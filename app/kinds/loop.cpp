@@ -143,7 +143,6 @@ class LoopJob final : public Job {
     }
     if (skipped_.empty())
       if (const auto use = use_of_shots(case_)) check_use(root, *use, {case_.base});
-    origin_ = origin_of(file);
   }
 
   void run(Output& out) override {
@@ -156,7 +155,7 @@ class LoopJob final : public Job {
     case_.told = {};
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);
-    offer_corrected(out, origin_, case_, result, fe_.get());
+    offer_corrected(out, case_, result, fe_.get());
     report_loop(out, result, case_.shots, "rows");
   }
 
@@ -260,7 +259,6 @@ class LoopJob final : public Job {
   }
 
   loop::ShotCase case_;
-  Origin origin_;
   std::unique_ptr<models::ImpactModel> model_;
   loop::SlowBase slow_;
   std::unique_ptr<models::ChangeableFe> fe_;  ///< of a finite-element base

@@ -152,7 +152,7 @@ std::optional<Use> use_of_shots(const loop::ShotCase& c) {
   return {};
 }
 
-void offer_corrected(Output& out, const Origin& origin, const loop::ShotCase& c, const loop::LoopResult& result,
+void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResult& result,
                      const models::ChangeableFe* base) {
   if (result.adopted.empty() || result.selection.chosen.size() == 0) return;
   const loop::Inputs inputs = loop::make_inputs(c.shots, c.blow, c.head_mass_declared, {}, c.loft_unknown);
@@ -165,7 +165,7 @@ void offer_corrected(Output& out, const Origin& origin, const loop::ShotCase& c,
     NamedContact contact;
     if (base) contact.face_friction = blow.contact.friction;
     else contact.law = blow.contact;
-    offer(out, origin, Shelf::contacts, o, contact_tables(contact));
+    offer(out, Shelf::contacts, o, contact_tables(contact));
   }
   // A head whose mass is each club's own is no head.
   const bool one_mass = std::ranges::all_of(
@@ -173,13 +173,13 @@ void offer_corrected(Output& out, const Origin& origin, const loop::ShotCase& c,
   std::optional<FaceCompliance> face;
   if (base) face = models::changed(base->impact().face, found.first.change.face_compliance, blow.club.head);
   if (found.of.head && one_mass && blow.club.head.faults().empty() && blow.club.head.inertia.allFinite())
-    offer(out, origin, Shelf::heads, o, head_tables(blow.club.head, kRigidFace, blow.club.geometry));
+    offer(out, Shelf::heads, o, head_tables(blow.club.head, kRigidFace, blow.club.geometry));
   else if (found.of.head)
     out.tell("the head is not offered to the library: its mass is each club's own, or its inertia is not declared");
   if (base && (found.of.layers || found.of.ball))
-    offer(out, origin, Shelf::balls, o,
+    offer(out, Shelf::balls, o,
           ball_tables(blow.ball, models::changed(base->impact().ball, found.first.change, blow.ball.radius)));
-  if (base && found.of.face && face) offer(out, origin, Shelf::faces, o, face_tables(*face));
+  if (base && found.of.face && face) offer(out, Shelf::faces, o, face_tables(*face));
 }
 
 }  // namespace hosel::app

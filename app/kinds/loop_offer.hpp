@@ -15,7 +15,7 @@ std::optional<Use> use_of_shots(const loop::ShotCase& c);
 /// Entries for what the effects change alike in every shot: the contact's law or friction, the head, the ball's layers,
 /// the face. What they change from shot to shot, or in the instrument, is named in each entry as not in it. `base` is
 /// the finite-element one, or nullptr.
-void offer_corrected(Output& out, const Origin& origin, const loop::ShotCase& c, const loop::LoopResult& result,
+void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResult& result,
                      const models::ChangeableFe* base);
 
 }  // namespace hosel::app
