@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "hosel/golf/parallel.hpp"
@@ -18,17 +19,18 @@ namespace {
 /// A model as a function of its parameters, each inside its bounds.
 struct Reduced {
   std::vector<solvers::Bounds> bounds;
-  Eigen::VectorXd start;
+  std::vector<Eigen::VectorXd> starts;  // the best of what they lead to is taken
   std::function<Launch(const Eigen::VectorXd&, const Blow&)> launch;
 };
 
 Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target) {
+  constexpr double kTimeSd = 0.03;  // relative
   double speed = 0, spin = 0;
   for (const Launch& l : target) speed += l.ball_speed(), spin += l.spin_rate();
   const double n = double(target.size()), speed_sd = 0.005 * speed / n, angle_sd = radians(0.3),
                spin_sd = 0.03 * spin / n;
   const auto residuals = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r) {
-    r.resize(Eigen::Index(6 * target.size()));
+    r.resize(Eigen::Index(7 * target.size()));
     for (std::size_t k = 0; k < target.size(); ++k) {
       Launch l;
       try {
@@ -37,15 +39,21 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
         return false;  // a law that no contact can have
       }
       const Launch& t = target[k];
-      r.segment<6>(Eigen::Index(6 * k)) << (l.ball_speed() - t.ball_speed()) / speed_sd,
+      // A rigid model has no contact time.
+      const double time = l.contact_time ? (*l.contact_time / t.contact_time.value() - 1) / kTimeSd : 0;
+      r.segment<7>(Eigen::Index(7 * k)) << (l.ball_speed() - t.ball_speed()) / speed_sd,
           (l.launch_angle() - t.launch_angle()) / angle_sd, (l.azimuth() - t.azimuth()) / angle_sd,
-          (l.spin - t.spin) / spin_sd;
+          (l.spin - t.spin) / spin_sd, time;
     }
     return true;
   };
-  return solvers::least_squares(residuals, int(6 * target.size()), model.start, model.bounds,
-                                {.starts = 1, .iterations = 400})
-      .parameters;
+  std::optional<solvers::LeastSquaresFit> best;
+  for (const Eigen::VectorXd& start : model.starts) {
+    const auto found = solvers::least_squares(residuals, int(7 * target.size()), start, model.bounds,
+                                              {.starts = 1, .iterations = 400});
+    if (!best || found.cost < best->cost) best = found;
+  }
+  return best->parameters;
 }
 
 ReducedBand band(const std::string& name, const ImpactModel& model, const std::vector<Blow>& blows,
@@ -80,7 +88,7 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
         .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = fe.friction};
   };
   const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
-                      Eigen::Vector3d(0.86, -0.0029, 0.2),
+                      {Eigen::Vector3d(0.86, -0.0029, 0.2)},
                       [&](const Eigen::VectorXd& x, const Blow& blow) {
                         Blow b = blow;
                         b.contact = law(x);
@@ -106,7 +114,9 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
        {std::log(0.5), std::log(1e4), 1},
        {std::log(1e-4), std::log(1.0), 1},
        {3e-4, 8e-3, 1e-3}},
-      (Eigen::VectorXd(5) << std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3).finished(),
+      // A joint slow against the contact, and one that swings back within it: either can be the local minimum.
+      {Eigen::VectorXd{{std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3}},
+       Eigen::VectorXd{{std::log(9e9), 12e-3, std::log(500.0), std::log(15e-3), 1.5e-3}}},
       [&](const Eigen::VectorXd& x, const Blow& blow) { return volumetric_impact(blow, volume(x)).launch; }};
   out.volume = volume(fitted(volumetric, blows, out.launches));
 
@@ -115,7 +125,7 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   };
   const Reduced maw{
       {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
-      Eigen::Vector3d(std::log(85e6), 0.4, 6e-3),
+      {Eigen::Vector3d(std::log(85e6), 0.4, 6e-3)},
       [&](const Eigen::VectorXd& x, const Blow& blow) { return hertz_maw_impact(blow, hertz(x)).launch; }};
   out.hertz = hertz(fitted(maw, blows, out.launches));
 

@@ -47,7 +47,10 @@ class LoadedClubJob final : public Job {
     motion_ = read_motion(root.table("motion"));
     swing_ = read_swing_options(root);
     if (swing_.joint.kind == models::HeadJoint::Kind::none) root.fail("joint", "a blow needs a head on the shaft");
-    solve_ = read_options(root, {"fe-free-body"});
+    // A condensed shaft knows no joint that gives: the reduced models are then not asked.
+    std::vector<std::string> asked{"fe-free-body"};
+    if (!swing_.joint.gives()) asked.emplace_back("volumetric");
+    solve_ = read_options(root, asked);
     models::ShaftMount& mount = solve_.shaft_mount;
     mount.elements = swing_.elements;
     mount.growth = swing_.growth;
