@@ -141,9 +141,13 @@ int main(int argc, char** argv) {
   import_command->add_option("--units", import.units, "imperial or metric, where the file names no units");
   import_command->add_option("--club", import.club,
                              "only the shots with this club; or the club of all shots, where the file names none");
-  import_command->add_option("--column", import.columns, "'header=quantity_unit', by hand (repeatable)")->take_all();
+  import_command
+      ->add_option("--column", import.columns,
+                   "'header=quantity_unit', by hand; '=-quantity_unit' turns its sign (repeatable)")
+      ->take_all();
   import_command->add_option("--keep", import.keep, "an unknown column that may explain something (repeatable)")
       ->take_all();
+  import_command->add_flag("--modelled", import.modelled, "take spin that the instrument modelled as measured");
   import_command->add_option("--dictionary", import.dictionary, "header names of your own, beside the shipped ones");
   import_command->callback([&] { app::import_shots(import); });
 

@@ -30,7 +30,8 @@ struct ReducedCalibration {
 /// Least squares over the blows: restitution (level and slope), tangential restitution; stiffness, damping, joint and
 /// cover of the volumetric ball; modulus, damping and Poisson's ratio of Hertz and Maw. Coulomb's coefficient is that
 /// of the finite elements in all of them. Differences are measured against 0.5 % of ball speed, 0.3 deg of direction,
-/// 3 % of the mean spin and 3 % of contact time. Throws what the models throw, std::invalid_argument where there are fewer than four blows.
+/// 3 % of the mean spin and 3 % of contact time. Throws what the models throw, std::invalid_argument where there are
+/// fewer than four blows.
 ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vector<Blow>& blows);
 
 }  // namespace hosel::models

@@ -1,6 +1,7 @@
 #include "hosel/solvers/least_squares.hpp"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -118,6 +119,7 @@ std::optional<Minimum> minimise(const LeastSquares& problem, const Eigen::Vector
   how.function_tolerance = until.cost;
   how.parameter_tolerance = until.parameters;
   how.logging_type = ceres::SILENT;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // its warnings come all the same; the summary says what failed
   ceres::Solver::Summary summary;
   ceres::Solve(how, &search, &summary);
   if (!summary.IsSolutionUsable()) return {};

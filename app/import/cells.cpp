@@ -43,10 +43,30 @@ std::string unit_of(std::string text) {
 }
 
 std::string unit_in(const std::string& header) {
-  if (const auto open = header.find_last_of("(["); open != std::string::npos)
-    if (const std::string u = unit_of(header.substr(open)); !u.empty()) return u;
+  if (const auto open = header.find_last_of("(["); open != std::string::npos) {
+    const std::string inside = header.substr(open);
+    if (const std::string u = unit_of(inside); !u.empty()) return u;
+    if (const std::string u = unit_of(inside.substr(0, inside.find(' '))); !u.empty()) return u;
+  }
   const auto blank = header.find_last_of(" _");
   return blank == std::string::npos ? "" : unit_of(header.substr(blank + 1));
+}
+
+double sign_in(const std::string& header) {
+  std::string text = header;
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::erase_if(text, [](char c) { return c == ' ' || c == '='; });
+  const auto says = [&](std::initializer_list<const char*> words, char sign) {
+    return std::ranges::any_of(words, [&](const char* w) {
+      return text.find(std::string(w) + sign) != std::string::npos ||
+             text.find(sign + std::string(w)) != std::string::npos;
+    });
+  };
+  const auto positive = {"toe", "right", "up", "high", "fade", "open", "in-out"};
+  const auto negative = {"heel", "left", "down", "low", "draw", "closed", "out-in"};
+  // `toe-/heel+`: the sign behind a word is that word's; in `toe-/heel+` none stands before one.
+  const bool minus = says(negative, '+') || says(positive, '-'), plus = says(positive, '+') || says(negative, '-');
+  return minus == plus ? 0 : minus ? -1 : 1;
 }
 
 double si_of(const std::string& unit) {
@@ -59,7 +79,7 @@ double si_of(const std::string& unit) {
 
 std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   double sign = 1;
-  std::string tail;
+  std::string tail, own_unit;
   for (const char* minus : {"\xE2\x88\x92", "\xE2\x80\x93"})  // typographic ones
     if (text.starts_with(minus)) text.replace(0, 3, "-");
   std::size_t end = 0;
@@ -74,13 +94,23 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   std::ranges::replace(digits, ',', '.');
   if (!tail.empty()) {
     const std::string word = plain(tail);
+    static const std::map<std::string, double> phrases = {{"in out", 1},  {"in to out", 1},  {"inside out", 1},
+                                                          {"out in", -1}, {"out to in", -1}, {"outside in", -1}};
     const std::string last = word.substr(word.find_last_of(' ') == std::string::npos ? 0 : word.find_last_of(' ') + 1);
     static const std::map<std::string, double> sides = {
-        {"r", 1},     {"right", 1}, {"l", -1}, {"left", -1}, {"t", 1},  {"toe", 1},   {"h", -1},
-        {"heel", -1}, {"u", 1},     {"up", 1}, {"high", 1},  {"d", -1}, {"down", -1}, {"low", -1}};
+        {"r", 1},     {"right", 1}, {"l", -1},      {"left", -1}, {"t", 1},    {"toe", 1},   {"h", -1},
+        {"heel", -1}, {"u", 1},     {"up", 1},      {"high", 1},  {"d", -1},   {"down", -1}, {"low", -1},
+        {"open", 1},  {"o", 1},     {"closed", -1}, {"c", -1},    {"fade", 1}, {"draw", -1}};
     const auto at = sides.find(last);
-    if (side && at != sides.end()) sign = at->second;
-    else if (unit_of(tail).empty()) return {};
+    const auto phrase = phrases.find(word);
+    // `5 mm Toe`: a unit may stand before the side.
+    const auto gap = tail.find_first_of(" \t");
+    const std::string before = unit_of(tail.substr(0, gap));
+    if (side && phrase != phrases.end()) sign = phrase->second;
+    else if (side && at != sides.end()) {
+      sign = at->second;
+      if (gap != std::string::npos) own_unit = before;
+    } else if (own_unit = unit_of(tail); own_unit.empty()) return {};
   }
   if (!digits.empty() && digits.front() == '+') digits.erase(0, 1);
   Cell out;
@@ -91,6 +121,7 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
     digits = digits.front() == '-' ? digits.substr(1) : "-" + digits;
   }
   out.digits = digits;
+  out.unit = own_unit;
   return out;
 }
 

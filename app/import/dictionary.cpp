@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 
 #include "build_info.hpp"
 #include "hosel/app/import/cells.hpp"
@@ -66,8 +67,8 @@ void Dictionary::read(const fs::path& file) {
                                  I(0, 2), I(1, 0), I(1, 1), I(1, 2), I(2, 0), I(2, 1), I(2, 2))};
     }
   for (Table& t : root.tables("layout"))
-    layouts_.push_back(
-        {t.text("name"), plain(t.text("has", "")), t.text("preamble", ""), t.choice("units", {"imperial", "metric"})});
+    layouts_.push_back({t.text("name"), plain(t.text("has", "")), t.text("preamble", ""),
+                        t.choice("units", {"imperial", "metric", "si"})});
   text.finish();
 }
 
@@ -111,10 +112,31 @@ std::vector<std::string> Dictionary::quantity_names() const {
   return out;
 }
 
+std::string club_key(const std::string& name) {
+  static const std::map<std::string, std::string> kinds = {
+      {"i", "i"},      {"ir", "i"},     {"iron", "i"}, {"irons", "i"},   {"w", "w"},
+      {"wood", "w"},   {"fw", "w"},     {"h", "h"},    {"hy", "h"},      {"hyb", "h"},
+      {"hybrid", "h"}, {"rescue", "h"}, {"ut", "h"},   {"utility", "h"}, {"", ""},
+      {"deg", ""},     {"degree", ""},  {"wedge", ""}, {"w wedge", ""},  {"fairway wood", "w"},
+      {"fairway", "w"}};
+  std::string digits, letters;
+  for (const char c : plain(name)) {
+    if (std::isdigit(static_cast<unsigned char>(c))) {
+      digits += c;
+    } else if (c != ' ' || (!letters.empty() && letters.back() != ' ')) {
+      letters += c;
+    }
+  }
+  while (!letters.empty() && letters.back() == ' ') letters.pop_back();
+  const auto kind = kinds.find(letters);
+  return digits.empty() || digits.size() > 2 || kind == kinds.end() ? plain(name) : digits + kind->second;
+}
+
 const NominalClub* Dictionary::club(const std::string& name) const {
-  const std::string word = plain(name);
   for (const NominalClub& c : clubs_)
-    if (std::ranges::count(c.names, word)) return &c;
+    if (std::ranges::count(c.names, plain(name)) ||
+        std::ranges::any_of(c.names, [&](const std::string& n) { return club_key(n) == club_key(name); }))
+      return &c;
   return nullptr;
 }
 

@@ -30,7 +30,7 @@ struct MonitorLayout {
   std::string name;
   std::string has;       ///< a header that only it has
   std::string preamble;  ///< how its first line begins
-  std::string units;     ///< imperial, metric
+  std::string units;     ///< imperial, metric, si (lengths in m)
 };
 
 class Dictionary {
@@ -45,6 +45,7 @@ class Dictionary {
   const MonitorQuantity* quantity(std::string_view name) const;
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< "" where it is none
+  /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7` are one club.
   const NominalClub* club(const std::string& name) const;
   const std::vector<MonitorLayout>& layouts() const { return layouts_; }
   const std::map<std::string, NominalHead>& heads() const { return heads_; }
@@ -59,6 +60,9 @@ class Dictionary {
 
 /// Where the shipped dictionary is: in the tree, else installed.
 std::filesystem::path shipped_dictionary();
+
+/// A club's name in one spelling: number and kind (`7i`, `3w`, `4h`), else as `plain` has it.
+std::string club_key(const std::string& name);
 
 /// Lower case, without what stands in brackets, single blanks for punctuation.
 std::string plain(std::string_view text);

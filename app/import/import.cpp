@@ -29,31 +29,88 @@ struct Understood {
   double median = 0;
 };
 
-bool decimal_comma(const std::vector<std::string>& cells, const std::string& delimiter) {
-  // 94,2 is a decimal comma wherever the group after it has not three digits.
+/// What stands before a unit or a side: `1,3` of `1,3 L`.
+std::string figure_of(const std::string& cell) {
+  const auto end = cell.find_first_not_of("0123456789.,+-'");
+  return cell.substr(0, end);
+}
+
+/// Whether a cell's comma (1) or its point (-1) is the decimal one; 0 where it may as well part thousands, or has none.
+int decimal_of(const std::string& cell) {
+  const std::string text = figure_of(cell);
+  const auto point = text.rfind('.'), comma = text.rfind(',');
+  constexpr auto none = std::string::npos;
+  if (point == none && comma == none) return 0;
+  if (point != none && comma != none) return comma > point ? 1 : -1;
+  const char sign = comma != none ? ',' : '.';
+  const int decimal = comma != none ? 1 : -1;
+  const auto first = text.find(sign), last = text.rfind(sign);
+  if (first != last) return -decimal;  // thousands stand several times
+  const std::size_t before = first - std::min(first, text.find_first_of("0123456789")), after = text.size() - last - 1;
+  return after == 3 && before >= 1 && before <= 3 && text[text.find_first_of("0123456789")] != '0' ? 0 : decimal;
+}
+
+/// Of a whole file: 1 where a column of it surely has decimal commas and none has points, -1 the contrary, else 0.
+int decimal_of(const Sheet& sheet) {
+  bool comma = false, point = false;
+  for (const Row& row : sheet.rows)
+    for (const std::string& cell : row)
+      if (!cell.empty() && figure_of(cell).size() > 1 && trimmed(cell.substr(figure_of(cell).size())).size() < 12) {
+        const int d = decimal_of(cell);
+        comma |= d > 0;
+        point |= d < 0;
+      }
+  return comma == point ? 0 : comma ? 1 : -1;
+}
+
+bool decimal_comma(const std::vector<std::string>& cells, const Sheet& sheet, const std::string& header,
+                   const fs::path& file) {
+  std::vector<std::size_t> commas, points;
   bool any = false;
-  for (const std::string& c : cells) {
-    const auto comma = c.rfind(',');
-    if (comma == std::string::npos) continue;
-    any = true;
-    std::size_t digits = 0;
-    while (comma + 1 + digits < c.size() && std::isdigit(static_cast<unsigned char>(c[comma + 1 + digits]))) ++digits;
-    if (digits != 3) return true;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int d = decimal_of(cells[i]);
+    if (d > 0) commas.push_back(i);
+    if (d < 0) points.push_back(i);
+    any |= figure_of(cells[i]).find(',') != std::string::npos;
   }
-  return any && delimiter != "," && delimiter != "JSON" &&
-         std::ranges::none_of(cells, [](const std::string& c) { return c.find('.') != std::string::npos; }) &&
+  if (!commas.empty() && !points.empty()) {
+    const std::size_t odd = commas.size() < points.size() ? commas.front() : points.front();
+    throw InputError(
+        fmt::format("{}: column '{}', shot {}: '{}' among {} that write the decimals otherwise: correct it",
+                    file.string(), header, odd + 1, cells[odd], std::max(commas.size(), points.size())));
+  }
+  if (!commas.empty() || !points.empty()) return !commas.empty();
+  if (const int d = decimal_of(sheet); d != 0) return d > 0;
+  // 94,213 alone: thousands in a file of commas, decimals where small numbers stand in a file of semicolons.
+  return any && sheet.delimiter != "," && sheet.delimiter != "JSON" &&
          std::ranges::all_of(cells, [](const std::string& c) { return c.size() < 6; });
 }
 
-Understood make_quantity(const MonitorQuantity& q, const std::string& header, std::string unit, const Sheet& sheet,
-                         std::size_t column, const fs::path& file) {
+/// What some programs write where nothing was measured.
+bool no_reading(double value) {
+  const double a = std::abs(value);
+  return a == 99999 || a == 999999 || a == 99999.9 || value == -9999 || value == -999;
+}
+
+std::optional<Dimension> dimension_of(const std::string& unit) {
+  if (unit == "cm" || unit == "in") return Dimension::length;
+  for (const Unit& u : units())
+    if (u.suffix == unit) return u.dimension;
+  return {};
+}
+
+Understood make_quantity(const MonitorQuantity& q, const std::string& header, std::string unit, double sign,
+                         const Sheet& sheet, std::size_t column, const fs::path& file) {
   Understood out;
   out.header = header;
   std::vector<std::string> raw;
   for (const Row& row : sheet.rows) raw.push_back(missing(row[column]) ? "" : row[column]);
-  const bool comma = decimal_comma(raw, sheet.delimiter);
+  const bool comma = decimal_comma(raw, sheet, header, file);
   std::vector<double> values;
-  const bool convert = unit == "cm" || unit == "in";
+  const std::string given = unit;
+  const bool lengths = dimension_of(unit) == Dimension::length;
+  if (lengths) unit = "mm";
+  std::size_t others = 0, empty = 0;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     if (raw[i].empty()) {
       out.cells.emplace_back();
@@ -63,27 +120,96 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
     if (!cell)
       throw InputError(
           fmt::format("{}: column '{}', shot {}: '{}' is not a number", file.string(), header, i + 1, raw[i]));
-    out.cells.push_back(convert ? fmt::format("{:.6g}", 1e3 * si_of(unit) * cell->value) : cell->digits);
-    values.push_back(si_of(unit) * cell->value);
+    if (no_reading(cell->value)) {
+      out.cells.emplace_back();
+      ++empty;
+      continue;
+    }
+    const std::string own = cell->unit.empty() ? given : cell->unit;
+    if (dimension_of(own) != dimension_of(given))
+      throw InputError(fmt::format("{}: column '{}' in {}, shot {}: '{}' is in another kind of unit", file.string(),
+                                   header, given, i + 1, raw[i]));
+    others += own != given;
+    const double si = sign * si_of(own) * cell->value;
+    const bool as_recorded = own == unit;
+    out.cells.push_back(!as_recorded ? fmt::format("{:.6g}", si / si_of(unit))
+                        : sign > 0   ? cell->digits
+                                     : (cell->digits.front() == '-' ? cell->digits.substr(1) : "-" + cell->digits));
+    values.push_back(si);
     ++out.filled;
   }
-  if (convert) out.note = fmt::format("{} made mm", unit), unit = "mm";
-  if (comma) out.note += out.note.empty() ? "decimal comma" : ", decimal comma";
+  const auto note = [&](const std::string& text) { out.note += (out.note.empty() ? "" : ", ") + text; };
+  if (lengths && given != "mm") note(fmt::format("{} made mm", given));
+  if (comma) note("decimal comma");
+  if (sign < 0) note("sign turned");
+  if (others > 0) note(fmt::format("cells in a unit of their own: {}", others));
+  if (empty > 0) note(fmt::format("cells without a reading: {}", empty));
   out.name = q.name + "_" + unit;
   out.median = loop::median(values);
   if (!values.empty() && !(out.median >= q.low && out.median <= q.high)) {
     std::string reads;
     for (const Unit& u : units())
-      if (u.dimension == split_unit(out.name).unit->dimension && u.suffix != unit) {
-        const double other = out.median / si_of(unit) * u.si;
+      if (u.dimension == split_unit(out.name).unit->dimension && u.suffix != given) {
+        const double other = out.median / si_of(given) * u.si;
         if (other >= q.low && other <= q.high) reads += (reads.empty() ? "" : " or ") + std::string(u.suffix);
       }
     throw InputError(fmt::format(
         "{}: column '{}': the median {:.4g} {} is no {} ({:.3g} to {:.3g} in SI){}; say --column '{}={}_UNIT'",
-        file.string(), header, out.median / si_of(unit), unit, q.name, q.low, q.high,
+        file.string(), header, out.median / si_of(given), given, q.name, q.low, q.high,
         reads.empty() ? "" : ": it reads like " + reads, header, q.name));
   }
   return out;
+}
+
+/// Empties the cells of the rows where `which`; how many had something.
+std::size_t blank(Understood& u, const std::vector<bool>& which) {
+  std::size_t n = 0;
+  std::vector<double> left;
+  for (std::size_t i = 0; i < u.cells.size(); ++i) {
+    if (u.cells[i].empty()) continue;
+    if (which[i]) {
+      u.cells[i].clear();
+      ++n;
+      --u.filled;
+    } else if (const auto x = number(u.cells[i], false, false)) {
+      left.push_back(x->value * si_of(std::string(split_unit(u.name).unit->suffix)));
+    }
+  }
+  u.median = loop::median(left);
+  return n;
+}
+
+bool says_any(const std::string& cell, std::initializer_list<const char*> words) {
+  const std::string text = plain(cell);
+  return std::ranges::any_of(words, [&](const char* w) { return text.find(w) != std::string::npos; });
+}
+
+/// A left-handed player's shots as a right-handed one's: what is signed towards the right turns round. The place on the
+/// face is towards the toe for both.
+std::size_t mirror(std::vector<Understood>& columns, const std::vector<bool>& left) {
+  for (Understood& u : columns) {
+    if (u.name.empty()) continue;
+    static const std::set<std::string> sideways = {"azimuth", "spin_axis", "sidespin", "club_path", "face_angle"};
+    if (!sideways.contains(std::string(split_unit(u.name).stem))) continue;
+    for (std::size_t i = 0; i < u.cells.size(); ++i)
+      if (left[i] && !u.cells[i].empty())
+        u.cells[i] = u.cells[i].front() == '-' ? u.cells[i].substr(1) : "-" + u.cells[i];
+  }
+  return std::size_t(std::ranges::count(left, true));
+}
+
+/// Face minus path under the name of a place on the face, as one connector writes it: nine cells in ten agree.
+bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
+  if (!face || !path || !face->filled || !path->filled) return false;
+  std::size_t same = 0, seen = 0;
+  for (std::size_t i = 0; i < u.cells.size(); ++i) {
+    const auto a = number(u.cells[i], false, false), f = number(face->cells[i], false, false),
+               p = number(path->cells[i], false, false);
+    if (!a || !f || !p) continue;
+    ++seen;
+    same += std::abs(a->value - (f->value - p->value)) < 0.15;
+  }
+  return seen > 2 && 10 * same >= 9 * seen;
 }
 
 void write_csv(const fs::path& file, const std::vector<const Understood*>& columns,
@@ -112,11 +238,13 @@ void import_shots(const ImportOptions& o) {
 
   // By hand: header -> quantity with unit.
   std::map<std::string, std::string> by_hand;
+  std::set<std::string> turned;  // headers whose numbers grow the other way
   for (const std::string& c : o.columns) {
     const auto at = c.rfind('=');
     if (at == std::string::npos || at == 0)
       throw InputError(fmt::format("--column '{}': header=quantity_unit is wanted", c));
-    const std::string name = c.substr(at + 1);
+    std::string name = c.substr(at + 1);
+    if (name.starts_with('-')) turned.insert(plain(c.substr(0, at))), name.erase(0, 1);
     by_hand[plain(c.substr(0, at))] = name;
     if (name.empty()) {
       d.learn(c.substr(0, at), "");
@@ -139,10 +267,12 @@ void import_shots(const ImportOptions& o) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (by_hand.contains(plain(sheet.names[c]))) continue;
     std::string r = d.bookkeeping_of(sheet.names[c]);
-    if (r == "club" && d.quantity_of(sheet.names[c])) {
-      // "Club" is a name where its cells are not numbers, a speed where they are.
+    if ((r == "club" || r == "ball") && d.quantity_of(sheet.names[c])) {
+      // "Club" and "Ball" are names where their cells are not numbers, speeds where they are.
+      const bool unit = !unit_in(sheet.names[c]).empty() ||
+                        (c < sheet.units.size() && !unit_of(sheet.units[c]).empty());
       if (std::ranges::all_of(sheet.rows, [&](const Row& row) {
-            return missing(row[c]) || (number(row[c], false, false) && !unit_in(sheet.names[c]).empty());
+            return missing(row[c]) || (number(row[c], false, false) && (unit || r == "ball"));
           }))
         r.clear();
     }
@@ -157,7 +287,7 @@ void import_shots(const ImportOptions& o) {
     for (const Row& row : sheet.rows)
       if (!std::ranges::count(names, row[taken["club"]])) names.push_back(row[taken["club"]]);
     other_clubs = sheet.rows.size();
-    std::erase_if(sheet.rows, [&](const Row& row) { return plain(row[taken["club"]]) != plain(o.club); });
+    std::erase_if(sheet.rows, [&](const Row& row) { return club_key(row[taken["club"]]) != club_key(o.club); });
     other_clubs -= sheet.rows.size();
     if (sheet.rows.empty())
       throw InputError(
@@ -183,13 +313,20 @@ void import_shots(const ImportOptions& o) {
     if (q) {
       if (unit.empty()) unit = unit_in(header);
       if (unit.empty() && !sheet.units.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+      if (unit.empty() && family == "si" && q->metric == "mm") unit = "m";
       if (unit.empty() && q->imperial == q->metric) unit = q->imperial;  // degrees, rpm, mm: no monitor uses others
-      if (unit.empty() && !family.empty()) unit = family == "metric" ? q->metric : q->imperial;
+      if (unit.empty())
+        for (const Row& row : sheet.rows)
+          if (const auto cell = number(row[c], false, q->side); unit.empty() && cell) unit = cell->unit;
+      if (unit.empty() && !family.empty()) unit = family == "imperial" ? q->imperial : q->metric;
       if (unit.empty())
         throw InputError(
             fmt::format("{}: column '{}' has no unit; say --units imperial, --units metric or --column '{}={}_{}'",
                         o.file.string(), header, header, q->name, q->imperial));
-      columns.push_back(make_quantity(*q, header, unit, sheet, c, o.file));
+      const double sign = turned.contains(plain(header)) || sign_in(header) < 0 ? -1 : 1;
+      columns.push_back(make_quantity(*q, header, unit, sign, sheet, c, o.file));
+      if (!o.modelled && says_any(header, {"estimated", "calculated", "modelled"}))
+        columns.back().name.clear(), columns.back().note = "modelled by the instrument; --modelled takes it";
       continue;
     }
     Understood u;
@@ -200,7 +337,8 @@ void import_shots(const ImportOptions& o) {
       if (role[c] == "session") u.cells.back() = u.cells.back().substr(0, u.cells.back().find_first_of(" T"));
       u.filled += !u.cells.back().empty();
     }
-    if (!role[c].empty() && u.filled > 0) u.name = role[c];
+    if (role[c] == "accuracy" || role[c] == "hand") u.note = "read";
+    else if (!role[c].empty() && u.filled > 0) u.name = role[c];
     else if (std::ranges::any_of(o.keep, [&](const std::string& k) { return plain(k) == plain(header); }))
       u.name = "kept_" + [&] {
         std::string s = plain(header);
@@ -214,6 +352,30 @@ void import_shots(const ImportOptions& o) {
       if (!u.name.empty() && split_unit(u.name).stem == stem) return &u;
     return nullptr;
   };
+
+  // What the instrument modelled says nothing of the blow: its own model's answer would be explained.
+  std::size_t modelled = 0, left_handed = 0;
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    if (role[c] != "accuracy" || o.modelled) continue;
+    std::vector<bool> rate, axis;
+    const bool of_spin = says_any(sheet.names[c], {"spin"});
+    for (const Row& row : sheet.rows) {
+      const bool estimated = of_spin && says_any(row[c], {"est", "calc", "model", "simul", "predicted"});
+      rate.push_back(estimated || says_any(row[c], {"spinrate", "spin rate"}));
+      axis.push_back(estimated || says_any(row[c], {"spinaxis", "spin axis"}));
+    }
+    for (const char* q : {"spin_rate", "backspin", "sidespin"})
+      if (Understood* u = find(q)) modelled = std::max(modelled, blank(*u, rate));
+    if (Understood* u = find("spin_axis")) blank(*u, axis);
+  }
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    if (role[c] != "hand") continue;
+    std::vector<bool> left;
+    for (const Row& row : sheet.rows) left.push_back(says_any(row[c], {"left", "lh"}) || plain(row[c]) == "l");
+    left_handed = mirror(columns, left);
+  }
+  if (Understood* u = find("impact_toe"); u && is_face_to_path(*u, find("face_angle"), find("club_path")))
+    u->name.clear(), u->note = "holds face angle minus path";
 
   // Spin stands twice in most exports: rate and tilt are what is measured, back and side follow from them.
   if (const auto* rate = find("spin_rate"), *axis = find("spin_axis"); rate && rate->filled && axis && axis->filled)
@@ -252,8 +414,8 @@ void import_shots(const ImportOptions& o) {
     }
     if (u.filled == 0)
       throw InputError(
-          fmt::format("{}: {} is not in the file, and no club is known to take it from ({}); add a column or a "
-                      "[[club]] to --dictionary",
+          fmt::format("{}: {} is not in the file, and no club is known to take it from ({}); add a column, --club NAME "
+                      "where the file names none, or a [[club]] to --dictionary",
                       o.file.string(), option, clubs ? "'" + clubs->cells.front() + "'" : "no column of clubs"));
     return u;
   };
@@ -288,6 +450,17 @@ void import_shots(const ImportOptions& o) {
   if (sheet.headers_again)
     fmt::print("  passed over: {} repeated header{}\n", sheet.headers_again, sheet.headers_again > 1 ? "s" : "");
   if (other_clubs) fmt::print("  left out: {} shots with other clubs\n", other_clubs);
+  if (modelled)
+    fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {} shots\n", modelled, shots);
+  if (left_handed)
+    fmt::print("  left-handed, mirrored to a right-handed player's: {} of {} shots\n", left_handed, shots);
+  if (clubs) {
+    std::map<std::string, std::size_t> count;
+    for (const std::string& name : clubs->cells) ++count[name.empty() ? "(no club)" : name];
+    std::string list;
+    for (const auto& [name, n] : count) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, n);
+    fmt::print("  clubs: {}\n", list);
+  }
   std::size_t width = 6;
   for (const Understood& u : columns) width = std::max(width, u.header.size());
   fmt::print("\n  {:<{}}  {:<20} {:>6}  {:>10}\n", "column", width, "taken as", "filled", "median");

@@ -1,6 +1,7 @@
 #include "hosel/app/import/sheet.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <utf8.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "hosel/app/import/cells.hpp"
 #include "hosel/app/reader.hpp"
@@ -81,6 +83,16 @@ std::vector<Row> split(const std::string& text, char delimiter) {
   return rows;
 }
 
+/// The part of a path of names that the dictionary knows, from the left: `data Measurement BallSpeed` -> `BallSpeed`.
+std::string known_name(const Dictionary& d, std::string path) {
+  while (!path.empty()) {
+    if (d.quantity_of(path) || !d.bookkeeping_of(path).empty()) return path;
+    const auto blank = path.find(' ');
+    path = blank == std::string::npos ? "" : path.substr(blank + 1);
+  }
+  return "";
+}
+
 void flatten(const nlohmann::json& node, const std::string& path, std::map<std::string, std::string>& out) {
   if (node.is_object()) {
     for (const auto& [key, value] : node.items()) flatten(value, path.empty() ? key : path + " " + key, out);
@@ -88,7 +100,17 @@ void flatten(const nlohmann::json& node, const std::string& path, std::map<std::
     out[path] = node.get<std::string>();
   } else if (node.is_number() || node.is_boolean()) {
     out[path] = node.dump();
+  } else if (node.is_array() && !node.empty() && node.front().is_string()) {
+    for (const auto& word : node)
+      if (word.is_string()) out[path] += (out[path].empty() ? "" : " ") + word.get<std::string>();
   }
+}
+
+/// How a shot is known among other objects: by the quantities in it.
+std::size_t known_names(const Dictionary& d, const nlohmann::json& object) {
+  std::map<std::string, std::string> flat;
+  flatten(object, "", flat);
+  return std::size_t(std::ranges::count_if(flat, [&](const auto& e) { return known_name(d, e.first) != ""; }));
 }
 
 /// Every shot gets a cell for every name: a file of some megabytes could ask for a thousand times that.
@@ -99,23 +121,39 @@ void check_size(const fs::path& file, std::size_t names, std::size_t shots) {
                                  file.string(), names, shots, most_names, most_shots));
 }
 
-/// The longest list of objects anywhere in the document: the shots. A lone object is one shot.
-const nlohmann::json* list_of_shots(const nlohmann::json& node) {
+/// The list of objects with the most known names, anywhere in the document: the shots. A trajectory is a list as well.
+const nlohmann::json* list_of_shots(const Dictionary& d, const nlohmann::json& node, std::size_t& most) {
   const nlohmann::json* best = nullptr;
-  if (node.is_array() && !node.empty() && node.front().is_object()) best = &node;
+  if (node.is_array() && !node.empty() && node.front().is_object())
+    if (const std::size_t known = known_names(d, node.front()); known > most) most = known, best = &node;
   if (node.is_structured())
     for (const auto& child : node)
-      if (const auto* inner = list_of_shots(child); inner && (!best || inner->size() > best->size())) best = inner;
+      if (const auto* inner = list_of_shots(d, child, most)) best = inner;
   return best;
 }
 
-Sheet read_json(const std::string& text, const fs::path& file) {
+/// One document, or one on each line.
+nlohmann::json documents(const std::string& text) {
+  try {
+    return post::parse_json(text);
+  } catch (const std::exception&) {
+    nlohmann::json all = nlohmann::json::array();
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      if (!trimmed(line).empty()) all.push_back(post::parse_json(line));
+    if (all.size() < 2) throw;
+    return all;
+  }
+}
+
+Sheet read_json(const std::string& text, const fs::path& file, const Dictionary& d) {
   nlohmann::json document;
   try {
-    document = post::parse_json(text);
+    document = documents(text);
   } catch (const std::exception& e) { throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what())); }
   nlohmann::json shots = nlohmann::json::array({document});
-  if (const auto* list = list_of_shots(document)) shots = *list;
+  std::size_t most = document.is_object() ? known_names(d, document) : 0;
+  if (const auto* list = list_of_shots(d, document, most)) shots = *list;
   Sheet sheet;
   std::vector<std::map<std::string, std::string>> flat;
   std::set<std::string> known;
@@ -131,12 +169,31 @@ Sheet read_json(const std::string& text, const fs::path& file) {
     for (const std::string& name : sheet.names) row.push_back(shot.contains(name) ? shot[name] : "");
     sheet.rows.push_back(std::move(row));
   }
+  // The known end of a path is the column's name, where no other column has it.
+  for (std::string& name : sheet.names)
+    if (const std::string known = known_name(d, name); !known.empty() && !std::ranges::count(sheet.names, known))
+      name = known;
   return sheet;
 }
 
 std::size_t known_cells(const Dictionary& d, const Row& row) {
   return std::size_t(std::ranges::count_if(
       row, [&](const std::string& c) { return d.quantity_of(c) || !d.bookkeeping_of(c).empty(); }));
+}
+
+/// What an unknown file's widest rows hold, as options to fill in.
+void list_names(const std::string& text, const Dictionary& d) {
+  std::vector<Row> widest;
+  for (const char delimiter : {',', ';', '\t', '|'}) {
+    std::vector<Row> rows = split(text, delimiter);
+    std::erase_if(rows, [&](const Row& r) { return r.size() < 2; });
+    if (!rows.empty() && (widest.empty() || rows.front().size() > widest.front().size())) widest = std::move(rows);
+  }
+  if (widest.size() < 2) return;
+  fmt::print("columns and their first cells; fill in what each is, or leave the line out:\n");
+  for (std::size_t c = 0; c < widest[0].size(); ++c)
+    fmt::print("  --column '{}=?'    {}, ...\n", widest[0][c], c < widest[1].size() ? widest[1][c] : "");
+  fmt::print("with one of: {}; and its unit, as ball_speed_mph\n", fmt::join(d.quantity_names(), ", "));
 }
 
 Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
@@ -160,11 +217,13 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
       best.rows.assign(rows.begin() + long(h) + 1, rows.end());
     }
   }
-  if (most < 2)
+  if (most < 2) {
+    list_names(text, d);
     throw InputError(
         fmt::format("{}: no row of the first 30 looks like the header of shots (two known names at least); "
                     "--dictionary FILE or --column 'header=quantity_unit' help",
                     file.string()));
+  }
   while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
   check_size(file, best.names.size(), best.rows.size());
   // A row of units is one whose cells are units or empty.
@@ -172,7 +231,8 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
     const Row& first = best.rows.front();
     const auto named = std::ranges::count_if(first, [](const std::string& c) { return !unit_of(c).empty(); });
     const bool only = std::ranges::all_of(first, [](const std::string& c) {
-      return c.empty() || c == "[]" || c == "()" || c == "-" || !unit_of(c).empty();
+      const bool bracketed = (c.starts_with('[') && c.ends_with(']')) || (c.starts_with('(') && c.ends_with(')'));
+      return c.empty() || c == "-" || bracketed || !unit_of(c).empty();
     });
     if (named > 0 && only) {
       best.units = first;
@@ -189,7 +249,7 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
     // Summaries stand where the club's or the shot's name would.
     for (std::size_t c = 0; c < width; ++c) {
       const std::string role = d.bookkeeping_of(best.names[c]);
-      if (c != 0 && role != "club" && role != "shot") continue;
+      if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
       const std::string word = plain(row[c]);
       static const std::vector<std::string> words = {"average",     "avg",   "mean",   "std", "st dev", "deviation",
                                                      "consistency", "total", "median", "max", "min"};
@@ -200,6 +260,11 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
     }
     return false;
   });
+  for (std::size_t i = 0; i < best.rows.size(); ++i)
+    if (std::any_of(best.rows[i].begin() + long(width), best.rows[i].end(),
+                    [](const std::string& c) { return !c.empty(); }))
+      throw InputError(fmt::format("{}: shot {} has {} cells under {} names: its values stand under the wrong ones",
+                                   file.string(), i + 1, best.rows[i].size(), width));
   return best;
 }
 
@@ -210,7 +275,7 @@ Sheet read_sheet(const fs::path& file, const Dictionary& d) {
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos &&
                     (text[first] == '{' || (text[first] == '[' && text.find('{') != std::string::npos));
-  Sheet sheet = json ? read_json(text, file) : read_table(text, d, file);
+  Sheet sheet = json ? read_json(text, file, d) : read_table(text, d, file);
   if (sheet.rows.empty()) throw InputError(fmt::format("{}: a header, but no shots", file.string()));
   for (const MonitorLayout& l : d.layouts())
     if (!l.has.empty())

@@ -112,6 +112,7 @@ class LoopJob final : public Job {
           const std::string by = joined->text({"by", "column that both files have"});
           loop::join(case_.shots, post::read_csv(other), by);
         }
+        repeated_ = case_.shots.repeated;
         if (!average_by.empty()) {
           auto [means, about] = loop::average(std::move(case_.shots), average_by);
           case_.shots = std::move(means);
@@ -147,6 +148,9 @@ class LoopJob final : public Job {
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
+    if (repeated_ > 0)
+      out.lack(
+          fmt::format("{} rows of the shots repeat an earlier row letter for letter: each counts once", repeated_));
     loop::LoopResult result;
     case_.told = progress_of(out);
     try {
@@ -263,6 +267,7 @@ class LoopJob final : public Job {
   loop::SlowBase slow_;
   std::unique_ptr<models::ChangeableFe> fe_;  ///< of a finite-element base
   std::filesystem::path skipped_;
+  std::size_t repeated_ = 0;  // rows of the file
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -117,6 +118,36 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   return c;
 }
 
+/// Rows that are not, letter for letter, an earlier one. Two shots may well read alike where little is recorded: fewer
+/// than twelve digits, no number of the shot.
+std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
+  constexpr std::ptrdiff_t kDigits = 12;
+  const auto numbered = std::ranges::find(sheet.names, "shot") - sheet.names.begin();
+  std::vector<std::size_t> kept;
+  std::set<std::vector<std::string>> seen;
+  for (std::size_t i = 0; i < sheet.rows(); ++i) {
+    std::vector<std::string> row;
+    std::ptrdiff_t digits = 0;
+    for (const auto& column : sheet.columns) {
+      row.push_back(column[i]);
+      digits += std::ranges::count_if(column[i], [](unsigned char c) { return std::isdigit(c) != 0; });
+    }
+    const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[std::size_t(numbered)].empty());
+    if (seen.insert(std::move(row)).second || !tells) kept.push_back(i);
+  }
+  return kept;
+}
+
+post::Sheet only(const post::Sheet& sheet, const std::vector<std::size_t>& rows) {
+  post::Sheet out{.file = sheet.file, .names = sheet.names};
+  out.columns.resize(sheet.columns.size());
+  for (const std::size_t i : rows) {
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) out.columns[c].push_back(sheet.columns[c][i]);
+    out.lines.push_back(sheet.lines[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 const Column* Shots::find(std::string_view wanted) const {
@@ -129,8 +160,11 @@ const Column* Shots::find_stem(std::string_view wanted) const {
   return it == columns.end() ? nullptr : &*it;
 }
 
-Shots read_shots(const post::Sheet& sheet, bool flights) {
+Shots read_shots(const post::Sheet& all, bool flights) {
+  const std::vector<std::size_t> kept = different_rows(all);
+  const post::Sheet sheet = only(all, kept);
   Shots shots;
+  shots.repeated = all.rows() - kept.size();
   shots.file = sheet.file;
   shots.line = sheet.lines;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
@@ -146,7 +180,7 @@ Shots read_shots(const post::Sheet& sheet, bool flights) {
   const auto shot_at = shot ? std::size_t(shot - shots.columns.data()) : 0;
   for (std::size_t i = 0; i < sheet.rows(); ++i) {
     const std::string& cell = shot ? sheet.columns[shot_at][i] : std::string();
-    shots.id.push_back(cell.empty() ? std::to_string(i + 1) : cell);
+    shots.id.push_back(cell.empty() ? std::to_string(kept[i] + 1) : cell);
   }
   return shots;
 }

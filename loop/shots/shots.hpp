@@ -31,13 +31,15 @@ struct Shots {
   std::vector<std::size_t> line;  ///< in the file
   std::vector<Column> columns;
   bool has_shot_column = false;
+  std::size_t repeated = 0;  ///< rows of the file that repeat an earlier one letter for letter: they count once
 
   std::size_t rows() const { return id.size(); }
   const Column* find(std::string_view name) const;       ///< by header
   const Column* find_stem(std::string_view stem) const;  ///< by name without unit
 };
 
-/// Roles, units, SI values and recording resolution of a sheet. Throws DataError: an output or input column
+/// Roles, units, SI values and recording resolution of a sheet. A row that repeats an earlier one letter for letter is
+/// left out: a file pasted twice holds no more shots. Throws DataError: an output or input column
 /// with a wrong unit, text in it, the same quantity twice. `flights`: carry and the like are outputs, too; otherwise
 /// columns like any other.
 Shots read_shots(const post::Sheet& sheet, bool flights = false);

@@ -41,7 +41,8 @@ TEST_F(Adopt, ACalibratedFaceIsStruck) {
   const fs::path file = dir / "library" / "faces" / "my-face.toml";
   EXPECT_NE(made.text.find("face 'my-face': " + file.string()), std::string::npos) << made.text;
   const std::string entry = content(file);
-  for (const char* part : {"case = \"a driver's face at the rules' limit", "inputs = ", "build = ", "covariance = ", "not_for = "})
+  for (const char* part :
+       {"case = \"a driver's face at the rules' limit", "inputs = ", "build = ", "covariance = ", "not_for = "})
     EXPECT_NE(entry.find(part), std::string::npos) << part << entry;
   const auto summary = nlohmann::json::parse(content(out / "summary.json"));
   double stiffness = 0;

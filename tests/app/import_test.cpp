@@ -2,6 +2,9 @@
 // understood, what is refused, and that a report comes out of two commands.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "hosel/loop/shots/shots.hpp"
@@ -118,6 +121,147 @@ TEST(Import, SaysWhatItCannotRead) {
   refuse("{\"a\": ", "", "broken JSON");
   const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
   EXPECT_EQ(o.status, 2);
+}
+
+/// A file of one layout: its text, and what its shots must be in our units and signs.
+struct Layout {
+  std::string name, text;
+  std::string options;
+  std::map<std::string, std::vector<double>> columns;  ///< column of shots.csv; NaN: an empty cell
+  std::vector<std::string> said;
+};
+
+class Layouts : public testing::TestWithParam<Layout> {};
+
+TEST_P(Layouts, ReadAsTheyCome) {
+  const Layout& e = GetParam();
+  const fs::path dir = test::fresh_directory("layout_" + e.name);
+  const fs::path file = dir / (e.text.front() == '{' ? "a.json" : "a.csv");
+  test::write(file, e.text);
+  const auto o = command("import '" + file.string() + "' --out '" + (dir / "case").string() + "' " + e.options);
+  ASSERT_EQ(o.status, 0) << o.text;
+  for (const std::string& part : e.said) EXPECT_NE(o.text.find(part), std::string::npos) << part << "\n" << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  for (const auto& [name, values] : e.columns) {
+    const loop::Column* c = shots.find(name);
+    ASSERT_NE(c, nullptr) << name << "\n" << o.text;
+    ASSERT_EQ(c->value.size(), values.size()) << name;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isnan(values[i])) EXPECT_TRUE(std::isnan(c->value[i])) << name << " " << i;
+      else EXPECT_NEAR(c->native(i), values[i], 2e-5 * std::abs(values[i])) << name << " " << i;
+  }
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Made after the layouts that makers and users show in public; the numbers are ours.
+INSTANTIATE_TEST_SUITE_P(
+    Quirks, Layouts,
+    testing::Values(
+        Layout{
+            "TrackManBallType",
+            "Date,Club,Ball,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dyn. Loft\n,,,[mph],[mph],[deg],[rpm],[deg]\n"
+            "2024-05-01,7 Iron,Premium,115.2,82.4,16.1,6400,22.1\n2024-05-01,7Iron,Range,116.1,82.9,16.4,6500,22.4\n"
+            "2024-05-01,Iron 7,Range,114.9,82.0,16.2,6450,22.0\n",
+            "",
+            {{"ball_speed_mph", {115.2, 116.1, 114.9}}, {"club_speed_mph", {82.4, 82.9, 82.0}}},
+            {"clubs: 7 Iron 1, 7Iron 1, Iron 7 1", "head_mass_kg"}},
+        Layout{
+            "GarminUnitsAndEstimates",
+            "Date,Player,Club Type,Club Speed,Ball Speed,Launch Angle,Launch Direction,Spin Rate,Spin Rate Type,Spin "
+            "Axis,Air Density,Temperature,Air Pressure,Relative Humidity\n"
+            ",,,[mph],[mph],[deg],[deg],[rpm],[],[deg],[g/L],[deg F],[kPa],[%]\n"
+            "04/20/24,Jo,7 Iron,82.1,115.0,16.0,1.1,6400.2,Measured,2.5,1.2,70,101,40\n"
+            "04/20/24,Jo,7 Iron,82.3,116.2,16.3,-0.4,6012.7,Estimated,-1.5,1.2,70,101,40\n"
+            ",Average,,82.2,115.6,16.1,0.4,6206.4,,0.5,1.2,70,101,40\n",
+            "",
+            {{"spin_rate_rpm", {6400.2, kNone}}, {"azimuth_deg", {1.1, -0.4}}},
+            {"1 summary row", "left out (--modelled takes it): 1 of 2"}},
+        Layout{
+            "ForesightWords",
+            "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (deg),Side Angle (deg),Total Spin (rpm),Angle of "
+            "Attack "
+            "(deg),Club Path (deg),Face to Target (deg),Loft (deg),Face Impact Lateral (mm),Face Impact Vertical (mm)\n"
+            "7 Iron,113.5,82.9,16.5,1.2 R,6043,6.1 Down,2.3 In-Out,1.5 Open,22.6,12 Toe,3 Low\n"
+            "7 Iron,114.5,83.1,16.1,0.8 L,6143,5.2 Down,1.1 Out-In,0.5 Closed,22.1,4 Heel,2 High\n",
+            "",
+            {{"attack_angle_deg", {-6.1, -5.2}},
+             {"club_path_deg", {2.3, -1.1}},
+             {"face_angle_deg", {1.5, -0.5}},
+             {"impact_toe_mm", {12, -4}},
+             {"impact_high_mm", {-3, 2}}},
+            {}},
+        Layout{"UneekorSentinels",
+               "Club,Ball Speed(mph),Club Speed(mph),Launch Angle(deg),Back Spin(rpm),Side Spin(rpm),Dynamic "
+               "Loft(deg),Attack "
+               "Angle(deg)\n7I,115.1,82.1,16.1,6400,120,22.1,99999\n7I,115.9,82.6,16.4,6350,-99999,22.4,-4.1\n",
+               "",
+               {{"attack_angle_deg", {kNone, -4.1}}, {"sidespin_rpm", {120, kNone}}},
+               {"cells without a reading: 1"}},
+        Layout{"CellsWithUnits",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (deg),Spin Rate,Dynamic Loft\n"
+               "7i,115,82,16,6400,22\n7i,185.075 km/h,36.5 m/s,0.28 rad,6400,22\n7i,117 mph,82,16,6400,22\n",
+               "",
+               {{"ball_speed_mph", {115, 115.0002, 117}},
+                {"club_speed_mph", {82, 81.6482, 82}},
+                {"launch_angle_deg", {16, 16.0428, 16}}},
+               {"cells in a unit of their own: 1"}},
+        Layout{"LeftHanded",
+               "Club,Handed,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Club "
+               "Path,Face Angle,Dynamic Loft,Impact Offset (mm toe-/heel+)\n"
+               "7i,LH,115,82,16,1.5,6400,-3,2.0,-1.0,22,4\n7i,RH,116,82,16,1.5,6400,-3,2.0,-1.0,22,-6\n",
+               "",
+               {{"azimuth_deg", {-1.5, 1.5}},
+                {"spin_axis_deg", {3, -3}},
+                {"club_path_deg", {-2, 2}},
+                {"face_angle_deg", {1, -1}},
+                {"impact_toe_mm", {-4, 6}}},
+               {"mirrored to a right-handed player's: 1 of 2", "sign turned"}},
+        Layout{"FaceToPathNamedAPlace",
+               "Club,Ball Speed (mph),Club Speed (mph),VLA,HLA,Total Spin,Loft,Path,Face to "
+               "Target,HorizontalFaceImpact\n7i,115,82,16,1.5,6400,22,2.0,-1.0,-3.0\n7i,116,82,16,1.5,6400,22,1.0,0.5,-"
+               "0.5\n"
+               "7i,117,82,16,1.5,6400,22,0.4,0.9,0.5\n",
+               "",
+               {{"club_path_deg", {2, 1, 0.4}}},
+               {"holds face angle minus path"}},
+        Layout{
+            "EventInSI",
+            R"({"eventType":"Live.Completed","data":{"Model":{"Measurement":{"PlayerDexterity":"Right","ImpactOffset":-0.0059,
+"ImpactHeight":0.0091,"AttackAngle":4.2,"LaunchDirection":-2.777,"BallSpeed":75.7939,"ClubPath":-0.2,"ClubSpeed":51.076,
+"DynamicLoft":11.748,"FaceAngle":-3.366,"LaunchAngle":10.305,"SpinAxis":-10.419,"SpinRate":2617.05,
+"ReducedAccuracy":["SpinAxisFit"],"BallTrajectory":[{"Kind":"Flight","SpinRate":1},{"Kind":"Bounce"}]}}}})",
+            "--club driver",
+            {{"ball_speed_mps", {75.7939}},
+             {"impact_toe_mm", {-5.9}},
+             {"impact_high_mm", {9.1}},
+             {"spin_rate_rpm", {2617.05}}},
+            {"TrackMan event"}},
+        Layout{"SignTurnedByHand",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
+               "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
+               "--column 'Strike=-impact_toe_mm'",
+               {{"impact_toe_mm", {-3, 4}}},
+               {"sign turned"}}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(Import, WhatWouldBeReadWrongIsRefused) {
+  const fs::path dir = test::fresh_directory("import_wrong");
+  const auto refuse = [&](const std::string& text, const std::string& why) {
+    test::write(dir / "a.csv", text);
+    const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_NE(o.text.find(why), std::string::npos) << o.text;
+  };
+  const std::string points = "Club Type;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Dynamic Loft\n";
+  refuse(points + "7i;115,1;82,1;16,1;6400;22,1\n7i;115,3;85.5;16,2;6400;22,3\n7i;115,3;82,5;16,2;6400;22,3\n",
+         "column 'Club Speed (mph)', shot 2: '85.5' among 2");
+  const std::string commas = "Club Type,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n";
+  refuse(commas + "7i,115.1,82.1,16.1,6400,22.1\n7i,115.3,82.4,\"1,3\",6400,22.3\n7i,115.3,82.4,16.3,6400,22.3\n",
+         "shot 2: '1,3' among 2");
+  refuse(commas + "7i,115.1,82.1,16.1,6400,22.1,9\n", "shot 1 has 7 cells under 6 names");
+  refuse(commas + "7i,115.1,82.1,16.1 mph,6400,22.1\n", "is in another kind of unit");
+  refuse("Velo,Kopf,Abflug\n185.1,132.0,16.4\n", "--column 'Velo=?'    185.1, ...");
 }
 
 TEST(Import, ByHand) {

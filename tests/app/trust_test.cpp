@@ -453,6 +453,30 @@ TEST(Impact, SpinWithoutFrictionIsSaidToBeTheMeshs) {
   EXPECT_NE(o.text.find("without friction nothing spins the ball"), std::string::npos) << o.text;
 }
 
+/// Doubling a file changes no verdict, and an impossible number fills no screen.
+TEST(Loop, RowsThatRepeatCountOnceAndAnImpossibleSpinIsOneRow) {
+  const fs::path dir = fresh_directory("repeated");
+  const std::string shipped = std::string(HOSEL_SOURCE_DIR) + "/cases/loop-irons";
+  const auto report = [&](const std::string& name, const std::string& shots) {
+    write(dir / name / "case.toml", content(shipped + "/case.toml"));
+    write(dir / name / "club_means.csv", content(shipped + "/club_means.csv"));
+    write(dir / name / "shots.csv", shots);
+    const Outcome ran = command("run " + (dir / name).string() + " --out " + (dir / name / "out").string());
+    EXPECT_EQ(ran.status, 0) << ran.text;
+    return std::pair(json::parse(content(dir / name / "out" / "report.json")), ran.text);
+  };
+  const std::string text = content(shipped + "/shots.csv"), rows = text.substr(text.find('\n') + 1);
+  auto [once, told_once] = report("once", text);
+  auto [twice, told_twice] = report("twice", text + rows);
+  EXPECT_NE(told_twice.find("36 rows of the shots repeat an earlier row"), std::string::npos) << told_twice;
+  EXPECT_EQ(once["verdict"], twice["verdict"]);
+  EXPECT_EQ(once["adopted"], twice["adopted"]);
+  std::string wild = text;
+  wild.replace(wild.find(",3875,"), 6, ",1e308,");
+  const std::string told = report("wild", wild).second;
+  EXPECT_LT(std::ranges::count(told, '\n'), std::ranges::count(told_once, '\n') + 20) << told;
+}
+
 TEST(Shards, AreCountedFromOne) {
   for (const char* shard : {"-1/-1", "0/1", "2/1", "+1/2", "1/2x", "1/"}) {
     const Outcome o = command(std::string("sweep run nowhere --shard ") + shard);

@@ -475,6 +475,19 @@ TEST_F(Loop, TooManyRowsAreOneLine) {
   }
 }
 
+TEST_F(Loop, ARowThatStandsTwiceCountsOnce) {
+  const std::string head = "shot,club_speed_mps,dynamic_loft_deg,ball_speed_mps\n";
+  const Shots twice = shots(head + "1,45.1,12.3,64.2\n2,45.3,12.4,64.4\n1,45.1,12.3,64.2\n2,45.3,12.4,64.4\n");
+  EXPECT_EQ(twice.repeated, 2U);
+  EXPECT_EQ(twice.rows(), 2U);
+  EXPECT_EQ(twice.line, (std::vector<std::size_t>{2, 3}));
+  // Another shot's number: another shot. Little recorded, no number: shots may read alike.
+  EXPECT_EQ(shots(head + "1,45.1,12.3,64.2\n2,45.1,12.3,64.2\n").repeated, 0U);
+  EXPECT_EQ(shots("club_speed_mph,ball_speed_mph\n100,148\n100,148\n").repeated, 0U);
+  EXPECT_EQ(
+      shots("club_speed_mps,dynamic_loft_deg,ball_speed_mps\n45.113,12.31,64.203\n45.113,12.31,64.203\n").repeated, 1U);
+}
+
 TEST_F(Loop, BrokenInputEndsInAReportOrOneLine) {
   EXPECT_THROW(shots(""), DataError);
   EXPECT_THROW(shots("a,b\n1\n"), DataError);
