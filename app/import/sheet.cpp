@@ -121,15 +121,20 @@ void check_size(const fs::path& file, std::size_t names, std::size_t shots) {
                                  file.string(), names, shots, most_names, most_shots));
 }
 
-/// The list of objects with the most known names, anywhere in the document: the shots. A trajectory is a list as well.
-const nlohmann::json* list_of_shots(const Dictionary& d, const nlohmann::json& node, std::size_t& most) {
-  const nlohmann::json* best = nullptr;
-  if (node.is_array() && !node.empty() && node.front().is_object())
-    if (const std::size_t known = known_names(d, node.front()); known > most) most = known, best = &node;
+/// The list of objects with the most known names, anywhere in the document, the longest of several: the shots. A
+/// trajectory is a list as well.
+struct Found {
+  std::size_t known = 0;
+  const nlohmann::json* list = nullptr;
+};
+void find_shots(const Dictionary& d, const nlohmann::json& node, Found& best) {
+  if (node.is_array() && !node.empty() && node.front().is_object()) {
+    const std::size_t known = known_names(d, node.front());
+    const bool longer = !best.list ? best.known == 0 : known == best.known && node.size() > best.list->size();
+    if (known > best.known || longer) best = {known, &node};
+  }
   if (node.is_structured())
-    for (const auto& child : node)
-      if (const auto* inner = list_of_shots(d, child, most)) best = inner;
-  return best;
+    for (const auto& child : node) find_shots(d, child, best);
 }
 
 /// One document, or one on each line.
@@ -152,8 +157,9 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
     document = documents(text);
   } catch (const std::exception& e) { throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what())); }
   nlohmann::json shots = nlohmann::json::array({document});
-  std::size_t most = document.is_object() ? known_names(d, document) : 0;
-  if (const auto* list = list_of_shots(d, document, most)) shots = *list;
+  Found found{document.is_object() ? known_names(d, document) : 0};
+  find_shots(d, document, found);
+  if (found.list) shots = *found.list;
   Sheet sheet;
   std::vector<std::map<std::string, std::string>> flat;
   std::set<std::string> known;

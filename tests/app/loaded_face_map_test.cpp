@@ -93,7 +93,8 @@ TEST(LoadedFaceMap, IsTheBlowOfTheLoadedClubAndItsPartsAddUp) {
       "set = [\"motion.file='nowhere/swing.csv'\"]\n";
   write(dir / "map" / "case.toml", "kind = \"loaded-face-map\"\n" + club() + swings);
   write(dir / "club" / "case.toml",
-        "kind = \"loaded-club\"\n" + club() + "[points]\nimpact_toe_mm = [0.0]\nimpact_high_mm = [0.0]\n");
+        "kind = \"loaded-club\"\n" + club() +
+            "[volumetric]\npublished = \"driver\"\n[points]\nimpact_toe_mm = [0.0]\nimpact_high_mm = [0.0]\n");
   setenv("HOSEL_DATA", (dir / "none").c_str(), 1);
   const Outcome map = command("run " + (dir / "map").string() + " --out " + (dir / "out").string());
   unsetenv("HOSEL_DATA");
