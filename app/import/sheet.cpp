@@ -123,11 +123,11 @@ void check_size(const fs::path& file, std::size_t names, std::size_t shots) {
 
 /// The list of objects with the most known names, anywhere in the document, the longest of several: the shots. A
 /// trajectory is a list as well.
-struct Found {
+struct ShotList {
   std::size_t known = 0;
   const nlohmann::json* list = nullptr;
 };
-void find_shots(const Dictionary& d, const nlohmann::json& node, Found& best) {
+void find_shots(const Dictionary& d, const nlohmann::json& node, ShotList& best) {
   if (node.is_array() && !node.empty() && node.front().is_object()) {
     const std::size_t known = known_names(d, node.front());
     const bool longer = !best.list ? best.known == 0 : known == best.known && node.size() > best.list->size();
@@ -157,7 +157,7 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
     document = documents(text);
   } catch (const std::exception& e) { throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what())); }
   nlohmann::json shots = nlohmann::json::array({document});
-  Found found{document.is_object() ? known_names(d, document) : 0};
+  ShotList found{document.is_object() ? known_names(d, document) : 0};
   find_shots(d, document, found);
   if (found.list) shots = *found.list;
   Sheet sheet;
