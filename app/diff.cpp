@@ -60,9 +60,8 @@ Run read(const fs::path& directory) {
   return run;
 }
 
-/// A model's own error, relative: of ball speed, of the launch angle, of the spin rate. Of finite elements as the
-/// README's table "How exact" has it, at the coarser of the two levels; of models that integrate in time their
-/// tolerance.
+/// A model's own error, relative: of ball speed, of the launch angle, of the spin rate. Of finite elements as the table
+/// in docs/command.md has it, at the coarser of the two levels; of models that integrate in time their tolerance.
 struct NumericalError {
   double speed, angle, spin;
 };
