@@ -53,7 +53,9 @@ std::string unit_in(const std::string& header) {
 }
 
 double sign_in(const std::string& header) {
-  std::string text = header;
+  const auto open = header.find_last_of("([");
+  if (open == std::string::npos) return 0;
+  std::string text = header.substr(open);
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   std::erase_if(text, [](char c) { return c == ' ' || c == '='; });
   const auto says = [&](std::initializer_list<const char*> words, char sign) {
@@ -64,7 +66,6 @@ double sign_in(const std::string& header) {
   };
   const auto positive = {"toe", "right", "up", "high", "fade", "open", "in-out"};
   const auto negative = {"heel", "left", "down", "low", "draw", "closed", "out-in"};
-  // `toe-/heel+`: the sign behind a word is that word's; in `toe-/heel+` none stands before one.
   const bool minus = says(negative, '+') || says(positive, '-'), plus = says(positive, '+') || says(negative, '-');
   return minus == plus ? 0 : minus ? -1 : 1;
 }

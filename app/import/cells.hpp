@@ -15,8 +15,8 @@ bool missing(const std::string& cell);
 std::string unit_of(std::string text);
 /// `Ball Speed (mph)`, `Ball Speed [mph]`, `Ball Speed mph`, `Offset (mm toe-/heel+)` -> mph, mm.
 std::string unit_in(const std::string& header);
-/// -1 where a header says that its numbers grow towards the heel, the left, down or a draw (`mm toe-/heel+`), 1 where
-/// it says the contrary, 0 where it says nothing.
+/// -1 where a header says in brackets that its numbers grow towards the heel, the left, down or a draw (`mm
+/// toe-/heel+`), 1 where it says the contrary, 0 where it says nothing.
 double sign_in(const std::string& header);
 /// One of the unit in SI; 1 where it is unknown.
 double si_of(const std::string& unit);

@@ -161,22 +161,22 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
   return out;
 }
 
+/// Counts what stands in the cells of a quantity anew.
+void count_again(Understood& u) {
+  std::vector<double> values;
+  for (const std::string& cell : u.cells)
+    if (const auto x = number(cell, false, false)) values.push_back(x->value * split_unit(u.name).unit->si);
+  u.filled = values.size();
+  u.median = loop::median(values);
+}
+
 /// Empties the cells of the rows where `which`; how many had something.
 std::size_t blank(Understood& u, const std::vector<bool>& which) {
-  std::size_t n = 0;
-  std::vector<double> left;
-  for (std::size_t i = 0; i < u.cells.size(); ++i) {
-    if (u.cells[i].empty()) continue;
-    if (which[i]) {
-      u.cells[i].clear();
-      ++n;
-      --u.filled;
-    } else if (const auto x = number(u.cells[i], false, false)) {
-      left.push_back(x->value * si_of(std::string(split_unit(u.name).unit->suffix)));
-    }
-  }
-  u.median = loop::median(left);
-  return n;
+  const std::size_t before = u.filled;
+  for (std::size_t i = 0; i < u.cells.size(); ++i)
+    if (which[i]) u.cells[i].clear();
+  count_again(u);
+  return before - u.filled;
 }
 
 bool says_any(const std::string& cell, std::initializer_list<const char*> words) {
@@ -194,6 +194,7 @@ std::size_t mirror(std::vector<Understood>& columns, const std::vector<bool>& le
     for (std::size_t i = 0; i < u.cells.size(); ++i)
       if (left[i] && !u.cells[i].empty())
         u.cells[i] = u.cells[i].front() == '-' ? u.cells[i].substr(1) : "-" + u.cells[i];
+    count_again(u);
   }
   return std::size_t(std::ranges::count(left, true));
 }
@@ -268,11 +269,14 @@ void import_shots(const ImportOptions& o) {
     if (by_hand.contains(plain(sheet.names[c]))) continue;
     std::string r = d.bookkeeping_of(sheet.names[c]);
     if ((r == "club" || r == "ball") && d.quantity_of(sheet.names[c])) {
-      // "Club" and "Ball" are names where their cells are not numbers, speeds where they are.
+      // "Club" and "Ball" are names where their cells are not numbers, speeds where they are; "Ball" without a unit,
+      // and beside a column of ball speed, is a number of the ball.
+      const auto same = std::ranges::count_if(
+          sheet.names, [&](const std::string& n) { return d.quantity_of(n) == d.quantity_of(sheet.names[c]); });
       const bool unit = !unit_in(sheet.names[c]).empty() ||
                         (c < sheet.units.size() && !unit_of(sheet.units[c]).empty());
       if (std::ranges::all_of(sheet.rows, [&](const Row& row) {
-            return missing(row[c]) || (number(row[c], false, false) && (unit || r == "ball"));
+            return missing(row[c]) || (number(row[c], false, false) && (unit || (r == "ball" && same == 1)));
           }))
         r.clear();
     }

@@ -237,6 +237,12 @@ INSTANTIATE_TEST_SUITE_P(
              {"impact_high_mm", {9.1}},
              {"spin_rate_rpm", {2617.05}}},
             {"TrackMan event"}},
+        Layout{"BallsAreNumbered",
+               "Club,Ball,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "7i,1,115,82,16,6400,22\n7i,2,116,82,16,6500,22\n",
+               "",
+               {{"ball_speed_mph", {115, 116}}},
+               {}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
