@@ -1,20 +1,20 @@
-#include "hosel/app/cases.hpp"
+#include "app/cases.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "app/job.hpp"
+#include "app/library.hpp"
+#include "app/parse_toml.hpp"
+#include "app/read_solid.hpp"
+#include "app/reader.hpp"
 #include "build_info.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/parse_toml.hpp"
-#include "hosel/app/read_solid.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/loop/effect.hpp"
-#include "hosel/models/flight_laws.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/file.hpp"
+#include "golf/shaft_library.hpp"
+#include "loop/effect.hpp"
+#include "models/flight/flight_laws.hpp"
+#include "models/registry.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "hosel/app/check_memory.hpp"
+#include "app/check_memory.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,8 +1,8 @@
 /// Is the machine large enough for what a case asks?
 #pragma once
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/fe_impact.hpp"
+#include "app/reader.hpp"
+#include "models/fe/fe_impact.hpp"
 
 namespace hosel::app {
 

@@ -1,12 +1,12 @@
-#include "hosel/app/command_help.hpp"
+#include "app/command_help.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
+#include "app/cases.hpp"
+#include "app/job.hpp"
 #include "build_info.hpp"
-#include "hosel/app/cases.hpp"
-#include "hosel/app/job.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "hosel/app/diff.hpp"
+#include "app/diff.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "hosel/app/parse_toml.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/post/parse_json.hpp"
+#include "app/parse_toml.hpp"
+#include "app/reader.hpp"
+#include "post/file.hpp"
+#include "post/launch_table.hpp"
+#include "post/parse_json.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

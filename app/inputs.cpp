@@ -1,12 +1,12 @@
-#include "hosel/app/inputs.hpp"
+#include "app/inputs.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/post/file.hpp"
+#include "app/reader.hpp"
+#include "app/version.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

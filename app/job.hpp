@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "hosel/app/output.hpp"
-#include "hosel/app/reader.hpp"
+#include "app/output.hpp"
+#include "app/reader.hpp"
 
 namespace hosel::app {
 

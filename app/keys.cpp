@@ -1,13 +1,13 @@
-#include "hosel/app/keys.hpp"
+#include "app/keys.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "hosel/app/cases.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/reader.hpp"
+#include "app/cases.hpp"
+#include "app/job.hpp"
+#include "app/reader.hpp"
 
 namespace hosel::app {
 namespace {

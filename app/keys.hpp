@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
+#include "app/reader.hpp"
 
 namespace hosel::app {
 

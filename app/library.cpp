@@ -1,4 +1,4 @@
-#include "hosel/app/library.hpp"
+#include "app/library.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "app/read_blow.hpp"
+#include "app/read_face.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_solid.hpp"
 #include "build_info.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_solid.hpp"
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/golf/blow.hpp"
-#include "hosel/golf/face_compliance.hpp"
-#include "hosel/models/fe_ball.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/options.hpp"
-#include "hosel/models/volumetric.hpp"
+#include "app/read_shaft.hpp"
+#include "app/reader.hpp"
+#include "golf/blow.hpp"
+#include "golf/face_compliance.hpp"
+#include "models/fe/fe_ball.hpp"
+#include "models/options.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "models/rigid/hertz_maw.hpp"
 
 namespace hosel::app {
 

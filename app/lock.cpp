@@ -1,4 +1,4 @@
-#include "hosel/app/lock.hpp"
+#include "app/lock.hpp"
 
 #include <fcntl.h>
 #include <fmt/chrono.h>
@@ -13,8 +13,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/post/file.hpp"
+#include "app/reader.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

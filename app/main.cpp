@@ -10,20 +10,20 @@
 #include <filesystem>
 #include <new>
 
-#include "hosel/app/cases.hpp"
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/command_help.hpp"
-#include "hosel/app/diff.hpp"
-#include "hosel/app/import/import.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/keys.hpp"
-#include "hosel/app/offer.hpp"
-#include "hosel/app/paraview.hpp"
-#include "hosel/app/stop.hpp"
-#include "hosel/app/sweep.hpp"
-#include "hosel/app/terminal.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "app/cases.hpp"
+#include "app/check_memory.hpp"
+#include "app/command_help.hpp"
+#include "app/diff.hpp"
+#include "app/import/import.hpp"
+#include "app/job.hpp"
+#include "app/keys.hpp"
+#include "app/offer.hpp"
+#include "app/paraview.hpp"
+#include "app/stop.hpp"
+#include "app/sweep.hpp"
+#include "app/terminal.hpp"
+#include "app/version.hpp"
+#include "solvers/errors.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/offer.hpp"
+#include "app/offer.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "hosel/app/sweep_store.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/post/file.hpp"
+#include "app/sweep_store.hpp"
+#include "app/version.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

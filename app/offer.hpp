@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/output.hpp"
+#include "app/library.hpp"
+#include "app/output.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/output.hpp"
+#include "app/output.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/base_sink.h>
@@ -14,12 +14,12 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/lock.hpp"
-#include "hosel/app/terminal.hpp"
-#include "hosel/golf/data_error.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "app/lock.hpp"
+#include "app/terminal.hpp"
+#include "golf/data_error.hpp"
+#include "post/csv.hpp"
+#include "post/file.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -10,11 +10,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/app/run_page.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/post/text_table.hpp"
+#include "app/reader.hpp"
+#include "app/run_page.hpp"
+#include "post/figure.hpp"
+#include "post/launch_table.hpp"
+#include "post/text_table.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/paraview.hpp"
+#include "app/paraview.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "app/command_help.hpp"
+#include "app/reader.hpp"
 #include "build_info.hpp"
-#include "hosel/app/command_help.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

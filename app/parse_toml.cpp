@@ -1,10 +1,10 @@
-#include "hosel/app/parse_toml.hpp"
+#include "app/parse_toml.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "hosel/app/reader.hpp"
+#include "app/reader.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/read_blow.hpp"
+#include "app/read_blow.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/models/registry.hpp"
+#include "app/library.hpp"
+#include "app/read_shaft.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/golf/blow.hpp"
-#include "hosel/golf/quantities.hpp"
+#include "app/reader.hpp"
+#include "golf/blow.hpp"
+#include "golf/quantities.hpp"
 
 namespace hosel::app {
 

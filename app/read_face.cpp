@@ -1,6 +1,6 @@
-#include "hosel/app/read_face.hpp"
+#include "app/read_face.hpp"
 
-#include "hosel/app/library.hpp"
+#include "app/library.hpp"
 
 namespace hosel::app {
 

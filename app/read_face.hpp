@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/golf/face_compliance.hpp"
+#include "app/reader.hpp"
+#include "golf/face_compliance.hpp"
 
 namespace hosel::app {
 

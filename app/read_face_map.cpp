@@ -1,4 +1,4 @@
-#include "hosel/app/read_face_map.hpp"
+#include "app/read_face_map.hpp"
 
 namespace hosel::app {
 

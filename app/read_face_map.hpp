@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/post/claim.hpp"
-#include "hosel/post/face_map.hpp"
+#include "app/reader.hpp"
+#include "post/claim.hpp"
+#include "post/face_map.hpp"
 
 namespace hosel::app {
 

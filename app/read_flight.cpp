@@ -1,4 +1,4 @@
-#include "hosel/app/read_flight.hpp"
+#include "app/read_flight.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/read_sheet.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "hosel/app/output.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/post/trajectory.hpp"
+#include "app/output.hpp"
+#include "app/reader.hpp"
+#include "post/trajectory.hpp"
 
 namespace hosel::app {
 

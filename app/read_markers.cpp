@@ -1,10 +1,10 @@
-#include "hosel/app/read_markers.hpp"
+#include "app/read_markers.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 
-#include "hosel/app/read_sheet.hpp"
+#include "app/read_sheet.hpp"
 
 namespace hosel::app {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/marker_swing.hpp"
+#include "app/reader.hpp"
+#include "models/club/marker_swing.hpp"
 
 namespace hosel::app {
 

@@ -1,12 +1,12 @@
-#include "hosel/app/read_options.hpp"
+#include "app/read_options.hpp"
 
 #include <algorithm>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_face.hpp"
-#include "hosel/app/read_solid.hpp"
-#include "hosel/app/read_swing.hpp"
+#include "app/check_memory.hpp"
+#include "app/library.hpp"
+#include "app/read_face.hpp"
+#include "app/read_solid.hpp"
+#include "app/read_swing.hpp"
 
 namespace hosel::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/options.hpp"
-#include "hosel/post/impact_recorder.hpp"
+#include "app/reader.hpp"
+#include "models/options.hpp"
+#include "post/impact_recorder.hpp"
 
 namespace hosel::app {
 

@@ -1,10 +1,10 @@
-#include "hosel/app/read_parameter.hpp"
+#include "app/read_parameter.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "hosel/post/labels.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/parameters.hpp"
+#include "app/reader.hpp"
+#include "models/parameters.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/read_paths.hpp"
+#include "app/read_paths.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_sheet.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_sheet.hpp"
 
 namespace hosel::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/flight_inference.hpp"
+#include "app/reader.hpp"
+#include "models/flight/flight_inference.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/read_series.hpp"
+#include "app/read_series.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/golf/units.hpp"
+#include "app/read_sheet.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::app {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/loop/history/bench_history.hpp"
-#include "hosel/loop/history/histories.hpp"
+#include "app/reader.hpp"
+#include "loop/history/bench_history.hpp"
+#include "loop/history/histories.hpp"
 
 namespace hosel::app {
 

@@ -1,14 +1,14 @@
-#include "hosel/app/read_shaft.hpp"
+#include "app/read_shaft.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/golf/shaft_library.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_sheet.hpp"
+#include "golf/shaft_library.hpp"
 
 namespace hosel::app {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/golf/blow.hpp"
+#include "app/reader.hpp"
+#include "golf/blow.hpp"
 
 namespace hosel::app {
 

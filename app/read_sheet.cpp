@@ -1,11 +1,11 @@
-#include "hosel/app/read_sheet.hpp"
+#include "app/read_sheet.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
 
-#include "hosel/app/reader.hpp"
+#include "app/reader.hpp"
 
 namespace hosel::app {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/post/csv.hpp"
+#include "golf/units.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::app {
 

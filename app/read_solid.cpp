@@ -1,16 +1,16 @@
-#include "hosel/app/read_solid.hpp"
+#include "app/read_solid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/materials/ogden.hpp"
-#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
-#include "hosel/models/changeable_fe.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/materials/ogden.hpp"
+#include "fem/materials/st_venant_kirchhoff.hpp"
+#include "models/fe/changeable_fe.hpp"
 
 namespace hosel::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <string_view>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/fe_ball.hpp"
+#include "app/reader.hpp"
+#include "models/fe/fe_ball.hpp"
 
 namespace hosel::app {
 

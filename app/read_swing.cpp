@@ -1,4 +1,4 @@
-#include "hosel/app/read_swing.hpp"
+#include "app/read_swing.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "hosel/app/read_sheet.hpp"
+#include "app/read_sheet.hpp"
 
 namespace hosel::app {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/models/grip_motion.hpp"
-#include "hosel/models/swing.hpp"
+#include "app/reader.hpp"
+#include "models/club/grip_motion.hpp"
+#include "models/club/swing.hpp"
 
 namespace hosel::app {
 

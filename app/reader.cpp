@@ -1,4 +1,4 @@
-#include "hosel/app/reader.hpp"
+#include "app/reader.hpp"
 
 #include <fmt/format.h>
 #include <utf8.h>
@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include "app/parse_toml.hpp"
+#include "app/terminal.hpp"
 #include "build_info.hpp"
-#include "hosel/app/parse_toml.hpp"
-#include "hosel/app/terminal.hpp"
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

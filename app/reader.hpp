@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/app/inputs.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/golf/vector.hpp"
+#include "app/inputs.hpp"
+#include "golf/units.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/run_page.hpp"
+#include "app/run_page.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -8,12 +8,12 @@
 #include <ctime>
 #include <sstream>
 
-#include "hosel/app/command_help.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/post/html.hpp"
-#include "hosel/post/labels.hpp"
+#include "app/command_help.hpp"
+#include "app/job.hpp"
+#include "app/version.hpp"
+#include "golf/units.hpp"
+#include "post/html.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/post/figure.hpp"
-#include "hosel/post/text_table.hpp"
+#include "post/figure.hpp"
+#include "post/text_table.hpp"
 
 namespace hosel::app {
 

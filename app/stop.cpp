@@ -1,4 +1,4 @@
-#include "hosel/app/stop.hpp"
+#include "app/stop.hpp"
 
 #include <atomic>
 #include <csignal>

@@ -1,4 +1,4 @@
-#include "hosel/app/stored_launch.hpp"
+#include "app/stored_launch.hpp"
 
 #include <nlohmann/json.hpp>
 

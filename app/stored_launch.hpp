@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
-#include "hosel/golf/launch.hpp"
-#include "hosel/models/hosel_load.hpp"
+#include "golf/launch.hpp"
+#include "models/club/hosel_load.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/sweep.hpp"
+#include "app/sweep.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -8,16 +8,16 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/cases.hpp"
-#include "hosel/app/lock.hpp"
-#include "hosel/app/stop.hpp"
-#include "hosel/app/sweep_store.hpp"
-#include "hosel/app/terminal.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/solvers/blas.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "app/cases.hpp"
+#include "app/lock.hpp"
+#include "app/stop.hpp"
+#include "app/sweep_store.hpp"
+#include "app/terminal.hpp"
+#include "app/version.hpp"
+#include "golf/parallel.hpp"
+#include "post/file.hpp"
+#include "solvers/blas.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

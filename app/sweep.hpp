@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

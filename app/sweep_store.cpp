@@ -1,4 +1,4 @@
-#include "hosel/app/sweep_store.hpp"
+#include "app/sweep_store.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "hosel/app/reader.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/parse_json.hpp"
+#include "app/reader.hpp"
+#include "app/version.hpp"
+#include "post/file.hpp"
+#include "post/parse_json.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 

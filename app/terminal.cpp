@@ -1,4 +1,4 @@
-#include "hosel/app/terminal.hpp"
+#include "app/terminal.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

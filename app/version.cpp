@@ -1,10 +1,10 @@
-#include "hosel/app/version.hpp"
+#include "app/version.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include "build_info.hpp"
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 

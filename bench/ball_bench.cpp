@@ -7,10 +7,10 @@
 
 #include <Eigen/LU>
 
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/solvers/contact_newton.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "solvers/contact_newton.hpp"
 
 namespace {
 using namespace hosel;

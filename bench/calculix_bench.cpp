@@ -15,8 +15,8 @@
 #include <optional>
 #include <sstream>
 
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/materials/st_venant_kirchhoff.hpp"
 #include "tests/support/elastic_sphere.hpp"
 
 namespace {

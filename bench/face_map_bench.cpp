@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/cases.hpp"
-#include "hosel/app/sweep.hpp"
-#include "hosel/solvers/blas.hpp"
+#include "app/cases.hpp"
+#include "app/sweep.hpp"
+#include "solvers/blas.hpp"
 
 namespace {
 

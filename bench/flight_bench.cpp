@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hosel/models/flight.hpp"
+#include "models/flight/flight.hpp"
 
 namespace {
 using namespace hosel;

@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-#include "hosel/models/fe_full_club.hpp"
+#include "models/fe/fe_full_club.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "loop/shots/run.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace {
 using namespace hosel;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <ctime>
 
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/fe_full_club.hpp"
+#include "golf/shaft_library.hpp"
+#include "golf/units.hpp"
+#include "models/fe/fe_full_club.hpp"
 
 namespace {
 using namespace hosel;

@@ -5,11 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <ctime>
 
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/mesh/meridian.hpp"
-#include "hosel/models/fe_ball.hpp"
-#include "hosel/solvers/linear.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "mesh/meridian.hpp"
+#include "models/fe/fe_ball.hpp"
+#include "solvers/linear.hpp"
+#include "solvers/modes.hpp"
 
 namespace {
 using namespace hosel;

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/materials/st_venant_kirchhoff.hpp"
 #include "tests/support/elastic_sphere.hpp"
 
 namespace {

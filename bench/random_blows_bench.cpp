@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "golf/units.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "solvers/errors.hpp"
 
 namespace {
 using namespace hosel;

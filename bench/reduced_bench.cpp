@@ -8,12 +8,12 @@
 #include <cmath>
 #include <ctime>
 
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/shaft_impedance.hpp"
-#include "hosel/models/stick_slip.hpp"
-#include "hosel/models/volumetric.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
+#include "models/reduced/shaft_impedance.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/stick_slip.hpp"
 
 namespace {
 using namespace hosel;

@@ -1,8 +1,6 @@
-# Headers are named hosel/<floor>/..., in the tree as where it is installed.
-file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/hosel)
+# Includes are paths of the tree ("fem/contact.hpp"); the install keeps the tree under include/hosel.
 # One floor of the house: the static library of all sources in a folder, linked to the floors below.
 function(hosel_floor name)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${name} ${PROJECT_BINARY_DIR}/include/hosel/${name} SYMBOLIC)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.hpp)
   list(FILTER sources EXCLUDE REGEX "/app/main\\.cpp$")
@@ -32,8 +30,8 @@ function(hosel_floor name)
   endif()
   add_library(hosel::${name} ALIAS hosel_${name})
   set_target_properties(hosel_${name} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(hosel_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-                             $<INSTALL_INTERFACE:include>)
+  target_include_directories(hosel_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hosel>)
   target_link_libraries(hosel_${name} ${scope} ${ARGN})
   target_compile_features(hosel_${name} ${scope} cxx_std_20)
   set_property(GLOBAL APPEND PROPERTY HOSEL_FLOORS hosel_${name})

@@ -1,8 +1,8 @@
 // One blow through a model that answers in a microsecond: what the ball does.
 #include <cstdio>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 int main() {
   using namespace hosel;

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <random>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/run.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "hosel/models/fe_impact.hpp"
+#include "models/fe/fe_impact.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/rigid_planar.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_planar.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "hosel/fem/face_surface.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/models/fe_impact.hpp"
+#include "fem/face_surface.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "models/fe/fe_impact.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/swing.hpp"
+#include "golf/shaft_library.hpp"
+#include "golf/units.hpp"
+#include "models/club/swing.hpp"
 
 int main() {
   using namespace hosel;

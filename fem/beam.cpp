@@ -1,10 +1,10 @@
-#include "hosel/fem/beam.hpp"
+#include "fem/beam.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/fem/rotation_forms.hpp"
+#include "fem/rotation_forms.hpp"
 
 namespace hosel::fem {
 namespace {

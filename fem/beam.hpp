@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/section.hpp"
-#include "hosel/fem/term.hpp"
-#include "hosel/mesh/line.hpp"
+#include "fem/section.hpp"
+#include "fem/term.hpp"
+#include "mesh/line.hpp"
 
 namespace hosel::fem {
 

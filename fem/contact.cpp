@@ -1,4 +1,4 @@
-#include "hosel/fem/contact.hpp"
+#include "fem/contact.hpp"
 
 #include <tbb/blocked_range.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hosel/golf/parallel.hpp"
+#include "golf/parallel.hpp"
 
 namespace hosel::fem {
 namespace {

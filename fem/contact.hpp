@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "hosel/fem/contact_surface.hpp"
-#include "hosel/fem/friction/law.hpp"
-#include "hosel/fem/harmonic_solid.hpp"
+#include "fem/contact_surface.hpp"
+#include "fem/friction/law.hpp"
+#include "fem/harmonic_solid.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/contact_surface.hpp"
+#include "fem/contact_surface.hpp"
 
 #include <stdexcept>
 

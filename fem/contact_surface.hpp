@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "hosel/fem/state.hpp"
+#include "fem/state.hpp"
 
 namespace hosel::fem {
 

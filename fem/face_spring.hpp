@@ -1,9 +1,9 @@
 /// What a yielding face weighs and what holds it in the head.
 #pragma once
 
-#include "hosel/fem/contact_surface.hpp"
-#include "hosel/fem/term.hpp"
-#include "hosel/golf/face_compliance.hpp"
+#include "fem/contact_surface.hpp"
+#include "fem/term.hpp"
+#include "golf/face_compliance.hpp"
 
 namespace hosel::fem {
 

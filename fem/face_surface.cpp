@@ -1,4 +1,4 @@
-#include "hosel/fem/face_surface.hpp"
+#include "fem/face_surface.hpp"
 
 namespace hosel::fem {
 

@@ -1,8 +1,8 @@
 /// The rigid club face as a contact surface.
 #pragma once
 
-#include "hosel/fem/contact_surface.hpp"
-#include "hosel/golf/face.hpp"
+#include "fem/contact_surface.hpp"
+#include "golf/face.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/harmonic_solid.hpp"
+#include "fem/harmonic_solid.hpp"
 
 #include <tbb/blocked_range.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hosel/golf/parallel.hpp"
+#include "golf/parallel.hpp"
 
 namespace hosel::fem {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/harmonics.hpp"
-#include "hosel/fem/materials/solid.hpp"
-#include "hosel/fem/term.hpp"
-#include "hosel/mesh/meridian.hpp"
+#include "fem/harmonics.hpp"
+#include "fem/materials/solid.hpp"
+#include "fem/term.hpp"
+#include "mesh/meridian.hpp"
 
 namespace hosel::fem {
 

@@ -1,8 +1,8 @@
-#include "hosel/fem/harmonics.hpp"
+#include "fem/harmonics.hpp"
 
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::fem {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/modal_damping.hpp"
+#include "fem/modal_damping.hpp"
 
 #include <stdexcept>
 #include <utility>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/beam.hpp"
+#include "fem/beam.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/rigid_body.hpp"
+#include "fem/rigid_body.hpp"
 
 #include <utility>
 

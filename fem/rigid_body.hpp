@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/rotation_forms.hpp"
+#include "fem/rotation_forms.hpp"
 
 #include <array>
 #include <cmath>

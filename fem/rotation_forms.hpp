@@ -1,7 +1,7 @@
 /// Maps of rotation vectors that beams are made of, with their derivatives.
 #pragma once
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/section.hpp"
+#include "fem/section.hpp"
 
 #include <limits>
 

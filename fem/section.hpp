@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "hosel/golf/shaft.hpp"
+#include "golf/shaft.hpp"
 
 namespace hosel::fem {
 

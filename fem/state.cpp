@@ -1,4 +1,4 @@
-#include "hosel/fem/state.hpp"
+#include "fem/state.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
-#include "hosel/fem/supports.hpp"
+#include "fem/supports.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-#include "hosel/fem/rotation_forms.hpp"
+#include "fem/rotation_forms.hpp"
 
 namespace hosel::fem {
 

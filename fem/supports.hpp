@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "hosel/fem/beam.hpp"
+#include "fem/beam.hpp"
 
 namespace hosel::fem {
 

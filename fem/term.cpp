@@ -1,4 +1,4 @@
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 #include <limits>
 

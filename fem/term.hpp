@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/state.hpp"
+#include "fem/state.hpp"
 
 namespace hosel::fem {
 

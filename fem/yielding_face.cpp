@@ -1,4 +1,4 @@
-#include "hosel/fem/yielding_face.hpp"
+#include "fem/yielding_face.hpp"
 
 namespace hosel::fem {
 

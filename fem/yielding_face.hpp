@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "hosel/fem/face_surface.hpp"
-#include "hosel/golf/face_compliance.hpp"
+#include "fem/face_surface.hpp"
+#include "golf/face_compliance.hpp"
 
 namespace hosel::fem {
 

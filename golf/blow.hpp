@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "hosel/golf/ball.hpp"
-#include "hosel/golf/contact_law.hpp"
-#include "hosel/golf/delivery.hpp"
-#include "hosel/golf/head.hpp"
-#include "hosel/golf/shaft.hpp"
+#include "golf/ball.hpp"
+#include "golf/contact_law.hpp"
+#include "golf/delivery.hpp"
+#include "golf/head.hpp"
+#include "golf/shaft.hpp"
 
 namespace hosel {
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/delivery.hpp"
+#include "golf/delivery.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 /// How the head arrives at the ball, at first contact. Signs and frames: README, "Frames".
 #pragma once
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel {
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/face_compliance.hpp"
+#include "golf/face_compliance.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/face_library.hpp"
+#include "golf/face_library.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "hosel/golf/face_compliance.hpp"
+#include "golf/face_compliance.hpp"
 
 namespace hosel {
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/first_contact.hpp"
+#include "golf/first_contact.hpp"
 
 #include <stdexcept>
 

@@ -1,7 +1,7 @@
 /// Where and how ball and face meet.
 #pragma once
 
-#include "hosel/golf/blow.hpp"
+#include "golf/blow.hpp"
 
 namespace hosel {
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/head.hpp"
+#include "golf/head.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/golf/face.hpp"
-#include "hosel/golf/vector.hpp"
+#include "golf/face.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel {
 

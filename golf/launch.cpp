@@ -1,4 +1,4 @@
-#include "hosel/golf/launch.hpp"
+#include "golf/launch.hpp"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel {
 

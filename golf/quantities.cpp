@@ -1,4 +1,4 @@
-#include "hosel/golf/quantities.hpp"
+#include "golf/quantities.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string_view>
 
-#include "hosel/golf/blow.hpp"
-#include "hosel/golf/launch.hpp"
-#include "hosel/golf/units.hpp"
+#include "golf/blow.hpp"
+#include "golf/launch.hpp"
+#include "golf/units.hpp"
 
 namespace hosel {
 

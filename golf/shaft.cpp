@@ -1,4 +1,4 @@
-#include "hosel/golf/shaft.hpp"
+#include "golf/shaft.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/shaft_library.hpp"
+#include "golf/shaft_library.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel {
 namespace {

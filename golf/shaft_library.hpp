@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/shaft.hpp"
+#include "golf/shaft.hpp"
 
 namespace hosel {
 

@@ -1,4 +1,4 @@
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/beyond_doubt.hpp"
+#include "loop/beyond_doubt.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,7 +1,7 @@
 /// What may be adopted although structure remains that no candidate explains.
 #pragma once
 
-#include "hosel/loop/study.hpp"
+#include "loop/study.hpp"
 
 namespace hosel::loop {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/effect.hpp"
-#include "hosel/loop/rules.hpp"
-#include "hosel/loop/told.hpp"
+#include "loop/effect.hpp"
+#include "loop/rules.hpp"
+#include "loop/told.hpp"
 
 namespace hosel::loop {
 

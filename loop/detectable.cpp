@@ -1,10 +1,10 @@
-#include "hosel/loop/detectable.hpp"
+#include "loop/detectable.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
-#include "hosel/golf/parallel.hpp"
+#include "golf/parallel.hpp"
 
 namespace hosel::loop {
 

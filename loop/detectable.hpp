@@ -1,9 +1,9 @@
 /// The smallest effect that the data would show.
 #pragma once
 
-#include "hosel/loop/fit.hpp"
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/rules.hpp"
+#include "loop/fit.hpp"
+#include "loop/result.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 

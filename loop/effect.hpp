@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/quantities.hpp"
-#include "hosel/models/fe_change.hpp"
+#include "golf/quantities.hpp"
+#include "models/fe/fe_change.hpp"
 
 namespace hosel::models {
 struct FlightConditions;  // flight.hpp

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -1,4 +1,4 @@
-#include "hosel/loop/fit.hpp"
+#include "loop/fit.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,7 +1,7 @@
 /// Least squares of effects' parameters on whitened residuals.
 #pragma once
 
-#include "hosel/loop/problem.hpp"
+#include "loop/problem.hpp"
 
 namespace hosel::loop {
 

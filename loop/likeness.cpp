@@ -1,4 +1,4 @@
-#include "hosel/loop/likeness.hpp"
+#include "loop/likeness.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>

@@ -2,7 +2,7 @@
 /// shows.
 #pragma once
 
-#include "hosel/loop/fit.hpp"
+#include "loop/fit.hpp"
 
 namespace hosel::loop {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/loop/report.hpp"
-#include "hosel/post/html.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/svg.hpp"
+#include "loop/report.hpp"
+#include "post/html.hpp"
+#include "post/labels.hpp"
+#include "post/svg.hpp"
 
 namespace hosel::loop {
 namespace {

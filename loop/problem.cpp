@@ -1,4 +1,4 @@
-#include "hosel/loop/problem.hpp"
+#include "loop/problem.hpp"
 
 namespace hosel::loop {
 

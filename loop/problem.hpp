@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/effect.hpp"
-#include "hosel/solvers/least_squares.hpp"
+#include "loop/effect.hpp"
+#include "solvers/least_squares.hpp"
 
 namespace hosel::loop {
 

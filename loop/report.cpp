@@ -1,11 +1,11 @@
-#include "hosel/loop/report.hpp"
+#include "loop/report.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/post/csv.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "hosel/loop/result.hpp"
+#include "loop/result.hpp"
 
 namespace hosel::loop {
 

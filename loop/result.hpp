@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/loop/likeness.hpp"
-#include "hosel/loop/select.hpp"
-#include "hosel/loop/shots/audit.hpp"
-#include "hosel/loop/shots/balances.hpp"
-#include "hosel/loop/shots/columns.hpp"
+#include "loop/likeness.hpp"
+#include "loop/select.hpp"
+#include "loop/shots/audit.hpp"
+#include "loop/shots/balances.hpp"
+#include "loop/shots/columns.hpp"
 
 namespace hosel::loop {
 

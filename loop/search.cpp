@@ -1,4 +1,4 @@
-#include "hosel/loop/search.hpp"
+#include "loop/search.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/loop/structure.hpp"
+#include "golf/parallel.hpp"
+#include "loop/structure.hpp"
 
 namespace hosel::loop {
 namespace {

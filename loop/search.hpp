@@ -2,9 +2,9 @@
 /// linear, those that begin with a good single effect), triples that begin with a good pair.
 #pragma once
 
-#include "hosel/loop/fit.hpp"
-#include "hosel/loop/rules.hpp"
-#include "hosel/loop/told.hpp"
+#include "loop/fit.hpp"
+#include "loop/rules.hpp"
+#include "loop/told.hpp"
 
 namespace hosel::loop {
 

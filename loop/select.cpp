@@ -1,4 +1,4 @@
-#include "hosel/loop/select.hpp"
+#include "loop/select.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 /// The rule for adopting: how many effects the data ask for, which, and what ties with them.
 #pragma once
 
-#include "hosel/loop/search.hpp"
-#include "hosel/loop/structure.hpp"
+#include "loop/search.hpp"
+#include "loop/structure.hpp"
 
 namespace hosel::loop {
 

@@ -1,11 +1,11 @@
-#include "hosel/loop/study.hpp"
+#include "loop/study.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/golf/data_error.hpp"
+#include "golf/data_error.hpp"
 
 namespace hosel::loop {
 

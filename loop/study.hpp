@@ -1,7 +1,7 @@
 /// One pass of the loop: effects are selected, rows screened and the noise measured in turn until nothing changes.
 #pragma once
 
-#include "hosel/loop/select.hpp"
+#include "loop/select.hpp"
 
 namespace hosel::loop {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string_view>
 
-#include "hosel/golf/parallel.hpp"
+#include "golf/parallel.hpp"
 
 namespace hosel::loop {
 

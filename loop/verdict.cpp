@@ -1,4 +1,4 @@
-#include "hosel/loop/verdict.hpp"
+#include "loop/verdict.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <functional>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/beyond_doubt.hpp"
-#include "hosel/loop/detectable.hpp"
+#include "golf/units.hpp"
+#include "loop/beyond_doubt.hpp"
+#include "loop/detectable.hpp"
 
 namespace hosel::loop {
 namespace {

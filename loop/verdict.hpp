@@ -1,8 +1,8 @@
 /// What is said of a selection: verdict, places, the holdout read once, errors on both sets, what to measure next.
 #pragma once
 
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/study.hpp"
+#include "loop/result.hpp"
+#include "loop/study.hpp"
 
 namespace hosel::loop {
 

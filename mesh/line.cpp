@@ -1,4 +1,4 @@
-#include "hosel/mesh/line.hpp"
+#include "mesh/line.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "hosel/mesh/meridian.hpp"
+#include "mesh/meridian.hpp"
 
 #include <cmath>
 #include <functional>

@@ -1,13 +1,13 @@
-#include "hosel/models/checked_launch.hpp"
+#include "models/checked_launch.hpp"
 
 #include <cmath>
 #include <sstream>
 
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/hinged_head.hpp"
-#include "hosel/models/pendulum_club.hpp"
-#include "hosel/models/shaft_coupled.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "models/fe/fe_full_club.hpp"
+#include "models/reduced/shaft_coupled.hpp"
+#include "models/rigid/hinged_head.hpp"
+#include "models/rigid/pendulum_club.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {

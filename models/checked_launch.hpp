@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "hosel/models/impact_model.hpp"
+#include "models/impact_model.hpp"
 
 namespace hosel::models {
 

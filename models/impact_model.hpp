@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "hosel/golf/blow.hpp"
-#include "hosel/golf/launch.hpp"
+#include "golf/blow.hpp"
+#include "golf/launch.hpp"
 
 namespace hosel::models {
 

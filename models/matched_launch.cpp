@@ -1,9 +1,9 @@
-#include "hosel/models/matched_launch.hpp"
+#include "models/matched_launch.hpp"
 
 #include <cmath>
 
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "models/checked_launch.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::models {
 

@@ -1,7 +1,7 @@
 /// A blow whose loft is not known, at the launch angle that was measured.
 #pragma once
 
-#include "hosel/models/impact_model.hpp"
+#include "models/impact_model.hpp"
 
 namespace hosel::models {
 

@@ -1,9 +1,9 @@
-#include "hosel/models/oblique.hpp"
+#include "models/oblique.hpp"
 
 #include <cmath>
 
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/models/checked_launch.hpp"
+#include "golf/first_contact.hpp"
+#include "models/checked_launch.hpp"
 
 namespace hosel::models {
 

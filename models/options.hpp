@@ -2,10 +2,10 @@
 /// not say it: one struct for all, each model reads its own.
 #pragma once
 
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/mounted_shaft.hpp"
-#include "hosel/models/volumetric.hpp"
+#include "models/club/mounted_shaft.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "models/rigid/hertz_maw.hpp"
 
 namespace hosel::models {
 

@@ -1,4 +1,4 @@
-#include "hosel/models/parameters.hpp"
+#include "models/parameters.hpp"
 
 #include <algorithm>
 #include <array>

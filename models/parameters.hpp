@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "hosel/golf/blow.hpp"
-#include "hosel/models/options.hpp"
+#include "golf/blow.hpp"
+#include "models/options.hpp"
 
 namespace hosel::models {
 

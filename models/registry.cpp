@@ -1,17 +1,17 @@
-#include "hosel/models/registry.hpp"
+#include "models/registry.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/models/hinged_head.hpp"
-#include "hosel/models/pendulum_club.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/models/rigid_planar.hpp"
-#include "hosel/models/shaft_coupled.hpp"
-#include "hosel/models/stick_slip.hpp"
-#include "hosel/models/volumetric.hpp"
+#include "models/fe/fe_full_club.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "models/reduced/shaft_coupled.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "models/rigid/hinged_head.hpp"
+#include "models/rigid/pendulum_club.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "models/rigid/rigid_planar.hpp"
+#include "models/rigid/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {

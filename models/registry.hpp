@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "hosel/models/impact_model.hpp"
-#include "hosel/models/options.hpp"
+#include "models/impact_model.hpp"
+#include "models/options.hpp"
 
 namespace hosel::models {
 

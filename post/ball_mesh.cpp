@@ -1,10 +1,10 @@
-#include "hosel/post/ball_mesh.hpp"
+#include "post/ball_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
-#include "hosel/fem/materials/equivalent_stress.hpp"
+#include "fem/materials/equivalent_stress.hpp"
 
 namespace hosel::post {
 namespace {

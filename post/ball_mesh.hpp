@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/ball_section.hpp"
+#include "post/ball_section.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "hosel/fem/materials/equivalent_stress.hpp"
-#include "hosel/golf/units.hpp"
+#include "fem/materials/equivalent_stress.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/golf/face.hpp"
-#include "hosel/models/fe_impact.hpp"
+#include "golf/face.hpp"
+#include "models/fe/fe_impact.hpp"
 
 namespace hosel::post {
 

@@ -1,9 +1,9 @@
-#include "hosel/post/bodies.hpp"
+#include "post/bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/post/shaft_loads.hpp"
+#include "post/shaft_loads.hpp"
 
 namespace hosel::post {
 namespace {

@@ -1,10 +1,10 @@
 /// Rigid bodies and the shaft as meshes for looking.
 #pragma once
 
-#include "hosel/fem/supports.hpp"
-#include "hosel/golf/head.hpp"
-#include "hosel/golf/shaft.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "fem/supports.hpp"
+#include "golf/head.hpp"
+#include "golf/shaft.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

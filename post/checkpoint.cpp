@@ -1,4 +1,4 @@
-#include "hosel/post/checkpoint.hpp"
+#include "post/checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hosel/post/file.hpp"
-#include "hosel/post/parse_json.hpp"
+#include "post/file.hpp"
+#include "post/parse_json.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;

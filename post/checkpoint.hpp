@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/post/ball_section.hpp"
-#include "hosel/post/history.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "post/ball_section.hpp"
+#include "post/history.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

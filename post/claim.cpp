@@ -1,4 +1,4 @@
-#include "hosel/post/claim.hpp"
+#include "post/claim.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hosel/post/csv.hpp"
+#include "post/csv.hpp"
 
 #include <fmt/format.h>
 #include <utf8.h>
@@ -7,7 +7,7 @@
 #include <charconv>
 #include <limits>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::post {
 namespace {

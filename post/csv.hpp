@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/data_error.hpp"
+#include "golf/data_error.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/face_map.hpp"
+#include "post/face_map.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "golf/units.hpp"
+#include "post/csv.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::post {
 namespace {

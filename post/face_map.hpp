@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "hosel/golf/face.hpp"
-#include "hosel/golf/launch.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/flight_table.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "golf/face.hpp"
+#include "golf/launch.hpp"
+#include "post/figure.hpp"
+#include "post/flight_table.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/figure.hpp"
+#include "post/figure.hpp"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 extern char** environ;
 

@@ -1,4 +1,4 @@
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

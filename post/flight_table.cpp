@@ -1,4 +1,4 @@
-#include "hosel/post/flight_table.hpp"
+#include "post/flight_table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/models/bounce_roll.hpp"
-#include "hosel/models/flight_budget.hpp"
-#include "hosel/post/text_table.hpp"
+#include "models/flight/bounce_roll.hpp"
+#include "models/flight/flight_budget.hpp"
+#include "post/text_table.hpp"
 
 namespace hosel::post {
 

@@ -1,10 +1,10 @@
-#include "hosel/post/history.hpp"
+#include "post/history.hpp"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "hosel/post/csv.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::post {
 namespace {

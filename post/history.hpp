@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::post {
 

@@ -1,8 +1,8 @@
-#include "hosel/post/html.hpp"
+#include "post/html.hpp"
 
 #include <vtkBase64Utilities.h>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::post {
 namespace {

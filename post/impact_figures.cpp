@@ -1,4 +1,4 @@
-#include "hosel/post/impact_figures.hpp"
+#include "post/impact_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hosel/post/csv.hpp"
-#include "hosel/post/svg.hpp"
-#include "hosel/solvers/peak.hpp"
+#include "post/csv.hpp"
+#include "post/svg.hpp"
+#include "solvers/peak.hpp"
 
 namespace hosel::post {
 namespace {

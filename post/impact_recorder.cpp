@@ -1,18 +1,18 @@
-#include "hosel/post/impact_recorder.hpp"
+#include "post/impact_recorder.hpp"
 
 #include <fmt/format.h>
 
 #include <map>
 #include <optional>
 
-#include "hosel/models/hosel_load.hpp"
-#include "hosel/post/ball_mesh.hpp"
-#include "hosel/post/bodies.hpp"
-#include "hosel/post/checkpoint.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/history.hpp"
-#include "hosel/post/patch_mesh.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "models/club/hosel_load.hpp"
+#include "post/ball_mesh.hpp"
+#include "post/bodies.hpp"
+#include "post/checkpoint.hpp"
+#include "post/file.hpp"
+#include "post/history.hpp"
+#include "post/patch_mesh.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;

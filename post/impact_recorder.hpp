@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "hosel/golf/blow.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/post/ball_section.hpp"
+#include "golf/blow.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "post/ball_section.hpp"
 
 namespace hosel::post {
 

@@ -1,6 +1,6 @@
-#include "hosel/post/labels.hpp"
+#include "post/labels.hpp"
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/launch_table.hpp"
+#include "post/launch_table.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 namespace {

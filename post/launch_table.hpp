@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/golf/launch.hpp"
-#include "hosel/post/flight_table.hpp"
-#include "hosel/post/text_table.hpp"
+#include "golf/launch.hpp"
+#include "post/flight_table.hpp"
+#include "post/text_table.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/parse_json.hpp"
+#include "post/parse_json.hpp"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "hosel/post/patch_figure.hpp"
+#include "post/patch_figure.hpp"
 
 #include <fmt/format.h>
 #include <vtkDataArray.h>

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hosel/golf/vector.hpp"
-#include "hosel/post/figure.hpp"
+#include "golf/vector.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::post {
 

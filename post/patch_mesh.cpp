@@ -1,4 +1,4 @@
-#include "hosel/post/patch_mesh.hpp"
+#include "post/patch_mesh.hpp"
 
 namespace hosel::post {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "hosel/fem/contact.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "fem/contact.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/shaft_effect.hpp"
+#include "post/shaft_effect.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/post/claim.hpp"
-#include "hosel/post/face_map.hpp"
+#include "post/claim.hpp"
+#include "post/face_map.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/shaft_loads.hpp"
+#include "post/shaft_loads.hpp"
 
 #include <fmt/format.h>
 

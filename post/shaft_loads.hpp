@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/beam.hpp"
-#include "hosel/post/figure.hpp"
+#include "fem/beam.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::post {
 

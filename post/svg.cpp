@@ -1,11 +1,11 @@
-#include "hosel/post/svg.hpp"
+#include "post/svg.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/post/html.hpp"
+#include "post/html.hpp"
 
 namespace hosel::post {
 namespace {

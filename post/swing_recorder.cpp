@@ -1,4 +1,4 @@
-#include "hosel/post/swing_recorder.hpp"
+#include "post/swing_recorder.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;

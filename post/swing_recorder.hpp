@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "hosel/models/swing.hpp"
-#include "hosel/post/bodies.hpp"
-#include "hosel/post/shaft_loads.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "models/club/swing.hpp"
+#include "post/bodies.hpp"
+#include "post/shaft_loads.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

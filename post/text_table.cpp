@@ -1,12 +1,12 @@
-#include "hosel/post/text_table.hpp"
+#include "post/text_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
-#include "hosel/post/html.hpp"
-#include "hosel/post/labels.hpp"
+#include "post/html.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::post {
 namespace {

@@ -1,11 +1,11 @@
-#include "hosel/post/trajectory.hpp"
+#include "post/trajectory.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
 

@@ -1,9 +1,9 @@
 /// A flight as a picture and as lines for ParaView.
 #pragma once
 
-#include "hosel/post/figure.hpp"
-#include "hosel/post/flight_table.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "post/figure.hpp"
+#include "post/flight_table.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 

@@ -1,4 +1,4 @@
-#include "hosel/post/vtk_series.hpp"
+#include "post/vtk_series.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -16,7 +16,7 @@
 
 #include <stdexcept>
 
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;

@@ -8,17 +8,17 @@
 
 #include <mutex>
 
+#include "app/cases.hpp"
+#include "app/job.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "build_info.hpp"
-#include "hosel/app/cases.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/golf/quantities.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/parallel.hpp"
+#include "golf/quantities.hpp"
+#include "models/checked_launch.hpp"
+#include "models/registry.hpp"
+#include "post/launch_table.hpp"
+#include "solvers/errors.hpp"
 
 namespace py = pybind11;
 using namespace hosel;

@@ -1,4 +1,4 @@
-#include "hosel/solvers/blas.hpp"
+#include "solvers/blas.hpp"
 
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 

@@ -1,4 +1,4 @@
-#include "hosel/solvers/condensed.hpp"
+#include "solvers/condensed.hpp"
 
 #include <cholmod.h>
 
@@ -6,9 +6,9 @@
 #include <atomic>
 #include <utility>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/solvers/blas.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/parallel.hpp"
+#include "solvers/blas.hpp"
+#include "solvers/errors.hpp"
 
 // CHOLMOD opens a team of four threads for every front, whatever the machine has: on fronts as small as ours their
 // waking costs more than they do. Absent where CHOLMOD is built without OpenMP.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "hosel/solvers/linear.hpp"
+#include "solvers/linear.hpp"
 
 namespace hosel::solvers {
 

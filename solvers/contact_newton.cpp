@@ -1,10 +1,10 @@
-#include "hosel/solvers/contact_newton.hpp"
+#include "solvers/contact_newton.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "hosel/solvers/condensed.hpp"
-#include "hosel/solvers/newton.hpp"
+#include "solvers/condensed.hpp"
+#include "solvers/newton.hpp"
 
 namespace hosel::solvers {
 

@@ -1,4 +1,4 @@
-#include "hosel/solvers/cvode.hpp"
+#include "solvers/cvode.hpp"
 
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <string>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

@@ -1,11 +1,11 @@
-#include "hosel/solvers/generalized_alpha.hpp"
+#include "solvers/generalized_alpha.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/solvers/contact_newton.hpp"
+#include "solvers/contact_newton.hpp"
 
 namespace hosel::solvers {
 

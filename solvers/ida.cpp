@@ -1,4 +1,4 @@
-#include "hosel/solvers/ida.hpp"
+#include "solvers/ida.hpp"
 
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

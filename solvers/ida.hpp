@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 namespace hosel::solvers {
 

@@ -1,4 +1,4 @@
-#include "hosel/solvers/kriging.hpp"
+#include "solvers/kriging.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

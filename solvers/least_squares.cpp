@@ -1,4 +1,4 @@
-#include "hosel/solvers/least_squares.hpp"
+#include "solvers/least_squares.hpp"
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/solvers/errors.hpp"
-#include "hosel/solvers/random.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::solvers {
 namespace {

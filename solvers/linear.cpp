@@ -1,4 +1,4 @@
-#include "hosel/solvers/linear.hpp"
+#include "solvers/linear.hpp"
 
 #include <klu.h>
 #include <umfpack.h>
@@ -9,9 +9,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/solvers/blas.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/parallel.hpp"
+#include "solvers/blas.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

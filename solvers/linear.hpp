@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 namespace hosel::solvers {
 

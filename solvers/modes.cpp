@@ -1,4 +1,4 @@
-#include "hosel/solvers/modes.hpp"
+#include "solvers/modes.hpp"
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>
@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/solvers/errors.hpp"
-#include "hosel/solvers/linear.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/linear.hpp"
 
 namespace hosel::solvers {
 

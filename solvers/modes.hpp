@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 namespace hosel::solvers {
 

@@ -1,10 +1,10 @@
-#include "hosel/solvers/newton.hpp"
+#include "solvers/newton.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 

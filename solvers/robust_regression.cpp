@@ -1,11 +1,11 @@
-#include "hosel/solvers/robust_regression.hpp"
+#include "solvers/robust_regression.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

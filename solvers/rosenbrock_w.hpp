@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 

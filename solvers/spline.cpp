@@ -1,4 +1,4 @@
-#include "hosel/solvers/spline.hpp"
+#include "solvers/spline.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>

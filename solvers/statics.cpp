@@ -1,4 +1,4 @@
-#include "hosel/solvers/statics.hpp"
+#include "solvers/statics.hpp"
 
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>
@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "hosel/solvers/contact_newton.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "solvers/contact_newton.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {

@@ -1,7 +1,7 @@
 /// Static equilibrium force(q) = 0 at rest, by load stepping.
 #pragma once
 
-#include "hosel/solvers/newton.hpp"
+#include "solvers/newton.hpp"
 
 namespace hosel::solvers {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/import/cells.hpp"
+#include "app/import/cells.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "hosel/app/import/dictionary.hpp"
-#include "hosel/golf/units.hpp"
+#include "app/import/dictionary.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/import/dictionary.hpp"
+#include "app/import/dictionary.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cctype>
 #include <map>
 
+#include "app/import/cells.hpp"
+#include "app/reader.hpp"
 #include "build_info.hpp"
-#include "hosel/app/import/cells.hpp"
-#include "hosel/app/reader.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/import/import.hpp"
+#include "app/import/import.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "hosel/app/import/cells.hpp"
-#include "hosel/app/import/sheet.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/loop/median.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/file.hpp"
+#include "app/import/cells.hpp"
+#include "app/import/sheet.hpp"
+#include "app/reader.hpp"
+#include "loop/median.hpp"
+#include "post/csv.hpp"
+#include "post/file.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "hosel/app/import/sheet.hpp"
+#include "app/import/sheet.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,9 +13,9 @@
 #include <set>
 #include <sstream>
 
-#include "hosel/app/import/cells.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/post/parse_json.hpp"
+#include "app/import/cells.hpp"
+#include "app/reader.hpp"
+#include "post/parse_json.hpp"
 
 namespace hosel::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/import/dictionary.hpp"
+#include "app/import/dictionary.hpp"
 
 namespace hosel::app {
 

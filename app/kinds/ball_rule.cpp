@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/ball_rule.hpp"
+#include "app/kinds/ball_rule.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "models/checked_launch.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {

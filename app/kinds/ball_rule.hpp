@@ -2,7 +2,7 @@
 /// meets it under new ones; what players lose.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

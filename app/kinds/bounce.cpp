@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/bounce.hpp"
+#include "app/kinds/bounce.hpp"
 
 #include <fmt/format.h>
 
@@ -8,17 +8,17 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/models/elastic_plate.hpp"
-#include "hosel/models/oblique.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
+#include "app/check_memory.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "golf/parallel.hpp"
+#include "models/fe/elastic_plate.hpp"
+#include "models/oblique.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {

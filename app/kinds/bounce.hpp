@@ -1,7 +1,7 @@
 /// The kind `bounce`: balls thrown obliquely at a rigid plate.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/calibrate_ball.hpp"
+#include "app/kinds/calibrate_ball.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,16 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/offer.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/models/ball_calibration.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
+#include "app/check_memory.hpp"
+#include "app/offer.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "models/calibration/ball_calibration.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {

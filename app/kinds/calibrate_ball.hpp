@@ -1,7 +1,7 @@
 /// kind = "calibrate-ball": a ball's material from its normal impacts on a wall.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/calibrate_face.hpp"
+#include "app/kinds/calibrate_face.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/offer.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/models/face_calibration.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
+#include "app/offer.hpp"
+#include "app/read_blow.hpp"
+#include "models/calibration/face_calibration.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "calibrate-face": a face that yields from characteristic times, restitution and the plate's mass.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

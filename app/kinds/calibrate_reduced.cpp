@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/calibrate_reduced.hpp"
+#include "app/kinds/calibrate_reduced.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/models/oblique.hpp"
-#include "hosel/models/reduced_calibration.hpp"
-#include "hosel/post/csv.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "models/calibration/reduced_calibration.hpp"
+#include "models/oblique.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::app {
 namespace {

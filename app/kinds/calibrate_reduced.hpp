@@ -1,7 +1,7 @@
 /// kind = "calibrate-reduced": what the reduced models need of a ball, from what its finite-element model does.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

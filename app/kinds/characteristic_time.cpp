@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/characteristic_time.hpp"
+#include "app/kinds/characteristic_time.hpp"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face.hpp"
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/face_strike.hpp"
-#include "hosel/post/figure.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/clubs.hpp"
+#include "app/kinds/clubs.hpp"
 
 #include <fmt/format.h>
 
@@ -10,18 +10,18 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/matched_launch.hpp"
-#include "hosel/models/oblique.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/shots.hpp"
+#include "models/checked_launch.hpp"
+#include "models/matched_launch.hpp"
+#include "models/oblique.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {

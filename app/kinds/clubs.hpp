@@ -1,7 +1,7 @@
 /// kind = "clubs": a rolling model against the means of several clubs, with straight-line fits.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/cross_check.hpp"
+#include "app/kinds/cross_check.hpp"
 
 #include <fmt/format.h>
 
@@ -8,20 +8,20 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_parameter.hpp"
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/check_memory.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_parameter.hpp"
+#include "golf/first_contact.hpp"
+#include "golf/parallel.hpp"
+#include "models/checked_launch.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

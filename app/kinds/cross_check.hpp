@@ -1,7 +1,7 @@
 /// kind = "cross-check": a set of models over a grid of blows, each against a reference.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/curves.hpp"
+#include "app/kinds/curves.hpp"
 
 #include <fmt/format.h>
 
@@ -7,19 +7,19 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_parameter.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/models/stick_slip.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_parameter.hpp"
+#include "models/checked_launch.hpp"
+#include "models/registry.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/stick_slip.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "curves": launch against one parameter, or force histories, for a family of another.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/face_map.hpp"
+#include "app/kinds/face_map.hpp"
 
 #include <fmt/format.h>
 
@@ -7,24 +7,24 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face_map.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/stop.hpp"
-#include "hosel/app/stored_launch.hpp"
-#include "hosel/app/sweep.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/models/hosel_load.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/face_map.hpp"
-#include "hosel/post/html.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/post/shaft_effect.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "app/check_memory.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face_map.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/stop.hpp"
+#include "app/stored_launch.hpp"
+#include "app/sweep.hpp"
+#include "models/checked_launch.hpp"
+#include "models/club/hosel_load.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "models/registry.hpp"
+#include "post/face_map.hpp"
+#include "post/html.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
+#include "post/shaft_effect.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "face-map": the launch over the face, for several models or clubs, and what they differ by.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

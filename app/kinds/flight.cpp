@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/flight.hpp"
+#include "app/kinds/flight.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "post/csv.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// `kind = "flight"`: where balls of given launches go.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

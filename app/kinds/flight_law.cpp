@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/flight_law.hpp"
+#include "app/kinds/flight_law.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_paths.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_paths.hpp"
 
 namespace hosel::app {
 namespace {

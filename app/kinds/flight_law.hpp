@@ -2,7 +2,7 @@
 /// left out, and what it and the published laws make of those.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/identify_shaft.hpp"
+#include "app/kinds/identify_shaft.hpp"
 
 #include <fmt/format.h>
 
@@ -7,15 +7,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_markers.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/app/read_swing.hpp"
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/models/marker_swing.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_markers.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_sheet.hpp"
+#include "app/read_swing.hpp"
+#include "golf/shaft_library.hpp"
+#include "models/club/marker_swing.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {

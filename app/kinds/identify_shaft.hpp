@@ -1,7 +1,7 @@
 /// kind = "identify-shaft": stiffness scale and damping of a shaft from measured swings.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/impact.hpp"
+#include "app/kinds/impact.hpp"
 
 #include <fmt/format.h>
 
@@ -7,23 +7,23 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hosel/app/kinds/impact_page.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/stop.hpp"
-#include "hosel/app/version.hpp"
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/face_strike.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/models/matched_launch.hpp"
-#include "hosel/models/oblique.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/impact_recorder.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/kinds/impact_page.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/stop.hpp"
+#include "app/version.hpp"
+#include "golf/face_library.hpp"
+#include "golf/parallel.hpp"
+#include "models/checked_launch.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "models/matched_launch.hpp"
+#include "models/oblique.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "models/registry.hpp"
+#include "post/file.hpp"
+#include "post/impact_recorder.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "impact": one blow through one or several models.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/impact_page.hpp"
+#include "app/kinds/impact_page.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/app/command_help.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/face_strike.hpp"
-#include "hosel/post/html.hpp"
-#include "hosel/post/impact_figures.hpp"
+#include "app/command_help.hpp"
+#include "golf/units.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "post/html.hpp"
+#include "post/impact_figures.hpp"
 
 namespace hosel::app {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "hosel/app/output.hpp"
-#include "hosel/models/fe_impact.hpp"
-#include "hosel/post/ball_section.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/post/patch_figure.hpp"
+#include "app/output.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "post/ball_section.hpp"
+#include "post/launch_table.hpp"
+#include "post/patch_figure.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/landing_times.hpp"
+#include "app/kinds/landing_times.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/golf/parallel.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_sheet.hpp"
+#include "golf/parallel.hpp"
 
 namespace hosel::app {
 namespace {

@@ -2,7 +2,7 @@
 /// carry what the sites differ by at equal launch?
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

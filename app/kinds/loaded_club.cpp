@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loaded_club.hpp"
+#include "app/kinds/loaded_club.hpp"
 
 #include <fmt/format.h>
 
@@ -7,21 +7,21 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_swing.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/hosel_load.hpp"
-#include "hosel/models/shaft_coupled.hpp"
-#include "hosel/models/swing_end.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/impact_recorder.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/post/shaft_loads.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "models/checked_launch.hpp"
+#include "models/club/hosel_load.hpp"
+#include "models/club/swing_end.hpp"
+#include "models/fe/fe_full_club.hpp"
+#include "models/reduced/shaft_coupled.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/impact_recorder.hpp"
+#include "post/launch_table.hpp"
+#include "post/shaft_loads.hpp"
 
 namespace hosel::app {
 namespace {

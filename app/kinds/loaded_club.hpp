@@ -1,7 +1,7 @@
 /// `kind = "loaded-club"`: a swing, and the blow that its club strikes, loaded as it is.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

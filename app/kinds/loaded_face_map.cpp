@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loaded_face_map.hpp"
+#include "app/kinds/loaded_face_map.hpp"
 
 #include <fmt/format.h>
 
@@ -9,24 +9,24 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face_map.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_swing.hpp"
-#include "hosel/app/stop.hpp"
-#include "hosel/app/stored_launch.hpp"
-#include "hosel/app/sweep.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/shaft_coupled.hpp"
-#include "hosel/models/swing_end.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/face_map.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/shaft_effect.hpp"
-#include "hosel/post/vtk_series.hpp"
+#include "app/check_memory.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face_map.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "app/stop.hpp"
+#include "app/stored_launch.hpp"
+#include "app/sweep.hpp"
+#include "models/checked_launch.hpp"
+#include "models/club/swing_end.hpp"
+#include "models/fe/fe_full_club.hpp"
+#include "models/reduced/shaft_coupled.hpp"
+#include "post/csv.hpp"
+#include "post/face_map.hpp"
+#include "post/figure.hpp"
+#include "post/shaft_effect.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// `kind = "loaded-face-map"`: what the club of a swing changes over the face, part by part, over several swings.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

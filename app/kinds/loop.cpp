@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loop.hpp"
+#include "app/kinds/loop.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,19 +10,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hosel/app/kinds/loop_common.hpp"
-#include "hosel/app/kinds/loop_corrected.hpp"
-#include "hosel/app/kinds/loop_flight.hpp"
-#include "hosel/app/kinds/loop_history.hpp"
-#include "hosel/app/kinds/loop_offer.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/models/changeable_fe.hpp"
-#include "hosel/models/registry.hpp"
+#include "app/kinds/loop_common.hpp"
+#include "app/kinds/loop_corrected.hpp"
+#include "app/kinds/loop_flight.hpp"
+#include "app/kinds/loop_history.hpp"
+#include "app/kinds/loop_offer.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "loop/shots/run.hpp"
+#include "models/fe/changeable_fe.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::app {
 namespace {

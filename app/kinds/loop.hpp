@@ -1,7 +1,7 @@
 /// kind = "loop": from measured shots to the effect that the model lacks.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loop_common.hpp"
+#include "app/kinds/loop_common.hpp"
 
 #include <fmt/format.h>
 

@@ -3,10 +3,10 @@
 
 #include <string_view>
 
-#include "hosel/app/output.hpp"
-#include "hosel/app/reader.hpp"
-#include "hosel/loop/case.hpp"
-#include "hosel/loop/report.hpp"
+#include "app/output.hpp"
+#include "app/reader.hpp"
+#include "loop/case.hpp"
+#include "loop/report.hpp"
 
 namespace hosel::app {
 

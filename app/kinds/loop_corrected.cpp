@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loop_corrected.hpp"
+#include "app/kinds/loop_corrected.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

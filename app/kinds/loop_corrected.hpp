@@ -1,9 +1,9 @@
 /// A finite-element base with the effects that a loop adopted in it, as a case that anyone can run.
 #pragma once
 
-#include "hosel/app/output.hpp"
-#include "hosel/loop/result.hpp"
-#include "hosel/models/changeable_fe.hpp"
+#include "app/output.hpp"
+#include "loop/result.hpp"
+#include "models/fe/changeable_fe.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loop_flight.hpp"
+#include "app/kinds/loop_flight.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <map>
 
-#include "hosel/app/kinds/loop_common.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_paths.hpp"
-#include "hosel/app/read_sheet.hpp"
-#include "hosel/loop/flights/run.hpp"
+#include "app/kinds/loop_common.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_paths.hpp"
+#include "app/read_sheet.hpp"
+#include "loop/flights/run.hpp"
 
 namespace hosel::app {
 namespace {

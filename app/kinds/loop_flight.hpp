@@ -1,7 +1,7 @@
 /// `kind = "loop"` with `base = "flight"`: measured flights, from launches that were seen.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,17 +1,17 @@
-#include "hosel/app/kinds/loop_history.hpp"
+#include "app/kinds/loop_history.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/kinds/loop_common.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_markers.hpp"
-#include "hosel/app/read_series.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_swing.hpp"
-#include "hosel/loop/history/swing_history.hpp"
+#include "app/kinds/loop_common.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_markers.hpp"
+#include "app/read_series.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "loop/history/swing_history.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/loop_offer.hpp"
+#include "app/kinds/loop_offer.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "hosel/loop/shots/inputs.hpp"
+#include "loop/shots/inputs.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,10 +1,10 @@
 /// What a loop on shots offers the library: its base with the adopted effects in it.
 #pragma once
 
-#include "hosel/app/offer.hpp"
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/models/changeable_fe.hpp"
+#include "app/offer.hpp"
+#include "loop/result.hpp"
+#include "loop/shots/case.hpp"
+#include "models/fe/changeable_fe.hpp"
 
 namespace hosel::app {
 

@@ -1,13 +1,13 @@
-#include "hosel/app/kinds/material_point.hpp"
+#include "app/kinds/material_point.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_solid.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "app/read_solid.hpp"
+#include "post/figure.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "material-point": one material driven along strain paths.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

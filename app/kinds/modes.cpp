@@ -1,14 +1,14 @@
-#include "hosel/app/kinds/modes.hpp"
+#include "app/kinds/modes.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_solid.hpp"
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_solid.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "solvers/modes.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "modes": the free vibrations of a ball.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

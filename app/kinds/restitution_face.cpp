@@ -1,13 +1,13 @@
-#include "hosel/app/kinds/restitution_face.hpp"
+#include "app/kinds/restitution_face.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_face.hpp"
-#include "hosel/models/face_strike.hpp"
-#include "hosel/post/figure.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "restitution-face": restitution and ball speed over the face, against the rigid face.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

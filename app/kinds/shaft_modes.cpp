@@ -1,18 +1,18 @@
-#include "hosel/app/kinds/shaft_modes.hpp"
+#include "app/kinds/shaft_modes.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/fem/rigid_body.hpp"
-#include "hosel/fem/supports.hpp"
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/models/swing.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/vtk_series.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_shaft.hpp"
+#include "fem/rigid_body.hpp"
+#include "fem/supports.hpp"
+#include "golf/shaft_library.hpp"
+#include "models/club/swing.hpp"
+#include "post/figure.hpp"
+#include "post/vtk_series.hpp"
+#include "solvers/modes.hpp"
 
 namespace hosel::app {
 namespace {

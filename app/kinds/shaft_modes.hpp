@@ -1,7 +1,7 @@
 /// kind = "modes" of a case with a [shaft]: natural frequencies and shapes of a shaft, with or without its head.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/slopes.hpp"
+#include "app/kinds/slopes.hpp"
 
 #include <fmt/format.h>
 
@@ -11,18 +11,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hosel/app/library.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/solvers/robust_regression.hpp"
+#include "app/library.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "app/read_shaft.hpp"
+#include "golf/parallel.hpp"
+#include "loop/shots/shots.hpp"
+#include "models/checked_launch.hpp"
+#include "models/registry.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
+#include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "slopes": what a launch changes by over the face, measured by regression beside models.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

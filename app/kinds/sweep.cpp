@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/sweep.hpp"
+#include "app/kinds/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -8,14 +8,14 @@
 #include <numeric>
 #include <random>
 
-#include "hosel/app/cases.hpp"
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/sweep.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/solvers/random.hpp"
+#include "app/cases.hpp"
+#include "app/check_memory.hpp"
+#include "app/sweep.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/file.hpp"
+#include "post/labels.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;

@@ -1,7 +1,7 @@
 /// kind = "sweep": any case over a grid or a Latin hypercube of its keys.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,14 +1,14 @@
-#include "hosel/app/kinds/swing.hpp"
+#include "app/kinds/swing.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/app/read_swing.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/swing_recorder.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_shaft.hpp"
+#include "app/read_swing.hpp"
+#include "post/figure.hpp"
+#include "post/swing_recorder.hpp"
 
 namespace hosel::app {
 namespace {

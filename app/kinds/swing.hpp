@@ -1,7 +1,7 @@
 /// kind = "swing": a flexible club driven by the motion of the grip, up to impact.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/tune.hpp"
+#include "app/kinds/tune.hpp"
 
 #include <fmt/format.h>
 
@@ -7,23 +7,23 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/app/read_parameter.hpp"
-#include "hosel/app/read_shaft.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/loaded_shaft.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/figure.hpp"
-#include "hosel/post/labels.hpp"
-#include "hosel/post/launch_table.hpp"
-#include "hosel/solvers/least_squares.hpp"
-#include "hosel/solvers/random.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "app/read_parameter.hpp"
+#include "app/read_shaft.hpp"
+#include "golf/parallel.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/shots.hpp"
+#include "models/checked_launch.hpp"
+#include "models/club/loaded_shaft.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
+#include "solvers/least_squares.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// kind = "tune": parameters of a model against measured shots.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

@@ -1,4 +1,4 @@
-#include "hosel/app/kinds/variants.hpp"
+#include "app/kinds/variants.hpp"
 
 #include <fmt/format.h>
 
@@ -6,18 +6,18 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosel/app/check_memory.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_flight.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/models/ball_calibration.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/matched_launch.hpp"
-#include "hosel/models/oblique.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/launch_table.hpp"
+#include "app/check_memory.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_flight.hpp"
+#include "app/read_options.hpp"
+#include "golf/parallel.hpp"
+#include "models/calibration/ball_calibration.hpp"
+#include "models/checked_launch.hpp"
+#include "models/matched_launch.hpp"
+#include "models/oblique.hpp"
+#include "models/registry.hpp"
+#include "post/csv.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 namespace {

@@ -1,7 +1,7 @@
 /// The kind `variants`: one blow in several variants of its case, side by side.
 #pragma once
 
-#include "hosel/app/job.hpp"
+#include "app/job.hpp"
 
 namespace hosel::app {
 

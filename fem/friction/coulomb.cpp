@@ -1,4 +1,4 @@
-#include "hosel/fem/friction/coulomb.hpp"
+#include "fem/friction/coulomb.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 /// Coulomb's law with elastic sticking, by return map.
 #pragma once
 
-#include "hosel/fem/friction/law.hpp"
+#include "fem/friction/law.hpp"
 
 namespace hosel::fem {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel::fem {
 

@@ -1,4 +1,4 @@
-#include "hosel/fem/friction/regularised.hpp"
+#include "fem/friction/regularised.hpp"
 
 #include <cmath>
 

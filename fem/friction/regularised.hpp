@@ -1,7 +1,7 @@
 /// Friction regularised by velocity: no sticking, but creep at low slip speed.
 #pragma once
 
-#include "hosel/fem/friction/law.hpp"
+#include "fem/friction/law.hpp"
 
 namespace hosel::fem {
 

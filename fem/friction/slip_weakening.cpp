@@ -1,4 +1,4 @@
-#include "hosel/fem/friction/slip_weakening.hpp"
+#include "fem/friction/slip_weakening.hpp"
 
 #include <cmath>
 

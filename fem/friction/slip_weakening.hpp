@@ -1,7 +1,7 @@
 /// Friction that is higher until a point has slid some way.
 #pragma once
 
-#include "hosel/fem/friction/coulomb.hpp"
+#include "fem/friction/coulomb.hpp"
 
 namespace hosel::fem {
 

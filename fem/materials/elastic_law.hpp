@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/materials/symmetric.hpp"
+#include "fem/materials/symmetric.hpp"
 
 namespace hosel::fem {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/symmetric.hpp"
+#include "fem/materials/symmetric.hpp"
 
 namespace hosel::fem {
 

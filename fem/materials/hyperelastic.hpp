@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/elastic_law.hpp"
-#include "hosel/fem/materials/lame.hpp"
+#include "fem/materials/elastic_law.hpp"
+#include "fem/materials/lame.hpp"
 
 namespace hosel::fem {
 

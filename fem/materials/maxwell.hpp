@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/elastic_law.hpp"
+#include "fem/materials/elastic_law.hpp"
 
 namespace hosel::fem {
 

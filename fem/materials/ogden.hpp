@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hosel/fem/materials/elastic_law.hpp"
+#include "fem/materials/elastic_law.hpp"
 
 namespace hosel::fem {
 

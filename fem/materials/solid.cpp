@@ -1,4 +1,4 @@
-#include "hosel/fem/materials/solid.hpp"
+#include "fem/materials/solid.hpp"
 
 #include <cmath>
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/fem/materials/elastic_law.hpp"
-#include "hosel/fem/materials/maxwell.hpp"
+#include "fem/materials/elastic_law.hpp"
+#include "fem/materials/maxwell.hpp"
 
 namespace hosel::fem {
 

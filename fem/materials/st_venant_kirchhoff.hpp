@@ -1,8 +1,8 @@
 /// Linear elasticity of Green's strain.
 #pragma once
 
-#include "hosel/fem/materials/elastic_law.hpp"
-#include "hosel/fem/materials/lame.hpp"
+#include "fem/materials/elastic_law.hpp"
+#include "fem/materials/lame.hpp"
 
 namespace hosel::fem {
 

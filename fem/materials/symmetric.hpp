@@ -1,7 +1,7 @@
 /// Symmetric tensors as six numbers (11, 22, 33, 12, 23, 13), tensor components throughout.
 #pragma once
 
-#include "hosel/golf/vector.hpp"
+#include "golf/vector.hpp"
 
 namespace hosel::fem {
 

@@ -1,6 +1,6 @@
 // The air is denser or thinner than declared.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/models/flight.hpp"
+#include "loop/effects/all.hpp"
+#include "models/flight/flight.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,7 +1,7 @@
 /// The effects' forms, one function per file of this folder.
 #pragma once
 
-#include "hosel/loop/effect.hpp"
+#include "loop/effect.hpp"
 
 namespace hosel::loop::forms {
 

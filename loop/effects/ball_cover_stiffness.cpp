@@ -1,5 +1,5 @@
 // The cover is stiffer or softer against the core than declared: how much of the blow's shear the skin gives back.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,5 +1,5 @@
 // The ball's moment of inertia is not the declared one.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

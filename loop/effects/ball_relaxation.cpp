@@ -1,6 +1,6 @@
 // The ball's shear losses are not the declared ones, at equal normal restitution: its branches are slower or quicker,
 // at the same storage and loss modulus where the contact's own frequency is.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,5 +1,5 @@
 // The ball winds up tangentially and gives part of it back: the surfaces part with -e_t times their slip.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

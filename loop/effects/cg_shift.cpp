@@ -1,6 +1,6 @@
 // The centre of gravity is not where it is declared.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

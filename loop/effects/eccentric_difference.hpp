@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hosel/models/rigid_eccentric.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop::forms {
 

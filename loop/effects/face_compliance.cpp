@@ -1,7 +1,7 @@
 // A thin face yields: the ball loses less on it, most at the face centre.
-#include "hosel/golf/face_library.hpp"
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/models/face_strike.hpp"
+#include "golf/face_library.hpp"
+#include "loop/effects/all.hpp"
+#include "models/reduced/face_strike.hpp"
 
 namespace hosel::loop::forms {
 

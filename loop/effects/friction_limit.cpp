@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

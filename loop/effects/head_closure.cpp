@@ -1,6 +1,6 @@
 // The head has an angular velocity at impact: the contact point moves differently from the centre of gravity.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/effects/eccentric_difference.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/effects/eccentric_difference.hpp"
 
 namespace hosel::loop::forms {
 namespace {

@@ -1,8 +1,8 @@
 // The effective rotational inertia differs: a shaft resists the turn, or the declared tensor is wrong.
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

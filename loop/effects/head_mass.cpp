@@ -1,5 +1,5 @@
 // The head's effective mass differs from the declared one.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

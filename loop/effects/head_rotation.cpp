@@ -1,7 +1,7 @@
 // A free head turns under an off-centre blow (gear effect). For bases whose head does not turn: the
 // difference that the declared inertia makes in the eccentric rigid impact is added to the launch.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/effects/eccentric_difference.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/effects/eccentric_difference.hpp"
 
 namespace hosel::loop::forms {
 

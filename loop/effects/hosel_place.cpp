@@ -1,5 +1,5 @@
 // The shaft meets the head elsewhere than declared.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

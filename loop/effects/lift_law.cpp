@@ -1,6 +1,6 @@
 // The ball's lift is not the flight law's.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/models/flight.hpp"
+#include "loop/effects/all.hpp"
+#include "models/flight/flight.hpp"
 
 namespace hosel::loop::forms {
 

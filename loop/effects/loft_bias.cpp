@@ -1,5 +1,5 @@
 // The recorded loft is not the loft that the ball met.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

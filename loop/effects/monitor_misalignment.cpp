@@ -1,7 +1,7 @@
 // The launch monitor's axes are turned against the target frame: it reports the same vectors in its own axes.
 #include <algorithm>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

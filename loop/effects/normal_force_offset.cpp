@@ -1,6 +1,6 @@
 // The resultant normal force does not pass through the ball's centre (the patch wanders while it slides).
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/loop/effects/all.hpp"
+#include "golf/first_contact.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

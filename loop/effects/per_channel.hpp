@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

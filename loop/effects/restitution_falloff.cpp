@@ -1,7 +1,7 @@
 // Restitution drops away from the face centre.
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

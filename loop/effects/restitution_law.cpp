@@ -1,5 +1,5 @@
 // Level or speed dependence of the normal coefficient of restitution.
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

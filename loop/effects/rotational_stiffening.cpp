@@ -1,7 +1,7 @@
 // A shaft that is swung round is stiffened by its own pull. The bench's base is linear and has none; the swing is
 // geometrically exact and has all of it, so that nothing is left to add there.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

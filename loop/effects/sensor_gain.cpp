@@ -1,6 +1,6 @@
 // A channel shows a multiple of what is.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/effects/per_channel.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/effects/per_channel.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,8 +1,8 @@
 // A channel's zero is not zero. Where the start is unknown so are the zeros, and the fit has them anyway.
 #include <fmt/format.h>
 
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

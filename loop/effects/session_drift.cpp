@@ -1,7 +1,7 @@
 // Something drifts slowly and steadily with the shot number: an instrument, the club, the ball or the face.
 #include <fmt/format.h>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 namespace {

@@ -3,7 +3,7 @@
 // the centre and the inertia of both.
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 namespace {

@@ -1,8 +1,8 @@
 // Vibrations die away faster or slower than declared. Parameters are damping ratios at the first mode's frequency.
 #include <algorithm>
 
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,7 +1,7 @@
 // The recorded tilt of the spin is not the spin's.
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
+#include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,6 +1,6 @@
 // More (or less) mass at the tip than declared.
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/effects/all.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
 

@@ -1,8 +1,8 @@
 // A wind blows that is not declared.
 #include <cmath>
 
-#include "hosel/loop/effects/all.hpp"
-#include "hosel/models/flight.hpp"
+#include "loop/effects/all.hpp"
+#include "models/flight/flight.hpp"
 
 namespace hosel::loop::forms {
 

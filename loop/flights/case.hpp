@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/case.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/models/flight_inference.hpp"
+#include "loop/case.hpp"
+#include "loop/shots/shots.hpp"
+#include "models/flight/flight_inference.hpp"
 
 namespace hosel::loop {
 

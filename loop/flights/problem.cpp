@@ -1,4 +1,4 @@
-#include "hosel/loop/flights/problem.hpp"
+#include "loop/flights/problem.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,11 +9,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "hosel/golf/data_error.hpp"
-#include "hosel/golf/parallel.hpp"
-#include "hosel/loop/median.hpp"
-#include "hosel/solvers/errors.hpp"
-#include "hosel/solvers/random.hpp"
+#include "golf/data_error.hpp"
+#include "golf/parallel.hpp"
+#include "loop/median.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "hosel/loop/flights/case.hpp"
-#include "hosel/loop/problem.hpp"
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/shots/structure.hpp"
+#include "loop/flights/case.hpp"
+#include "loop/problem.hpp"
+#include "loop/result.hpp"
+#include "loop/shots/structure.hpp"
 
 namespace hosel::loop {
 

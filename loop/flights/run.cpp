@@ -1,7 +1,7 @@
-#include "hosel/loop/flights/run.hpp"
+#include "loop/flights/run.hpp"
 
-#include "hosel/loop/flights/problem.hpp"
-#include "hosel/loop/verdict.hpp"
+#include "loop/flights/problem.hpp"
+#include "loop/verdict.hpp"
 
 namespace hosel::loop {
 

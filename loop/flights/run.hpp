@@ -1,8 +1,8 @@
 /// The loop on flights.
 #pragma once
 
-#include "hosel/loop/flights/case.hpp"
-#include "hosel/loop/result.hpp"
+#include "loop/flights/case.hpp"
+#include "loop/result.hpp"
 
 namespace hosel::loop {
 

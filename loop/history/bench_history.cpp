@@ -1,4 +1,4 @@
-#include "hosel/loop/history/bench_history.hpp"
+#include "loop/history/bench_history.hpp"
 
 #include <map>
 #include <stdexcept>

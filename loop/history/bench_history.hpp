@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "hosel/loop/history/test_setup.hpp"
+#include "loop/history/test_setup.hpp"
 
 namespace hosel::loop {
 

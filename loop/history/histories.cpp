@@ -1,8 +1,8 @@
-#include "hosel/loop/history/histories.hpp"
+#include "loop/history/histories.hpp"
 
 #include <fmt/format.h>
 
-#include "hosel/loop/verdict.hpp"
+#include "loop/verdict.hpp"
 
 namespace hosel::loop {
 

@@ -1,7 +1,7 @@
 /// The loop on time histories: from records of a club test and a beam model to a verdict, in the words of the contract.
 #pragma once
 
-#include "hosel/loop/history/problem.hpp"
+#include "loop/history/problem.hpp"
 
 namespace hosel::loop {
 

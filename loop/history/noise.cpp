@@ -1,4 +1,4 @@
-#include "hosel/loop/history/noise.hpp"
+#include "loop/history/noise.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "hosel/loop/median.hpp"
+#include "loop/median.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -2,8 +2,8 @@
 /// by frequency.
 #pragma once
 
-#include "hosel/loop/history/problem.hpp"
-#include "hosel/loop/structure.hpp"
+#include "loop/history/problem.hpp"
+#include "loop/structure.hpp"
 
 namespace hosel::loop {
 

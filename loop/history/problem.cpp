@@ -1,4 +1,4 @@
-#include "hosel/loop/history/problem.hpp"
+#include "loop/history/problem.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <set>
 
-#include "hosel/loop/history/noise.hpp"
-#include "hosel/loop/median.hpp"
-#include "hosel/solvers/random.hpp"
+#include "loop/history/noise.hpp"
+#include "loop/median.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {

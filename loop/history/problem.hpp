@@ -2,9 +2,9 @@
 /// start eliminated, stretches of time held out, fits that look at a few periods first.
 #pragma once
 
-#include "hosel/loop/case.hpp"
-#include "hosel/loop/history/test_setup.hpp"
-#include "hosel/loop/result.hpp"
+#include "loop/case.hpp"
+#include "loop/history/test_setup.hpp"
+#include "loop/result.hpp"
 
 namespace hosel::loop {
 

@@ -1,8 +1,8 @@
-#include "hosel/loop/history/swing_history.hpp"
+#include "loop/history/swing_history.hpp"
 
 #include <algorithm>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::loop {
 

@@ -3,9 +3,9 @@
 
 #include <mutex>
 
-#include "hosel/loop/history/test_setup.hpp"
-#include "hosel/models/changed_swing.hpp"
-#include "hosel/models/grip_motion.hpp"
+#include "loop/history/test_setup.hpp"
+#include "models/club/changed_swing.hpp"
+#include "models/club/grip_motion.hpp"
 
 namespace hosel::loop {
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "hosel/loop/problem.hpp"
-#include "hosel/models/bench_response.hpp"
+#include "loop/problem.hpp"
+#include "models/modal/bench_response.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/audit.hpp"
+#include "loop/shots/audit.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include <numeric>
 #include <set>
 
-#include "hosel/loop/median.hpp"
-#include "hosel/loop/shots/relations.hpp"
+#include "loop/median.hpp"
+#include "loop/shots/relations.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
 

@@ -1,11 +1,11 @@
-#include "hosel/loop/shots/averages.hpp"
+#include "loop/shots/averages.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/loop/median.hpp"
+#include "loop/median.hpp"
 
 namespace hosel::loop {
 namespace {

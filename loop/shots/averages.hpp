@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
 

@@ -1,10 +1,10 @@
-#include "hosel/loop/shots/balances.hpp"
+#include "loop/shots/balances.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/golf/first_contact.hpp"
+#include "golf/first_contact.hpp"
 
 namespace hosel::loop {
 

@@ -4,7 +4,7 @@
 /// the inertia of the ball.
 #pragma once
 
-#include "hosel/loop/shots/model.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 

@@ -5,12 +5,12 @@
 #include <map>
 #include <optional>
 
-#include "hosel/loop/case.hpp"
-#include "hosel/loop/shots/averages.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/loop/shots/surrogate.hpp"
-#include "hosel/models/flight.hpp"
-#include "hosel/models/impact_model.hpp"
+#include "loop/case.hpp"
+#include "loop/shots/averages.hpp"
+#include "loop/shots/shots.hpp"
+#include "loop/shots/surrogate.hpp"
+#include "models/flight/flight.hpp"
+#include "models/impact_model.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/columns.hpp"
+#include "loop/shots/columns.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <numeric>
 #include <tuple>
 
-#include "hosel/golf/quantities.hpp"
-#include "hosel/loop/median.hpp"
-#include "hosel/loop/shots/inputs.hpp"
-#include "hosel/loop/shots/scatter.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/quantities.hpp"
+#include "loop/median.hpp"
+#include "loop/shots/inputs.hpp"
+#include "loop/shots/scatter.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {

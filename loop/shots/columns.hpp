@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/fit.hpp"
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/loop/shots/model.hpp"
+#include "loop/fit.hpp"
+#include "loop/shots/case.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 

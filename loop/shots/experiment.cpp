@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/experiment.hpp"
+#include "loop/shots/experiment.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/solvers/random.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {

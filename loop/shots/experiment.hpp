@@ -1,9 +1,9 @@
 /// What to measure next: inputs at which rival explanations differ most, in units of noise.
 #pragma once
 
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/loop/shots/model.hpp"
+#include "loop/result.hpp"
+#include "loop/shots/case.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/features.hpp"
+#include "loop/shots/features.hpp"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "hosel/loop/effect.hpp"
+#include "loop/effect.hpp"
 
 namespace hosel::loop {
 

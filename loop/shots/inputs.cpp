@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/inputs.hpp"
+#include "loop/shots/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "hosel/loop/median.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "loop/median.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/effect.hpp"
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/effect.hpp"
+#include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
 

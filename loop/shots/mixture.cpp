@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/mixture.hpp"
+#include "loop/shots/mixture.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/model.hpp"
+#include "loop/shots/model.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/golf/quantities.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/quantities.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::loop {
 namespace {

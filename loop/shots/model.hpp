@@ -4,11 +4,11 @@
 
 #include <map>
 
-#include "hosel/loop/problem.hpp"
-#include "hosel/loop/shots/averages.hpp"
-#include "hosel/loop/shots/surrogate.hpp"
-#include "hosel/models/flight_budget.hpp"
-#include "hosel/models/impact_model.hpp"
+#include "loop/problem.hpp"
+#include "loop/shots/averages.hpp"
+#include "loop/shots/surrogate.hpp"
+#include "models/flight/flight_budget.hpp"
+#include "models/impact_model.hpp"
 
 namespace hosel::loop {
 

@@ -1,15 +1,15 @@
-#include "hosel/loop/shots/problem.hpp"
+#include "loop/shots/problem.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/loop/median.hpp"
-#include "hosel/loop/shots/experiment.hpp"
-#include "hosel/loop/shots/mixture.hpp"
-#include "hosel/loop/shots/scatter.hpp"
-#include "hosel/models/face_strike.hpp"
+#include "loop/median.hpp"
+#include "loop/shots/experiment.hpp"
+#include "loop/shots/mixture.hpp"
+#include "loop/shots/scatter.hpp"
+#include "models/reduced/face_strike.hpp"
 
 namespace hosel::loop {
 namespace {

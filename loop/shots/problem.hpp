@@ -5,12 +5,12 @@
 #include <optional>
 #include <set>
 
-#include "hosel/loop/shots/audit.hpp"
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/loop/shots/inputs.hpp"
-#include "hosel/loop/shots/screen.hpp"
-#include "hosel/loop/shots/split.hpp"
-#include "hosel/loop/shots/structure.hpp"
+#include "loop/shots/audit.hpp"
+#include "loop/shots/case.hpp"
+#include "loop/shots/inputs.hpp"
+#include "loop/shots/screen.hpp"
+#include "loop/shots/split.hpp"
+#include "loop/shots/structure.hpp"
 
 namespace hosel::loop {
 

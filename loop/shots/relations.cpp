@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/relations.hpp"
+#include "loop/shots/relations.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "hosel/golf/vector.hpp"
-#include "hosel/loop/median.hpp"
+#include "golf/vector.hpp"
+#include "loop/median.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -2,7 +2,7 @@
 /// the instrument saw nothing.
 #pragma once
 
-#include "hosel/loop/shots/audit.hpp"
+#include "loop/shots/audit.hpp"
 
 namespace hosel::loop {
 

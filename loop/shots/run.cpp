@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/run.hpp"
+#include "loop/shots/run.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/problem.hpp"
-#include "hosel/loop/shots/slow.hpp"
-#include "hosel/loop/verdict.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/problem.hpp"
+#include "loop/shots/slow.hpp"
+#include "loop/verdict.hpp"
 
 namespace hosel::loop {
 namespace {

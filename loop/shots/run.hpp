@@ -1,8 +1,8 @@
 /// The loop on shots: after the audit, after a second look at it, without a doubted input, each cluster left out.
 #pragma once
 
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/shots/case.hpp"
+#include "loop/result.hpp"
+#include "loop/shots/case.hpp"
 
 namespace hosel::loop {
 

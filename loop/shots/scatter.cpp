@@ -1,10 +1,10 @@
-#include "hosel/loop/shots/scatter.hpp"
+#include "loop/shots/scatter.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/loop/median.hpp"
+#include "loop/median.hpp"
 
 namespace hosel::loop {
 

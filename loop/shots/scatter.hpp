@@ -1,7 +1,7 @@
 /// What a channel scatters: a first idea of its noise, and its ratio to the noise at hand.
 #pragma once
 
-#include "hosel/loop/shots/model.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/screen.hpp"
+#include "loop/shots/screen.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "hosel/loop/median.hpp"
+#include "loop/median.hpp"
 
 namespace hosel::loop {
 namespace {

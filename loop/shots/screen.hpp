@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hosel/loop/fit.hpp"
-#include "hosel/loop/shots/model.hpp"
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/fit.hpp"
+#include "loop/shots/model.hpp"
+#include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/shots/shots.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hosel/golf/quantities.hpp"
-#include "hosel/post/csv.hpp"
+#include "golf/quantities.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/slow.hpp"
+#include "loop/shots/slow.hpp"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 #include <set>
 #include <stdexcept>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/loop/shots/features.hpp"
-#include "hosel/loop/shots/inputs.hpp"
-#include "hosel/loop/shots/problem.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/loop/shots/spread.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/parallel.hpp"
+#include "loop/shots/features.hpp"
+#include "loop/shots/inputs.hpp"
+#include "loop/shots/problem.hpp"
+#include "loop/shots/run.hpp"
+#include "loop/shots/spread.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "hosel/loop/result.hpp"
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/loop/shots/problem.hpp"
+#include "loop/result.hpp"
+#include "loop/shots/case.hpp"
+#include "loop/shots/problem.hpp"
 
 namespace hosel::loop {
 

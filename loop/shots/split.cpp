@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/split.hpp"
+#include "loop/shots/split.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/solvers/random.hpp"
+#include "golf/first_contact.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 

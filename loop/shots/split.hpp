@@ -1,8 +1,8 @@
 /// Which shots train and which are held out.
 #pragma once
 
-#include "hosel/loop/shots/case.hpp"
-#include "hosel/loop/shots/model.hpp"
+#include "loop/shots/case.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 

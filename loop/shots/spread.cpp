@@ -1,14 +1,14 @@
-#include "hosel/loop/shots/spread.hpp"
+#include "loop/shots/spread.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/golf/quantities.hpp"
-#include "hosel/loop/shots/features.hpp"
-#include "hosel/solvers/random.hpp"
+#include "golf/first_contact.hpp"
+#include "golf/quantities.hpp"
+#include "loop/shots/features.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hosel/loop/effect.hpp"
+#include "loop/effect.hpp"
 
 namespace hosel::loop {
 

@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/structure.hpp"
+#include "loop/shots/structure.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "hosel/loop/result.hpp"
+#include "loop/result.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "hosel/loop/fit.hpp"
-#include "hosel/loop/shots/model.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/loop/structure.hpp"
+#include "loop/fit.hpp"
+#include "loop/shots/model.hpp"
+#include "loop/shots/shots.hpp"
+#include "loop/structure.hpp"
 
 namespace hosel::loop {
 

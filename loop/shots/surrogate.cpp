@@ -1,4 +1,4 @@
-#include "hosel/loop/shots/surrogate.hpp"
+#include "loop/shots/surrogate.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/loop/shots/features.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "golf/parallel.hpp"
+#include "loop/shots/features.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::loop {
 namespace {

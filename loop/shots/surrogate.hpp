@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "hosel/golf/launch.hpp"
-#include "hosel/loop/effect.hpp"
-#include "hosel/solvers/kriging.hpp"
+#include "golf/launch.hpp"
+#include "loop/effect.hpp"
+#include "solvers/kriging.hpp"
 
 namespace hosel::loop {
 

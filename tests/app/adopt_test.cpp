@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "app/library.hpp"
+#include "app/offer.hpp"
 #include "command.hpp"
-#include "hosel/app/library.hpp"
-#include "hosel/app/offer.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
+#include "app/cases.hpp"
 #include "command.hpp"
-#include "hosel/app/cases.hpp"
 
 namespace hosel::test {
 namespace {

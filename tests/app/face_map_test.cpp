@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "command.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/post/labels.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "post/labels.hpp"
 #include "tests/support/one_core.hpp"
 
 namespace {

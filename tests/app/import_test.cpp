@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "hosel/loop/shots/shots.hpp"
+#include "loop/shots/shots.hpp"
 #include "tests/app/command.hpp"
 
 namespace hosel {

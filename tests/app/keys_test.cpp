@@ -1,5 +1,5 @@
 // The key reference covers what the reader accepts, and docs/reference.md is what the reader says now.
-#include "hosel/app/keys.hpp"
+#include "app/keys.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "build_info.hpp"
 #include "command.hpp"
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::app {
 namespace {

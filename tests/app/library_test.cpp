@@ -1,15 +1,15 @@
 // The library: every shipped entry is read, a case takes its values, and what an entry did not see is refused.
-#include "hosel/app/library.hpp"
+#include "app/library.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "command.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/golf/face_library.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "golf/face_library.hpp"
 
 namespace {
 

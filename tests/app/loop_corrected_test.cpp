@@ -1,5 +1,5 @@
 // The corrected finite-element model that a loop leaves behind is a case: it is read again with the effects in it.
-#include "hosel/app/kinds/loop_corrected.hpp"
+#include "app/kinds/loop_corrected.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/job.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
 #include "build_info.hpp"
 #include "command.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/read_blow.hpp"
-#include "hosel/app/read_options.hpp"
 
 namespace hosel::app {
 namespace {

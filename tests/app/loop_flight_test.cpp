@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/read_paths.hpp"
 #include "build_info.hpp"
 #include "command.hpp"
-#include "hosel/app/read_paths.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "app/output.hpp"
 #include "command.hpp"
-#include "hosel/app/output.hpp"
 
 namespace {
 

@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "app/output.hpp"
 #include "command.hpp"
-#include "hosel/app/output.hpp"
-#include "hosel/models/checked_launch.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/models/rigid_planar.hpp"
-#include "hosel/models/stick_slip.hpp"
-#include "hosel/solvers/errors.hpp"
+#include "models/checked_launch.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "models/rigid/rigid_planar.hpp"
+#include "models/rigid/stick_slip.hpp"
+#include "solvers/errors.hpp"
 
 namespace {
 

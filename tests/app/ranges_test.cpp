@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "hosel/app/job.hpp"
-#include "hosel/app/keys.hpp"
+#include "app/job.hpp"
+#include "app/keys.hpp"
 
 namespace hosel::app {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "build_info.hpp"
 #include "command.hpp"
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 extern char** environ;
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "build_info.hpp"
-#include "hosel/golf/vector.hpp"
-#include "hosel/solvers/random.hpp"
+#include "golf/vector.hpp"
+#include "solvers/random.hpp"
 #include "tests/app/command.hpp"
 
 namespace hosel::test {

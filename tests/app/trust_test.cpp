@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "command.hpp"
-#include "hosel/post/csv.hpp"
+#include "post/csv.hpp"
 
 namespace hosel::test {
 namespace {

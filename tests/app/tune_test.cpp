@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "app/job.hpp"
 #include "build_info.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/parameters.hpp"
-#include "hosel/models/registry.hpp"
-#include "hosel/solvers/least_squares.hpp"
+#include "golf/units.hpp"
+#include "models/parameters.hpp"
+#include "models/registry.hpp"
+#include "solvers/least_squares.hpp"
 
 namespace hosel::app {
 namespace {

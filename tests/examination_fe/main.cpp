@@ -18,13 +18,13 @@
 #include <random>
 #include <sstream>
 
-#include "hosel/golf/parallel.hpp"
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/features.hpp"
-#include "hosel/loop/shots/slow.hpp"
-#include "hosel/models/changeable_fe.hpp"
-#include "hosel/solvers/random.hpp"
+#include "golf/parallel.hpp"
+#include "golf/shaft_library.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/features.hpp"
+#include "loop/shots/slow.hpp"
+#include "models/fe/changeable_fe.hpp"
+#include "solvers/random.hpp"
 
 namespace {
 

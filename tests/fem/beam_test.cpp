@@ -1,5 +1,5 @@
 // The beam term: derivatives, rigid motion.
-#include "hosel/fem/beam.hpp"
+#include "fem/beam.hpp"
 
 #include <gtest/gtest.h>
 

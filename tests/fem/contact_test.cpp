@@ -1,17 +1,17 @@
-#include "hosel/fem/contact.hpp"
+#include "fem/contact.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <optional>
 
-#include "hosel/fem/face_surface.hpp"
-#include "hosel/fem/friction/coulomb.hpp"
-#include "hosel/fem/friction/regularised.hpp"
-#include "hosel/fem/friction/slip_weakening.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/yielding_face.hpp"
-#include "hosel/golf/units.hpp"
+#include "fem/face_surface.hpp"
+#include "fem/friction/coulomb.hpp"
+#include "fem/friction/regularised.hpp"
+#include "fem/friction/slip_weakening.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/yielding_face.hpp"
+#include "golf/units.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {

@@ -1,4 +1,4 @@
-#include "hosel/fem/face_spring.hpp"
+#include "fem/face_spring.hpp"
 
 #include <gtest/gtest.h>
 

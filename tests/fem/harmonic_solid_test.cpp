@@ -1,10 +1,10 @@
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "golf/units.hpp"
+#include "solvers/modes.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {

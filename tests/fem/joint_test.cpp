@@ -1,7 +1,7 @@
 // Springs between two nodes: derivatives, and the power of the hands.
 #include <gtest/gtest.h>
 
-#include "hosel/fem/supports.hpp"
+#include "fem/supports.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {

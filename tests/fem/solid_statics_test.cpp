@@ -4,12 +4,12 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/materials/ogden.hpp"
-#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
-#include "hosel/solvers/statics.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/materials/ogden.hpp"
+#include "fem/materials/st_venant_kirchhoff.hpp"
+#include "solvers/statics.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::fem {

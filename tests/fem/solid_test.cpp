@@ -1,8 +1,8 @@
-#include "hosel/fem/materials/solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/materials/ogden.hpp"
-#include "hosel/fem/materials/st_venant_kirchhoff.hpp"
+#include "fem/materials/solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/materials/ogden.hpp"
+#include "fem/materials/st_venant_kirchhoff.hpp"
 
 #include <gtest/gtest.h>
 

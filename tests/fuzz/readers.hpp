@@ -14,15 +14,15 @@
 #include <string_view>
 
 #include <nlohmann/json.hpp>
-#include "hosel/app/import/sheet.hpp"
-#include "hosel/app/job.hpp"
-#include "hosel/app/read_series.hpp"
-#include "hosel/app/sweep_store.hpp"
-#include "hosel/loop/shots/shots.hpp"
-#include "hosel/post/checkpoint.hpp"
-#include "hosel/post/csv.hpp"
-#include "hosel/post/file.hpp"
-#include "hosel/post/parse_json.hpp"
+#include "app/import/sheet.hpp"
+#include "app/job.hpp"
+#include "app/read_series.hpp"
+#include "app/sweep_store.hpp"
+#include "loop/shots/shots.hpp"
+#include "post/checkpoint.hpp"
+#include "post/csv.hpp"
+#include "post/file.hpp"
+#include "post/parse_json.hpp"
 
 namespace hosel::fuzz {
 

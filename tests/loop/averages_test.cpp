@@ -7,11 +7,11 @@
 #include <cmath>
 #include <random>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/report.hpp"
-#include "hosel/loop/shots/problem.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/units.hpp"
+#include "loop/report.hpp"
+#include "loop/shots/problem.hpp"
+#include "loop/shots/run.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {

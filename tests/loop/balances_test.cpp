@@ -1,12 +1,12 @@
 // One impulse gives the ball velocity and spin: what of a residual some impulse mends, and what none does.
-#include "hosel/loop/shots/balances.hpp"
+#include "loop/shots/balances.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "hosel/loop/likeness.hpp"
-#include "hosel/models/registry.hpp"
+#include "loop/likeness.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "hosel/loop/shots/model.hpp"
-#include "hosel/models/registry.hpp"
+#include "loop/shots/model.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::loop {
 namespace {

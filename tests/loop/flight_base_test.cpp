@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "hosel/loop/flights/run.hpp"
+#include "loop/flights/run.hpp"
 
 namespace hosel::loop {
 namespace {

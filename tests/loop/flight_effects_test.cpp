@@ -8,8 +8,8 @@
 #include <fstream>
 #include <random>
 
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/models/registry.hpp"
+#include "loop/shots/run.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -1,6 +1,6 @@
 // The loop on records of a clamped shaft that this file makes from beam theory: the closed-form modes of a uniform
 // cantilever with a mass at its tip, released from a static load, read at the tip and half way.
-#include "hosel/loop/history/histories.hpp"
+#include "loop/history/histories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/loop/history/bench_history.hpp"
+#include "golf/shaft_library.hpp"
+#include "loop/history/bench_history.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -12,13 +12,13 @@
 #include <set>
 #include <sstream>
 
-#include "hosel/golf/face_library.hpp"
-#include "hosel/loop/report.hpp"
-#include "hosel/loop/shots/problem.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/loop/study.hpp"
-#include "hosel/models/face_strike.hpp"
-#include "hosel/models/registry.hpp"
+#include "golf/face_library.hpp"
+#include "loop/report.hpp"
+#include "loop/shots/problem.hpp"
+#include "loop/shots/run.hpp"
+#include "loop/study.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "models/registry.hpp"
 
 namespace hosel::loop {
 namespace {

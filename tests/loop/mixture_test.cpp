@@ -1,5 +1,5 @@
 // Two populations of shots that no one direction parts: the second has an effect, whose size on a shot is its own.
-#include "hosel/loop/shots/mixture.hpp"
+#include "loop/shots/mixture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/loop/shots/features.hpp"
-#include "hosel/loop/shots/run.hpp"
-#include "hosel/loop/shots/spread.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/units.hpp"
+#include "loop/shots/features.hpp"
+#include "loop/shots/run.hpp"
+#include "loop/shots/spread.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -1,12 +1,12 @@
 // A ball's material found again from what a ball of known material did.
-#include "hosel/models/ball_calibration.hpp"
+#include "models/calibration/ball_calibration.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::models {
 namespace {

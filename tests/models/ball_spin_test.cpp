@@ -1,10 +1,10 @@
 // A free ball at 10,000 rpm: what the integrator and the kinematics of large rotation do to it.
 #include <gtest/gtest.h>
 
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/solvers/generalized_alpha.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "golf/units.hpp"
+#include "solvers/generalized_alpha.hpp"
 
 namespace hosel::models {
 namespace {

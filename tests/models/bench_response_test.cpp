@@ -1,5 +1,5 @@
 // What sensors read of modes that are stepped exactly, against the same modes in many small steps.
-#include "hosel/models/bench_response.hpp"
+#include "models/modal/bench_response.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // The bench against the full finite-element eigenproblem, against beam theory, and against statics.
-#include "hosel/models/bench.hpp"
+#include "models/modal/bench.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/fem/rigid_body.hpp"
-#include "hosel/fem/supports.hpp"
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/models/swing.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "fem/rigid_body.hpp"
+#include "fem/supports.hpp"
+#include "golf/shaft_library.hpp"
+#include "models/club/swing.hpp"
+#include "solvers/modes.hpp"
 
 namespace hosel::models {
 namespace {

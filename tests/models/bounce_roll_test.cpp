@@ -1,5 +1,5 @@
 // Bounce and roll against the same rules worked out in the plane, and against what must hold.
-#include "hosel/models/bounce_roll.hpp"
+#include "models/flight/bounce_roll.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // What effects change of a finite-element ball and its shaft.
-#include "hosel/models/changeable_fe.hpp"
+#include "models/fe/changeable_fe.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/ball_calibration.hpp"
+#include "golf/shaft_library.hpp"
+#include "golf/units.hpp"
+#include "models/calibration/ball_calibration.hpp"
 
 namespace hosel::models {
 namespace {

@@ -1,13 +1,13 @@
 // Pairs of elastic bodies, and one sphere on a rigid plate in their place.
-#include "hosel/models/elastic_plate.hpp"
+#include "models/fe/elastic_plate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/oblique.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "golf/units.hpp"
+#include "models/oblique.hpp"
 
 namespace hosel::models {
 namespace {

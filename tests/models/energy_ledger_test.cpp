@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {

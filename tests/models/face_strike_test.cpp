@@ -1,12 +1,12 @@
 // The lumped face along its normal: closed forms, and the rules' line between characteristic time and restitution.
-#include "hosel/models/face_strike.hpp"
+#include "models/reduced/face_strike.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
 #include "tests/support/two_masses.hpp"
 
 namespace hosel::models {

@@ -1,10 +1,10 @@
 // The whole club against the free head: what [@shaft-influence] found, and limits that must hold.
-#include "hosel/models/fe_full_club.hpp"
+#include "models/fe/fe_full_club.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hosel/models/hosel_load.hpp"
-#include "hosel/models/shaft_coupled.hpp"
+#include "models/club/hosel_load.hpp"
+#include "models/reduced/shaft_coupled.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {

@@ -1,4 +1,4 @@
-#include "hosel/models/fe_impact.hpp"
+#include "models/fe/fe_impact.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/golf/units.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "golf/units.hpp"
 
 // Absent where the BLAS is not OpenBLAS, which opens as many threads as there are cores unless it is told otherwise.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));

@@ -1,12 +1,12 @@
 // A law inferred from paths that another law flew: its coefficients, the winds, and what a bad path does to them.
-#include "hosel/models/flight_inference.hpp"
+#include "models/flight/flight_inference.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "hosel/models/flight_budget.hpp"
+#include "models/flight/flight_budget.hpp"
 
 namespace {
 using namespace hosel;

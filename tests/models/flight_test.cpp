@@ -1,5 +1,5 @@
 // Ball flight against closed forms, an independent integrator and published figures.
-#include "hosel/models/flight.hpp"
+#include "models/flight/flight.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace {
 using namespace hosel;

@@ -1,5 +1,5 @@
 // [@moving-beams]: the grip's motion between samples and at its end, impact.
-#include "hosel/models/grip_motion.hpp"
+#include "models/club/grip_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 
 #include <Eigen/QR>
 
-#include "hosel/fem/face_surface.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/solvers/statics.hpp"
+#include "fem/face_surface.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "solvers/statics.hpp"
 #include "tests/support/elastic_sphere.hpp"
 #include "tests/support/squeezed_sphere.hpp"
 

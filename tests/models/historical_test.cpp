@@ -3,10 +3,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/hinged_head.hpp"
-#include "hosel/models/pendulum_club.hpp"
-#include "hosel/models/stick_slip.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/hinged_head.hpp"
+#include "models/rigid/pendulum_club.hpp"
+#include "models/rigid/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {

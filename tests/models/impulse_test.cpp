@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/rigid_planar.hpp"
-#include "hosel/models/stick_slip.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/rigid_planar.hpp"
+#include "models/rigid/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {

@@ -1,11 +1,11 @@
 // The shaft that the swing bends: carried over from a swing, and found from a delivery with the hands' wrench.
-#include "hosel/models/loaded_shaft.hpp"
+#include "models/club/loaded_shaft.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/hosel_load.hpp"
-#include "hosel/models/mounted_shaft.hpp"
+#include "models/club/hosel_load.hpp"
+#include "models/club/mounted_shaft.hpp"
+#include "models/fe/fe_full_club.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {

@@ -1,5 +1,5 @@
 // A club of known motion and deflection, seen by its markers.
-#include "hosel/models/marker_swing.hpp"
+#include "models/club/marker_swing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/linear_elastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
 #include "tests/support/elastic_sphere.hpp"
 
 namespace hosel::models {

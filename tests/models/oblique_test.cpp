@@ -1,15 +1,15 @@
 // Tangential restitution, launch ratio and bounces: what a model puts in comes out, and a hard sphere does what was
 // measured.
-#include "hosel/models/oblique.hpp"
+#include "models/oblique.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/hertz_maw.hpp"
-#include "hosel/models/matched_launch.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
+#include "golf/units.hpp"
+#include "models/matched_launch.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::models {
 namespace {

@@ -1,11 +1,11 @@
 // What the reduced models need of a ball, found from its finite elements.
-#include "hosel/models/reduced_calibration.hpp"
+#include "models/calibration/reduced_calibration.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::models {
 namespace {

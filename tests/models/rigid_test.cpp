@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "hosel/golf/first_contact.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/models/rigid_planar.hpp"
+#include "golf/first_contact.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "models/rigid/rigid_planar.hpp"
 
 namespace hosel::models {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "hosel/models/fe_full_club.hpp"
-#include "hosel/models/shaft_coupled.hpp"
-#include "hosel/models/volumetric.hpp"
-#include "hosel/solvers/least_squares.hpp"
+#include "models/fe/fe_full_club.hpp"
+#include "models/reduced/shaft_coupled.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "solvers/least_squares.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::models {

@@ -4,8 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/shaft_coupled.hpp"
+#include "golf/units.hpp"
+#include "models/reduced/shaft_coupled.hpp"
 
 namespace hosel::models {
 namespace {

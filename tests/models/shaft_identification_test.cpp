@@ -1,11 +1,11 @@
 // Stiffness scale and damping recovered from noisy synthetic swings.
-#include "hosel/models/shaft_identification.hpp"
+#include "models/calibration/shaft_identification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "hosel/golf/shaft_library.hpp"
+#include "golf/shaft_library.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {

@@ -1,12 +1,12 @@
 // The swing: convergence, statics, an independent integrator, and the hands' wrench fed back.
-#include "hosel/models/swing.hpp"
+#include "models/club/swing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "hosel/fem/modal_damping.hpp"
-#include "hosel/solvers/modes.hpp"
+#include "fem/modal_damping.hpp"
+#include "solvers/modes.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {

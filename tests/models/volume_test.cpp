@@ -1,12 +1,12 @@
 // The overlap of ball and face: closed form against quadrature and finite differences.
-#include "hosel/models/volume.hpp"
+#include "models/reduced/volume.hpp"
 
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::models {
 namespace {

@@ -1,15 +1,15 @@
 // The volumetric model against its published parameter sets, balances and limits.
-#include "hosel/models/volumetric.hpp"
-#include "hosel/golf/first_contact.hpp"
+#include "models/reduced/volumetric.hpp"
+#include "golf/first_contact.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/rigid_eccentric.hpp"
-#include "hosel/post/figure.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "post/figure.hpp"
 #include "tests/support/two_masses.hpp"
 
 namespace hosel::models {

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/fem/materials/linear_elastic.hpp"
-#include "hosel/fem/rigid_body.hpp"
-#include "hosel/fem/yielding_face.hpp"
-#include "hosel/golf/face_library.hpp"
-#include "hosel/golf/units.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "fem/materials/linear_elastic.hpp"
+#include "fem/rigid_body.hpp"
+#include "fem/yielding_face.hpp"
+#include "golf/face_library.hpp"
+#include "golf/units.hpp"
 #include "tests/support/coarse_impact.hpp"
 #include "tests/support/two_masses.hpp"
 

@@ -1,5 +1,5 @@
 // Figures: the script carries its data, gnuplot draws it.
-#include "hosel/post/figure.hpp"
+#include "post/figure.hpp"
 
 #include <gtest/gtest.h>
 

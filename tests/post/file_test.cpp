@@ -1,5 +1,5 @@
 // Files are whole or not there; histories and checkpoints are what they were, or are not gone on from.
-#include "hosel/post/file.hpp"
+#include "post/file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "hosel/post/checkpoint.hpp"
+#include "post/checkpoint.hpp"
 
 namespace hosel::post {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <map>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/post/impact_recorder.hpp"
-#include "hosel/post/patch_figure.hpp"
+#include "golf/units.hpp"
+#include "post/impact_recorder.hpp"
+#include "post/patch_figure.hpp"
 #include "tests/support/coarse_impact.hpp"
 
 namespace hosel::post {

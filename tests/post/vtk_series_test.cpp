@@ -16,7 +16,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "hosel/post/vtk_series.hpp"
+#include "post/vtk_series.hpp"
 
 namespace hosel::post {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <Eigen/LU>
 
-#include "hosel/fem/rigid_body.hpp"
-#include "hosel/solvers/generalized_alpha.hpp"
-#include "hosel/solvers/modes.hpp"
-#include "hosel/solvers/statics.hpp"
+#include "fem/rigid_body.hpp"
+#include "solvers/generalized_alpha.hpp"
+#include "solvers/modes.hpp"
+#include "solvers/statics.hpp"
 #include "tests/support/beams.hpp"
 #include "tests/support/term_checks.hpp"
 

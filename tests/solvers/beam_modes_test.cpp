@@ -3,7 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "hosel/solvers/modes.hpp"
+#include "solvers/modes.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {

@@ -1,7 +1,7 @@
 // [@tapered-beams] (static compliance) and [@elastica]: beams bent far.
 #include <gtest/gtest.h>
 
-#include "hosel/solvers/statics.hpp"
+#include "solvers/statics.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {

@@ -1,12 +1,12 @@
-#include "hosel/solvers/condensed.hpp"
+#include "solvers/condensed.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
-#include "hosel/fem/harmonic_solid.hpp"
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/solvers/contact_newton.hpp"
+#include "fem/harmonic_solid.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "solvers/contact_newton.hpp"
 #include "tests/support/term_checks.hpp"
 
 namespace hosel::solvers {

@@ -1,13 +1,13 @@
 // The time integrator by itself: order, energy ledger, restart, failure.
-#include "hosel/solvers/generalized_alpha.hpp"
+#include "solvers/generalized_alpha.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "hosel/solvers/errors.hpp"
-#include "hosel/solvers/statics.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/statics.hpp"
 
 namespace hosel::solvers {
 namespace {

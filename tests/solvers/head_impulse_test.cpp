@@ -3,7 +3,7 @@
 // motion is compared with the modal solution (linear, exact).
 #include <gtest/gtest.h>
 
-#include "hosel/solvers/generalized_alpha.hpp"
+#include "solvers/generalized_alpha.hpp"
 #include "tests/support/beams.hpp"
 
 namespace hosel::test {

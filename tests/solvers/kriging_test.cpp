@@ -1,11 +1,11 @@
-#include "hosel/solvers/kriging.hpp"
+#include "solvers/kriging.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "hosel/solvers/random.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::solvers {
 namespace {

@@ -1,5 +1,5 @@
 // Loops inside loops.
-#include "hosel/golf/parallel.hpp"
+#include "golf/parallel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "hosel/solvers/peak.hpp"
+#include "solvers/peak.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::test {
 namespace {

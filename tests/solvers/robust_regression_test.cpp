@@ -1,4 +1,4 @@
-#include "hosel/solvers/robust_regression.hpp"
+#include "solvers/robust_regression.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "hosel/solvers/errors.hpp"
+#include "solvers/errors.hpp"
 
 namespace {
 

@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "hosel/fem/beam.hpp"
-#include "hosel/fem/rigid_body.hpp"
-#include "hosel/fem/supports.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/solvers/newton.hpp"
+#include "fem/beam.hpp"
+#include "fem/rigid_body.hpp"
+#include "fem/supports.hpp"
+#include "golf/units.hpp"
+#include "solvers/newton.hpp"
 
 namespace hosel::test {
 

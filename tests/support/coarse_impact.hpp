@@ -1,8 +1,8 @@
 /// FE blows for tests: coarse, since what is tested holds on any mesh.
 #pragma once
 
-#include "hosel/fem/materials/hyperelastic.hpp"
-#include "hosel/models/fe_impact.hpp"
+#include "fem/materials/hyperelastic.hpp"
+#include "models/fe/fe_impact.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::test {

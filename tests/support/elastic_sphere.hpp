@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "hosel/golf/units.hpp"
-#include "hosel/models/fe_impact.hpp"
+#include "golf/units.hpp"
+#include "models/fe/fe_impact.hpp"
 
 namespace hosel::test {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "hosel/golf/shaft_library.hpp"
-#include "hosel/golf/units.hpp"
-#include "hosel/models/grip_motion.hpp"
-#include "hosel/models/swing.hpp"
+#include "golf/shaft_library.hpp"
+#include "golf/units.hpp"
+#include "models/club/grip_motion.hpp"
+#include "models/club/swing.hpp"
 
 namespace hosel::test {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <random>
 
-#include "hosel/fem/term.hpp"
+#include "fem/term.hpp"
 
 namespace hosel::test {
 

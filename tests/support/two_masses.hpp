@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "hosel/golf/face_compliance.hpp"
+#include "golf/face_compliance.hpp"
 
 namespace hosel::test {
 

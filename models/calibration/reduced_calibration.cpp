@@ -1,0 +1,141 @@
+#include "models/calibration/reduced_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+
+#include "golf/parallel.hpp"
+#include "golf/units.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
+#include "models/rigid/stick_slip.hpp"
+#include "solvers/errors.hpp"
+#include "solvers/least_squares.hpp"
+
+namespace hosel::models {
+namespace {
+
+/// A model as a function of its parameters, each inside its bounds.
+struct Reduced {
+  std::vector<solvers::Bounds> bounds;
+  std::vector<Eigen::VectorXd> starts;  // the best of what they lead to is taken
+  std::function<Launch(const Eigen::VectorXd&, const Blow&)> launch;
+};
+
+Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target) {
+  constexpr double kTimeSd = 0.03;  // relative
+  double speed = 0, spin = 0;
+  for (const Launch& l : target) speed += l.ball_speed(), spin += l.spin_rate();
+  const double n = double(target.size()), speed_sd = 0.005 * speed / n, angle_sd = radians(0.3),
+               spin_sd = 0.03 * spin / n;
+  const auto residuals = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r) {
+    r.resize(Eigen::Index(7 * target.size()));
+    for (std::size_t k = 0; k < target.size(); ++k) {
+      Launch l;
+      try {
+        l = model.launch(x, blows[k]);
+      } catch (const solvers::NonConvergence&) { return false; } catch (const std::invalid_argument&) {
+        return false;  // a law that no contact can have
+      }
+      const Launch& t = target[k];
+      // A rigid model has no contact time.
+      const double time = l.contact_time ? (*l.contact_time / t.contact_time.value() - 1) / kTimeSd : 0;
+      r.segment<7>(Eigen::Index(7 * k)) << (l.ball_speed() - t.ball_speed()) / speed_sd,
+          (l.launch_angle() - t.launch_angle()) / angle_sd, (l.azimuth() - t.azimuth()) / angle_sd,
+          (l.spin - t.spin) / spin_sd, time;
+    }
+    return true;
+  };
+  std::optional<solvers::LeastSquaresFit> best;
+  for (const Eigen::VectorXd& start : model.starts) {
+    const auto found = solvers::least_squares(residuals, int(7 * target.size()), start, model.bounds,
+                                              {.starts = 1, .iterations = 400});
+    if (!best || found.cost < best->cost) best = found;
+  }
+  return best->parameters;
+}
+
+ReducedBand band(const std::string& name, const ImpactModel& model, const std::vector<Blow>& blows,
+                 const std::vector<Launch>& target) {
+  ReducedBand b{.model = name};
+  const auto add = [&](double difference, double& rms, double& max) {
+    rms += difference * difference / double(blows.size());
+    max = std::max(max, std::abs(difference));
+  };
+  for (std::size_t k = 0; k < blows.size(); ++k) {
+    const Launch l = model.launch(blows[k]), &t = target[k];
+    add(l.ball_speed() - t.ball_speed(), b.ball_speed_rms, b.ball_speed_max);
+    add(l.launch_angle() - t.launch_angle(), b.launch_angle_rms, b.launch_angle_max);
+    add(l.azimuth() - t.azimuth(), b.azimuth_rms, b.azimuth_max);
+    add((l.spin - t.spin).norm(), b.spin_rms, b.spin_max);
+  }
+  for (double* rms : {&b.ball_speed_rms, &b.launch_angle_rms, &b.azimuth_rms, &b.spin_rms}) *rms = std::sqrt(*rms);
+  return b;
+}
+
+}  // namespace
+
+ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vector<Blow>& blows) {
+  if (blows.size() < 4) throw std::invalid_argument("reduced models: fewer than four blows tell nothing");
+  ReducedCalibration out;
+  out.launches.resize(blows.size());
+  const FeFreeBody model(fe);
+  for_all(std::size_t{0}, blows.size(), [&](std::size_t k) { out.launches[k] = model.launch(blows[k]); });
+
+  const auto law = [&](const Eigen::VectorXd& x) {
+    return ContactLaw{
+        .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = fe.friction};
+  };
+  const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
+                      {Eigen::Vector3d(0.86, -0.0029, 0.2)},
+                      [&](const Eigen::VectorXd& x, const Blow& blow) {
+                        Blow b = blow;
+                        b.contact = law(x);
+                        return RigidEccentric().launch(b);
+                      }};
+  out.law = law(fitted(rigid, blows, out.launches));
+
+  const auto volume = [&](const Eigen::VectorXd& x) {
+    VolumetricLaw v;
+    v.volume_exponent = 0.6;  // the finite-element ball pushes like depth^1.2
+    v.friction = v.static_friction = fe.friction;
+    v.stiffness = std::exp(x[0]);
+    v.damping = x[1];
+    v.joint_stiffness = std::exp(x[2]);
+    v.joint_damping = std::exp(x[3]);
+    v.cover_thickness = x[4];
+    v.face = fe.face;
+    return v;
+  };
+  const Reduced volumetric{
+      {{std::log(1e8), std::log(1e11), 1},
+       {0, 0.05, 0.005},
+       {std::log(0.5), std::log(1e4), 1},
+       {std::log(1e-4), std::log(1.0), 1},
+       {3e-4, 8e-3, 1e-3}},
+      // A joint slow against the contact, and one that swings back within it: either can be the local minimum.
+      {Eigen::VectorXd{{std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3}},
+       Eigen::VectorXd{{std::log(9e9), 12e-3, std::log(500.0), std::log(15e-3), 1.5e-3}}},
+      [&](const Eigen::VectorXd& x, const Blow& blow) { return volumetric_impact(blow, volume(x)).launch; }};
+  out.volume = volume(fitted(volumetric, blows, out.launches));
+
+  const auto hertz = [&](const Eigen::VectorXd& x) {
+    return HertzMawLaw{.modulus = std::exp(x[0]), .poisson = x[1], .friction = fe.friction, .damping = x[2]};
+  };
+  const Reduced maw{
+      {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
+      {Eigen::Vector3d(std::log(85e6), 0.4, 6e-3)},
+      [&](const Eigen::VectorXd& x, const Blow& blow) { return hertz_maw_impact(blow, hertz(x)).launch; }};
+  out.hertz = hertz(fitted(maw, blows, out.launches));
+
+  std::vector<Blow> ruled = blows;
+  for (Blow& b : ruled) b.contact = out.law;
+  out.bands = {band("rigid-eccentric", RigidEccentric(), ruled, out.launches),
+               band("stick-slip", StickSlip(), ruled, out.launches),
+               band("volumetric", Volumetric(out.volume), blows, out.launches),
+               band("hertz-maw", HertzMaw(out.hertz), blows, out.launches)};
+  return out;
+}
+
+}  // namespace hosel::models
