@@ -9,6 +9,7 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_paths.hpp"
+#include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
 namespace {
@@ -180,6 +181,29 @@ class FlightLawJob final : public Job {
     return m;
   }
 
+  /// What drives with such launches did, without physics: a quadratic in speed, angle and logarithm of the spin, and the
+  /// site's density, fitted robustly to the drives to learn from. No law predicts much better from the launch alone.
+  Misses regressed() const {
+    const auto training = data_.flights_of(false), held = data_.flights_of(true);
+    const auto features = [](const RadarFlight& f) {
+      const Launch& l = f.path.launch;
+      const double v = (l.ball_speed() - 75) / 5, a = (l.launch_angle() - 0.2) / 0.05, s = std::log(l.spin_rate() / 280);
+      return Eigen::RowVectorXd{{1, v, a, s, v * v, a * a, s * s, v * a, v * s, a * s, f.path.air.density - 1.17}};
+    };
+    Eigen::MatrixXd X(training.size(), 11);
+    for (std::size_t i = 0; i < training.size(); ++i) X.row(Eigen::Index(i)) = features(*training[i]);
+    const auto of = [&](double RadarFlight::*seen) {
+      Eigen::VectorXd y(training.size());
+      for (std::size_t i = 0; i < training.size(); ++i) y[Eigen::Index(i)] = training[i]->*seen;
+      const Eigen::VectorXd c = solvers::robust_regression(X, y).coefficients;
+      std::vector<double> misses;
+      for (std::size_t i = 0; i < held.size(); ++i)
+        if (sound_[i]) misses.push_back(features(*held[i]).dot(c) - held[i]->*seen);
+      return misses;
+    };
+    return {of(&RadarFlight::carry), of(&RadarFlight::side), of(&RadarFlight::apex), of(&RadarFlight::time)};
+  }
+
   void judge(Output& out, const PathFit& found, const std::vector<models::MeasuredPath>& training,
              std::vector<models::MeasuredPath> held, nlohmann::json& summary) {
     const int groups = int(data_.groups.size());
@@ -213,6 +237,7 @@ class FlightLawJob final : public Job {
     std::vector<FlightLaw> laws = others_;
     laws.push_back(found.law);
     for (const FlightLaw& law : laws) row("calm air, " + law.name, "calm", law.name, misses(none, calm, law));
+    row("regression on the others' drives", "regression", "none", regressed());
     for (const FlightLaw& law : laws) {
       const bool own = law.name == found.law.name;
       const auto winds = own ? found.winds : models::fit_paths(training, groups, data_.model, law).winds;

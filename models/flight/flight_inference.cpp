@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "golf/parallel.hpp"
@@ -17,24 +18,18 @@ constexpr FlightOptions kExact = {.tolerance = 1e-8};  // differences of paths a
 constexpr std::array<double, kShotUnknowns> kStep = {1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-4, 1e-4, 2e-2, 2e-2};
 constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient's standard deviation
 
-constexpr double kFarthest = 1;   // of a shot's step, standard deviations told of an unknown
-constexpr double kSettled = 0.1;  // standard errors: a step below that is the estimate
-constexpr int kFullSteps = 6;     // of the search, before half ones
-constexpr int kWeighing = 16;     // steps after which the weights stay: then one sum is brought down
+constexpr double kShotSettled = 1e-3;  // of a shot's sum of squares: a step that would bring less has settled
+constexpr int kShotSteps = 100;       // of one shot
+constexpr double kSettled = 0.05;     // standard errors: a step of what is shared below that is the estimate
+constexpr int kSteps = 60;            // of what is shared
+constexpr int kScaling = 5;           // steps after which the robust scale stays: then one sum is brought down
+constexpr double kLoss = 6;           // median misfits at which a shot's weight has fallen to a half
 
-/// Student weight of a shot by its misfit over the median one: half at six times it.
-double student(double over_median) { return 1 / (1 + std::pow(over_median / 6, 2)); }
-
-/// One shot about the present estimate: residuals and their derivatives by its own unknowns, the wind, the law.
-struct Linear {
+/// One shot's residuals and their derivatives by its own unknowns.
+struct OwnLinear {
   Eigen::VectorXd r;
-  Eigen::MatrixXd own, shared;
-};
-
-/// A shot's own unknowns in terms of the shared ones: u = -(constant + slope d), d the change of what is shared.
-struct Eliminated {
-  Eigen::VectorXd constant;
-  Eigen::MatrixXd slope;
+  Eigen::MatrixXd J;
+  Eigen::VectorXd b;  ///< half the gradient of its sum of squares: about none, once it has settled
 };
 
 class Estimate {
@@ -47,6 +42,7 @@ class Estimate {
     fit_.winds = winds.empty() ? std::vector<GroupWind>(std::size_t(groups), GroupWind::Zero()) : std::move(winds);
     fit_.weight.assign(shots.size(), 1);
     fit_.misfit.assign(shots.size(), 0);
+    own_.resize(shots.size());
     for (const MeasuredPath& s : shots) {
       if (s.times.empty() || s.times.size() != s.positions.size())
         throw std::invalid_argument("flight paths: shot " + s.id + " has no readings, or not one a time");
@@ -56,23 +52,27 @@ class Estimate {
   }
 
   PathFit run() {
-    // The law is let free once the shots lie about right: far from them its slopes mean nothing.
-    for (int i = 0; i < 4; ++i) step(false);
-    constexpr int most = 80;
-    const bool law = !law_sd_.empty();
-    for (double change = 1; change > kSettled;) {
-      if (fit_.iterations == most)
-        throw solvers::NonConvergence("flight paths: after " + std::to_string(most) +
-                                      " steps the estimate still moves by " + std::to_string(change) +
-                                      " standard errors");
-      change = step(law);
+    settle_shots();
+    set_scale();
+    if (shared() > 0) {
+      double change = 1;
+      while (change > kSettled) {
+        if (fit_.iterations == kSteps)
+          throw solvers::NonConvergence("flight paths: after " + std::to_string(kSteps) +
+                                        " steps the estimate still moves by " + std::to_string(change) +
+                                        " standard errors");
+        change = step();
+        if (fit_.iterations < kScaling) change = 1;
+      }
     }
+    finish();
     return std::move(fit_);
   }
 
  private:
-  int coefficients(bool law) const { return law ? kInferredCoefficients : 0; }
-  int winds() const { return 2 * int(fit_.winds.size()); }
+  int coefficients() const { return law_sd_.empty() ? 0 : kInferredCoefficients; }
+  int winds() const { return hold_winds_ ? 0 : 2 * int(fit_.winds.size()); }
+  int shared() const { return winds() + coefficients(); }
 
   Eigen::VectorXd residual(std::size_t i, const ShotUnknowns& own, const GroupWind& wind, const FlightLaw& law) const {
     const MeasuredPath& s = shots_[i];
@@ -83,135 +83,196 @@ class Estimate {
       r.segment<3>(3 * Eigen::Index(k)) = (at[k].position - s.positions[k]) / model_.noise;
     return r;
   }
+  const GroupWind& wind_of(std::size_t i) const { return fit_.winds[std::size_t(shots_[i].group)]; }
 
-  Linear linear(std::size_t i, bool law) const {
-    const MeasuredPath& s = shots_[i];
-    const GroupWind& wind = fit_.winds[std::size_t(s.group)];
-    Linear out{.r = residual(i, fit_.shots[i], wind, fit_.law), .own = {}, .shared = {}};
-    out.own = Eigen::MatrixXd::Zero(out.r.size(), kShotUnknowns);
-    out.shared = Eigen::MatrixXd::Zero(out.r.size(), winds() + coefficients(law));
-    for (int k = 0; k < kShotUnknowns; ++k) {
-      if (!(s.sd[k] > 0)) continue;
-      ShotUnknowns moved = fit_.shots[i];
-      moved[k] += kStep[std::size_t(k)];
-      out.own.col(k) = (residual(i, moved, wind, fit_.law) - out.r) / kStep[std::size_t(k)];
+  /// Squares of the unknowns over what is told of them.
+  double told(std::size_t i, const ShotUnknowns& own) const {
+    double sum = 0;
+    for (int k = 0; k < kShotUnknowns; ++k)
+      if (shots_[i].sd[k] > 0) sum += std::pow(own[k] / shots_[i].sd[k], 2);
+    return sum;
+  }
+  Eigen::MatrixXd normal(std::size_t i, const OwnLinear& l) const {
+    Eigen::MatrixXd A = l.J.transpose() * l.J;
+    for (int k = 0; k < kShotUnknowns; ++k) A(k, k) += shots_[i].sd[k] > 0 ? 1 / std::pow(shots_[i].sd[k], 2) : 1;
+    return A;
+  }
+
+  /// The shot's own unknowns at the present winds and law, by Levenberg and Marquardt; its misfit.
+  void settle(std::size_t i) {
+    ShotUnknowns& u = fit_.shots[i];
+    OwnLinear& l = own_[i];
+    l.r = residual(i, u, wind_of(i), fit_.law);
+    double sum = l.r.squaredNorm() + told(i, u), damping = 1e-3;
+    l.J = Eigen::MatrixXd::Zero(l.r.size(), kShotUnknowns);
+    for (int n = 0, done = 0; !done; ++n) {
+      for (int k = 0; k < kShotUnknowns; ++k) {
+        if (!(shots_[i].sd[k] > 0)) continue;
+        // Central: the gradient has to be right far from the path too, where residuals are large.
+        ShotUnknowns more = u, less = u;
+        const double h = kStep[std::size_t(k)];
+        more[k] += h, less[k] -= h;
+        l.J.col(k) =
+            (residual(i, more, wind_of(i), fit_.law) - residual(i, less, wind_of(i), fit_.law)) / (2 * h);
+      }
+      const Eigen::MatrixXd A = normal(i, l);
+      l.b = l.J.transpose() * l.r;
+      for (int k = 0; k < kShotUnknowns; ++k)
+        if (shots_[i].sd[k] > 0) l.b[k] += u[k] / std::pow(shots_[i].sd[k], 2);
+      done = l.b.dot(A.llt().solve(l.b)) < kShotSettled;
+      for (; !done; damping *= 4) {
+        if (n == kShotSteps || damping > 1e12)
+          throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle");
+        Eigen::MatrixXd damped = A;
+        damped.diagonal() *= 1 + damping;
+        const ShotUnknowns trial = u - damped.llt().solve(l.b);
+        const Eigen::VectorXd r = residual(i, trial, wind_of(i), fit_.law);
+        const double less = r.squaredNorm() + told(i, trial);
+        if (std::isfinite(less) && less <= sum) {
+          u = trial, l.r = r, sum = less, damping = std::max(damping / 6, 1e-9);
+          break;
+        }
+      }
     }
+    fit_.misfit[i] = sum / double(l.r.size());
+  }
+  void settle_shots() {
+    for_all(std::size_t(0), shots_.size(), [&](std::size_t i) { settle(i); });
+  }
+  void set_scale() {
+    std::vector<double> sorted = fit_.misfit;
+    std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
+    scale_ = std::max(kLoss * sorted[sorted.size() / 2], std::numeric_limits<double>::min());
+  }
+  /// A shot's loss, s atan(m / s) of its misfit m over the scale s, has this derivative: its weight.
+  double weight(std::size_t i) const { return 1 / (1 + std::pow(fit_.misfit[i] / scale_, 2)); }
+
+  /// What is brought down: the shots' losses, and what is told of winds and law.
+  double loss() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < shots_.size(); ++i)
+      sum += double(own_[i].r.size()) * scale_ * std::atan(fit_.misfit[i] / scale_);
+    if (!hold_winds_) {
+      const double n = double(fit_.winds.size());
+      GroupWind mean = GroupWind::Zero();
+      for (const GroupWind& w : fit_.winds) {
+        mean += w / n;
+        sum += w.squaredNorm() / std::pow(model_.wind_sd, 2);
+      }
+      sum += mean.squaredNorm() / std::pow(model_.mean_wind_sd, 2);
+    }
+    FlightLaw now = fit_.law, before = start_;
+    for (int k = 0; k < coefficients(); ++k)
+      sum += std::pow((inferred_coefficient(now, k) - inferred_coefficient(before, k)) / law_sd_[std::size_t(k)], 2);
+    return sum;
+  }
+
+  Eigen::MatrixXd by_shared(std::size_t i) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(own_[i].r.size(), shared());
+    const ShotUnknowns& u = fit_.shots[i];
     for (int k = 0; k < 2 && !hold_winds_; ++k) {
-      GroupWind moved = wind;
-      moved[k] += kWindStep;
-      out.shared.col(2 * s.group + k) = (residual(i, fit_.shots[i], moved, fit_.law) - out.r) / kWindStep;
+      GroupWind more = wind_of(i), less = more;
+      more[k] += kWindStep, less[k] -= kWindStep;
+      out.col(2 * shots_[i].group + k) =
+          (residual(i, u, more, fit_.law) - residual(i, u, less, fit_.law)) / (2 * kWindStep);
     }
-    for (int k = 0; k < coefficients(law); ++k) {
-      FlightLaw moved = fit_.law;
+    for (int k = 0; k < coefficients(); ++k) {
+      FlightLaw more = fit_.law, less = more;
       const double h = kLawStep * law_sd_[std::size_t(k)];
-      inferred_coefficient(moved, k) += h;
-      out.shared.col(winds() + k) = (residual(i, fit_.shots[i], wind, moved) - out.r) / h;
+      inferred_coefficient(more, k) += h;
+      inferred_coefficient(less, k) -= h;
+      out.col(winds() + k) = (residual(i, u, wind_of(i), more) - residual(i, u, wind_of(i), less)) / (2 * h);
     }
     return out;
   }
 
-  /// One Gauss-Newton step of everything; returns the largest change of what is shared, in its standard errors, or a
-  /// fifth of that of what a shot has of its own, in the standard deviations told of it.
-  double step(bool law) {
-    const int shared = winds() + coefficients(law);
-    std::vector<Linear> at(shots_.size());
-    for_all(std::size_t(0), shots_.size(), [&](std::size_t i) { at[i] = linear(i, law); });
-    reweigh(at);
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(shared, shared);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(shared);
-    std::vector<Eliminated> own(shots_.size());
+  /// One Gauss-Newton step of what is shared, each shot's own unknowns at their best for it (variable projection);
+  /// halved until the loss falls. Returns the largest change in standard errors.
+  double step() {
+    ++fit_.iterations;
+    const int n = shared();
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+    std::vector<Eigen::MatrixXd> follow(shots_.size()), part(shots_.size());
+    std::vector<Eigen::VectorXd> pull(shots_.size());
+    for_all(std::size_t(0), shots_.size(), [&](std::size_t i) {
+      const OwnLinear& l = own_[i];
+      const Eigen::MatrixXd S = by_shared(i), C = l.J.transpose() * S;
+      follow[i] = normal(i, l).llt().solve(C);
+      part[i] = weight(i) * (S.transpose() * S - C.transpose() * follow[i]);
+      pull[i] = weight(i) * (S.transpose() * l.r - follow[i].transpose() * l.b);
+    });
     for (std::size_t i = 0; i < shots_.size(); ++i) {
-      const double w = fit_.weight[i];
-      const Linear& l = at[i];
-      Eigen::MatrixXd A = w * (l.own.transpose() * l.own);
-      Eigen::VectorXd b = w * (l.own.transpose() * l.r);
-      for (int k = 0; k < kShotUnknowns; ++k) {
-        const double sd = shots_[i].sd[k];
-        A(k, k) += sd > 0 ? 1 / (sd * sd) : 1;
-        b[k] += sd > 0 ? fit_.shots[i][k] / (sd * sd) : 0;
-      }
-      const Eigen::LLT<Eigen::MatrixXd> solver(A);
-      const Eigen::MatrixXd C = w * (l.own.transpose() * l.shared);
-      own[i] = {solver.solve(b), solver.solve(C)};
-      H += w * (l.shared.transpose() * l.shared) - C.transpose() * own[i].slope;
-      g += w * (l.shared.transpose() * l.r) - C.transpose() * own[i].constant;
+      H += part[i];
+      g += pull[i];
     }
-    add_priors(H, g, law);
+    add_priors(H, g);
     const Eigen::LLT<Eigen::MatrixXd> solver(H);
     if (solver.info() != Eigen::Success)
       throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
-    // Full steps overshoot where shots go on to bend as the law moves: they end in two points by turns.
-    const double share = fit_.iterations < kFullSteps ? 1 : 0.5;
-    const Eigen::VectorXd d = -solver.solve(g) * share;
-    const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(shared, shared));
-    double largest = d.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
-    for (std::size_t i = 0; i < shots_.size(); ++i) {
-      ShotUnknowns change = share * own[i].constant + own[i].slope * d;
-      // A trust region: far from its path a shot's slopes say little of where it would go.
-      double far = 0;
-      for (int k = 0; k < kShotUnknowns; ++k)
-        if (shots_[i].sd[k] > 0) far = std::max(far, std::abs(change[k]) / shots_[i].sd[k]);
-      if (far > kFarthest) change *= kFarthest / far;
-      fit_.shots[i] -= change;
-      for (int k = 0; k < kShotUnknowns && fit_.weight[i] > 0.5; ++k)
-        if (shots_[i].sd[k] > 0) largest = std::max(largest, 0.2 * std::abs(change[k]) / shots_[i].sd[k]);
+    const Eigen::VectorXd d = -solver.solve(g);
+    covariance_ = solver.solve(Eigen::MatrixXd::Identity(n, n));
+    const double largest = d.cwiseAbs().cwiseQuotient(covariance_.diagonal().cwiseSqrt()).maxCoeff();
+    const double before = loss();
+    const PathFit kept = fit_;
+    const std::vector<OwnLinear> kept_own = own_;
+    for (double share = 1;; share /= 2) {
+      if (share < 1e-3) {  // the loss is flat to its round-off
+        fit_ = kept;
+        own_ = kept_own;
+        if (largest > 10 * kSettled)
+          throw solvers::NonConvergence("flight paths: no step brings the loss down, though " +
+                                        std::to_string(largest) + " standard errors are left");
+        return 0;
+      }
+      for (std::size_t k = 0; !hold_winds_ && k < fit_.winds.size(); ++k)
+        fit_.winds[k] = kept.winds[k] + share * d.segment<2>(2 * Eigen::Index(k));
+      for (int k = 0; k < coefficients(); ++k) {
+        FlightLaw old = kept.law;
+        inferred_coefficient(fit_.law, k) = inferred_coefficient(old, k) + share * d[winds() + k];
+      }
+      for (std::size_t i = 0; i < shots_.size(); ++i) fit_.shots[i] = kept.shots[i] - follow[i] * (share * d);
+      settle_shots();
+      if (loss() <= before + kShotSettled * double(shots_.size())) break;
     }
-    fit_.wind_sd.clear();
-    for (std::size_t k = 0; k < fit_.winds.size(); ++k) {
-      if (!hold_winds_) fit_.winds[k] += d.segment<2>(2 * Eigen::Index(k));
-      fit_.wind_sd.emplace_back(covariance.diagonal().segment<2>(2 * Eigen::Index(k)).cwiseSqrt());
-    }
-    for (int k = 0; k < coefficients(law); ++k) inferred_coefficient(fit_.law, k) += d[winds() + k];
-    if (law) {
-      const Eigen::MatrixXd of_law = covariance.bottomRightCorner(kInferredCoefficients, kInferredCoefficients);
-      fit_.law.covariance.assign(of_law.data(), of_law.data() + of_law.size());
-    }
-    ++fit_.iterations;
+    if (fit_.iterations < kScaling) set_scale();
     return largest;
   }
 
-  void reweigh(const std::vector<Linear>& at) {
-    double square = 0, readings = 0;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      double sum = at[i].r.squaredNorm();
-      for (int k = 0; k < kShotUnknowns; ++k)
-        if (shots_[i].sd[k] > 0) sum += std::pow(fit_.shots[i][k] / shots_[i].sd[k], 2);
-      fit_.misfit[i] = sum / double(at[i].r.size());
-    }
-    std::vector<double> sorted = fit_.misfit;
-    std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
-    const double median = sorted[sorted.size() / 2];
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      // Below the noise a misfit is no reason to doubt a shot more than another.
-      if (fit_.iterations < kWeighing) fit_.weight[i] = median > 0 ? student(fit_.misfit[i] / median) : 1;
-      square += fit_.weight[i] * at[i].r.squaredNorm();
-      readings += fit_.weight[i] * double(at[i].r.size());
-    }
-    fit_.rms = model_.noise * std::sqrt(square / readings);
-  }
-
-  void add_priors(Eigen::MatrixXd& H, Eigen::VectorXd& g, bool law) const {
-    if (hold_winds_) {
-      H.diagonal().head(winds()).setOnes();
-      g.head(winds()).setZero();
-    } else {
-      const double wind = 1 / (model_.wind_sd * model_.wind_sd), n = double(fit_.winds.size()),
-                   mean = 1 / (model_.mean_wind_sd * model_.mean_wind_sd * n * n);
-      for (int k = 0; k < 2; ++k) {
-        double sum = 0;
-        for (const GroupWind& w : fit_.winds) sum += w[k];
-        for (int a = k; a < winds(); a += 2) {
-          H(a, a) += wind;
-          g[a] += wind * fit_.winds[std::size_t(a / 2)][k] + mean * sum;
-          for (int b = k; b < winds(); b += 2) H(a, b) += mean;
-        }
+  void add_priors(Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
+    const double wind = 1 / (model_.wind_sd * model_.wind_sd), n = double(fit_.winds.size()),
+                 mean = 1 / (model_.mean_wind_sd * model_.mean_wind_sd * n * n);
+    for (int k = 0; k < 2 && !hold_winds_; ++k) {
+      double sum = 0;
+      for (const GroupWind& w : fit_.winds) sum += w[k];
+      for (int a = k; a < winds(); a += 2) {
+        H(a, a) += wind;
+        g[a] += wind * fit_.winds[std::size_t(a / 2)][k] + mean * sum;
+        for (int b = k; b < winds(); b += 2) H(a, b) += mean;
       }
     }
     FlightLaw now = fit_.law, before = start_;
-    for (int k = 0; k < coefficients(law); ++k) {
+    for (int k = 0; k < coefficients(); ++k) {
       const double sd = law_sd_[std::size_t(k)];
       H(winds() + k, winds() + k) += 1 / (sd * sd);
       g[winds() + k] += (inferred_coefficient(now, k) - inferred_coefficient(before, k)) / (sd * sd);
+    }
+  }
+
+  void finish() {
+    double square = 0, readings = 0;
+    for (std::size_t i = 0; i < shots_.size(); ++i) {
+      fit_.weight[i] = weight(i);
+      square += fit_.weight[i] * own_[i].r.squaredNorm();
+      readings += fit_.weight[i] * double(own_[i].r.size());
+    }
+    fit_.rms = model_.noise * std::sqrt(square / readings);
+    fit_.wind_sd.assign(fit_.winds.size(), Eigen::Vector2d::Zero());
+    for (std::size_t k = 0; !hold_winds_ && k < fit_.winds.size(); ++k)
+      fit_.wind_sd[k] = covariance_.diagonal().segment<2>(2 * Eigen::Index(k)).cwiseSqrt();
+    if (coefficients() > 0) {
+      const Eigen::MatrixXd of_law = covariance_.bottomRightCorner(kInferredCoefficients, kInferredCoefficients);
+      fit_.law.covariance.assign(of_law.data(), of_law.data() + of_law.size());
     }
   }
 
@@ -221,6 +282,9 @@ class Estimate {
   const FlightLaw start_;
   const bool hold_winds_;
   PathFit fit_;
+  std::vector<OwnLinear> own_;
+  double scale_ = 1;
+  Eigen::MatrixXd covariance_;
 };
 
 }  // namespace
