@@ -34,7 +34,7 @@ class Session:
     def __init__(self, rng, number, planar=False, irons=False):
         self.rng, self.number, self.planar = rng, number, planar
         self.n = n = (60, 150, 300)[number % 3]
-        self.bag, self.clusters = number % 2 == 1, number % 4 < 2
+        self.bag, self.clusters = number % 2 == 1, number // 4 % 2 == 0
         self.players = rng.integers(0, 4, n) if self.clusters else np.zeros(n, int)
         self.sessions = np.arange(n) * 3 // n
         iron = rng.random() < 0.5 or self.bag or irons
@@ -62,7 +62,7 @@ class Session:
         self.names, self.place, self.guilty = [], [], []
 
     def size(self, small, large):
-        """Even numbers large, odd ones small, each within a third of a decade."""
+        """Numbers 0, 1, 4, 5, 8, 9 large, the others small, each within 20 %."""
         return (large if self.number // 2 % 2 == 0 else small) * 10 ** self.rng.uniform(-0.08, 0.08)
 
     def base(self, x):
