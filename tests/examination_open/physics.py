@@ -107,8 +107,8 @@ def compliant(b, e, ratio, mu, loss=0.0, steps=2000):
         fn = k * d * np.where(wn > 0, 1, e**2)
         pull = across * u + soft[:, None] * (w - wn[:, None] * b.n)
         size = np.linalg.norm(pull, axis=-1)
-        keep = np.minimum(1, mu * np.maximum(fn, 0) / np.maximum(size, 1e-300))
-        u = np.where((keep < 1)[:, None], u * keep[:, None], u)
+        keep = np.where(mu * np.fmax(fn, 1e-300) < size, mu * fn / np.maximum(size, 1e-300), 1)
+        u = np.where((open_ & (keep < 1))[:, None], u * keep[:, None], u)
         f = np.where(open_[:, None], fn[:, None] * b.n + keep[:, None] * pull, 0)
         J += h * f
         w -= h * times(b.k, f)
