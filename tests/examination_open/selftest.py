@@ -82,7 +82,9 @@ class Physics(unittest.TestCase):
         jn = physics.dot(J, b.n)
         share = np.linalg.norm(J - jn[:, None] * b.n, axis=1) / jn
         self.assertGreater(np.mean(np.isclose(share, 0.03)), 0.5)  # most slide,
-        self.assertLess(share.max(), 0.03 + 1e-12)  # none beyond
+        self.assertLess(share.max(), 0.03 + 1e-12)  # none beyond,
+        after = b.w - physics.times(b.k, J)
+        np.testing.assert_allclose(physics.dot(after, b.n), -0.8 * b.approach, rtol=1e-12)  # and restitution holds
 
     def test_planar_closed_form(self):
         """The formulas of the rolling model, docs/theory.md."""
@@ -152,6 +154,8 @@ class Grades(unittest.TestCase):
             ("right", report("explained", ["loft-bias", "cg-shift"]), two),
             ("acceptable", report("explained", ["cg-shift"]), two),
             ("right", report("unexplained", ["cg-shift"], columns=["dynamic_loft_deg"]), two),
+            ("wrong", report("explained", ["restitution-law", "head-mass"]), {**law, "kin": ["head-mass"]}),
+            ("right", report("unexplained", ["restitution-law", "head-mass"]), {**law, "kin": ["head-mass"]}),
             ("right", report("unexplained", columns=["club_speed_mph"]), speed),
             ("right", report("no-residual", flagged=[("club_speed_mph", 9)]), speed),
             ("wrong", report("no-residual", flagged=[("club_speed_mph", 3)]), speed),
