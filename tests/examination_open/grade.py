@@ -113,7 +113,7 @@ FAMILIES = {1: "one effect, another form", 2: "several at once", 3: "instruments
 def table(rows, key, title):
     counts = collections.defaultdict(collections.Counter)
     for r in rows:
-        counts[key(r[2])][r[4]] += 1
+        counts[key(r)][r[4]] += 1
     print(f"\n| {title} | sets | right | acceptable | wrong |\n|---|---|---|---|---|")
     for k in sorted(counts):
         c = counts[k]
@@ -123,17 +123,20 @@ def table(rows, key, title):
 def main():
     p = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     p.add_argument("folders", nargs="+", type=pathlib.Path)
-    p.add_argument("--kinds", action="store_true", help="a table of the kinds and of sizes as well")
+    p.add_argument("--kinds", action="store_true", help="a table of the kinds as well")
     a = p.parse_args()
     rows = list(graded(a.folders))
     if not rows:
         sys.exit("nothing was run in " + ", ".join(map(str, a.folders)))
-    table(rows, lambda t: f"{t['family']} {FAMILIES[t['family']]}", "family")
-    table(rows, lambda t: "all", "")
-    table(rows, lambda t: f"{t['shots']:3d} shots", "size")
-    table(rows, lambda t: ("bag" if t["bag"] else "one club") + (", clusters" if t["clusters"] else ""), "layout")
+    table(rows, lambda r: f"{r[2]['family']} {FAMILIES[r[2]['family']]}", "family")
+    table(rows, lambda r: f"seed {r[0]}", "seed")
+    table(rows, lambda r: f"{r[2]['shots']:3d} shots", "size")
+    table(rows, lambda r: ("bag" if r[2]["bag"] else "one club") + (", clusters" if r[2]["clusters"] else ""), "layout")
+    table(rows, lambda r: next((f"to {limit:2d}" for limit in (0, 5, 8, 20, 50) if r[2]["total"] <= limit), "beyond"), "noise units")
     if a.kinds:
-        table(rows, lambda t: f"{t['family']} {t['kind']}", "kind")
+        table(rows, lambda r: f"{r[2]['family']} {r[2]['kind']}", "kind")
+    causes = collections.Counter(why.split()[0] for *_, mark, why in rows if mark == "wrong")
+    print("\nwrong by its first word:", ", ".join(f"{w} {n}" for w, n in causes.most_common()))
     print("\nwrong (seed, set, truth, what the loop said):")
     for seed, name, truth, report, mark, why in rows:
         if mark == "wrong":
