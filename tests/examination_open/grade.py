@@ -135,7 +135,7 @@ def main():
     table(rows, lambda r: next((f"to {limit:2d}" for limit in (0, 5, 8, 20, 50) if r[2]["total"] <= limit), "beyond"), "noise units")
     if a.kinds:
         table(rows, lambda r: f"{r[2]['family']} {r[2]['kind']}", "kind")
-    causes = collections.Counter(why.split()[0] for *_, mark, why in rows if mark == "wrong")
+    causes = collections.Counter(" ".join(why.split()[: 2 if why.startswith("no") else 1]) for *_, mark, why in rows if mark == "wrong")
     print("\nwrong by its first word:", ", ".join(f"{w} {n}" for w, n in causes.most_common()))
     print("\nwrong (seed, set, truth, what the loop said):")
     for seed, name, truth, report, mark, why in rows:
