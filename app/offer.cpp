@@ -145,8 +145,10 @@ void offer(Output& out, Shelf shelf, const Offer& o, const std::string& tables) 
   out.write(fs::path(file).lexically_relative(out.directory()).string(), text);
   try {
     check_entry(shelf, file);
-  } catch (const InputError& error) {
-    throw std::logic_error(fmt::format("a run wrote an entry that the library refuses: {}", error.what()));
+  } catch (const InputError& error) {  // a law may extrapolate beyond what the library takes, a restitution above 1 say
+    fs::remove(file);
+    out.tell(fmt::format("the {} is not offered to the library, which would refuse it: {}", singular(shelf), error.what()));
+    return;
   }
   out.tell(
       fmt::format("offers a {} to the library: hosel adopt {} --as NAME", singular(shelf), out.directory().string()));

@@ -32,7 +32,8 @@ std::string head_tables(const Head& head, std::string_view face, const std::opti
 /// The parts that are there.
 std::string contact_tables(const NamedContact& contact);
 
-/// Writes OUT/entries/<shelf>.toml and reads it again by the library's reader: what it would refuse is a logic_error.
+/// Writes OUT/entries/<shelf>.toml and reads it again by the library's reader: what it would refuse is not offered, and
+/// the run says so.
 void offer(Output& out, Shelf shelf, const Offer& offer, const std::string& tables);
 /// Nothing is offered: entries of an earlier run in OUT go.
 void withdraw_offers(Output& out);

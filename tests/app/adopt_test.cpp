@@ -117,6 +117,20 @@ TEST_F(Adopt, ALoopsContactIsAnotherKindsModel) {
   EXPECT_NE(driver.text.find("contact.name: 'irons' saw spin lofts"), std::string::npos) << driver.text;
 }
 
+/// A law found on fast blows may extrapolate to a restitution above 1 at rest: the run goes on without an offer.
+TEST(Offer, WhatTheLibraryRefusesIsNotOffered) {
+  const fs::path dir = fresh_directory("offer_refused"), entry = dir / "out" / "entries" / "contact.toml";
+  Output out({.directory = dir / "out", .quiet = true}, "title = \"a test\"\n");
+  NamedContact contact;
+  contact.law = ContactLaw{};
+  offer(out, Shelf::contacts, {.what = "a law", .source = "a test"}, contact_tables(contact));
+  ASSERT_TRUE(fs::exists(entry));
+  contact.law->restitution = 1.2;
+  offer(out, Shelf::contacts, {.what = "a law", .source = "a test"}, contact_tables(contact));
+  EXPECT_FALSE(fs::exists(entry));
+  EXPECT_NE(content(dir / "out" / "log.txt").find("not offered to the library"), std::string::npos);
+}
+
 /// Every digit of a ball goes through its file.
 TEST(Offer, ABallGoesThroughItsFile) {
   const fs::path dir = fresh_directory("offer_ball");
