@@ -147,7 +147,8 @@ void offer(Output& out, Shelf shelf, const Offer& o, const std::string& tables) 
     check_entry(shelf, file);
   } catch (const InputError& error) {  // a law may extrapolate beyond what the library takes, a restitution above 1 say
     fs::remove(file);
-    out.tell(fmt::format("the {} is not offered to the library, which would refuse it: {}", singular(shelf), error.what()));
+    out.tell(
+        fmt::format("the {} is not offered to the library, which would refuse it: {}", singular(shelf), error.what()));
     return;
   }
   out.tell(

@@ -181,13 +181,15 @@ class FlightLawJob final : public Job {
     return m;
   }
 
-  /// What drives with such launches did, without physics: a quadratic in speed, angle and logarithm of the spin, and the
-  /// site's density, fitted robustly to the drives to learn from. No law predicts much better from the launch alone.
+  /// What drives with such launches did, without physics: a quadratic in speed, angle and logarithm of the spin, and
+  /// the site's density, fitted robustly to the drives to learn from. No law predicts much better from the launch
+  /// alone.
   Misses regressed() const {
     const auto training = data_.flights_of(false), held = data_.flights_of(true);
     const auto features = [](const RadarFlight& f) {
       const Launch& l = f.path.launch;
-      const double v = (l.ball_speed() - 75) / 5, a = (l.launch_angle() - 0.2) / 0.05, s = std::log(l.spin_rate() / 280);
+      const double v = (l.ball_speed() - 75) / 5, a = (l.launch_angle() - 0.2) / 0.05,
+                   s = std::log(l.spin_rate() / 280);
       return Eigen::RowVectorXd{{1, v, a, s, v * v, a * a, s * s, v * a, v * s, a * s, f.path.air.density - 1.17}};
     };
     Eigen::MatrixXd X(training.size(), 11);

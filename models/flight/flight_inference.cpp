@@ -18,12 +18,12 @@ constexpr FlightOptions kExact = {.tolerance = 1e-8};  // differences of paths a
 constexpr std::array<double, kShotUnknowns> kStep = {1e-3, 1e-3, 1e-3, 1e-3, 1e-2, 1e-4, 1e-4, 2e-2, 2e-2};
 constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient's standard deviation
 
-constexpr double kShotSettled = 1e-3;  // of a shot's sum of squares: a step that would bring less has settled
-constexpr int kShotSteps = 100;       // of one shot
-constexpr double kSettled = 0.05;     // standard errors: a step of what is shared below that is the estimate
-constexpr int kSteps = 60;            // of what is shared
-constexpr int kScaling = 5;           // steps after which the robust scale stays: then one sum is brought down
-constexpr double kLoss = 6;           // median misfits at which a shot's weight has fallen to a half
+constexpr double kShotSettled = 1e-3;  // of a shot's sum of squares (times its misfit): a step that brings less
+constexpr int kShotSteps = 100;        // of one shot
+constexpr double kSettled = 0.05;      // standard errors: a step of what is shared below that is the estimate
+constexpr int kSteps = 60;             // of what is shared
+constexpr int kScaling = 5;            // steps after which the robust scale stays: then one sum is brought down
+constexpr double kLoss = 6;            // median misfits at which a shot's weight has fallen to a half
 
 /// One shot's residuals and their derivatives by its own unknowns.
 struct OwnLinear {
@@ -112,14 +112,13 @@ class Estimate {
         ShotUnknowns more = u, less = u;
         const double h = kStep[std::size_t(k)];
         more[k] += h, less[k] -= h;
-        l.J.col(k) =
-            (residual(i, more, wind_of(i), fit_.law) - residual(i, less, wind_of(i), fit_.law)) / (2 * h);
+        l.J.col(k) = (residual(i, more, wind_of(i), fit_.law) - residual(i, less, wind_of(i), fit_.law)) / (2 * h);
       }
       const Eigen::MatrixXd A = normal(i, l);
       l.b = l.J.transpose() * l.r;
       for (int k = 0; k < kShotUnknowns; ++k)
         if (shots_[i].sd[k] > 0) l.b[k] += u[k] / std::pow(shots_[i].sd[k], 2);
-      done = l.b.dot(A.llt().solve(l.b)) < kShotSettled;
+      done = l.b.dot(A.llt().solve(l.b)) < kShotSettled * std::max(1.0, sum / double(l.r.size()));
       for (; !done; damping *= 4) {
         if (n == kShotSteps || damping > 1e12)
           throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle");
@@ -173,8 +172,8 @@ class Estimate {
     for (int k = 0; k < 2 && !hold_winds_; ++k) {
       GroupWind more = wind_of(i), less = more;
       more[k] += kWindStep, less[k] -= kWindStep;
-      out.col(2 * shots_[i].group + k) =
-          (residual(i, u, more, fit_.law) - residual(i, u, less, fit_.law)) / (2 * kWindStep);
+      out.col(2 * shots_[i].group + k) = (residual(i, u, more, fit_.law) - residual(i, u, less, fit_.law)) /
+                                         (2 * kWindStep);
     }
     for (int k = 0; k < coefficients(); ++k) {
       FlightLaw more = fit_.law, less = more;
