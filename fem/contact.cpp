@@ -48,7 +48,7 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
   if (carrier_.translation.has_value() != carrier_.rotation.has_value())
     throw std::invalid_argument("contact: a moving surface needs a position and a rotation");
   if (own_ && (own_->rotation || own_->size > kSurfaceUnknowns))
-    throw std::invalid_argument("contact: a surface has at most four unknowns of its own, plain numbers");
+    throw std::invalid_argument("contact: a surface has at most 32 unknowns of its own, plain numbers");
   std::vector<Index> carried;
   if (carrier_.translation)
     for (const auto* block : {&*carrier_.translation, &*carrier_.rotation})
@@ -111,9 +111,9 @@ Contact::Moved Contact::moved(const State& s) const {
     m.R = rotation(s, *carrier_.rotation).toRotationMatrix();
   }
   m.to_body = m.R.transpose();
-  for (Index i = 0; own_ && i < own_->size; ++i) {
-    m.own[i] = s.q[own_->q + i];
-    m.own_rate[i] = s.v[own_->v + i];
+  if (own_) {
+    m.own = s.q.segment(own_->q, own_->size);
+    m.own_rate = s.v.segment(own_->v, own_->size);
   }
   return m;
 }
@@ -124,7 +124,9 @@ Vec3 Contact::place(const Moved& m, const Vec3& arm) const {
   return y;
 }
 
-Vec3 Contact::in_body(const Kinematics& k, const Vec3& force) { return force + force.x() * k.travel.slope.head<3>(); }
+Vec3 Contact::in_body(const Kinematics& k, const Vec3& force) {
+  return {force.x(), force.y() + force.x() * k.travel.slope.x(), force.z() + force.x() * k.travel.slope.y()};
+}
 
 Eigen::Ref<const Contact::Directions, 0, Eigen::OuterStride<>> Contact::functions(std::size_t angle) const {
   return functions_.middleRows<3>(3 * static_cast<Index>(angle));
@@ -207,8 +209,7 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
       k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
       if (own_) {
         k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
-        k.velocity.x() += k.travel.slope.head<3>().dot(k.rate) +
-                          k.travel.slope.tail<kSurfaceUnknowns>().dot(m.own_rate);
+        k.velocity.x() += k.travel.slope.dot(k.rate.tail<2>()) + k.travel.shape.dot(m.own_rate);
       }
     }
     visit(std::as_const(k));
@@ -274,11 +275,13 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
     bool any = false;
     Eigen::Matrix<double, Eigen::Dynamic, 3> spread;  // over the nodes of the edge
     Vec3 total = Vec3::Zero(), moment = Vec3::Zero();
-    SurfaceUnknowns own = SurfaceUnknowns::Zero();
+    SurfaceUnknowns own;
   };
+  const Index own_size = own_ ? own_->size : 0;
   std::vector<Push> pushes(near.size());
   over_stations(near.size(), [&](std::size_t i, Scratch& t) {
     Push& push = pushes[i];
+    push.own.setZero(own_size);
     const Station& station = stations_[near[i]];
     t.forces.setZero();
     visit_station(m, s, near[i], t, [&](const Kinematics& k) {
@@ -288,11 +291,12 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
       t.forces.col(static_cast<Index>(k.angle)).noalias() = m.R * f;
       push.total += f;
       push.moment += k.arm.cross(f);
-      push.own -= local.x() * k.travel.slope.tail<kSurfaceUnknowns>();
+      if (own_) push.own -= local.x() * k.travel.shape;
     });
     if (push.any) push.spread.noalias() = (functions_.transpose() * t.forces.reshaped()) * station.shape.transpose();
   });
   Push sum;
+  sum.own.setZero(own_size);
   for (std::size_t i = 0; i < near.size(); ++i) {
     const Push& push = pushes[i];
     if (!push.any) continue;
@@ -306,7 +310,7 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
     force.segment<3>(carrier_.translation->v) += free_translation() * m.R * sum.total;
     force.segment<3>(carrier_.rotation->v) += free_rotation(m.R) * sum.moment;
   }
-  if (own_) force.segment(own_->v, own_->size) += sum.own.head(own_->size);
+  if (own_) force.segment(own_->v, own_size) += sum.own;
 }
 
 void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const {
@@ -319,30 +323,32 @@ void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weig
 
   // Change of the arm by each unknown but the surface's own: these change nothing but the place.
   const Index others = size - own;
-  auto arm = out.changes.block(out.rows, 0, 3, others);
+  Directions& arm = out.arm;
   arm.leftCols(K).noalias() = m.to_body * functions(k.angle);
   if (moving) {
     arm.middleCols<3>(K) = -m.to_body * free_translation();
     arm.middleCols<3>(K + 3) = skew(k.arm) * turn;
   }
+  auto place = out.changes.middleRows<3>(out.rows);
+  auto forces = out.forces.middleRows<3>(out.rows);
+  place.leftCols(others) = arm;
+  const Mat3 by = area * (weights.stiffness * local.stiffness + weights.damping * local.damping);
   if (own > 0) {
-    out.changes.block(out.rows, others, 3, own).setZero();
-    out.changes.block(out.rows + 3, 0, own, others).setZero();
-    out.changes.block(out.rows + 3, others, own, own).setIdentity();
+    place.row(0).head(others) += k.travel.slope.transpose() * arm.bottomRows<2>();
+    place.row(0).tail(own) = k.travel.shape.transpose();
+    place.bottomRightCorner(2, own).setZero();
   }
-  using Square = Eigen::Matrix<double, Travel::size, Travel::size>;
-  Square by = Square::Zero();  // derivatives of -force by arm and own unknowns
-  by.topLeftCorner<3, 3>() = area * (weights.stiffness * local.stiffness + weights.damping * local.damping);
-  Eigen::Matrix<double, 3, Travel::size> place = Eigen::Matrix<double, 3, Travel::size>::Identity();
+  forces.noalias() = by * place;
   if (own > 0) {
-    place.row(0) += k.travel.slope.transpose();
-    const Mat3 stiffness = by.topLeftCorner<3, 3>();
-    by.noalias() = place.transpose() * stiffness * place;
-    by -= area * weights.stiffness * local.force.x() * k.travel.second;
+    // The force across the surface follows its slope, which changes with the place and with the unknowns.
+    const double across = -area * weights.stiffness * local.force.x();
+    forces.bottomLeftCorner(2, others).noalias() += (across * k.travel.second) * arm.bottomRows<2>();
+    forces.bottomRightCorner(2, own) += across * k.travel.shape_slope;
+    out.changes.block(out.rows + 3, 0, 2, others).setZero();
+    out.changes.block(out.rows + 3, others, 2, own) = k.travel.shape_slope;
+    out.forces.block(out.rows + 3, 0, 2, others) = across * arm.bottomRows<2>();
+    out.forces.block(out.rows + 3, others, 2, own).setZero();
   }
-  auto forces = out.forces.middleRows(out.rows, 3 + own);
-  forces.leftCols(others).noalias() = by.topLeftCorner(3 + own, 3) * arm;
-  forces.rightCols(own) = by.block(0, 3, 3 + own, own);
   if (laws_.friction && laws_.friction->rate_dependent()) {
     Directions rate = Directions::Zero(3, size);  // of the velocity by each unknown
     if (moving) {
@@ -350,16 +356,14 @@ void Contact::linearise(const Moved& m, const Kinematics& k, const Weights& weig
       rate.middleCols<3>(K + 3) += skew(k.relative) * turn;
     }
     if (own > 0) {
-      Eigen::Matrix<double, Travel::size, 1> rates;
-      rates << k.rate, m.own_rate;
-      const Eigen::Matrix<double, 1, Travel::size> change = rates.transpose() * k.travel.second;
-      rate.row(0) += k.travel.slope.head<3>().transpose() * rate;
-      rate.row(0).head(others) += change.head<3>() * arm;
-      rate.row(0).tail(own) += change.segment(3, own);
+      rate.row(0).head(others) += k.travel.slope.transpose() * rate.bottomLeftCorner(2, others);
+      const Eigen::Vector2d tilting = k.travel.second * k.rate.tail<2>() + k.travel.shape_slope * m.own_rate;
+      rate.row(0).head(others) += tilting.transpose() * arm.bottomRows<2>();
+      rate.row(0).tail(own) += k.rate.tail<2>().transpose() * k.travel.shape_slope;
     }
-    forces += place.leftCols(3 + own).transpose() * (area * weights.stiffness * local.damping * rate);
+    forces += area * weights.stiffness * local.damping * rate;
   }
-  out.rows += 3 + own;
+  out.rows += own > 0 ? 5 : 3;
   if (!moving) return;
   // The force turns with the body, the carrier's own moment excepted; and its arm moves, d(arm x f) = -f x d(arm).
   const Mat3 turning = area * weights.stiffness * skew(force) * turn;
@@ -375,7 +379,7 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
   std::vector<Eigen::MatrixXd> sums(near.size());  // of what touches
   over_stations(near.size(), [&](std::size_t i, Scratch& t) {
     // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
-    Linearised at(static_cast<Index>(angles_.size()) * (3 + own), size);
+    Linearised at(static_cast<Index>(angles_.size()) * (own > 0 ? 5 : 3), size, size - own);
     visit_station(m, s, near[i], t, [&](const Kinematics& k) {
       if (k.gap < 0) linearise(m, k, weights, at);
     });

@@ -100,7 +100,7 @@ class Contact final : public Term {
   struct Moved {                                                   // what holds for all points of a state
     Vec3 node, node_velocity = Vec3::Zero(), spin = Vec3::Zero();  // spin in the body frame
     Mat3 R, to_body;                                               // its inverse
-    SurfaceUnknowns own = SurfaceUnknowns::Zero(), own_rate = own;
+    SurfaceUnknowns own, own_rate;
   };
   struct Kinematics {  // of one point
     std::size_t number = 0, angle = 0;
@@ -131,16 +131,19 @@ class Contact final : public Term {
   Mat3 free_rotation(const Mat3& R) const;
   Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
   Local evaluate(const Kinematics& k, bool derivatives) const;
-  /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point
-  /// and one for each unknown of the surface's own; columns are the solid's functions, carrier and own unknowns.
+  /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point, of
+  /// the place, and where the surface has unknowns two more, of how these tilt it there; columns are the solid's
+  /// functions, carrier and own unknowns.
   struct Linearised {
-    Linearised(Index most, Index size)
+    Linearised(Index most, Index size, Index others)
         : changes(most, size),
           forces(most, size),
+          arm(3, others),
           turned(decltype(turned)::Zero(size, 3)),
           moment(Directions::Zero(3, size)) {}
     Index rows = 0;
     Eigen::MatrixXd changes, forces;
+    Directions arm;                                    // of the point at hand: its changes
     Eigen::Matrix<double, Eigen::Dynamic, 3> turned;  // columns of the carrier's rotation
     Directions moment;                                // and its rows
   };

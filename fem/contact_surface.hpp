@@ -16,17 +16,18 @@ struct SurfacePoint {
   Mat3 curvature = Mat3::Zero();  ///< derivative of the slope by the place [1/m]
 };
 
-/// At most so many unknowns of its own move a surface; those it has not are zero.
-inline constexpr int kSurfaceUnknowns = 4;
-using SurfaceUnknowns = Eigen::Matrix<double, kSurfaceUnknowns, 1>;
+/// At most so many unknowns of its own move a surface.
+inline constexpr int kSurfaceUnknowns = 32;
+using SurfaceUnknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSurfaceUnknowns, 1>;
 
-/// How far a surface has moved inwards, against its first axis: a function of the place (three entries of the
-/// derivatives) and of its unknowns (the others).
+/// How far a surface has moved inwards, against its first axis: a sum of its unknowns times shapes, which are functions
+/// of the place's second and third coordinate.
 struct Travel {
-  static constexpr int size = 3 + kSurfaceUnknowns;
-  double value = 0;                                                                      ///< [m]
-  Eigen::Matrix<double, size, 1> slope = Eigen::Matrix<double, size, 1>::Zero();         ///< first derivatives
-  Eigen::Matrix<double, size, size> second = Eigen::Matrix<double, size, size>::Zero();  ///< second derivatives
+  double value = 0;                                  ///< [m]
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();   ///< first derivatives by the place
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();  ///< second derivatives by the place
+  SurfaceUnknowns shape;                             ///< at the place
+  Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kSurfaceUnknowns> shape_slope;
 };
 
 /// The shape is asked at places in the surface's axes. A surface with unknowns of its own is asked where the place

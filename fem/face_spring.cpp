@@ -8,10 +8,8 @@ namespace {
 
 const Vec3 kOut = Vec3::UnitX();
 
-/// A particle seen from the carrier, in its body frame.
-struct Particle {
-  Vec3 arm, rate, second;  // from the node, and its derivatives there
-};
+/// Derivative of w x (w x v) by w.
+Mat3 centripetal(const Vec3& w, const Vec3& v) { return -skew(w.cross(v)) - skew(w) * skew(v); }
 
 }  // namespace
 
@@ -21,19 +19,23 @@ struct FaceSpring::Carried {
   Vec3 velocity, acceleration;  // of the node, R^T x', R^T x''
   Vec3 spin, spin_rate;
 
-  Vec3 velocity_of(const Particle& p) const { return velocity + spin.cross(p.arm) + p.rate; }
-  Vec3 acceleration_of(const Particle& p) const {
-    return acceleration + spin_rate.cross(p.arm) + spin.cross(spin.cross(p.arm)) + 2 * spin.cross(p.rate) + p.second;
-  }
+  Vec3 turned(const Vec3& v) const { return spin_rate.cross(v) + spin.cross(spin.cross(v)); }
 };
 
-FaceSpring::FaceSpring(const FaceCompliance& face, const SurfaceCarrier& carrier, const DofMap::Block& travel)
-    : face_(face), carrier_(carrier), travel_(travel) {
-  if (const auto faults = face.faults(); !faults.empty()) throw std::invalid_argument(faults.front());
+struct FaceSpring::Moments {
+  double first = 0;           // of f
+  Vec3 arm = Vec3::Zero();    // of r f
+};
+
+FaceSpring::FaceSpring(ReducedFace face, const SurfaceCarrier& carrier, const DofMap::Block& unknowns)
+    : face_(std::move(face)), carrier_(carrier), unknowns_(unknowns) {
+  if (unknowns.rotation || unknowns.size != face_.size())
+    throw std::invalid_argument("face: as many unknowns as the face has are needed");
+  moment_ = face_.moment + carrier.centre * face_.mass.transpose();
   if (carrier_.translation)
     for (const auto* block : {&*carrier_.translation, &*carrier_.rotation})
       for (Index i = 0; i < 3; ++i) dofs_.push_back(block->v + i);
-  dofs_.push_back(travel_.v);
+  for (Index i = 0; i < unknowns_.size; ++i) dofs_.push_back(unknowns_.v + i);
 }
 
 FaceSpring::Carried FaceSpring::carried(const State& s) const {
@@ -47,70 +49,104 @@ FaceSpring::Carried FaceSpring::carried(const State& s) const {
   return c;
 }
 
+FaceSpring::Moments FaceSpring::moments(const Vector& values) const {
+  return {face_.mass.dot(values), moment_ * values};
+}
+
+double FaceSpring::travel(const State& s) const { return face_.centre.dot(unknowns(s)); }
+
 void FaceSpring::pattern(std::vector<std::vector<Index>>& blocks) const { blocks.push_back(dofs_); }
 
 void FaceSpring::residual(const State& s, Vector& inertia, Vector& force) const {
   const Carried c = carried(s);
-  const double w = s.q[travel_.q], w_rate = s.v[travel_.v], w_second = s.a[travel_.v];
-  const Particle moved{carrier_.centre - w * kOut, -w_rate * kOut, -w_second * kOut},
-      rigid{carrier_.centre, Vec3::Zero(), Vec3::Zero()};
-  const Vec3 f = face_.mass * c.acceleration_of(moved), f0 = face_.mass * c.acceleration_of(rigid);
-  inertia[travel_.v] -= f.dot(kOut);
-  force[travel_.v] += face_.stiffness * w + face_.damping * w_rate;
+  const Index n = unknowns_.size;
+  const Vector w = unknowns(s), rate = s.v.segment(unknowns_.v, n), second = s.a.segment(unknowns_.v, n);
+  force.segment(unknowns_.v, n) += face_.stiffness * w + face_.damping * rate;
+  inertia.segment(unknowns_.v, n) += face_.inertia * second;
   if (!carrier_.translation) return;
-  inertia.segment<3>(carrier_.translation->v) += c.R * (f - f0);
-  inertia.segment<3>(carrier_.rotation->v) += moved.arm.cross(f) - rigid.arm.cross(f0);
+  const Moments f = moments(w), f1 = moments(rate), f2 = moments(second);
+  const Vector still = face_.transverse * w;
+  const double square = w.dot(still), mixed = rate.dot(still);
+  const Vec3 out = c.turned(kOut), across = 2 * c.spin.cross(kOut);
+  const Vec3 push = -(out * f.first + across * f1.first + kOut * f2.first);
+  const Vec3 turn = -kOut.cross(c.acceleration * f.first + c.turned(f.arm)) - f.arm.cross(out) -
+                    f1.arm.cross(across) - f2.arm.cross(kOut) + kOut.cross(out * square + across * mixed);
+  inertia.segment<3>(carrier_.translation->v) += c.R * push;
+  inertia.segment<3>(carrier_.rotation->v) += turn;
+  Vector own = -kOut.dot(c.acceleration) * face_.mass + kOut.dot(out) * still;
+  for (Index j = 0; j < n; ++j) own[j] -= kOut.dot(c.turned(moment_.col(j)));
+  inertia.segment(unknowns_.v, n) += own;
 }
 
 void FaceSpring::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
-  const Carried c = carried(s);
-  const double w = s.q[travel_.q], w_rate = s.v[travel_.v], w_second = s.a[travel_.v], m = face_.mass;
   const bool moving = carrier_.translation.has_value();
-  const Index n = moving ? 7 : 1, last = n - 1;
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
-  k(last, last) = weights.stiffness * face_.stiffness + weights.damping * face_.damping;
+  const Index n = unknowns_.size, at = moving ? 6 : 0;
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(at + n, at + n);
+  k.bottomRightCorner(n, n) = weights.stiffness * face_.stiffness + weights.damping * face_.damping +
+                              weights.mass * face_.inertia;
   if (!moving) {
-    k(0, 0) += weights.mass * m;
     sink.add(dofs_, dofs_, k);
     return;
   }
-  const Mat3 Rt = c.R.transpose(), spin = skew(c.spin);
-  using Rows = Eigen::Matrix<double, 3, 7>;
-  const auto add = [&](double sign, const Particle& p, bool travels) {
-    // How the particle moves with the unknowns (translation, rotation, travel), and how its acceleration does.
-    Rows motion;
-    motion << Rt, -skew(p.arm), travels ? Vec3(-kOut) : Vec3::Zero();
-    Rows acceleration = weights.mass * motion;
-    acceleration.middleCols<3>(3) += weights.damping *
-                                         (-skew(c.spin.cross(p.arm)) - spin * skew(p.arm) - 2 * skew(p.rate)) +
-                                     weights.stiffness * skew(c.acceleration);
-    if (travels)
-      acceleration.col(6) -= weights.damping * 2 * spin * kOut +
-                             weights.stiffness * (c.spin_rate.cross(kOut) + c.spin.cross(c.spin.cross(kOut)));
-    const Vec3 f = m * c.acceleration_of(p);
-    k += sign * m * motion.transpose() * acceleration;
-    k.block<3, 3>(0, 3) -= sign * weights.stiffness * c.R * skew(f);
-    if (travels) k.block<3, 1>(3, 6) -= sign * weights.stiffness * kOut.cross(f);
-  };
-  add(1, {carrier_.centre - w * kOut, -w_rate * kOut, -w_second * kOut}, true);
-  add(-1, {carrier_.centre, Vec3::Zero(), Vec3::Zero()}, false);
+  const Carried c = carried(s);
+  const Vector w = unknowns(s), rate = s.v.segment(unknowns_.v, n), second = s.a.segment(unknowns_.v, n);
+  const Moments f = moments(w), f1 = moments(rate), f2 = moments(second);
+  const Vector still = face_.transverse * w, going = face_.transverse * rate;
+  const double square = w.dot(still), mixed = rate.dot(still);
+  const Vec3 out = c.turned(kOut), across = 2 * c.spin.cross(kOut);
+  const Mat3 Rt = c.R.transpose(), E = skew(kOut), Ew = centripetal(c.spin, kOut), A = skew(c.acceleration);
+  const Vec3 push = -(out * f.first + across * f1.first + kOut * f2.first);
+
+  auto by_x = k.leftCols<3>();
+  auto by_turn = k.middleCols<3>(3);
+  // By the node's acceleration R^T x'', which turns with the body.
+  by_x.middleRows<3>(3) = -weights.mass * f.first * E * Rt;
+  by_turn.middleRows<3>(3) = -weights.stiffness * f.first * E * A;
+  by_x.bottomRows(n) = -weights.mass * face_.mass * (kOut.transpose() * Rt);
+  by_turn.bottomRows(n) = -weights.stiffness * face_.mass * (kOut.transpose() * A);
+  // By spin and its rate.
+  by_turn.topRows<3>() = c.R * (weights.mass * f.first * E + weights.damping * (2 * f1.first * E - f.first * Ew) -
+                                weights.stiffness * skew(push));
+  by_turn.middleRows<3>(3) +=
+      weights.mass * (E * skew(f.arm) + skew(f.arm) * E - square * E * E) +
+      weights.damping * (-E * centripetal(c.spin, f.arm) - skew(f.arm) * Ew + 2 * skew(f1.arm) * E +
+                         square * E * Ew - 2 * mixed * E * E);
+  const Vec3 outwards = 2 * (c.spin.x() * kOut - c.spin);  // derivative of e . w x (w x e)
+  for (Index j = 0; j < n; ++j) {
+    const Vec3 arm = moment_.col(j);
+    const double m = face_.mass[j];
+    by_turn.row(at + j) += -weights.mass * arm.cross(kOut).transpose() -
+                           weights.damping * (kOut.transpose() * centripetal(c.spin, arm) - still[j] * outwards.transpose());
+    auto column = k.col(at + j);
+    column.head<3>() = -m * (c.R * (weights.stiffness * out + weights.damping * across + weights.mass * kOut));
+    column.segment<3>(3) = weights.stiffness * (-kOut.cross(c.acceleration * m + c.turned(arm)) - arm.cross(out) +
+                                                kOut.cross(2 * still[j] * out + going[j] * across)) +
+                           weights.damping * (-arm.cross(across) + still[j] * kOut.cross(across)) -
+                           weights.mass * arm.cross(kOut);
+  }
+  k.bottomRightCorner(n, n) += weights.stiffness * kOut.dot(out) * face_.transverse;
   sink.add(dofs_, dofs_, k);
 }
 
 Energies FaceSpring::energies(const State& s) const {
-  const Carried c = carried(s);
-  const double w = s.q[travel_.q], w_rate = s.v[travel_.v];
-  const Vec3 moved = c.velocity_of({carrier_.centre - w * kOut, -w_rate * kOut, Vec3::Zero()}),
-             rigid = c.velocity_of({carrier_.centre, Vec3::Zero(), Vec3::Zero()});
+  const Vector w = unknowns(s), rate = s.v.segment(unknowns_.v, unknowns_.size);
   Energies e;
-  e.kinetic = 0.5 * face_.mass * (moved.squaredNorm() - rigid.squaredNorm());
-  e.strain = 0.5 * face_.stiffness * w * w;
+  e.kinetic = 0.5 * rate.dot(face_.inertia * rate);
+  e.strain = 0.5 * w.dot(face_.stiffness * w);
   e.viscous = viscous_;
+  if (!carrier_.translation) return e;
+  const Carried c = carried(s);
+  const Moments f = moments(w), f1 = moments(rate);
+  const Vec3 across = c.spin.cross(kOut);
+  e.kinetic += 0.5 * across.squaredNorm() * w.dot(face_.transverse * w) -
+               c.velocity.dot(across * f.first + kOut * f1.first) - c.spin.cross(f.arm).dot(across) -
+               c.spin.cross(f1.arm).dot(kOut);
   return e;
 }
 
 void FaceSpring::commit(const State& s) {
-  const double rate = s.v[travel_.v], power = face_.damping * rate * rate;
+  const Vector rate = s.v.segment(unknowns_.v, unknowns_.size);
+  const double power = rate.dot(face_.damping * rate);
   if (started_) viscous_ += 0.5 * (power_ + power) * (s.time - time_);
   power_ = power;
   time_ = s.time;
@@ -131,8 +167,10 @@ void FaceSpring::restore(std::span<const double>& h) {
 }
 
 double FaceSpring::vibration(const State& s, double head_mass) const {
-  const double w = s.q[travel_.q], rate = s.v[travel_.v];
-  return 0.5 * face_.mass * (1 - face_.mass / head_mass) * rate * rate + 0.5 * face_.stiffness * w * w;
+  const Vector w = unknowns(s), rate = s.v.segment(unknowns_.v, unknowns_.size);
+  const double momentum = face_.mass.dot(rate);
+  return 0.5 * rate.dot(face_.inertia * rate) - 0.5 * momentum * momentum / head_mass +
+         0.5 * w.dot(face_.stiffness * w);
 }
 
 }  // namespace hosel::fem

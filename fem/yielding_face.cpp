@@ -10,11 +10,10 @@ Travel YieldingFace::travel_at(const Vec3& place, const SurfaceUnknowns& unknown
   const FaceCompliance::Shape shape = compliance_.shape(place.y(), place.z());
   Travel out;
   out.value = unknowns[0] * shape.value;
-  out.slope.segment<2>(1) = unknowns[0] * shape.slope;
-  out.slope[3] = shape.value;
-  out.second.block<2, 2>(1, 1) = unknowns[0] * shape.second;
-  out.second.block<2, 1>(1, 3) = shape.slope;
-  out.second.block<1, 2>(3, 1) = shape.slope.transpose();
+  out.slope = unknowns[0] * shape.slope;
+  out.second = unknowns[0] * shape.second;
+  out.shape = SurfaceUnknowns::Constant(1, shape.value);
+  out.shape_slope = shape.slope;
   return out;
 }
 

@@ -11,7 +11,9 @@
 #include "fem/face_surface.hpp"
 #include "fem/friction/coulomb.hpp"
 #include "fem/friction/regularised.hpp"
+#include "fem/plate_surface.hpp"
 #include "fem/yielding_face.hpp"
+#include "models/fe/plate_strike.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "solvers/errors.hpp"
 
@@ -23,6 +25,7 @@ double hertz_time(double mass, double radius, double young, double speed) {
   const double e = young / (1 - 0.25);  // plane-strain modulus of an incompressible ball
   return 2.868 * std::pow(mass * mass / (radius * e * e * speed), 0.2);
 }
+
 
 }  // namespace
 
@@ -54,6 +57,10 @@ std::vector<std::string> FeImpactOptions::faults() const {
   for (const auto& fault : mesh.faults()) out.push_back(fault);
   if (face)
     for (const auto& fault : face->faults()) out.push_back(fault);
+  if (face && plate) out.emplace_back("a face is lumped or a plate, not both");
+  if (plate)
+    for (const auto& fault : plate->design().faults()) out.push_back(fault);
+  if (plate && harmonics == 0) out.emplace_back("harmonics = 0 is the axisymmetric ball: it meets no plate");
   if (harmonics < 0) out.emplace_back("harmonics must be at least 0");
   if (antisymmetric < 1) out.emplace_back("antisymmetric harmonics must be at least 1: less cannot turn");
   if (angles < 0 || (angles > 0 && angles < 2 * harmonics + 1))
@@ -104,6 +111,7 @@ Encounter encounter(const Blow& blow) {
   const bool aligned = std::abs(local.y()) < tolerance || std::abs(local.z()) < tolerance;
   e.principal = aligned && std::abs((e.point - e.face_centre).dot(m)) <= tolerance;
   e.planar = e.planar && (!curved || e.principal);
+  e.across_heel_toe = std::abs(local.y()) >= tolerance;
   e.axial = !sliding && central && !curved && w.norm() == 0 &&
             (wall || head.inertia.allFinite() || std::isinf(head.inertia.trace()));
   return e;
@@ -139,7 +147,11 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   const mesh::Meridian meridian = mesh::sphere_meridian(radii, o.mesh);
 
   const bool axial = o.harmonics == 0;
-  const bool planar = !axial && e.planar && !free && (!o.face || e.principal);
+  const std::shared_ptr<const PlateFace> plate = o.plate ? o.plate->on(blow.club.head.face) : nullptr;
+  const Mirror mirror = e.planar && e.principal && !free ? e.mirror() : Mirror::none;
+  const bool planar = !axial && e.planar && !free && (!o.face || e.principal) && (!plate || plate->symmetric(mirror));
+  if (plate && !(plate->mass() < blow.club.head.mass))
+    throw std::invalid_argument("fe impact: the face's mass is part of the head's and must be smaller");
   if (o.face && !(o.face->mass < blow.club.head.mass))
     throw std::invalid_argument("fe impact: the face's effective mass is part of the head's and must be smaller");
   if (axial && o.face) {
@@ -189,10 +201,20 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   if (o.face) {
     const fem::DofMap::Block travel = system.dof_map.add_vector(1);
     surface = std::make_unique<fem::YieldingFace>(face, *o.face, travel);
-    spring = std::make_unique<fem::FaceSpring>(*o.face, carrier, travel);
+    spring = std::make_unique<fem::FaceSpring>(fem::ReducedFace::lumped(*o.face), carrier, travel);
     parts.face = spring.get();
     const double shape = o.face->shape(-blow.delivery.impact_toe, blow.delivery.impact_high).value;
     parts.compliance = shape * shape / o.face->stiffness;
+  } else if (plate) {
+    const Eigen::Vector2d place(-blow.delivery.impact_toe, blow.delivery.impact_high);
+    parts.plate = plate;
+    const CondensedPlate& condensed = parts.condensed.emplace(
+        plate->condensed(place, planar ? mirror : Mirror::none));
+    const fem::DofMap::Block unknowns = system.dof_map.add_vector(condensed.face.size());
+    surface = std::make_unique<fem::PlateSurface>(face, condensed.shapes, condensed.largest, unknowns);
+    spring = std::make_unique<fem::FaceSpring>(condensed.face, carrier, unknowns);
+    parts.face = spring.get();
+    parts.compliance = plate->compliance(place, kBallPatch);
   } else {
     surface = std::make_unique<fem::FaceSurface>(face);
   }
@@ -283,7 +305,7 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   const auto observe = [&](const fem::ContactReport& report) {
     if (observer)
       observer({system, solver.state(), *parts.ball, *parts.contact, report, solver.ledger(),
-                parts.contact->surface_pose(solver.state()), expected, parts.shaft, [&] {
+                parts.contact->surface_pose(solver.state()), expected, parts.shaft, &parts, [&] {
                   // This run goes on from its checkpoint too: what is resumed takes the same steps, to the last bit.
                   at.solver = solver.checkpoint();
                   solver.restore(at.solver);

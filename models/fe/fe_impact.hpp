@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "golf/first_contact.hpp"
 #include "mesh/meridian.hpp"
 #include "models/fe/fe_ball.hpp"
+#include "models/fe/plate_face.hpp"
 #include "models/impact_model.hpp"
 #include "solvers/generalized_alpha.hpp"
 #include "solvers/peak.hpp"
@@ -31,7 +33,8 @@ struct FeImpactOptions {
   std::optional<double> transition_speed;              ///< where set, friction is regularised by velocity [m/s]
   std::optional<fem::StaticFriction> static_friction;  ///< where set, what holds a point until it has slid some way
 
-  std::optional<FaceCompliance> face;  ///< of the club; without it the face is rigid
+  std::optional<FaceCompliance> face;            ///< of the club; without it and a plate the face is rigid
+  std::shared_ptr<const PlateOnDemand> plate = {};  ///< of the club: a face with a thickness
 
   mesh::MeridianOptions mesh;
   int harmonics = 4;       ///< N; 0 is the axisymmetric ball
@@ -69,6 +72,8 @@ struct BallOnFace {
   fem::Contact* contact = nullptr;
   const fem::FaceSpring* face = nullptr;  ///< of a face that yields
   double compliance = 0;                  ///< of it where it is struck [m/N]
+  std::shared_ptr<const PlateFace> plate = {};  ///< that is the face
+  std::optional<CondensedPlate> condensed = {};  ///< of it about the place struck
   const fem::Beam* shaft = nullptr;       ///< of a full club, for observers
 };
 
@@ -78,7 +83,10 @@ struct Encounter : FirstContact {
   bool axial = false;       ///< nothing but a normal blow through the centres
   bool planar = false;      ///< a plane of symmetry exists
   bool principal = false;   ///< the plane of normal and slip is one of the face's own about its centre
+  bool across_heel_toe = false;  ///< a principal plane is the one of out and up, not of out and heel-toe
   Mat3 ball_axes;           ///< contact pole, direction of slip, across both
+  /// The face's mirror by a principal plane.
+  Mirror mirror() const { return !principal ? Mirror::none : across_heel_toe ? Mirror::heel_toe : Mirror::up_down; }
 };
 /// Throws std::invalid_argument where the head moves away from the ball.
 Encounter encounter(const Blow& blow);
@@ -152,6 +160,7 @@ struct ImpactView {
   fem::SurfacePose face;
   double expected_end = 0;           ///< when Hertz's theory would have contact end [s]
   const fem::Beam* shaft = nullptr;  ///< of a full club
+  const BallOnFace* parts = nullptr;
   std::function<ImpactCheckpoint()> checkpoint;
 };
 using ImpactObserver = std::function<void(const ImpactView&)>;

@@ -15,10 +15,9 @@ namespace {
 
 constexpr double kBallStiffness = 1.68e6;  // secant, of golf_ball() [N/m]
 
-enum : int { kStriker, kStrikerVelocity, kTravel, kTravelRate, kHead, kHeadVelocity, kSize };
-
 /// The equations of strike() for solvers::RosenbrockW; with A = 0 its steps are explicit.
 struct Strike {
+  enum : int { kStriker, kStrikerVelocity, kTravel, kTravelRate, kHead, kHeadVelocity, kSize };
   Striker striker;
   double head_mass;
   FaceCompliance face;
@@ -102,23 +101,23 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
   const bool yields = face && shape > 0;
   Strike system{striker, head_mass, yields ? *face : FaceCompliance{}, yields, yields ? shape : 0, speed};
   solvers::RosenbrockW<Strike> solver(system);
-  std::array<double, kSize> y{};
-  y[kHeadVelocity] = speed;
+  std::array<double, Strike::kSize> y{};
+  y[Strike::kHeadVelocity] = speed;
   FaceStrike out;
   // A step of the fastest motion cannot be above a tenth of its period's inverse rate: error control sees to it.
   solvers::Peak force, travel;
   out.contact_time = solver.run(y.data(), 1e-7, 0.05, 1e-6, 1e-12, [&](double t, const double* now) {
     force.add(t, system.force(now));
-    travel.add(t, now[kTravel]);
+    travel.add(t, now[Strike::kTravel]);
   });
   out.peak_force = force.value;
   out.travel = travel.value;
   // The head's momentum is what striker and start leave it; its face may still move.
-  const double head = speed - striker.mass / head_mass * y[kStrikerVelocity];
-  out.restitution = (y[kStrikerVelocity] - head) / speed;
+  const double head = speed - striker.mass / head_mass * y[Strike::kStrikerVelocity];
+  out.restitution = (y[Strike::kStrikerVelocity] - head) / speed;
   if (yields)
-    out.energy = 0.5 * face->mass * (1 - face->mass / head_mass) * y[kTravelRate] * y[kTravelRate] +
-                 0.5 * face->stiffness * y[kTravel] * y[kTravel];
+    out.energy = 0.5 * face->mass * (1 - face->mass / head_mass) * y[Strike::kTravelRate] * y[Strike::kTravelRate] +
+                 0.5 * face->stiffness * y[Strike::kTravel] * y[Strike::kTravel];
   return out;
 }
 

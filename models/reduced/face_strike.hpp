@@ -66,6 +66,8 @@ struct CharacteristicTime {
 CharacteristicTime characteristic_time(const Striker& sphere, double head_mass,
                                        const std::optional<FaceCompliance>& face, double shape,
                                        std::span<const double> speeds);
+/// Restitution that the rules' line ties to a characteristic time [s].
+inline double rules_line(double characteristic_time) { return 0.718 + 436 * characteristic_time; }
 /// Speeds of the shipped test [m/s].
 std::vector<double> pendulum_speeds();
 

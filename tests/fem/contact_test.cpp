@@ -126,7 +126,7 @@ TEST(Contact, NothingTouchesBeyondTheReach) {
   const YieldingFace face({.bulge = 0.3, .roll = 0.25}, {.mass = 0.01, .stiffness = 1e7, .half_width = 0.05},
                           {0, 0, 1});
   for (const double travel : {-1e-3, 1e-3}) {
-    const SurfaceUnknowns unknowns(travel, 0, 0, 0);
+    const SurfaceUnknowns unknowns = SurfaceUnknowns::Constant(1, travel);
     double highest = -INFINITY;
     for (unsigned i = 0; i < 1000; ++i) {
       Vec3 place = test::random_vector(3, i, 1);

@@ -50,7 +50,7 @@ Outcome finite_elements(const FaceCompliance& face, int steps) {
   const fem::SurfaceCarrier carrier{x, r, Vec3(0.03, 0, 0)};
   auto head = std::make_unique<fem::RigidBody>("head", x, r,
                                                fem::RigidBodyProperties{kHead, 3e-4 * Mat3::Identity(), Vec3::Zero()});
-  auto spring = std::make_unique<fem::FaceSpring>(face, carrier, w);
+  auto spring = std::make_unique<fem::FaceSpring>(fem::ReducedFace::lumped(face), carrier, w);
   auto contact = std::make_unique<fem::Contact>(*ball, std::make_unique<fem::YieldingFace>(Face{}, face, w), carrier,
                                                 fem::ContactLaws{kSpring / area, nullptr}, fem::single_angle(),
                                                 fem::Symmetry::axis);

@@ -1,0 +1,172 @@
+#include "models/fe/plate_strike.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "golf/units.hpp"
+#include "solvers/errors.hpp"
+
+namespace hosel::models {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+}  // namespace
+
+PlateStrike::PlateStrike(std::shared_ptr<const PlateFace> plate, const Head& head)
+    : plate_(std::move(plate)), head_(head) {
+  const Eigen::MatrixXd& modes = plate_->modes();
+  const Index n = modes.cols(), rigid = std::isinf(head.mass) ? 0 : 6;
+  if (!(plate_->mass() < head.mass)) throw std::invalid_argument("the face's mass is part of the head's");
+  const Eigen::Map<const Eigen::VectorXd> omega(plate_->omega().data(), n);
+  if (rigid == 0) {
+    omega_ = plate_->omega();
+    elastic_ = Eigen::MatrixXd::Identity(n, n);
+    rigid_.resize(n, 0);
+    return;
+  }
+  // Kinetic energy of the head's velocity and spin about its centre of gravity, and of the modes, with their coupling.
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(6 + n, 6 + n), K = M;
+  M.topLeftCorner<3, 3>() = head.mass * Mat3::Identity();
+  M.block<3, 3>(3, 3) = head.inertia;
+  M.bottomRightCorner(n, n).setIdentity();
+  K.bottomRightCorner(n, n) = omega.cwiseAbs2().asDiagonal();
+  for (const auto& s : plate_->plate().samples()) {
+    Eigen::VectorXd shape = Eigen::VectorXd::Zero(n);
+    for (int k = 0; k < 9; ++k)
+      if (const auto dof = plate_->plate().dof(
+              plate_->plate().mesh().elements[std::size_t(s.element)][std::size_t(k)], fem::Plate::kDeflection);
+          dof >= 0)
+        shape += s.shape[k] * modes.row(dof).transpose();
+    const Vec3 arm = plate_->curvature().point(s.place.x(), s.place.y()) - head.cg;
+    M.block(0, 6, 1, n) -= s.mass * shape.transpose();
+    M.block(3, 6, 3, n) -= s.mass * arm.cross(Vec3::UnitX()) * shape.transpose();
+  }
+  M.bottomLeftCorner(n, 6) = M.topRightCorner(6, n).transpose();
+  const Eigen::LLT<Eigen::MatrixXd> factors(M);
+  if (factors.info() != Eigen::Success) throw std::invalid_argument("the face's inertia is part of the head's");
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> all(K, M);
+  rigid_ = all.eigenvectors().leftCols(6);
+  elastic_ = all.eigenvectors().rightCols(n);
+  for (Index i = 0; i < n; ++i) omega_.push_back(std::sqrt(all.eigenvalues()[6 + i]));
+}
+
+PlateStrike::Place PlateStrike::at(const Vector2d& where, double radius) const {
+  Place out;
+  const fem::Vector load = plate_->patch_load(where, radius);
+  const Eigen::VectorXd shapes = plate_->modes().transpose() * load;
+  const Index n = shapes.size(), rigid = elastic_.rows() - n;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(elastic_.rows());
+  b.tail(n) = -shapes;
+  out.mass = head_.mass;
+  if (rigid > 0) {
+    b.head<3>() = Vec3::UnitX();
+    b.segment<3>(3) = (plate_->curvature().point(where.x(), where.y()) - head_.cg).cross(Vec3::UnitX());
+    out.mass = 1 / (rigid_.transpose() * b).squaredNorm();
+  }
+  out.participation = elastic_.transpose() * b;
+  out.compliance = load.dot(plate_->solve(load));
+  const Eigen::Map<const Eigen::VectorXd> omega(plate_->omega().data(), n);
+  out.residual = std::max(0.0, out.compliance - shapes.cwiseQuotient(omega).squaredNorm());
+  return out;
+}
+
+PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& place, double speed) const {
+  // Displacements along Xc of the striker's own point and the head's, and of the vibrations; the head comes.
+  const Index n = place.participation.size();
+  const Eigen::Map<const Eigen::ArrayXd> omega(omega_.data(), n);
+  const double fastest = omega.size() ? omega.maxCoeff() : 0;
+  const double step = std::min(0.25e-6, fastest > 0 ? 0.2 / fastest : 0.25e-6);
+  const Eigen::ArrayXd b = place.participation.array(), damped = plate_->design().damping * omega * step,
+                       spring = omega.square() * step;
+  const double per_striker = 1 / striker.mass, per_head = std::isinf(place.mass) ? 0 : 1 / place.mass;
+  Eigen::ArrayXd q = Eigen::ArrayXd::Zero(n), rate = q;
+  double gap = 0, gap_rate = speed;  // head's rigid approach to the striker
+  double force = 0, last_touch = 0, impulse = 0, indentation = 0, before = 0;
+  Strike out;
+  std::vector<double> impulses{0};
+  bool touching = false;
+  const double quiet = 0.15e-3;
+  constexpr double longest = 5e-3;
+  double time = 0;
+  for (; time < longest; time += step) {
+    const double approach = gap + (b * q).sum();
+    double F = 0;
+    if (approach > 0) {
+      // d + residual F(d) = approach; the law's rate is that of the last step.
+      const double behind = std::max(0.0, 1 + striker.damping * (indentation - before) / step);
+      double d = indentation > 0 ? std::min(indentation, approach) : approach;
+      for (int i = 0; i < 50; ++i) {
+        const double at = striker.stiffness * std::pow(d, striker.exponent) * behind;
+        const double error = d + place.residual * at - approach,
+                     slope = 1 + place.residual * striker.exponent * at / d;
+        const double next = std::max(0.1 * d, d - error / slope);
+        if (std::abs(next - d) < 1e-12 * approach) break;
+        d = next;
+      }
+      before = indentation > 0 ? indentation : 0;
+      indentation = d;
+      F = striker.stiffness * std::pow(d, striker.exponent) *
+          std::max(0.0, 1 + striker.damping * (indentation - before) / step);
+      if (!touching) ++out.touches;
+      touching = true;
+      last_touch = time;
+    } else {
+      touching = false;
+      indentation = before = 0;
+      const bool opening = gap_rate + (b * rate).sum() < 0;
+      if (opening && gap_rate < 0 && time - last_touch > quiet) break;
+    }
+    force = F;
+    // Striker and head by the force; each vibration too, half of its damping on either side of the step.
+    gap_rate -= force * (per_striker + per_head) * step;
+    rate = ((1 - damped) * rate - spring * q - b * (force * step)) / (1 + damped);
+    gap += gap_rate * step;
+    q += rate * step;
+    impulse += force * step;
+    impulses.push_back(impulse);
+  }
+  if (time >= longest) throw solvers::NonConvergence("striker and face are still in contact after 5 ms");
+  out.contact_time = last_touch + step;
+  out.restitution = (impulse * (per_striker + per_head) - speed) / speed;
+  const auto reached = [&](double share) {
+    const auto found = std::ranges::lower_bound(impulses, share * impulse);
+    const auto i = double(found - impulses.begin());
+    const double high = *found, low = *(found - 1);
+    return step * (i - (high - share * impulse) / (high - low));
+  };
+  out.rise_time = (reached(0.95) - reached(0.05)) * kPi / (std::acos(-0.9) - std::acos(0.9));
+  return out;
+}
+
+CharacteristicTime PlateStrike::characteristic_time(const Striker& sphere, const Vector2d& where,
+                                                    std::span<const double> speeds) const {
+  const Place place = at(where, pendulum_patch(*plate_, where));
+  CharacteristicTime out;
+  Eigen::MatrixX2d A(Index(speeds.size()), 2);
+  Eigen::VectorXd t(A.rows());
+  for (Index i = 0; i < A.rows(); ++i) {
+    A.row(i) << 1, std::pow(speeds[std::size_t(i)], -0.329);
+    t[i] = strike(sphere, place, speeds[std::size_t(i)]).rise_time;
+  }
+  const Eigen::Vector2d line = (A.transpose() * A).inverse() * (A.transpose() * t);
+  out.time = line[0];
+  out.slope = line[1];
+  out.times.assign(t.begin(), t.end());
+  out.departure = (t - A * line).cwiseAbs().maxCoeff();
+  return out;
+}
+
+double pendulum_patch(const PlateFace& plate, const Vector2d& place) {
+  const PlateDesign& d = plate.design();
+  const double share = d.outline.share(place);
+  return 0.5 * d.thickness.at(share > 1 ? Vector2d(place / share) : place, std::min(1.0, share));
+}
+
+}  // namespace hosel::models

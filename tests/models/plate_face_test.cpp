@@ -1,0 +1,170 @@
+// A face with a thickness under ball and pendulum: condensation against more modes, the ledger, and its limits.
+#include "models/fe/plate_face.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/fe/plate_strike.hpp"
+#include "tests/support/coarse_impact.hpp"
+
+namespace hosel::models {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Titanium, 90 by 50 mm, thicker in the middle; its rim turns on springs.
+PlateDesign design() {
+  PlateDesign d;
+  d.thickness.map = mesh::PlateThickness::Bulge{3.2e-3, 2.4e-3, 0.03, 0.018};
+  d.rim.rotation = 6e3;
+  d.mesh = {.core = 4, .rings = 2};
+  return d;
+}
+
+FeImpactOptions with(const PlateDesign& d) {
+  FeImpactOptions o = test::coarse_impact(2);
+  o.plate = std::make_shared<const PlateOnDemand>(d);
+  return o;
+}
+
+/// The static shape about the place is among the condensed ones: compliance there is the plate's own.
+TEST(PlateFace, CondensationKeepsTheComplianceWhereItIsStruck) {
+  const PlateFace plate(design(), {0.3, 0.3});
+  for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.018, -0.009)}) {
+    const CondensedPlate condensed = plate.condensed(place);
+    const double exact = plate.compliance(place, 9e-3);
+    const fem::Vector load = plate.patch_load(place, 9e-3);
+    const Eigen::VectorXd on = condensed.fields.transpose() * load;
+    double found = 0;
+    for (Eigen::Index j = 0; j < on.size(); ++j) found += on[j] * on[j] / condensed.face.stiffness(j, j);
+    EXPECT_NEAR(found, exact, 1e-6 * exact);
+    double modes = 0;
+    for (int j = 0; j < plate.design().modes; ++j)
+      modes += std::pow(plate.modes().col(j).dot(load) / plate.omega()[std::size_t(j)], 2);
+    EXPECT_LT(modes, 0.99 * exact);  // modes alone do not
+    // The spline carries the shapes: their sum under the load is the plate's deflection.
+    const fem::SurfaceUnknowns w = on.cwiseQuotient(condensed.face.stiffness.diagonal());
+    EXPECT_NEAR(condensed.shapes->sum(place, w), plate.plate().deflection(plate.solve(load), place), 2e-3 * exact);
+  }
+}
+
+TEST(PlateFace, SplineDerivatives) {
+  const CondensedPlate condensed = PlateFace(design(), {0.3, 0.3}).condensed({0.01, 0.005});
+  fem::SurfaceUnknowns w = fem::SurfaceUnknowns::Zero(condensed.face.size());
+  for (Eigen::Index j = 0; j < w.size(); ++j) w[j] = 1.0 / double(j + 1);
+  const double h = 1e-6;
+  for (const Vector2d& x : {Vector2d(0.0132, -0.0071), Vector2d(-0.0301, 0.0043)}) {
+    const fem::Travel at = condensed.shapes->at(x, w);
+    EXPECT_NEAR(at.value, condensed.shapes->sum(x, w), 1e-12);
+    for (int i = 0; i < 2; ++i) {
+      const Vector2d d = h * Vector2d::Unit(i);
+      const fem::Travel up = condensed.shapes->at(x + d, w), down = condensed.shapes->at(x - d, w);
+      EXPECT_NEAR(at.slope[i], (up.value - down.value) / (2 * h), 1e-5 * at.slope.norm());
+      EXPECT_NEAR((at.second.col(i) - (up.slope - down.slope) / (2 * h)).norm(), 0, 1e-4 * at.second.norm());
+      EXPECT_NEAR((at.shape_slope.row(i).transpose() - (up.shape - down.shape) / (2 * h)).norm(), 0,
+                  1e-5 * at.shape_slope.norm());
+    }
+  }
+}
+
+/// Off centre, with friction and a curved face: the ledger closes as that of the rigid face does.
+TEST(PlateFace, LedgerClosesOffCentre) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  const FeImpactOptions yielding = with(design());
+  FeImpactOptions rigid = yielding;
+  rigid.plate = nullptr;
+  const FeOutcome a = solve_free_body(blow, yielding), b = solve_free_body(blow, rigid);
+  ASSERT_GT(a.result.face_travel, 2e-4);
+  ASSERT_GT(a.result.face_energy, 0);
+  EXPECT_LT(std::abs(a.result.ledger.closure), 2 * std::abs(b.result.ledger.closure) + 1e-4 * a.result.ledger.initial);
+  EXPECT_GT(a.launch.velocity.norm(), b.launch.velocity.norm() * 1.005);
+}
+
+/// Modes beyond those kept are worth 0.05 % of ball speed and 0.5 % of spin.
+TEST(PlateFace, MoreModesChangeLittle) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  PlateDesign all = design(), few = all;
+  all.modes = 27;
+  few.modes = 1;
+  const Launch a = solve_free_body(blow, with(design())).launch, b = solve_free_body(blow, with(all)).launch,
+               c = solve_free_body(blow, with(few)).launch;
+  EXPECT_NEAR(a.ball_speed(), b.ball_speed(), 5e-4 * b.ball_speed());
+  EXPECT_NEAR(a.spin_rate(), b.spin_rate(), 5e-3 * b.spin_rate());
+  EXPECT_GT(std::abs(c.ball_speed() - b.ball_speed()), std::abs(a.ball_speed() - b.ball_speed()));
+}
+
+/// A blow with a plane of symmetry meets the shapes that are their own mirror image; all of them give the same.
+TEST(PlateFace, HalfOfASymmetricBlowIsTheWhole) {
+  Blow blow = test::driver_blow(0, 0.004);
+  blow.club.head.cg.y() = 0;
+  blow.club.head.inertia = Mat3(blow.club.head.inertia.diagonal().asDiagonal());
+  Blow aside = blow;
+  aside.delivery.impact_toe = 1e-7;
+  FeImpactOptions o = with(design());
+  o.newton_relative = 1e-8;
+  const FeOutcome half = solve_free_body(blow, o), whole = solve_free_body(aside, o);
+  ASSERT_LT(half.result.last.q.size(), whole.result.last.q.size());
+  EXPECT_LT((half.launch.velocity - whole.launch.velocity).norm(), 1e-4 * half.launch.velocity.norm());
+  EXPECT_LT((half.launch.spin - whole.launch.spin).norm(), 1e-3 * half.launch.spin.norm());
+}
+
+/// The rigid face is the limit of a stiff plate.
+TEST(PlateFace, RigidIsItsLimit) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  PlateDesign d = design();
+  d.material.young = 1e20;
+  d.rim = {};
+  d.damping = 0;
+  FeImpactOptions stiff = with(d);
+  stiff.newton_relative = 1e-9;
+  FeImpactOptions rigid = stiff;
+  rigid.plate = nullptr;
+  const Launch a = solve_free_body(blow, stiff).launch, b = solve_free_body(blow, rigid).launch;
+  ASSERT_GT(b.peak_force, 5e3);
+  EXPECT_LT((a.velocity - b.velocity).norm(), 1e-7 * b.velocity.norm());
+  EXPECT_LT((a.spin - b.spin).norm(), 1e-6 * b.spin.norm());
+}
+
+Head driver() {
+  return {.mass = 0.2,
+          .cg = Vec3(-0.035, 0, 0.004),
+          .inertia = Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(),
+          .face = {0.3, 0.3}};
+}
+
+/// A plate without mass follows the pendulum at rest: the lumped face as stiff as it is there.
+TEST(PlateStrike, PendulumOnAMasslessPlateIsThatOnASpring) {
+  PlateDesign light = design();
+  light.material.density *= 1e-3;
+  const PlateStrike strike(std::make_shared<const PlateFace>(light, driver().face), driver());
+  const Striker sphere = steel_sphere(0.011);
+  for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.02, 0.006)}) {
+    const auto at = strike.at(place, pendulum_patch(strike.plate(), place));
+    EXPECT_NEAR(at.mass, mass_at(driver(), place.x(), place.y()), 1e-3 * at.mass);
+    const FaceCompliance spring{.mass = 1e-6, .stiffness = 1 / at.compliance};
+    const CharacteristicTime wanted = characteristic_time(sphere, at.mass, spring, 1, pendulum_speeds()),
+                             found = strike.characteristic_time(sphere, place, pendulum_speeds());
+    const auto tap = strike.strike(sphere, at, 1.3);
+    ASSERT_EQ(tap.touches, 1);
+    EXPECT_NEAR(tap.contact_time, wanted.times[3], 3e-3 * wanted.times[3]);
+    // The rise of a pulse that is no half sine gives its length to 2 %.
+    EXPECT_NEAR(found.time, wanted.time, 0.02 * wanted.time);
+  }
+}
+
+/// What two masses on a spring do: striker, and a head that does not move but for its plate's first mode.
+TEST(PlateStrike, EnergyOfAnUndampedBlowIsKept) {
+  PlateDesign d = design();
+  d.damping = 0;
+  const PlateStrike strike(std::make_shared<const PlateFace>(d, driver().face), driver());
+  const auto at = strike.at(Vector2d::Zero(), kBallPatch);
+  const Striker spring{0.046, 1e6, 1, 0};
+  const auto found = strike.strike(spring, at, 45);
+  // What is not in the rebound is left in the vibrations: a few per cent of a slow blow's energy.
+  EXPECT_LT(found.restitution, 1);
+  EXPECT_GT(found.restitution, 0.95);
+}
+
+}  // namespace
+}  // namespace hosel::models
