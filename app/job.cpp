@@ -22,6 +22,7 @@
 #include "app/kinds/loop.hpp"
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
+#include "app/kinds/plate_face.hpp"
 #include "app/kinds/restitution_face.hpp"
 #include "app/kinds/shaft_modes.hpp"
 #include "app/kinds/slopes.hpp"
@@ -84,6 +85,8 @@ constexpr std::array kKinds = {
          "How long does the rules' pendulum touch this face?", read_characteristic_time},
     Kind{"restitution-face", "restitution and ball speed over a face that yields",
          "How fast is this face away from its centre?", read_restitution_face},
+    Kind{"plate-face", "a face with a thickness: modes, characteristic time and restitution over it, balls, stress",
+         "What does a face of this thickness do?", read_plate_face},
     Kind{"calibrate-face", "a face that yields from characteristic times, restitution and mass",
          "Which face behaves as measured?", read_calibrate_face},
     Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside",

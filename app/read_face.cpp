@@ -33,6 +33,7 @@ std::optional<FaceCompliance> read_face(Table table) {
 
 std::optional<FaceCompliance> read_club_face(Table root) {
   auto own = root.optional_table("face");
+  if (own && own->has("plate")) return {};
   if (own && own->has("name")) return read_face(*own);
   // The head's own is echoed as if the case had named it; single keys of [face] replace its values.
   if (auto head = root.optional_table("head"); head && head->has("name"))
@@ -43,6 +44,11 @@ std::optional<FaceCompliance> read_club_face(Table root) {
     }
   if (own) return read_face(*own);
   return {};
+}
+
+bool has_plate(Table root) {
+  const auto own = root.optional_table("face");
+  return own && own->has("plate");
 }
 
 FaceCompliance read_yielding_face(Table root) {

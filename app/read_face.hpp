@@ -12,8 +12,11 @@ namespace hosel::app {
 FaceCompliance read_compliance(Table table, const std::optional<FaceCompliance>& named);
 /// A `name` of the library, single values of it replaced; nothing where the name is "rigid".
 std::optional<FaceCompliance> read_face(Table table);
-/// `[face]` of a case, else that of the head that `[head] name` names; nothing where neither yields.
+/// `[face]` of a case, else that of the head that `[head] name` names; nothing where neither yields,
+/// or where it is a plate.
 std::optional<FaceCompliance> read_club_face(Table root);
+/// Whether `[face]` of a case is a plate.
+bool has_plate(Table root);
 /// The same where a face has to yield.
 FaceCompliance read_yielding_face(Table root);
 

@@ -5,6 +5,7 @@
 #include "app/check_memory.hpp"
 #include "app/library.hpp"
 #include "app/read_face.hpp"
+#include "app/read_plate.hpp"
 #include "app/read_solid.hpp"
 #include "app/read_swing.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>& face) {
   models::FeImpactOptions o;
   o.face = face;
+  if (auto plate = read_optional_plate(root)) o.plate = std::make_shared<const models::PlateOnDemand>(*plate);
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   if (root.has("accuracy")) {
     o.resolve(accuracy_named(
@@ -174,6 +176,10 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   if (overlap || asked("hertz-maw")) named = named_contact(root);
   std::optional<FaceCompliance> face;
   if (overlap || fe || there) face = read_club_face(root);
+  if (overlap && has_plate(root))
+    root.table("face").fail("plate",
+                            "models without a deformable ball know a lumped face alone: its constants are in the summary "
+                            "of a plate-face case");
   if (auto t = table("volumetric", overlap)) {
     // Nobody's constants are a default: an iron struck with a driver's is 6 mph too fast.
     std::optional<models::VolumetricLaw> standard;

@@ -8,16 +8,17 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
+#include "app/read_plate.hpp"
 #include "golf/face_library.hpp"
+#include "golf/parallel.hpp"
 #include "golf/units.hpp"
+#include "models/fe/plate_strike.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "post/figure.hpp"
 
 namespace hosel::app {
 namespace {
 
-/// The rules' line between characteristic time [us] and restitution.
-double rules_line(double time_us) { return 0.718 + 0.000436 * time_us; }
 /// How near a lumped face is asked to come to it.
 constexpr double kClose = 0.008;
 
@@ -79,7 +80,7 @@ class CharacteristicTimeJob final : public Job {
     const models::Striker ball = models::golf_ball({});
     summary["restitution"] = models::strike(ball, mass, face_, shape, restitution_speed_).restitution;
     page.answer("restitution", fmt::format("{:.4f}", summary["restitution"].get<double>()),
-                fmt::format("the rules' line says {:.4f}", rules_line(1e6 * ct.time)));
+                fmt::format("the rules' line says {:.4f}", models::rules_line(ct.time)));
     summary["restitution_rigid"] = models::strike(ball, mass, {}, 0, restitution_speed_).restitution;
     post::Panel rules{
         .title = "faces from stiff to soft", .x_label = "characteristic time [us]", .y_label = "restitution"};
@@ -98,7 +99,7 @@ class CharacteristicTimeJob final : public Job {
         series.x.push_back(face.time_us);
         series.y.push_back(face.drive.restitution);
         csv += fmt::format("{},{:.5g},{:.3f},{:.5f},{:.5f},{:.3f},{:.3f}\n", 1e3 * face_mass, k, face.time_us,
-                           face.drive.restitution, rules_line(face.time_us), periods, face.drive.energy);
+                           face.drive.restitution, models::rules_line(1e-6 * face.time_us), periods, face.drive.energy);
       }
       out.say(fmt::format("faces of {:4.1f} g, {:.0f} to {:.0f} us: within {:.4f} of the rules' line", 1e3 * face_mass,
                           series.x.back(), series.x.front(), worst));
@@ -108,7 +109,7 @@ class CharacteristicTimeJob final : public Job {
       if (wanted.x.empty())
         for (const double time : {series.x.back(), series.x.front()}) {
           wanted.x.push_back(time);
-          wanted.y.push_back(rules_line(time));
+          wanted.y.push_back(models::rules_line(1e-6 * time));
         }
       rules.series.push_back(series);
     }
@@ -154,7 +155,7 @@ class CharacteristicTimeJob final : public Job {
     FaceCompliance face;
     double time_us = 0;
     models::FaceStrike drive;
-    double departure() const { return drive.restitution - rules_line(time_us); }
+    double departure() const { return drive.restitution - models::rules_line(1e-6 * time_us); }
   };
   Compared compare(double head_mass, double shape, double face_mass, double stiffness) const {
     Compared out{.face = face_};
@@ -173,8 +174,125 @@ class CharacteristicTimeJob final : public Job {
   int faces_ = 0;
 };
 
+/// The same of a plate: its modes under the pendulum, and plates of the same outline from thin to thick.
+class PlateTapJob final : public Job {
+ public:
+  explicit PlateTapJob(CaseFile& file) {
+    Table root = file.root();
+    head_ = read_head(root.table("head"));
+    design_ = *read_optional_plate(root);
+    Table sphere = root.table("sphere");
+    sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));
+    speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
+    if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
+    Table place = root.table("impact");
+    const double toe = place.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1},
+                                      0.0);
+    const double high = place.quantity({"high", "of the tap, from the face's centre up"}, "mm", {-0.1, 0.1}, 0.0);
+    place_ = Eigen::Vector2d(-toe, high);
+    restitution_speed_ =
+        place.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps", {1, 100}, 48.77);
+    Table line = root.default_table("line");
+    faces_ = int(
+        line.integer({"faces", "how many faces of rising stiffness are compared with the rules' line"}, 2, 200, 20));
+    thinnest_ = line.number({"thinnest", "thickness of the first of these plates over the case's"}, {0.3, 3}, 0.85);
+    thickest_ = line.number({"thickest", "thickness of the last of these plates over the case's"}, {0.3, 3}, 1.2);
+  }
+
+  void run(Output& out) override {
+    const Tap own = tap(1);
+    const models::CharacteristicTime& ct = own.time;
+    out.say(fmt::format("characteristic time {:.1f} us, slope {:.1f} us (m/s)^0.329, largest departure from the line "
+                        "{:.3f} us",
+                        1e6 * ct.time, 1e6 * ct.slope, 1e6 * ct.departure));
+    out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * ct.time),
+                      fmt::format("slope {:.1f} µs (m/s)^0.329", 1e6 * ct.slope));
+    out.page().answer("restitution", fmt::format("{:.4f}", own.restitution),
+                      fmt::format("the rules' line says {:.4f}", models::rules_line(ct.time)));
+    post::Panel tap_panel{
+        .title = "the pendulum test", .x_label = "(speed in m/s) to the power -0.329", .y_label = "contact time [us]"};
+    post::Series points{.label = "taps", .style = "points"}, line{.label = "straight line"};
+    std::string csv = "speed_mps,contact_time_us\n";
+    for (std::size_t i = 0; i < speeds_.size(); ++i) {
+      points.x.push_back(std::pow(speeds_[i], -0.329));
+      points.y.push_back(1e6 * ct.times[i]);
+      csv += fmt::format("{},{:.4f}\n", speeds_[i], 1e6 * ct.times[i]);
+    }
+    for (const double x : {0.0, points.x.front()}) {
+      line.x.push_back(x);
+      line.y.push_back(1e6 * (ct.time + ct.slope * x));
+    }
+    tap_panel.series = {points, line};
+    out.write("taps.csv", csv);
+    std::vector<Tap> taps(std::size_t(faces_), Tap{});
+    for_all_alone(std::size_t{0}, taps.size(), [&](std::size_t i) {
+      taps[i] = tap(thinnest_ * std::pow(thickest_ / thinnest_, double(i) / (faces_ - 1)));
+    });
+    post::Series faces{.label = "plates", .style = "linespoints"}, wanted{.label = "0.718 + 0.000436 CT / us"};
+    csv = "thickness_over_own,face_mass_g,first_frequency_Hz,characteristic_time_us,restitution,rules_line\n";
+    double worst = 0, worst_at = 0;
+    for (const Tap& t : taps) {
+      const double us = 1e6 * t.time.time, off = t.restitution - models::rules_line(1e-6 * us);
+      if (std::abs(off) > std::abs(worst)) worst = off, worst_at = us;
+      faces.x.push_back(us);
+      faces.y.push_back(t.restitution);
+      wanted.x.push_back(us);
+      wanted.y.push_back(models::rules_line(1e-6 * us));
+      csv += fmt::format("{:.5f},{:.3f},{:.1f},{:.3f},{:.5f},{:.5f}\n", t.factor, 1e3 * t.mass, t.frequency, us,
+                         t.restitution, models::rules_line(1e-6 * us));
+    }
+    out.write("line.csv", csv);
+    out.say(fmt::format("{} plates, {:.0f} to {:.0f} us: within {:.4f} of the rules' line (farthest {:+.4f} at {:.0f} us)",
+                        faces_, faces.x.back(), faces.x.front(), std::abs(worst), worst, worst_at));
+    out.page().answer(fmt::format("{} plates", faces_), fmt::format("within {:.4f}", std::abs(worst)),
+                      fmt::format("of the rules' line, {:.0f} to {:.0f} µs", faces.x.back(), faces.x.front()));
+    post::Panel rules{.title = "plates from thick to thin",
+                      .x_label = "characteristic time [us]",
+                      .y_label = "restitution",
+                      .series = {faces, wanted}};
+    out.draw({.panels = {tap_panel, rules}, .columns = 2}, "characteristic-time");
+    out.write_summary({{"characteristic_time_us", 1e6 * ct.time},
+                       {"slope_us", 1e6 * ct.slope},
+                       {"largest_departure_us", 1e6 * ct.departure},
+                       {"restitution", own.restitution},
+                       {"restitution_rigid",
+                        models::strike(models::golf_ball({}), own.head, {}, 0, restitution_speed_).restitution},
+                       {"largest_departure_from_line", worst}});
+  }
+
+ private:
+  struct Tap {
+    double factor = 1, mass = 0, frequency = 0, head = 0, restitution = 0;
+    models::CharacteristicTime time = {};
+  };
+  Tap tap(double factor) const {
+    models::PlateDesign d = design_;
+    d.thickness = d.thickness.scaled(factor);
+    const auto plate = std::make_shared<const models::PlateFace>(d, head_.face);
+    const models::PlateStrike strike(plate, head_);
+    const auto ball = strike.at(place_, models::kBallPatch);
+    return {factor,
+            plate->mass(),
+            plate->omega().front() / (2 * kPi),
+            ball.mass,
+            strike.strike(models::golf_ball({}), ball, restitution_speed_).restitution,
+            strike.characteristic_time(sphere_, place_, speeds_)};
+  }
+
+  Head head_;
+  models::PlateDesign design_;
+  models::Striker sphere_;
+  std::vector<double> speeds_;
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
+  double restitution_speed_ = 0, thinnest_ = 0, thickest_ = 0;
+  int faces_ = 0;
+};
+
 }  // namespace
 
-std::unique_ptr<Job> read_characteristic_time(CaseFile& file) { return std::make_unique<CharacteristicTimeJob>(file); }
+std::unique_ptr<Job> read_characteristic_time(CaseFile& file) {
+  if (has_plate(file.root())) return std::make_unique<PlateTapJob>(file);
+  return std::make_unique<CharacteristicTimeJob>(file);
+}
 
 }  // namespace hosel::app

@@ -53,7 +53,7 @@ class ImpactJob final : public Job {
 
   void run(Output& out) override {
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
-    if (fe && !own_.fe.face && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
+    if (fe && !own_.fe.face && !own_.fe.plate && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
     if (flight_) flight_->show_in(out);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
@@ -98,7 +98,7 @@ class ImpactJob final : public Job {
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
     const ImpactStory story{
-        blow, columns, measured_, table, runs, matched_, own_.fe.face.has_value(), flight_.has_value(), record_.vtk};
+        blow, columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(), record_.vtk};
     if (matched_) {
       std::string lofts;
       for (const auto& c : columns)
@@ -339,7 +339,7 @@ class ImpactJob final : public Job {
                         {"factorisations", r.counts.factorisations},
                         {"worst_residual_of_forces", r.counts.worst_residual},
                         {"dissipated_by_layer_J", r.dissipated}};
-    if (own_.fe.face) {
+    if (own_.fe.face || own_.fe.plate) {
       j["face_travel_mm"] = 1e3 * r.face_travel;
       j["face_energy_J"] = r.face_energy;
     }

@@ -6,6 +6,8 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
+#include "app/read_plate.hpp"
+#include "models/fe/plate_strike.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "post/figure.hpp"
 
@@ -18,7 +20,8 @@ class RestitutionFaceJob final : public Job {
     Table root = file.root();
     ball_ = read_ball(root.table("ball"));
     head_ = read_head(root.table("head"));
-    face_ = read_yielding_face(root);
+    plate_ = read_optional_plate(root);
+    if (!plate_) face_ = read_yielding_face(root);
     if (face_.mass >= head_.mass) root.fail("face", "the face's effective mass is part of the head's");
     Table grid = root.table("grid");
     speed_ = grid.quantity({"speed", "of the ball against the head at rest"}, "mps", {1, 100}, 48.77);
@@ -29,12 +32,18 @@ class RestitutionFaceJob final : public Job {
   void run(Output& out) override {
     const models::Striker ball = models::golf_ball(ball_);
     std::string csv = "toe_mm,high_mm,mass_kg,restitution,restitution_rigid,ball_speed_ratio,ball_speed_ratio_rigid\n";
+    std::optional<models::PlateStrike> plate;
+    if (plate_) plate.emplace(std::make_shared<const models::PlateFace>(*plate_, head_.face), head_);
+    const auto restitution = [&](double toe, double high, double mass) {
+      if (plate) return plate->strike(ball, plate->at(Eigen::Vector2d(-toe, high), models::kBallPatch), speed_).restitution;
+      return models::strike(ball, mass, face_, face_.shape(-toe, high).value, speed_).restitution;
+    };
     std::vector<double> e_map, gain_map;
     nlohmann::json summary;
     for (const double high : high_)
       for (const double toe : toe_) {
         const double mass = models::mass_at(head_, -toe, high);
-        const double e = models::strike(ball, mass, face_, face_.shape(-toe, high).value, speed_).restitution,
+        const double e = restitution(toe, high, mass),
                      rigid = models::strike(ball, mass, {}, 0, speed_).restitution;
         const auto ratio = [&](double restitution) { return (1 + restitution) * mass / (mass + ball_.mass); };
         csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", 1e3 * toe, 1e3 * high, mass, e, rigid,
@@ -78,7 +87,8 @@ class RestitutionFaceJob final : public Job {
  private:
   Ball ball_;
   Head head_;
-  FaceCompliance face_;
+  FaceCompliance face_;  // where there is no plate
+  std::optional<models::PlateDesign> plate_;
   double speed_ = 0;
   std::vector<double> toe_, high_;
 };

@@ -1,0 +1,353 @@
+#include "app/kinds/plate_face.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/check_memory.hpp"
+#include "app/read_blow.hpp"
+#include "app/read_face.hpp"
+#include "app/read_face_map.hpp"
+#include "app/read_options.hpp"
+#include "app/stop.hpp"
+#include "app/stored_launch.hpp"
+#include "app/sweep.hpp"
+#include "golf/parallel.hpp"
+#include "golf/units.hpp"
+#include "models/checked_launch.hpp"
+#include "models/fe/fe_impact.hpp"
+#include "models/fe/plate_strike.hpp"
+#include "post/face_map.hpp"
+#include "post/launch_table.hpp"
+#include "post/vtk_series.hpp"
+
+namespace hosel::app {
+namespace {
+
+using Eigen::Vector2d;
+using nlohmann::json;
+
+constexpr double kLimit = 239e-6, kTolerance = 18e-6;  // of the rules' pendulum [s]
+constexpr std::size_t kModes = 6;                       // in tables and pictures
+
+class PlateFaceJob final : public PointJob {
+ public:
+  explicit PlateFaceJob(CaseFile& file) {
+    const BlowsBeside beside;
+    Table root = file.root();
+    if (!has_plate(root)) root.table("face").fail("", "a face with a thickness is needed: [face.plate]");
+    blow_ = read_blow(root, {"fe-free-body"});
+    fe_ = read_options(root, {"fe-free-body"}).fe;
+    if (blow_.delivery.impact_toe != 0 || blow_.delivery.impact_high != 0)
+      root.fail("delivery", "[places] says where the ball meets the face: impact_toe and impact_high stay out");
+    Table places = root.default_table("places");
+    toe_ = places.quantities({"toe", "columns of the places where a ball is struck, towards the toe"}, "mm", 0,
+                             limits::impact_place, std::vector{-0.018, 0.0, 0.018});
+    high_ = places.quantities({"high", "rows of the places where a ball is struck, up the face"}, "mm", 0,
+                              limits::impact_place, std::vector{-0.009, 0.0, 0.009});
+    if (toe_.empty() || high_.empty()) places.fail("toe", "name at least one place");
+    grid_ = read_face_grid(root);
+    Table sphere = root.default_table("sphere");
+    sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));
+    speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
+    if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
+    restitution_speed_ = root.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps",
+                                       {1, 100}, 48.77);
+    errors_ = root.flag({"numerical_error", "solve the first place twice more: coarser, and with more modes"}, true);
+    vtk_ = root.flag({"vtk", "write the modes for ParaView"}, true);
+    for (const double high : high_)
+      for (const double toe : toe_) blows_.push_back({Vector2d(-toe, high), fe_});
+    if (!errors_) return;
+    const Vector2d middle = blows_[blows_.size() / 2].place;
+    if (const auto coarser = fe_.coarser()) blows_.push_back({middle, *coarser, "coarser"});
+    models::PlateDesign more = fe_.plate->design();
+    more.modes = std::min(27, 2 * more.modes);
+    blows_.push_back({middle, fe_, "more modes"});
+    blows_.back().fe.plate = std::make_shared<const models::PlateOnDemand>(more);
+  }
+
+  std::size_t size() const override { return blows_.size(); }
+
+  json compute(std::size_t point, const std::filesystem::path&) const override {
+    const Struck& struck = blows_[point];
+    Blow blow = blow_;
+    blow.delivery.impact_toe = -struck.place.x();
+    blow.delivery.impact_high = struck.place.y();
+    std::optional<models::PlateFace::Stresses> stresses;
+    models::PlateFace::Peak peak;
+    const StopSignals stop;
+    const models::FeOutcome outcome = solve_free_body(blow, struck.fe, [&](const models::ImpactView& v) {
+      stop.check();
+      if (!stresses) stresses.emplace(v.parts->plate->plate(), v.parts->condensed->fields);
+      const auto now = stresses->peak(v.parts->face->unknowns(v.state));
+      if (now.stress > peak.stress) peak = now;
+    });
+    models::check_launch(models::FeFreeBody(struck.fe), blow, outcome.launch);
+    json out = stored(outcome.launch);
+    out["peak_stress_Pa"] = peak.stress;
+    out["peak_stress_toe_m"] = -peak.place.x();
+    out["peak_stress_high_m"] = peak.place.y();
+    out["face_travel_m"] = outcome.result.face_travel;
+    out["face_energy_J"] = outcome.result.face_energy;
+    out["closure"] = outcome.result.ledger.closure / outcome.result.ledger.initial;
+    return out;
+  }
+
+  void report(Output& out, const std::vector<json>& points) const override {
+    const std::shared_ptr<const models::PlateFace> plate = fe_.plate->on(blow_.club.head.face);
+    const models::PlateStrike strike(plate, blow_.club.head);
+    json summary;
+    show_plate(out, *plate, summary);
+    show_maps(out, strike, summary);
+    show_blows(out, points, summary);
+    if (vtk_) write_modes(out, *plate);
+    out.write_summary(summary);
+  }
+
+ private:
+  struct Struck {
+    Vector2d place;
+    models::FeImpactOptions fe;
+    std::string companion = {};  ///< empty: a place of the case
+  };
+
+  void show_plate(Output& out, const models::PlateFace& plate, json& summary) const {
+    const double f1 = plate.omega().front() / (2 * kPi);
+    out.say(fmt::format("face {:.1f} g; first frequencies {:.0f}, {:.0f}, {:.0f} Hz with the rim in a head at rest",
+                        1e3 * plate.mass(), f1, plate.omega()[1] / (2 * kPi), plate.omega()[2] / (2 * kPi)));
+    post::TextTable table{.rows = {{"mode", "frequency [Hz]"}}};
+    std::string csv = "mode,frequency_Hz\n";
+    for (std::size_t i = 0; i < plate.omega().size(); ++i) {
+      const double f = plate.omega()[i] / (2 * kPi);
+      csv += fmt::format("{},{:.4f}\n", i + 1, f);
+      if (i < kModes) {
+        table.rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.0f}", f)});
+        summary["frequencies_Hz"].push_back(f);
+      }
+    }
+    out.write("modes.csv", csv);
+    out.page().answer("first frequency", fmt::format("{:.0f} Hz", f1), "rim in a head at rest");
+    // The lumped face that stands for it: as stiff at the centre, and as heavy in that static shape.
+    const fem::Vector load = plate.patch_load(Vector2d::Zero(), models::kBallPatch), w = plate.solve(load);
+    const double compliance = load.dot(w);
+    double mass = 0;
+    for (const auto& s : plate.plate().samples()) {
+      double deflection = 0;
+      for (int k = 0; k < 9; ++k)
+        deflection += s.shape[k] * plate.plate().value(w,
+                                                       plate.plate().mesh().elements[std::size_t(s.element)][std::size_t(k)],
+                                                       fem::Plate::kDeflection);
+      mass += s.mass * std::pow(deflection / compliance, 2);
+    }
+    out.say(fmt::format("as a lumped face: {:.2f} MN/m and {:.1f} g at its centre", 1e-6 / compliance, 1e3 * mass));
+    summary["face_mass_g"] = 1e3 * plate.mass();
+    summary["lumped"] = {{"stiffness_N_per_m", 1 / compliance}, {"effective_mass_g", 1e3 * mass}};
+
+    post::Figure figure{.title = std::string("natural modes; ") + post::kFaceView, .columns = 3, .panel_width = 520,
+                        .panel_height = 330};
+    const post::FaceGrid fine = drawn(61, 41);
+    for (std::size_t m = 0; m < std::min(kModes, plate.omega().size()); ++m) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < fine.size(); ++i) {
+        const Vector2d at(-fine.toe_at(i), fine.high_at(i));
+        values.push_back(plate.covers(at) ? plate.plate().deflection(plate.modes().col(Eigen::Index(m)), at) : std::nan(""));
+      }
+      double most = 0;
+      for (const double v : values)
+        if (std::isfinite(v)) most = std::max(most, std::abs(v));
+      for (double& v : values) v /= most;
+      figure.panels.push_back(post::face_panel(
+          fine, values, fmt::format("mode {}, {:.0f} Hz", m + 1, plate.omega()[m] / (2 * kPi)), "[-]", true));
+      figure.panels.back().map_contours = false;
+    }
+    out.draw(figure, "modes");
+  }
+
+  /// A grid over the whole outline.
+  post::FaceGrid drawn(int columns, int rows) const {
+    const Vector2d extent = fe_.plate->design().outline.extent();
+    return {2 * extent.x(), 2 * extent.y(), columns, rows};
+  }
+
+  void show_maps(Output& out, const models::PlateStrike& strike, json& summary) const {
+    struct Point {
+      double time = std::nan(""), departure = 0, restitution = std::nan(""), mass = 0, thickness = std::nan("");
+    };
+    std::vector<Point> points(grid_.size());
+    const models::Striker ball = models::golf_ball(blow_.ball);
+    const models::PlateFace& plate = strike.plate();
+    for_all_alone(std::size_t{0}, points.size(), [&](std::size_t i) {
+      const Vector2d at(-grid_.toe_at(i), grid_.high_at(i));
+      if (!plate.covers(at)) return;
+      Point& p = points[i];
+      const models::CharacteristicTime ct = strike.characteristic_time(sphere_, at, speeds_);
+      const auto place = strike.at(at, models::kBallPatch);
+      p = {ct.time, ct.departure, strike.strike(ball, place, restitution_speed_).restitution, place.mass,
+           2 * models::pendulum_patch(plate, at)};
+    });
+    std::string csv = "toe_mm,high_mm,thickness_mm,characteristic_time_us,departure_us,restitution,head_mass_kg,"
+                      "ball_speed_ratio\n";
+    std::vector<double> time, restitution, ratio, thickness;
+    double longest = 0, fastest = 0;
+    std::size_t beyond = 0, inside = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point& p = points[i];
+      time.push_back(1e6 * p.time);
+      restitution.push_back(p.restitution);
+      ratio.push_back((1 + p.restitution) * p.mass / (p.mass + blow_.ball.mass));
+      thickness.push_back(1e3 * p.thickness);
+      if (!std::isfinite(p.time)) continue;
+      ++inside;
+      beyond += p.time > kLimit + kTolerance;
+      longest = std::max(longest, p.time);
+      fastest = std::max(fastest, p.restitution);
+      csv += fmt::format("{:g},{:g},{:.4f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f}\n", 1e3 * grid_.toe_at(i),
+                         1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure, p.restitution, p.mass,
+                         ratio.back());
+    }
+    out.write("map.csv", csv);
+    const models::CharacteristicTime centre = strike.characteristic_time(sphere_, Vector2d::Zero(), speeds_);
+    const double e = strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;
+    out.say(fmt::format("centre: characteristic time {:.1f} us, restitution {:.4f} (the rules' line {:.4f})",
+                        1e6 * centre.time, e, models::rules_line(centre.time)));
+    out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us", 1e6 * longest,
+                        fastest, beyond, inside, 1e6 * (kLimit + kTolerance)));
+    out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * centre.time),
+                      fmt::format("at most {:.1f} µs over the face; limit {:.0f} + {:.0f}", 1e6 * longest, 1e6 * kLimit,
+                                  1e6 * kTolerance));
+    out.page().answer("restitution", fmt::format("{:.4f}", e), fmt::format("{:g} m/s, centre", restitution_speed_));
+    summary["characteristic_time_us"] = 1e6 * centre.time;
+    summary["largest_characteristic_time_us"] = 1e6 * longest;
+    summary["places_beyond_the_limit"] = beyond;
+    summary["restitution"] = e;
+    summary["largest_restitution"] = fastest;
+    summary["restitution_less_rules_line"] = e - models::rules_line(centre.time);
+    post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 400};
+    figure.panels = {post::face_panel(grid_, time, "characteristic time [us]; white: 239 us, 257 us", "[us]", false),
+                     post::face_panel(grid_, restitution, fmt::format("restitution at {:g} m/s", restitution_speed_), "[-]",
+                                      false),
+                     post::face_panel(grid_, ratio, "ball speed over head speed, normal blow", "[-]", false),
+                     post::face_panel(grid_, thickness, "thickness [mm]", "[mm]", false)};
+    for (const double limit : {kLimit, kLimit + kTolerance}) limit_line(figure.panels.front(), time, 1e6 * limit);
+    out.draw(figure, "map");
+  }
+
+  /// The level line of a map as points where it crosses the grid's lines.
+  void limit_line(post::Panel& panel, const std::vector<double>& values, double level) const {
+    post::Series line{.label = fmt::format("{:.0f} us", level), .style = "points"};
+    const auto cross = [&](std::size_t a, std::size_t b) {
+      const double u = values[a] - level, v = values[b] - level;
+      if (!(u * v < 0)) return;
+      const double s = u / (u - v);
+      line.x.push_back(1e3 * ((1 - s) * grid_.toe_at(a) + s * grid_.toe_at(b)));
+      line.y.push_back(1e3 * ((1 - s) * grid_.high_at(a) + s * grid_.high_at(b)));
+    };
+    const auto columns = std::size_t(grid_.columns);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i % columns + 1 < columns) cross(i, i + 1);
+      if (i + columns < values.size()) cross(i, i + columns);
+    }
+    if (!line.x.empty()) panel.series.push_back(line);
+  }
+
+  void show_blows(Output& out, const std::vector<json>& points, json& summary) const {
+    post::TextTable table{.rows = {{"toe [mm]", "high [mm]", "ball speed [m/s]", "launch [deg]", "backspin [rpm]",
+                                    "sidespin [rpm]", "travel [mm]", "stress [MPa]"}}};
+    std::string csv =
+        "toe_mm,high_mm,ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm,face_travel_mm,"
+        "peak_stress_MPa,stress_toe_mm,stress_high_mm,face_energy_J,energy_closure\n";
+    const std::size_t middle = toe_.size() * high_.size() / 2;
+    std::vector<double> speeds;
+    double stress = 0, closure = 0;
+    for (std::size_t i = 0; i < toe_.size() * high_.size(); ++i) {
+      const json& p = points[i];
+      const auto launch = launch_from(p);
+      const double toe = -1e3 * blows_[i].place.x(), high = 1e3 * blows_[i].place.y();
+      if (!launch) {
+        table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), "no answer", "", "", "", "", ""});
+        speeds.push_back(std::nan(""));
+        continue;
+      }
+      const auto value = [&](const char* key) { return p.at(key).get<double>(); };
+      speeds.push_back(launch->ball_speed());
+      stress = std::max(stress, value("peak_stress_Pa"));
+      closure = std::max(closure, std::abs(value("closure")));
+      table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), fmt::format("{:.2f}", launch->ball_speed()),
+                            fmt::format("{:.2f}", degrees(launch->launch_angle())), fmt::format("{:.0f}", rpm(launch->backspin())),
+                            fmt::format("{:.0f}", rpm(launch->sidespin())), fmt::format("{:.2f}", 1e3 * value("face_travel_m")),
+                            fmt::format("{:.0f}", 1e-6 * value("peak_stress_Pa"))});
+      csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.5f},{:.3e}\n", toe, high,
+                         launch->ball_speed(), degrees(launch->launch_angle()), degrees(launch->azimuth()),
+                         rpm(launch->backspin()), rpm(launch->sidespin()), 1e3 * value("face_travel_m"),
+                         1e-6 * value("peak_stress_Pa"), 1e3 * value("peak_stress_toe_m"),
+                         1e3 * value("peak_stress_high_m"), value("face_energy_J"), value("closure"));
+    }
+    out.write("blows.csv", csv);
+    out.show(table, "Balls struck over the face");
+    const auto centre = launch_from(points[middle]);
+    out.say(fmt::format("largest stress in the face {:.0f} MPa; energy closes to {:.1e} of the initial", 1e-6 * stress,
+                        closure));
+    out.page().answer("largest stress", fmt::format("{:.0f} MPa", 1e-6 * stress), "von Mises, over these blows");
+    summary["peak_stress_MPa"] = 1e-6 * stress;
+    summary["energy_closure"] = closure;
+    for (const double v : speeds) summary["ball_speed_mps"].push_back(std::isfinite(v) ? json(v) : json());
+    if (centre) summary["centre"] = post::to_json(*centre);
+    for (std::size_t i = toe_.size() * high_.size(); i < blows_.size(); ++i) {
+      const auto other = launch_from(points[i]);
+      if (!other || !centre) continue;
+      const double speed = std::abs(other->ball_speed() - centre->ball_speed()),
+                   spin = std::abs(other->spin.norm() - centre->spin.norm()),
+                   peak = std::abs(points[i].at("peak_stress_Pa").get<double>() -
+                                   points[middle].at("peak_stress_Pa").get<double>());
+      out.say(fmt::format("{} at toe {:g}, high {:g} mm: {:.3f} m/s, {:.0f} rpm, {:.1f} MPa of difference",
+                          blows_[i].companion, -1e3 * blows_[i].place.x(), 1e3 * blows_[i].place.y(), speed, rpm(spin),
+                          1e-6 * peak));
+      summary["numerical_error"][blows_[i].companion] = {
+          {"ball_speed_mps", speed}, {"spin_rpm", rpm(spin)}, {"peak_stress_MPa", 1e-6 * peak}};
+    }
+  }
+
+  /// One surface with every mode as a vector field: displacement of the face, its largest deflection 1 mm.
+  void write_modes(Output& out, const models::PlateFace& face) const {
+    const fem::Plate& plate = face.plate();
+    post::VtkMesh mesh;
+    for (const Vector2d& n : plate.mesh().nodes) mesh.points.push_back(face.curvature().point(n.x(), n.y()));
+    for (const auto& e : plate.mesh().elements)
+      for (const int corner : {0, 1, 3, 4}) {
+        const auto at = [&](int k) { return std::int64_t(e[std::size_t(corner + k)]); };
+        mesh.cells.push_back({post::CellShape::quad, {at(0), at(1), at(4), at(3)}});
+      }
+    post::VtkField thickness{"thickness", "m", 1, plate.thickness()};
+    mesh.point_fields.push_back(thickness);
+    for (std::size_t m = 0; m < std::min(kModes, face.omega().size()); ++m) {
+      std::vector<Vec3> moved;
+      double most = 0;
+      for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+        const auto value = [&](fem::Plate::Unknown u) { return plate.value(face.modes().col(Eigen::Index(m)), int(n), u); };
+        moved.emplace_back(-value(fem::Plate::kDeflection), value(fem::Plate::kStretchY), value(fem::Plate::kStretchZ));
+        most = std::max(most, moved.back().norm());
+      }
+      for (Vec3& v : moved) v *= 1e-3 / most;
+      mesh.point_fields.push_back(post::vector_field(
+          fmt::format("mode {} ({:.0f} Hz)", m + 1, face.omega()[m] / (2 * kPi)), "m", moved));
+    }
+    post::VtkSeries(out.directory() / "vtk", "modes", post::VtkSeries::Form::surface).write(0, mesh);
+  }
+
+  Blow blow_;
+  models::FeImpactOptions fe_;
+  std::vector<double> toe_, high_, speeds_;
+  post::FaceGrid grid_;
+  models::Striker sphere_;
+  double restitution_speed_ = 0;
+  bool errors_ = true, vtk_ = true;
+  std::vector<Struck> blows_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_plate_face(CaseFile& file) { return std::make_unique<PlateFaceJob>(file); }
+
+}  // namespace hosel::app
