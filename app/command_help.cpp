@@ -85,13 +85,13 @@ done
 a file that cannot be written, no memory left, or an error of the program
 .TP
 .B 2
-bad input: what, where, and what is allowed is said
+bad input; the message says what, where and what is allowed
 .TP
 .B 3
-no convergence, or an answer that cannot be
+no convergence, or an impossible answer
 .TP
 .B 130, 143
-stopped by a signal; the same command goes on where it was
+stopped by a signal; the same command continues where it was
 .SH ENVIRONMENT
 .TP
 .B HOSEL_DATA
