@@ -23,8 +23,10 @@ class Table(dict):
         width = max((len(name) for name in self), default=0)
         lines = [f"hosel.Table of {rows} rows"]
         for name, column in self.items():
-            cells = [f"{c:.6g}" if column.dtype.kind == "f" else str(c) for c in (column if rows <= 4 else (*column[:3], column[-1]))]
-            lines.append(f"  {name:<{width}}  " + (", ".join(cells) if rows <= 4 else f"{', '.join(cells[:3])}, ..., {cells[3]}"))
+            cells = [f"{c:.6g}" if column.dtype.kind == "f" else str(c) for c in (column if rows <= 4 else column[[0, 1, 2, -1]])]
+            if rows > 4:
+                cells.insert(3, "...")
+            lines.append(f"  {name:<{width}}  {', '.join(cells)}")
         return "\n".join(lines)
 
     def where(self, **equal):
