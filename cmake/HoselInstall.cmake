@@ -19,7 +19,12 @@ install(TARGETS hosel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY golf mesh fem solvers models post loop app
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hosel FILES_MATCHING PATTERN "*.hpp")
 install(FILES app/import/launch_monitors.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
-install(DIRECTORY cases library DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+install(DIRECTORY cases library DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel PATTERN "make" EXCLUDE)
+file(GLOB makes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*/make)
+foreach(make ${makes})  # scripts that made a case's data
+  cmake_path(GET make PARENT_PATH folder)
+  install(PROGRAMS ${make} DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/${folder})
+endforeach()
 install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
 install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
 # What the command says of itself, where man and bash look for it.
