@@ -98,11 +98,19 @@ def arrows(source, view, vector, scale, colour):
     return arrow
 
 
+def label(view, text="", place="Upper Left Corner"):
+    """Words in a corner; what is returned has a Text to be changed."""
+    source = Text(Text=text)
+    display = Show(source, view)
+    display.Color = [0, 0, 0]
+    display.Justification = "Left"
+    display.WindowLocation = place
+    display.FontSize = 24
+    return source
+
+
 def caption(view, text, place="Upper Left Corner"):
-    label = Show(Text(Text=text), view)
-    label.Color = [0, 0, 0]
-    label.Justification = "Left"
-    label.WindowLocation = place
+    label(view, text, place)
 
 
 def look(view, at, eye, height=None):
@@ -114,6 +122,49 @@ def look(view, at, eye, height=None):
         ResetCamera(view)
     else:
         view.CameraParallelScale = height
+
+
+def blow(folder, view):
+    """Ball, face, head and shaft of a blow, seen from the toe and a little from above; the near half of the ball is cut away,
+    so that the flattened patch is seen against the face. Returns the times [s], and a function that shows one of them."""
+    ball = series(folder, "ball")
+    moving = moved(ball)
+    stress = Calculator(Input=moving, ResultArrayName="MPa", Function="von_mises/1e6")
+    cut = Clip(Input=stress)
+    cut.ClipType = "Plane"
+    cut.ClipType.Normal = [0.0, 1.0, 0.0]
+    cut.Invert = 0
+    # Linear pieces of the quadratic cells, smooth where the surface is.
+    surface = GenerateSurfaceNormals(Input=ExtractSurface(Input=cut, NonlinearSubdivisionLevel=2), FeatureAngle=40)
+    display = coloured(surface, view, "MPa")
+    display.Specular, display.Ambient, display.Diffuse = 0.1, 0.25, 0.8
+    times = list(ball.TimestepValues)
+    most = 0.0
+    for time in times:  # one scale for all of them
+        stress.UpdatePipeline(time)
+        most = max(most, stress.PointData["MPa"].GetRange()[1])
+    colours = GetColorTransferFunction("MPa")
+    colours.ApplyPreset("Viridis (matplotlib)", True)
+    colours.RescaleTransferFunction(0.0, most)
+    scale = bar(display, view, "MPa", "von Mises stress [MPa]")
+    scale.TitleFontSize = scale.LabelFontSize = 22
+    scale.WindowLocation, scale.Position = "Any Location", [0.86, 0.3]
+    scale.ScalarBarLength = 0.4
+    for name, colour, opacity in (("face", [0.35, 0.35, 0.4], 1.0), ("head", [0.6, 0.6, 0.65], 0.2)):
+        if has(folder, name):
+            painted(moved(series(folder, name)), view, colour, opacity)
+    if has(folder, "shaft"):
+        painted(Tube(Input=moved(series(folder, "shaft")), Radius=0.005, NumberofSides=32), view, [0.2, 0.2, 0.2])
+
+    def show(time):
+        view.ViewTime = time
+        moving.UpdatePipeline(time)
+        box = moving.GetDataInformation().GetBounds()
+        middle = [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, (box[4] + box[5]) / 2]
+        cut.ClipType.Origin = middle
+        look(view, middle, [middle[0] - 0.03, middle[1] - 0.16, middle[2] + 0.03], 0.03)
+
+    return times, show
 
 
 def save(view, picture):
