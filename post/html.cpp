@@ -57,7 +57,7 @@ td,th{padding:.25rem .5rem .25rem 0;font-size:.86rem}}
 .moving [data-part=view]{height:min(30rem,75vw);border:1px solid var(--rule);border-radius:6px;overflow:hidden;cursor:grab}
 .moving p{display:flex;flex-wrap:wrap;gap:.4rem .7rem;align-items:center}.moving input[type=range]{flex:1 1 10rem}
 .moving output{font-variant-numeric:tabular-nums;min-width:11rem}.moving b{font-weight:600}
-.moving i{flex:1 1 6rem;max-width:16rem;height:.8rem;border-radius:2px}
+.moving [data-part=legend]{flex-wrap:nowrap}.moving i{flex:1 1 6rem;max-width:16rem;height:.8rem;border-radius:2px}
 svg.curves text{font-size:13px;fill:#000}.told{position:relative}.told svg{position:absolute;inset:0;height:100%}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
 @media print{:root{color-scheme:light}body{padding:0;font-size:11px;max-width:none}h2{break-after:avoid}
