@@ -77,6 +77,7 @@ void RunPage::figure(const post::Figure& figure, const fs::path& stem) {
   constexpr std::size_t kTold = 1500;  // places of a map at most that tell their values
   for (const post::PanelFile& p : panels) {
     const post::Panel& panel = figure.panels[p.panel];
+    if (!panel.on_page) continue;
     const bool tells = p.map ? panel.map.size() <= kTold : post::tells_values(panel);
     std::string drawn = fmt::format("<img class='{}' alt='{}' src='{}'>", p.map ? "map" : "curves",
                                     escape_html(p.title), post::data_uri(p.picture));

@@ -31,6 +31,8 @@ struct Panel {
   bool map_symmetric = false;                  ///< colours diverge from zero, as far to either side: for differences
   bool map_equal_axes = false;                 ///< one unit is as long in x as in y
   bool map_contours = true;                    ///< lines with their values: for smooth fields
+
+  bool on_page = true;  ///< beside the others on a run's page; else in the picture of all panels alone
 };
 
 struct Figure {
