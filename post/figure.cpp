@@ -344,7 +344,8 @@ void tell_values(const fs::path& file, const Panel& p) {
     at = end + kEnd.size();
   }
   out += drawn.substr(at);
-  // Names that gnuplot gives its groups would be told as well.
+  // Names that gnuplot gives itself and its groups would be told as well.
+  if (const std::size_t own = out.find("<title>Gnuplot</title>"); own != out.npos) out.erase(own, 22);
   for (std::size_t begin; (begin = out.find("<title>gnuplot_plot_")) != out.npos;)
     out.erase(begin, out.find("</title>", begin) + 8 - begin);
   write_file(file, out, false);
