@@ -10,7 +10,7 @@ from scene import arguments, blow, label, save, white_view
 folder, pictures, _ = arguments(".")
 view = white_view(1280, 960)
 times, show = blow(folder, view)
-text = label(view)
+text = label(view, place="Upper Right Corner")
 for number, time in enumerate(times):
     show(time)
     text.Text = "t = %.3f ms" % (1e3 * time)

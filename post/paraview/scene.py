@@ -125,17 +125,24 @@ def look(view, at, eye, height=None):
 
 
 def blow(folder, view):
-    """Ball, face, head and shaft of a blow, seen from the toe and a little from above; the near half of the ball is cut away,
-    so that the flattened patch is seen against the face. Returns the times [s], and a function that shows one of them."""
+    """Ball, face, head and shaft of a blow, seen from the toe and a little from above; what lies nearer than the ball's middle
+    is cut away, so that the flattened patch is seen against the face. Returns the times [s], and a function that shows one of
+    them."""
     ball = series(folder, "ball")
     moving = moved(ball)
     stress = Calculator(Input=moving, ResultArrayName="MPa", Function="von_mises/1e6")
-    cut = Clip(Input=stress)
-    cut.ClipType = "Plane"
-    cut.ClipType.Normal = [0.0, 1.0, 0.0]
-    cut.Invert = 0
+    cuts = []
+
+    def half(source):
+        clip = Clip(Input=source)
+        clip.ClipType = "Plane"
+        clip.ClipType.Normal = [0.0, 1.0, 0.0]
+        clip.Invert = 0
+        cuts.append(clip)
+        return clip
+
     # Linear pieces of the quadratic cells, smooth where the surface is.
-    surface = GenerateSurfaceNormals(Input=ExtractSurface(Input=cut, NonlinearSubdivisionLevel=2), FeatureAngle=40)
+    surface = GenerateSurfaceNormals(Input=ExtractSurface(Input=half(stress), NonlinearSubdivisionLevel=2), FeatureAngle=40)
     display = coloured(surface, view, "MPa")
     display.Specular, display.Ambient, display.Diffuse = 0.1, 0.25, 0.8
     times = list(ball.TimestepValues)
@@ -152,7 +159,7 @@ def blow(folder, view):
     scale.ScalarBarLength = 0.4
     for name, colour, opacity in (("face", [0.35, 0.35, 0.4], 1.0), ("head", [0.6, 0.6, 0.65], 0.2)):
         if has(folder, name):
-            painted(moved(series(folder, name)), view, colour, opacity)
+            painted(half(moved(series(folder, name))), view, colour, opacity)
     if has(folder, "shaft"):
         painted(Tube(Input=moved(series(folder, "shaft")), Radius=0.005, NumberofSides=32), view, [0.2, 0.2, 0.2])
 
@@ -161,8 +168,11 @@ def blow(folder, view):
         moving.UpdatePipeline(time)
         box = moving.GetDataInformation().GetBounds()
         middle = [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, (box[4] + box[5]) / 2]
-        cut.ClipType.Origin = middle
-        look(view, middle, [middle[0] - 0.03, middle[1] - 0.16, middle[2] + 0.03], 0.03)
+        for clip in cuts:
+            clip.ClipType.Origin = middle
+        # The face's side of the ball a little nearer to the middle of the picture.
+        at = [middle[0] - 0.004, middle[1], middle[2]]
+        look(view, at, [at[0] - 0.03, at[1] - 0.16, at[2] + 0.03], 0.03)
 
     return times, show
 
