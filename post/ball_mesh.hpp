@@ -49,7 +49,8 @@ class RevolvedPoints {
 /// Each element is swept quadratically over every second of `angles` steps of the full circle, an even number: cells
 /// that have the curved sides and the displacements of the finite elements themselves along the meridian. Point arrays:
 /// displacement [m], velocity [m/s], cauchy_stress [Pa], von_mises [Pa], contact_traction [Pa] (on the ball) and
-/// contact_pressure [Pa], both as SurfaceMeans gives them; cell array: layer.
+/// contact_pressure [Pa], both as SurfaceMeans gives them; cell arrays: layer, and angle [rad], theta of the cell's
+/// middle: below and above pi lie the two sides of the plane of the mesh's axis and the slip.
 VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceMeans& acting, int angles = 32);
 
 }  // namespace hosel::post
