@@ -107,7 +107,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
           ball.vector_at(velocity, p, theta[size_t(a)]), stress[size_t(p * angles + a)],
           surface.contains(p) ? acting(p, theta[size_t(a)]) : SurfaceMeans::Value{});
 
-  VtkField layer{"layer", "", 1, {}}, angle{"angle", "rad", 1, {}};
+  VtkField layer{"layer", "", 1, {}}, around{"angle", "rad", 1, {}};
   const auto centre = mesh::Q8::at(0, 0).value;
   for (std::size_t e = 0; e < meridian.elements.size(); ++e) {
     // Turned so that a side on the axis comes first: it closes the cells to wedges.
@@ -147,7 +147,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
              {low(0),  low(1),  low(2),  low(3),  high(0), high(1), high(2), high(3), low(4), low(5), low(6), low(7),
               high(4), high(5), high(6), high(7), mid(0),  mid(1),  mid(2),  mid(3),  mid(7), mid(5), mid(4), mid(6)}});
       layer.values.push_back(meridian.layer[e]);
-      angle.values.push_back(2 * kPi * (a + 1) / angles);
+      around.values.push_back(2 * kPi * (a + 1) / angles);
     }
   }
   out.point_fields = {vector_field("displacement", "m", u),
@@ -156,7 +156,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
                       std::move(cauchy),
                       std::move(mises),
                       std::move(pressure)};
-  out.cell_fields = {std::move(layer), std::move(angle)};
+  out.cell_fields = {std::move(layer), std::move(around)};
   return out;
 }
 
