@@ -508,9 +508,13 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
-                   local.pressure, k.gap, past.slip, k.station->area, past.sliding});
+                   local.pressure, k.gap, past.slip, k.station->area, past.sliding, k.station->edge, angles_[k.angle]});
   });
   return out;
+}
+
+double Contact::surface_travel(const State& s, const Vec3& place) const {
+  return own_ ? surface_->travel(place, moved(s).own) : 0;
 }
 
 double Contact::centre_gap(const State& s) const {

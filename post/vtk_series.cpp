@@ -33,8 +33,8 @@ Shape shape(CellShape s) {
     case CellShape::line: return {VTK_LINE, 2};
     case CellShape::triangle: return {VTK_TRIANGLE, 3};
     case CellShape::quad: return {VTK_QUAD, 4};
-    case CellShape::wedge: return {VTK_WEDGE, 6};
-    case CellShape::hexahedron: return {VTK_HEXAHEDRON, 8};
+    case CellShape::quadratic_wedge: return {VTK_BIQUADRATIC_QUADRATIC_WEDGE, 18};
+    case CellShape::quadratic_hexahedron: return {VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, 24};
   }
   return {VTK_EMPTY_CELL, 0};
 }
@@ -132,7 +132,7 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
     grid->Allocate(vtkIdType(mesh.cells.size()));
     fill(*grid, mesh, time);
     for (const auto& cell : mesh.cells) {
-      std::array<vtkIdType, 8> ids;
+      std::array<vtkIdType, VtkMesh::Cell::most> ids;
       std::copy(cell.points.begin(), cell.points.end(), ids.begin());
       grid->InsertNextCell(shape(cell.shape).vtk, shape(cell.shape).points, ids.data());
     }
@@ -142,7 +142,7 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
     fill(*surface, mesh, time);
     vtkNew<vtkCellArray> verts, lines, faces;
     for (const auto& cell : mesh.cells) {
-      std::array<vtkIdType, 8> ids;
+      std::array<vtkIdType, VtkMesh::Cell::most> ids;
       std::copy(cell.points.begin(), cell.points.end(), ids.begin());
       const int n = shape(cell.shape).points;
       (n == 1 ? verts : n == 2 ? lines : faces)->InsertNextCell(n, ids.data());

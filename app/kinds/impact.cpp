@@ -290,6 +290,7 @@ class ImpactJob final : public Job {
     for (const fs::path& f : recorder.files()) files.push_back(f);
     runs.push_back({name, home, outcome.result});
     runs.back().section = recorder.at_largest_force();
+    runs.back().moving = recorder.moving();
     if (record_.vtk)
       runs.back().patch =
           post::read_patch(home / "vtk", models::encounter(blow).ball_axes, models::mesh_axes(blow, own_.fe));

@@ -57,6 +57,26 @@ TEST(Figure, EachPanelIsAFileOfItsOwn) {
   EXPECT_NE(draw({.title = "empty", .panels = {Panel{}}}, stem), "") << "no picture of nothing";
 }
 
+TEST(Figure, PointsAndPlacesTellTheirValues) {
+  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_told";
+  Figure f = two_panels();
+  f.panels[0].series[1].label = "<b>";
+  f.panels[0].series[1].y[0] = NAN;  // not drawn: the next one keeps its own values
+  ASSERT_EQ(draw(f, stem), "");
+  const auto files = panel_files(f, stem.string());
+  std::ifstream in(files[0].picture);
+  const std::string curves(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(curves.find("<title>sine: loft 3 deg, spin 586.33 rpm</title>"), std::string::npos);
+  EXPECT_NE(curves.find("<title>&lt;b&gt;: loft 30 deg, spin 6000 rpm ± 3e+02</title>"), std::string::npos);
+  EXPECT_EQ(curves.find("onmouse"), std::string::npos);
+  EXPECT_EQ(curves.find("<title>gnuplot"), std::string::npos);
+  const std::string map = map_values(f.panels[1], files[1]);
+  EXPECT_NE(map.find("<title>map: ball speed 67.984 m/s\ntoe 4 mm, high 0 mm</title>"), std::string::npos) << map;
+  // The place of the greatest value in the picture is where the axes say: the map fills them.
+  EXPECT_NEAR(files[1].left * files[1].width, 92, 1e-9);
+  EXPECT_LT(files[1].top, files[1].bottom);
+}
+
 TEST(Figure, LongTitlesAreBroken) {
   Figure f = two_panels();
   f.title = std::string(100, 'a') + " " + std::string(100, 'b');  // two panels of 620 pixels hold some 160 letters
