@@ -20,18 +20,38 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is. A line break would end the
-/// string and let what follows be executed: it and its kind become blanks. gnuplot hands on to its SVG what begins an
-/// entity (&#) or ends a section (]]>): a blank parts them.
+/// string and let what follows be executed: it and its kind become blanks. A quote becomes its printed form: gnuplot
+/// reads doubled ones wrongly where a string begins with them or where they follow each other. gnuplot hands on to its
+/// SVG what begins an entity (&#), ends a section (]]>) or is no character (U+FFFE, U+FFFF): blanks part and replace
+/// them.
 std::string literal(std::string_view text) {
   std::string out = "'";
   for (std::size_t i = 0; i < text.size(); ++i) {
+    if (const auto three = text.substr(i, 3); three == "\xEF\xBF\xBE" || three == "\xEF\xBF\xBF") {
+      out += ' ';
+      i += 2;
+      continue;
+    }
     const char c = text[i];
     if ((c == '#' && out.ends_with('&')) || (c == '>' && out.ends_with("]]"))) out += ' ';
-    out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    if (c == '\'') out += '\'';
+    if (c == '\'') out += "’";
+    else out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   }
   return out + "'";
 }
+
+/// At most so many characters: a longer name would leave no room for the curves.
+std::string shortened(std::string_view text, std::size_t most) {
+  std::size_t characters = 0, end = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) == 0x80) continue;  // goes on with a character
+    if (++characters == most) end = i;
+  }
+  return characters <= most ? std::string(text) : std::string(text.substr(0, end)) + "…";
+}
+
+/// What is to be read in a picture.
+std::string shown(std::string_view text) { return literal(shortened(text, 80)); }
 
 void append_number(std::string& out, double value) {
   out += std::isfinite(value) ? fmt::format("{:.10g}", value) : "NaN";
@@ -73,18 +93,19 @@ std::string map_block(const std::string& name, const Panel& p) {
 }
 
 /// In lines that fit a width [pixel], as a gnuplot expression.
-std::string title(std::string_view text, int width) {
+std::string title(std::string_view whole, int width) {
   const std::size_t most = std::size_t(std::max(20, int(width / 7.8)));
+  const std::string text = shortened(whole, 3 * most);
   std::string out, line;
   std::size_t begin = 0;
   const auto flush = [&] {
-    out += (out.empty() ? "" : R"(."\n".)") + literal(line);
+    out += (out.empty() ? "" : R"(."\n".)") + literal(shortened(line, most));
     line.clear();
   };
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     if (!line.empty() && line.size() + 1 + end - begin > most) flush();
-    line += (line.empty() ? "" : " ") + std::string(text.substr(begin, end - begin));
+    line += (line.empty() ? "" : " ") + text.substr(begin, end - begin);
     begin = end + 1;
   }
   flush();
@@ -115,8 +136,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
                                                  bool told = false) {
   // A key below stands so near the label that an empty line must part them.
   const bool key = p.map.empty() && std::ranges::any_of(p.series, [](const Series& c) { return !c.label.empty(); });
-  std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + literal(p.x_label) +
-                        (key ? R"(."\n" offset 0,0.4)" : "") + "\nset ylabel " + literal(p.y_label) + "\n";
+  std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + shown(p.x_label) +
+                        (key ? R"(."\n" offset 0,0.4)" : "") + "\nset ylabel " + shown(p.y_label) + "\n";
   s += p.log_x ? "set logscale x\n" : "unset logscale x\n";
   s += p.log_y ? "set logscale y\n" : "unset logscale y\n";
   if (!p.map.empty()) {
@@ -139,7 +160,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
         "[{:.10g}:{:.10g}]\n",
         p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
                         : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
-        p.map_equal_axes && !alone ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(),
+        p.map_equal_axes && !alone ? "ratio -1" : "noratio", shown(p.map_label), low, high, p.map_x.front(),
         p.map_x.back(), p.map_y.front(), p.map_y.back());
     if (p.map_contours)
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
@@ -163,7 +184,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
       const std::string mark = fmt::format("s{}_{}", k, i);
       data += data_block(mark, p.series[i]);
       s += ", $" + mark + " using 1:2:(0) with " + p.series[i].style + " lc rgb '#000000' nocontour " +
-           (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
+           (p.series[i].label.empty() ? "notitle" : "title " + shown(p.series[i].label));
     }
     if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
     return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nunset tmargin\nunset bmargin\nset "
@@ -184,7 +205,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     // The colours come round: the next eight curves are dashed.
     if (i >= 8 && c.colour == 0 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
     if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + static_cast<int>(i) % 8);
-    plot += c.label.empty() ? "notitle" : "title " + literal(c.label);
+    plot += c.label.empty() ? "notitle" : "title " + shown(c.label);
   }
   for (std::size_t i = 0; told && i < p.series.size(); ++i)
     if (!p.series[i].x.empty())
@@ -197,7 +218,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     for (std::size_t i = 0; i < p.y_names.size(); ++i) {
       std::string name;  // a tic's words are a format
       for (const char c : p.y_names[i]) name += c == '%' ? std::string("%%") : std::string(1, c);
-      names += fmt::format("{}{} {}", i ? ", " : "", literal(name), -std::ptrdiff_t(i));
+      names += fmt::format("{}{} {}", i ? ", " : "", shown(name), -std::ptrdiff_t(i));
     }
     s += fmt::format("set ytics ({})\nset yrange [{}:0.5]\n", names, 0.5 - double(p.y_names.size()));
   }

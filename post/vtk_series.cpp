@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "post/file.hpp"
+#include "post/html.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -39,12 +40,24 @@ Shape shape(CellShape s) {
   return {VTK_EMPTY_CELL, 0};
 }
 
+/// VTK writes an array's name into the XML as it is: what markup is made of becomes entities, which readers turn back,
+/// and what no XML may hold a blank.
+std::string xml_name(const std::string& name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool none = name.compare(i, 3, "\xEF\xBF\xBE") == 0 || name.compare(i, 3, "\xEF\xBF\xBF") == 0;
+    if (none) i += 2;
+    out += none || static_cast<unsigned char>(name[i]) < 0x20 ? ' ' : name[i];
+  }
+  return escape_html(out);
+}
+
 vtkNew<vtkDoubleArray> array_of(const VtkField& field, std::size_t tuples) {
   if (field.values.size() != tuples * std::size_t(field.components))
     throw std::invalid_argument(fmt::format("array '{}' has {} values, expected {} x {}", field.name,
                                             field.values.size(), tuples, field.components));
   vtkNew<vtkDoubleArray> array;
-  array->SetName(field.name.c_str());
+  array->SetName(xml_name(field.name).c_str());
   array->SetNumberOfComponents(field.components);
   array->SetNumberOfTuples(vtkIdType(tuples));
   std::copy(field.values.begin(), field.values.end(), array->GetPointer(0));

@@ -30,6 +30,30 @@ Figure two_panels() {
   return f;
 }
 
+/// Quotes at the begin of a name or after each other, what is no character, and more than a picture has room for.
+TEST(Figure, AnyNameIsDrawn) {
+  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_names";
+  std::string accents;
+  for (int i = 0; i < 1000; ++i) accents += "\xC3\xA9";
+  for (const std::string& name :
+       {std::string("' at the begin"), std::string("two '' and four ''''"), std::string("\xEF\xBF\xBF]]>&#x0;"),
+        std::string(1000, 'n'), accents, std::string("%s%n {} @ _ ^ `id` $(id) \\ \"")}) {
+    Figure f = two_panels();
+    f.title = name;
+    for (Panel& p : f.panels) {
+      p.title = p.x_label = p.y_label = p.map_label = name;
+      for (Series& s : p.series) s.label = name;
+    }
+    EXPECT_EQ(draw(f, stem, true), "") << name;
+    std::ifstream svg(stem.parent_path() / panel_files(f, "hosel_figure_names").front().picture);
+    const std::string text{std::istreambuf_iterator<char>(svg), {}};
+    EXPECT_NE(text.find("</svg>"), std::string::npos) << name;
+    EXPECT_EQ(text.find("\xEF\xBF\xBF"), std::string::npos) << name;
+    EXPECT_EQ(text.find("&#x0;"), std::string::npos) << name;
+    std::filesystem::remove_all(stem);
+  }
+}
+
 TEST(Figure, PictureIsDrawn) {
   const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure";
   ASSERT_EQ(draw(two_panels(), stem), "");
