@@ -107,7 +107,7 @@ void from_json(const json& j, BallSection& s) {
 /// Numbers in single precision as they lie in memory.
 json packed(const std::vector<float>& values) {
   std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());  // none: no place to copy from
   return json::binary(std::move(bytes));
 }
 
@@ -115,7 +115,7 @@ std::vector<float> unpacked(const json& j) {
   const auto& bytes = j.get_binary();
   if (bytes.size() % sizeof(float) != 0) throw std::length_error("checkpoint");
   std::vector<float> values(bytes.size() / sizeof(float));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
 }
 

