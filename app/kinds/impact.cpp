@@ -54,6 +54,7 @@ class ImpactJob final : public Job {
   void run(Output& out) override {
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !own_.fe.face && !own_.fe.plate && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
+    if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
     if (flight_) flight_->show_in(out);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
@@ -224,6 +225,24 @@ class ImpactJob final : public Job {
   }
 
   /// What a driver-like head loses by a rigid face, along the normal.
+  /// Empty where the ball is struck on the face: within the ellipse on which a compliant face deflects, or within what
+  /// the widest heads of the rules of golf have (127 mm heel to toe, 71 mm high).
+  std::string off_the_face() const {
+    const double toe = own_.blow.delivery.impact_toe, high = own_.blow.delivery.impact_high;
+    const bool bounded = own_.fe.face && std::isfinite(own_.fe.face->half_width) &&
+                         std::isfinite(own_.fe.face->half_height);
+    const double width = bounded ? own_.fe.face->half_width : 0.0635,
+                 height = bounded ? own_.fe.face->half_height : 0.0355;
+    const bool on = bounded ? std::hypot(toe / width, high / height) < 1
+                            : std::abs(toe) <= width && std::abs(high) <= height;
+    if (on) return {};
+    return fmt::format(
+        "the ball is struck off the face: {:g} mm towards the toe and {:g} mm up, where {} reaches {:g} mm "
+        "to either side and {:g} mm up and down",
+        1e3 * toe, 1e3 * high, bounded ? "the ellipse on which this face deflects" : "no face by the rules",
+        1e3 * width, 1e3 * height);
+  }
+
   std::string rigid_face_costs() const {
     const models::Striker ball = models::golf_ball(own_.blow.ball);
     const double mass =
@@ -271,6 +290,7 @@ class ImpactJob final : public Job {
     for (const fs::path& f : recorder.files()) files.push_back(f);
     runs.push_back({name, home, outcome.result});
     runs.back().section = recorder.at_largest_force();
+    runs.back().moving = recorder.moving();
     if (record_.vtk)
       runs.back().patch =
           post::read_patch(home / "vtk", models::encounter(blow).ball_axes, models::mesh_axes(blow, own_.fe));
@@ -314,11 +334,12 @@ class ImpactJob final : public Job {
     doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
     doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
           "a higher contact.tangential_penalty");
-    // A centred sphere that only normal forces push cannot be spun: what turns it is the mesh, not quite a sphere.
+    // Pressure alone turns no sphere; but the ball is flattened, and a face that turns or dishes carries the flat
+    // round.
     if (const double spin = outcome.launch.spin.norm(); own_.fe.friction == 0 && spin > 1)
       out.warn(
-          fmt::format("{}: without friction nothing spins the ball: the {:.1f} rad/s ({:.0f} rpm) with which it "
-                      "leaves are the mesh's own: a finer accuracy has less",
+          fmt::format("{}: without friction the ball leaves with {:.1f} rad/s ({:.0f} rpm): the face turns or dishes "
+                      "under the flattened ball; \"look\" is off by as much (docs/limits.md)",
                       name, spin, rpm(spin)));
     out.say(fmt::format(
         "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "

@@ -59,7 +59,7 @@ void answer(Output& out, const ImpactStory& s) {
   page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, "rpm"));
   const double axis = degrees(l.spin_axis());
   if (rpm(l.spin_rate()) > 0.5)
-    page.answer("spin axis", fmt::format("{:.1f}°", std::abs(axis)),
+    page.answer("spin axis", fmt::format("{:.1f}°", axis),
                 beside(axis < -0.05  ? "a draw"
                        : axis > 0.05 ? "a fade"
                                      : "level",
@@ -157,6 +157,7 @@ void show_impact(Output& out, const ImpactStory& s) {
   if (!s.runs.empty()) {
     page.section("While the ball touches the face", "");
     const FeRun& r = s.runs.back();
+    page.moving(r.model + ": the ball on the face, to scale; the face as it yields.", post::json_for_viewer(r.moving));
     if (r.section)
       page.figure(fmt::format("{}: the ball cut open in the plane of slip at the largest force, {:.2f} kN after "
                               "{:.3f} ms, and the face behind it; the target is to the right.",

@@ -63,11 +63,36 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_NE(moved.text.find("rigid-eccentric ball_speed_mps"), std::string::npos) << moved.text;
   EXPECT_NE(moved.text.find("beyond"), std::string::npos) << moved.text;
   EXPECT_EQ(moved.text.find("dynamic_loft"), std::string::npos) << moved.text;
+  EXPECT_EQ(moved.text.find("e-1"), std::string::npos) << "digits of arithmetic: " << moved.text;
   EXPECT_NE(same.text.find("inputs\n  the same\nlaunches\n  the same"), std::string::npos) << same.text;
   EXPECT_EQ(same.text.find("beyond"), std::string::npos) << same.text;
   const Outcome none = diff("a", "nothing");
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
+}
+
+TEST(CommandLine, AStrikeOffTheFaceWarns) {
+  const fs::path home = fresh_directory("off_the_face"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow);
+  const auto run = [&](const std::string& more) {
+    return command("run '" + blow.string() + "' --force --out '" + (home / "out").string() + "' " + more);
+  };
+  const Outcome on = run("--set delivery.impact_toe_mm=30"), off = run("--set delivery.impact_toe_mm=70");
+  EXPECT_EQ(on.status, 0);
+  EXPECT_EQ(on.text.find("off the face"), std::string::npos) << on.text;
+  EXPECT_EQ(off.status, 0);
+  EXPECT_NE(off.text.find("struck off the face: 70 mm towards the toe"), std::string::npos) << off.text;
+  EXPECT_EQ(run("--strict --set delivery.impact_toe_mm=70").status, 3);
+}
+
+TEST(CommandLine, ACharacteristicTimePassesOrFails) {
+  const fs::path out = fresh_directory("characteristic_time");
+  const auto run = [&](const std::string& more) {
+    return command("run characteristic-time --force --set line.faces=2 --out '" + out.string() + "' " + more).text;
+  };
+  const std::string at_the_limit = run(""), softer = run("--set face.stiffness_N_per_m=4e6");
+  EXPECT_NE(at_the_limit.find("passes the rules' test"), std::string::npos) << at_the_limit;
+  EXPECT_NE(softer.find("fails the rules' test"), std::string::npos) << softer;
 }
 
 TEST(CommandLine, AFolderThatIsNoCaseHidesNoShippedOne) {
@@ -98,6 +123,27 @@ TEST(CommandLine, OpenSaysWhatIsMissing) {
   const std::string started = bash("DISPLAY=:0 " + path + open);
   EXPECT_NE(started.find("open.py"), std::string::npos) << started;
   EXPECT_NE(started.find((home / "vtk").string()), std::string::npos) << started;
+}
+
+TEST(CommandLine, FilmSaysWhatIsMissing) {
+  const fs::path home = fresh_directory("film");
+  EXPECT_NE(command("film '" + home.string() + "'").text.find("no series of a blow"), std::string::npos);
+  write(home / "vtk" / "ball.pvd", "");
+  const std::string film = HOSEL_COMMAND " film '" + home.string() + "'";
+  EXPECT_NE(bash("PATH=/nowhere " + film).find("pvbatch is not installed (Debian: apt-get install paraview)"),
+            std::string::npos);
+  const fs::path bin = fresh_directory("film_bin");
+  for (const char* name : {"pvbatch", "xvfb-run"}) {
+    write(bin / name, "#!/bin/sh\n");
+    fs::permissions(bin / name, fs::perms::owner_all);
+  }
+  EXPECT_NE(
+      bash("PATH='" + bin.string() + "' " + film).find("ffmpeg is not installed (Debian: apt-get install ffmpeg)"),
+      std::string::npos);
+  EXPECT_NE(bash(film + " --to film.avi").find("a film is an .mp4 or a .gif"), std::string::npos);
+  write(home / "film.mp4", "mine");
+  EXPECT_NE(bash(film).find("exists"), std::string::npos);
+  EXPECT_EQ(content(home / "film.mp4"), "mine");
 }
 
 }  // namespace
