@@ -142,7 +142,7 @@ TEST(Plate, TangentAndEnergy) {
   s.q = test::random_vector(s.q.size(), 3, 1e-4);
   s.v = test::random_vector(s.v.size(), 4, 1);
   s.a = test::random_vector(s.a.size(), 5, 1e4);
-  test::check_tangent(*model.plate, model.system.dof_map, s, 1e-5, 1e-9);
+  test::check_tangent(*model.plate, model.system.dof_map, s, 1e-5, 1e-9, 1e4);
   test::check_gradient(*model.plate, model.system.dof_map, s, 1e-5, 1e-8);
   Vector inertia = Vector::Zero(s.v.size()), force = inertia;
   model.plate->residual(s, inertia, force);
@@ -283,13 +283,16 @@ TEST(Plate, StressOfTheClampedDisc) {
   EXPECT_NEAR(at({0.99999, 0}).inner[0], -unit / 8, 0.04 * unit / 8);
 }
 
-/// A clamped shallow spherical cap is stiffer than the plate, and the more the thinner it is.
-TEST(Plate, CurvatureStiffens) {
-  const double t = 0.05, flat = Model(disc(), t).centre_under_pressure(),
-               curved = Model(disc(), t, {}, {10, 10}).centre_under_pressure();
-  // Rise over thickness is 1: Ritz with (1 - r^2)^2 and no in-plane motion of the rim gives a third or so.
-  EXPECT_LT(curved, 0.8 * flat);
-  EXPECT_GT(curved, 0.4 * flat);
+/// A clamped shallow spherical cap of base radius 1 under uniform pressure. Axisymmetric Ritz on the same energy with
+/// nine polynomials for each of w, b and u, itself converged to nine digits.
+TEST(Plate, ClampedShallowCapUnderPressure) {
+  struct Cap {
+    double thickness, radius, centre;
+  };
+  for (const Cap& c : {Cap{0.05, 10, 7.302004e-7}, Cap{0.02, 10, 3.032417e-6}, Cap{0.05, 3, 1.0825814e-7}}) {
+    ASSERT_LT(c.centre, 0.6 * disc_centre(c.thickness));
+    EXPECT_NEAR(Model(disc(), c.thickness, {}, {c.radius, c.radius}).centre_under_pressure(), c.centre, 5e-4 * c.centre);
+  }
 }
 
 TEST(PlateMesh, OutlinesAreMeshedToTheirRim) {
