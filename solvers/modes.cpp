@@ -95,20 +95,26 @@ Pairs lowest_modes(const Sparse& K, const Sparse& M, double zero, Index count) {
       zero;  // the decade of the last mode: rigid motions are not to drown it, so the shift is not far below
   while (below(K, M, wanted) < count)
     if (wanted *= 10; !std::isfinite(wanted)) throw NonConvergence("the modes have no finite frequencies");
-  const double shift = std::max(zero, 1e-2 * wanted);
+  // In units of that decade: Spectra's criterion of convergence has a floor at eps^(2/3), which values of 1 / omega^2 in
+  // SI units may lie below.
+  const Sparse scaled = K / wanted;
+  const double shift = std::max(zero / wanted, 1e-2);
   const Index n = K.rows(), ncv = std::min(n, std::max<Index>(2 * count + 1, 40));
   Spectra::SparseSymMatProd<double> mass(M);
   Pairs found{Vector(0), Eigen::MatrixXd(n, 0)};
   for (int pass = 0; pass < kDeflations; ++pass) {
-    Inverse inverse(K, M, found.phi);
+    Inverse inverse(scaled, M, found.phi);
     Spectra::SymGEigsShiftSolver<Inverse, Spectra::SparseSymMatProd<double>, Spectra::GEigsMode::ShiftInvert> lanczos(
         inverse, mass, count, ncv, -shift);
     lanczos.init();
     if (lanczos.compute(Spectra::SortRule::LargestMagn, 1000, 1e-12) < count)
       throw NonConvergence("the lowest modes did not converge");
     found.append(lanczos.eigenvalues(), lanczos.eigenvectors());
-    const double last = found.lambda[count - 1] * (1 - 1e-9) - zero;  // rigid motions are zero to round-off
-    if (below(K, M, last) <= (found.lambda.array() < last).count()) return found;
+    const double last = found.lambda[count - 1] * (1 - 1e-9) - zero / wanted;  // rigid motions are zero to round-off
+    if (below(scaled, M, last) <= (found.lambda.array() < last).count()) {
+      found.lambda *= wanted;
+      return found;
+    }
   }
   throw NonConvergence("more modes share a frequency than could be parted");
 }

@@ -43,9 +43,10 @@ TEST(PlateFace, CondensationKeepsTheComplianceWhereItIsStruck) {
     for (int j = 0; j < plate.design().modes; ++j)
       modes += std::pow(plate.modes().col(j).dot(load) / plate.omega()[std::size_t(j)], 2);
     EXPECT_LT(modes, 0.99 * exact);  // modes alone do not
-    // The spline carries the shapes: their sum under the load is the plate's deflection.
+    // The spline carries the shapes: their sum under the load is the plate's deflection, but for the kinks of its
+    // slope between elements of this mesh, which the spline rounds.
     const fem::SurfaceUnknowns w = on.cwiseQuotient(condensed.face.stiffness.diagonal());
-    EXPECT_NEAR(condensed.shapes->sum(place, w), plate.plate().deflection(plate.solve(load), place), 2e-3 * exact);
+    EXPECT_NEAR(condensed.shapes->sum(place, w), plate.plate().deflection(plate.solve(load), place), 4e-3 * exact);
   }
 }
 
@@ -92,6 +93,30 @@ TEST(PlateFace, MoreModesChangeLittle) {
   EXPECT_NEAR(a.ball_speed(), b.ball_speed(), 5e-4 * b.ball_speed());
   EXPECT_NEAR(a.spin_rate(), b.spin_rate(), 5e-3 * b.spin_rate());
   EXPECT_GT(std::abs(c.ball_speed() - b.ball_speed()), std::abs(a.ball_speed() - b.ball_speed()));
+}
+
+/// A face of so few elements that all of its flexural modes can be kept is its own unreduced face: what the other modes
+/// carry, shear through the thickness, is less than 0.1 % of its static compliance.
+TEST(PlateFace, AgreesWithTheUnreducedFace) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  PlateDesign reduced = design();
+  reduced.outline = {.form = mesh::PlateOutline::Form::rectangle, .half_width = 0.040, .half_height = 0.022};
+  reduced.thickness.map = mesh::PlateThickness::Constant{2.8e-3};
+  reduced.rim = {};
+  reduced.mesh = {.core = 2, .rings = 1};
+  PlateDesign whole = reduced;
+  whole.modes = 27;
+  const PlateFace flat(whole, Face{});
+  ASSERT_EQ(flat.modes().cols(), 63);  // three unknowns at 21 free nodes
+  const Vector2d place(-0.015, 0.006);
+  const fem::Vector load = flat.patch_load(place, 9e-3);
+  double kept = 0;
+  for (int j = 0; j < whole.modes; ++j) kept += std::pow(flat.modes().col(j).dot(load) / flat.omega()[std::size_t(j)], 2);
+  ASSERT_NEAR(kept, flat.compliance(place, 9e-3), 1e-3 * kept);
+  const FeOutcome a = solve_free_body(blow, with(reduced)), b = solve_free_body(blow, with(whole));
+  ASSERT_GT(b.result.face_travel, 1e-4);
+  EXPECT_NEAR(a.launch.ball_speed(), b.launch.ball_speed(), 5e-4 * b.launch.ball_speed());
+  EXPECT_NEAR(a.launch.spin_rate(), b.launch.spin_rate(), 5e-3 * b.launch.spin_rate());
 }
 
 /// A blow with a plane of symmetry meets the shapes that are their own mirror image; all of them give the same.
@@ -150,6 +175,20 @@ TEST(PlateStrike, PendulumOnAMasslessPlateIsThatOnASpring) {
     EXPECT_NEAR(tap.contact_time, wanted.times[3], 3e-3 * wanted.times[3]);
     // The rise of a pulse that is no half sine gives its length to 2 %.
     EXPECT_NEAR(found.time, wanted.time, 0.02 * wanted.time);
+  }
+}
+
+/// Three times the modes change the characteristic time by less than 1 us.
+TEST(PlateStrike, MoreModesChangeThePendulumLittle) {
+  PlateDesign more = design();
+  more.modes = 27;
+  const PlateStrike few(std::make_shared<const PlateFace>(design(), driver().face), driver()),
+      many(std::make_shared<const PlateFace>(more, driver().face), driver());
+  const Striker sphere = steel_sphere(0.011);
+  for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.018, -0.009)}) {
+    const double time = many.characteristic_time(sphere, place, pendulum_speeds()).time;
+    ASSERT_GT(time, 1e-4);
+    EXPECT_NEAR(few.characteristic_time(sphere, place, pendulum_speeds()).time, time, 1e-6);
   }
 }
 
