@@ -88,7 +88,7 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
   const double per_striker = 1 / striker.mass, per_head = std::isinf(place.mass) ? 0 : 1 / place.mass;
   Eigen::ArrayXd q = Eigen::ArrayXd::Zero(n), rate = q;
   double gap = 0, gap_rate = speed;  // head's rigid approach to the striker
-  double force = 0, last_touch = 0, impulse = 0, indentation = 0, before = 0;
+  double force = 0, last_touch = 0, impulse = 0, indentation = 0;
   Strike out;
   std::vector<double> impulses{0};
   bool touching = false;
@@ -99,27 +99,34 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
     const double approach = gap + (b * q).sum();
     double F = 0;
     if (approach > 0) {
-      // d + residual F(d) = approach; the law's rate is that of the last step.
-      const double behind = std::max(0.0, 1 + striker.damping * (indentation - before) / step);
-      double d = indentation > 0 ? std::min(indentation, approach) : approach;
-      for (int i = 0; i < 50; ++i) {
-        const double at = striker.stiffness * std::pow(d, striker.exponent) * behind;
-        const double error = d + place.residual * at - approach,
-                     slope = 1 + place.residual * striker.exponent * at / d;
-        const double next = std::max(0.1 * d, d - error / slope);
-        if (std::abs(next - d) < 1e-12 * approach) break;
+      // d + residual F(d, d') = approach with d' of this step: what F leaves in d would feed back on a rate of the last
+      // step and grow. F rises with d: Newton, between bounds.
+      const double before = indentation;
+      const auto force_at = [&](double d) {
+        const double rate_factor = 1 + striker.damping * (d - before) / step;
+        return rate_factor > 0 ? striker.stiffness * std::pow(d, striker.exponent) * rate_factor : 0.0;
+      };
+      double low = 0, high = approach, d = before > 0 ? std::min(before, approach) : approach;
+      for (int i = 0; i < 60; ++i) {
+        F = force_at(d);
+        const double error = d + place.residual * F - approach;
+        (error > 0 ? high : low) = d;
+        const double slope = 1 + (F > 0 ? place.residual * (striker.exponent * F / d + striker.stiffness *
+                                                                std::pow(d, striker.exponent) * striker.damping / step)
+                                        : 0.0);
+        double next = d - error / slope;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (std::abs(next - d) < 1e-13 * approach) break;
         d = next;
       }
-      before = indentation > 0 ? indentation : 0;
       indentation = d;
-      F = striker.stiffness * std::pow(d, striker.exponent) *
-          std::max(0.0, 1 + striker.damping * (indentation - before) / step);
+      F = force_at(d);
       if (!touching) ++out.touches;
       touching = true;
       last_touch = time;
     } else {
       touching = false;
-      indentation = before = 0;
+      indentation = 0;
       const bool opening = gap_rate + (b * rate).sum() < 0;
       if (opening && gap_rate < 0 && time - last_touch > quiet) break;
     }

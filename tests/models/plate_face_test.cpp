@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 /// Titanium, 90 by 50 mm, thicker in the middle; its rim turns on springs.
-PlateDesign design() {
+PlateDesign plate_design() {
   PlateDesign d;
   d.thickness.map = mesh::PlateThickness::Bulge{3.2e-3, 2.4e-3, 0.03, 0.018};
   d.rim.rotation = 6e3;
@@ -22,7 +22,7 @@ PlateDesign design() {
   return d;
 }
 
-FeImpactOptions with(const PlateDesign& d) {
+FeImpactOptions with_plate(const PlateDesign& d) {
   FeImpactOptions o = test::coarse_impact(2);
   o.plate = std::make_shared<const PlateOnDemand>(d);
   return o;
@@ -30,7 +30,7 @@ FeImpactOptions with(const PlateDesign& d) {
 
 /// The static shape about the place is among the condensed ones: compliance there is the plate's own.
 TEST(PlateFace, CondensationKeepsTheComplianceWhereItIsStruck) {
-  const PlateFace plate(design(), {0.3, 0.3});
+  const PlateFace plate(plate_design(), {0.3, 0.3});
   for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.018, -0.009)}) {
     const CondensedPlate condensed = plate.condensed(place);
     const double exact = plate.compliance(place, 9e-3);
@@ -51,7 +51,7 @@ TEST(PlateFace, CondensationKeepsTheComplianceWhereItIsStruck) {
 }
 
 TEST(PlateFace, SplineDerivatives) {
-  const CondensedPlate condensed = PlateFace(design(), {0.3, 0.3}).condensed({0.01, 0.005});
+  const CondensedPlate condensed = PlateFace(plate_design(), {0.3, 0.3}).condensed({0.01, 0.005});
   fem::SurfaceUnknowns w = fem::SurfaceUnknowns::Zero(condensed.face.size());
   for (Eigen::Index j = 0; j < w.size(); ++j) w[j] = 1.0 / double(j + 1);
   const double h = 1e-6;
@@ -72,7 +72,7 @@ TEST(PlateFace, SplineDerivatives) {
 /// Off centre, with friction and a curved face: the ledger closes as that of the rigid face does.
 TEST(PlateFace, LedgerClosesOffCentre) {
   const Blow blow = test::driver_blow(0.015, 0.006);
-  const FeImpactOptions yielding = with(design());
+  const FeImpactOptions yielding = with_plate(plate_design());
   FeImpactOptions rigid = yielding;
   rigid.plate = nullptr;
   const FeOutcome a = solve_free_body(blow, yielding), b = solve_free_body(blow, rigid);
@@ -85,11 +85,11 @@ TEST(PlateFace, LedgerClosesOffCentre) {
 /// Modes beyond those kept are worth 0.05 % of ball speed and 0.5 % of spin.
 TEST(PlateFace, MoreModesChangeLittle) {
   const Blow blow = test::driver_blow(0.015, 0.006);
-  PlateDesign all = design(), few = all;
+  PlateDesign all = plate_design(), few = all;
   all.modes = 27;
   few.modes = 1;
-  const Launch a = solve_free_body(blow, with(design())).launch, b = solve_free_body(blow, with(all)).launch,
-               c = solve_free_body(blow, with(few)).launch;
+  const Launch a = solve_free_body(blow, with_plate(plate_design())).launch, b = solve_free_body(blow, with_plate(all)).launch,
+               c = solve_free_body(blow, with_plate(few)).launch;
   EXPECT_NEAR(a.ball_speed(), b.ball_speed(), 5e-4 * b.ball_speed());
   EXPECT_NEAR(a.spin_rate(), b.spin_rate(), 5e-3 * b.spin_rate());
   EXPECT_GT(std::abs(c.ball_speed() - b.ball_speed()), std::abs(a.ball_speed() - b.ball_speed()));
@@ -99,7 +99,7 @@ TEST(PlateFace, MoreModesChangeLittle) {
 /// carry, shear through the thickness, is less than 0.1 % of its static compliance.
 TEST(PlateFace, AgreesWithTheUnreducedFace) {
   const Blow blow = test::driver_blow(0.015, 0.006);
-  PlateDesign reduced = design();
+  PlateDesign reduced = plate_design();
   reduced.outline = {.form = mesh::PlateOutline::Form::rectangle, .half_width = 0.040, .half_height = 0.022};
   reduced.thickness.map = mesh::PlateThickness::Constant{2.8e-3};
   reduced.rim = {};
@@ -113,7 +113,7 @@ TEST(PlateFace, AgreesWithTheUnreducedFace) {
   double kept = 0;
   for (int j = 0; j < whole.modes; ++j) kept += std::pow(flat.modes().col(j).dot(load) / flat.omega()[std::size_t(j)], 2);
   ASSERT_NEAR(kept, flat.compliance(place, 9e-3), 1e-3 * kept);
-  const FeOutcome a = solve_free_body(blow, with(reduced)), b = solve_free_body(blow, with(whole));
+  const FeOutcome a = solve_free_body(blow, with_plate(reduced)), b = solve_free_body(blow, with_plate(whole));
   ASSERT_GT(b.result.face_travel, 1e-4);
   EXPECT_NEAR(a.launch.ball_speed(), b.launch.ball_speed(), 5e-4 * b.launch.ball_speed());
   EXPECT_NEAR(a.launch.spin_rate(), b.launch.spin_rate(), 5e-3 * b.launch.spin_rate());
@@ -126,7 +126,7 @@ TEST(PlateFace, HalfOfASymmetricBlowIsTheWhole) {
   blow.club.head.inertia = Mat3(blow.club.head.inertia.diagonal().asDiagonal());
   Blow aside = blow;
   aside.delivery.impact_toe = 1e-7;
-  FeImpactOptions o = with(design());
+  FeImpactOptions o = with_plate(plate_design());
   o.newton_relative = 1e-8;
   const FeOutcome half = solve_free_body(blow, o), whole = solve_free_body(aside, o);
   ASSERT_LT(half.result.last.q.size(), whole.result.last.q.size());
@@ -137,11 +137,11 @@ TEST(PlateFace, HalfOfASymmetricBlowIsTheWhole) {
 /// The rigid face is the limit of a stiff plate.
 TEST(PlateFace, RigidIsItsLimit) {
   const Blow blow = test::driver_blow(0.015, 0.006);
-  PlateDesign d = design();
+  PlateDesign d = plate_design();
   d.material.young = 1e20;
   d.rim = {};
   d.damping = 0;
-  FeImpactOptions stiff = with(d);
+  FeImpactOptions stiff = with_plate(d);
   stiff.newton_relative = 1e-9;
   FeImpactOptions rigid = stiff;
   rigid.plate = nullptr;
@@ -151,7 +151,7 @@ TEST(PlateFace, RigidIsItsLimit) {
   EXPECT_LT((a.spin - b.spin).norm(), 1e-6 * b.spin.norm());
 }
 
-Head driver() {
+Head bare_driver() {
   return {.mass = 0.2,
           .cg = Vec3(-0.035, 0, 0.004),
           .inertia = Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(),
@@ -160,13 +160,13 @@ Head driver() {
 
 /// A plate without mass follows the pendulum at rest: the lumped face as stiff as it is there.
 TEST(PlateStrike, PendulumOnAMasslessPlateIsThatOnASpring) {
-  PlateDesign light = design();
+  PlateDesign light = plate_design();
   light.material.density *= 1e-3;
-  const PlateStrike strike(std::make_shared<const PlateFace>(light, driver().face), driver());
+  const PlateStrike strike(std::make_shared<const PlateFace>(light, bare_driver().face), bare_driver());
   const Striker sphere = steel_sphere(0.011);
   for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.02, 0.006)}) {
     const auto at = strike.at(place, pendulum_patch(strike.plate(), place));
-    EXPECT_NEAR(at.mass, mass_at(driver(), place.x(), place.y()), 1e-3 * at.mass);
+    EXPECT_NEAR(at.mass, mass_at(bare_driver(), place.x(), place.y()), 1e-3 * at.mass);
     const FaceCompliance spring{.mass = 1e-6, .stiffness = 1 / at.compliance};
     const CharacteristicTime wanted = characteristic_time(sphere, at.mass, spring, 1, pendulum_speeds()),
                              found = strike.characteristic_time(sphere, place, pendulum_speeds());
@@ -180,10 +180,10 @@ TEST(PlateStrike, PendulumOnAMasslessPlateIsThatOnASpring) {
 
 /// Three times the modes change the characteristic time by less than 1 us.
 TEST(PlateStrike, MoreModesChangeThePendulumLittle) {
-  PlateDesign more = design();
+  PlateDesign more = plate_design();
   more.modes = 27;
-  const PlateStrike few(std::make_shared<const PlateFace>(design(), driver().face), driver()),
-      many(std::make_shared<const PlateFace>(more, driver().face), driver());
+  const PlateStrike few(std::make_shared<const PlateFace>(plate_design(), bare_driver().face), bare_driver()),
+      many(std::make_shared<const PlateFace>(more, bare_driver().face), bare_driver());
   const Striker sphere = steel_sphere(0.011);
   for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.018, -0.009)}) {
     const double time = many.characteristic_time(sphere, place, pendulum_speeds()).time;
@@ -192,11 +192,29 @@ TEST(PlateStrike, MoreModesChangeThePendulumLittle) {
   }
 }
 
+/// Along the face the ball's restitution falls evenly: the loss that depends on the rate of indentation stays stable
+/// beside the compliance in series.
+TEST(PlateStrike, RestitutionFallsEvenlyTowardsTheToe) {
+  PlateDesign d = plate_design();
+  d.thickness.map = mesh::PlateThickness::Constant{2.8e-3};
+  d.rim = fem::RimSupport::of_shell(d.material, 0.8e-3, 0.04, 0.1);
+  d.mesh = {};
+  const PlateStrike strike(std::make_shared<const PlateFace>(d, bare_driver().face), bare_driver());
+  std::vector<double> found;
+  for (int i = 0; i <= 8; ++i)
+    found.push_back(strike.strike(golf_ball({}), strike.at(Vector2d(3e-3 * i, 0), kBallPatch), 48.77).restitution);
+  ASSERT_GT(found.front() - found.back(), 0.01);
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    EXPECT_LT(found[i], found[i - 1]) << i;
+    EXPECT_LT(found[i - 1] - found[i], 0.01) << i;
+  }
+}
+
 /// What two masses on a spring do: striker, and a head that does not move but for its plate's first mode.
 TEST(PlateStrike, EnergyOfAnUndampedBlowIsKept) {
-  PlateDesign d = design();
+  PlateDesign d = plate_design();
   d.damping = 0;
-  const PlateStrike strike(std::make_shared<const PlateFace>(d, driver().face), driver());
+  const PlateStrike strike(std::make_shared<const PlateFace>(d, bare_driver().face), bare_driver());
   const auto at = strike.at(Vector2d::Zero(), kBallPatch);
   const Striker spring{0.046, 1e6, 1, 0};
   const auto found = strike.strike(spring, at, 45);
