@@ -178,9 +178,10 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
   std::optional<FaceCompliance> face;
   if (overlap || fe || there) face = read_club_face(root);
   if (overlap && has_plate(root))
-    root.table("face").fail("plate",
-                            "models without a deformable ball know a lumped face alone: its constants are in the summary "
-                            "of a plate-face case");
+    root.table("face").fail(
+        "plate",
+        "models without a deformable ball know a lumped face alone: its constants are in the summary "
+        "of a plate-face case");
   if (auto t = table("volumetric", overlap)) {
     // Nobody's constants are a default: an iron struck with a driver's is 6 mph too fast.
     std::optional<models::VolumetricLaw> standard;

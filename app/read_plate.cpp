@@ -49,9 +49,10 @@ PlateOutline read_outline(Table t) {
   out.corners = places(sheet);
   if (out.corners.size() < 3) throw InputError(fmt::format("{}: an outline needs three corners", sheet.file));
   if (const auto at = out.turned_back())
-    throw InputError(fmt::format("{}:{}: the outline turns back here: every ray from the face's centre must meet it "
-                                 "once",
-                                 sheet.file, sheet.lines[*at]));
+    throw InputError(
+        fmt::format("{}:{}: the outline turns back here: every ray from the face's centre must meet it "
+                    "once",
+                    sheet.file, sheet.lines[*at]));
   if (const auto faults = out.faults(); !faults.empty())
     throw InputError(fmt::format("{}: {}", sheet.file, faults.front()));
   return out;
@@ -81,11 +82,13 @@ PlateThickness::Grid read_grid(const post::Sheet& sheet) {
   std::vector<std::size_t> from(out.value.size(), 0);
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (!kThickness.contains(thickness[i]))
-      throw InputError(fmt::format("{}:{}: a thickness of {:g} mm is out of range (allowed: {:g} to {:g} mm)", sheet.file,
-                                   sheet.lines[i], 1e3 * thickness[i], 1e3 * kThickness.min, 1e3 * kThickness.max));
+      throw InputError(fmt::format("{}:{}: a thickness of {:g} mm is out of range (allowed: {:g} to {:g} mm)",
+                                   sheet.file, sheet.lines[i], 1e3 * thickness[i], 1e3 * kThickness.min,
+                                   1e3 * kThickness.max));
     const std::size_t cell = number(out.z, at[i].y()) * out.y.size() + number(out.y, at[i].x());
     if (out.value[cell] > 0)
-      throw InputError(fmt::format("{}:{}: this place stands in line {} already", sheet.file, sheet.lines[i], from[cell]));
+      throw InputError(
+          fmt::format("{}:{}: this place stands in line {} already", sheet.file, sheet.lines[i], from[cell]));
     out.value[cell] = thickness[i];
     from[cell] = sheet.lines[i];
   }
@@ -98,14 +101,14 @@ PlateThickness::Grid read_grid(const post::Sheet& sheet) {
 
 PlateThickness read_thickness(Table t, std::string& file) {
   PlateThickness out;
-  const std::string map = t.choice({"map", "how thickness varies over the face"},
-                                   {"constant", "rings", "bulge", "grid"}, "constant");
+  const std::string map =
+      t.choice({"map", "how thickness varies over the face"}, {"constant", "rings", "bulge", "grid"}, "constant");
   if (map == "constant") {
     out.map = PlateThickness::Constant{t.quantity({"value", "thickness"}, "mm", kThickness)};
   } else if (map == "rings") {
     PlateThickness::Rings r;
-    r.share = t.numbers({"share", "stations from the centre, 0, to the rim, 1; straight between them"}, 0,
-                        Range::fraction());
+    r.share =
+        t.numbers({"share", "stations from the centre, 0, to the rim, 1; straight between them"}, 0, Range::fraction());
     r.value = t.quantities({"value", "thickness at each station"}, "mm", 0, kThickness);
     out.map = r;
   } else if (map == "bulge") {
@@ -137,7 +140,8 @@ fem::PlateMaterial read_material(Table& t) {
   fem::PlateMaterial out;
   out.young = t.quantity({"young", "Young's modulus"}, "GPa", {1e9, 1e12}, standard(&fem::PlateMaterial::young));
   out.poisson = t.number({"poisson", "Poisson's ratio"}, {0, 0.49}, standard(&fem::PlateMaterial::poisson));
-  out.density = t.quantity({"density", "of the face"}, "kg_per_m3", {500, 2.5e4}, standard(&fem::PlateMaterial::density));
+  out.density =
+      t.quantity({"density", "of the face"}, "kg_per_m3", {500, 2.5e4}, standard(&fem::PlateMaterial::density));
   return out;
 }
 
@@ -157,10 +161,12 @@ fem::RimSupport read_rim(Table t, const fem::PlateMaterial& material) {
   }
   const Range some = Range::non_negative().or_infinite(), positive = Range::positive().or_infinite();
   const auto standard = [&](double x) { return shell ? std::optional(x) : std::nullopt; };
-  out.rotation = t.quantity({"rotation", "moment per length of rim and radian; inf: held"}, "N", some, standard(out.rotation));
-  out.deflection = t.quantity({"deflection", "force across the face per length of rim and deflection; inf: held"}, "GPa",
-                              positive, standard(out.deflection));
-  out.stretch = t.quantity({"stretch", "the same in the face's plane; inf: held"}, "GPa", positive, standard(out.stretch));
+  out.rotation =
+      t.quantity({"rotation", "moment per length of rim and radian; inf: held"}, "N", some, standard(out.rotation));
+  out.deflection = t.quantity({"deflection", "force across the face per length of rim and deflection; inf: held"},
+                              "GPa", positive, standard(out.deflection));
+  out.stretch =
+      t.quantity({"stretch", "the same in the face's plane; inf: held"}, "GPa", positive, standard(out.stretch));
   return out;
 }
 
@@ -175,8 +181,8 @@ models::PlateDesign read_plate(Table t) {
   d.rim = read_rim(t.default_table("rim"), d.material);
   d.damping = t.number({"damping", "of each mode, over the critical"}, {0, 0.2}, d.damping);
   Table mesh = t.default_table("mesh");
-  d.mesh.core = int(mesh.integer({"core", "elements along a side of the core block, across the height of a rectangle"}, 2,
-                                 40, d.mesh.core));
+  d.mesh.core = int(mesh.integer({"core", "elements along a side of the core block, across the height of a rectangle"},
+                                 2, 40, d.mesh.core));
   d.mesh.rings = int(mesh.integer({"rings", "rings of elements around the core block"}, 1, 40, d.mesh.rings));
   d.modes = int(mesh.integer({"modes", "of the plate that a blow keeps beside four static shapes"}, 1, 27, d.modes));
   if (const auto faults = d.faults(); !faults.empty()) t.fail("", faults.front());

@@ -135,8 +135,8 @@ class Contact final : public Term {
   Mat3 free_rotation(const Mat3& R) const;
   Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
   Local evaluate(const Kinematics& k, bool derivatives) const;
-  /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point, of
-  /// the place, and where the surface has unknowns two more, of how these tilt it there; columns are the solid's
+  /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point,
+  /// of the place, and where the surface has unknowns two more, of how these tilt it there; columns are the solid's
   /// functions, carrier and own unknowns.
   struct Linearised {
     Linearised(Index most, Index size, Index others)
@@ -147,7 +147,7 @@ class Contact final : public Term {
           moment(Directions::Zero(3, size)) {}
     Index rows = 0;
     Eigen::MatrixXd changes, forces;
-    Directions arm;                                    // of the point at hand: its changes
+    Directions arm;                                   // of the point at hand: its changes
     Eigen::Matrix<double, Eigen::Dynamic, 3> turned;  // columns of the carrier's rotation
     Directions moment;                                // and its rows
   };

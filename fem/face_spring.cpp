@@ -23,8 +23,8 @@ struct FaceSpring::Carried {
 };
 
 struct FaceSpring::Moments {
-  double first = 0;           // of f
-  Vec3 arm = Vec3::Zero();    // of r f
+  double first = 0;         // of f
+  Vec3 arm = Vec3::Zero();  // of r f
 };
 
 FaceSpring::FaceSpring(ReducedFace face, const SurfaceCarrier& carrier, const DofMap::Block& unknowns)
@@ -69,8 +69,8 @@ void FaceSpring::residual(const State& s, Vector& inertia, Vector& force) const 
   const double square = w.dot(still), mixed = rate.dot(still);
   const Vec3 out = c.turned(kOut), across = 2 * c.spin.cross(kOut);
   const Vec3 push = -(out * f.first + across * f1.first + kOut * f2.first);
-  const Vec3 turn = -kOut.cross(c.acceleration * f.first + c.turned(f.arm)) - f.arm.cross(out) -
-                    f1.arm.cross(across) - f2.arm.cross(kOut) + kOut.cross(out * square + across * mixed);
+  const Vec3 turn = -kOut.cross(c.acceleration * f.first + c.turned(f.arm)) - f.arm.cross(out) - f1.arm.cross(across) -
+                    f2.arm.cross(kOut) + kOut.cross(out * square + across * mixed);
   inertia.segment<3>(carrier_.translation->v) += c.R * push;
   inertia.segment<3>(carrier_.rotation->v) += turn;
   Vector own = -kOut.dot(c.acceleration) * face_.mass + kOut.dot(out) * still;
@@ -107,16 +107,16 @@ void FaceSpring::tangent(const State& s, const Weights& weights, TangentSink& si
   // By spin and its rate.
   by_turn.topRows<3>() = c.R * (weights.mass * f.first * E + weights.damping * (2 * f1.first * E - f.first * Ew) -
                                 weights.stiffness * skew(push));
-  by_turn.middleRows<3>(3) +=
-      weights.mass * (E * skew(f.arm) + skew(f.arm) * E - square * E * E) +
-      weights.damping * (-E * centripetal(c.spin, f.arm) - skew(f.arm) * Ew + 2 * skew(f1.arm) * E +
-                         square * E * Ew - 2 * mixed * E * E);
+  by_turn.middleRows<3>(3) += weights.mass * (E * skew(f.arm) + skew(f.arm) * E - square * E * E) +
+                              weights.damping * (-E * centripetal(c.spin, f.arm) - skew(f.arm) * Ew +
+                                                 2 * skew(f1.arm) * E + square * E * Ew - 2 * mixed * E * E);
   const Vec3 outwards = 2 * (c.spin.x() * kOut - c.spin);  // derivative of e . w x (w x e)
   for (Index j = 0; j < n; ++j) {
     const Vec3 arm = moment_.col(j);
     const double m = face_.mass[j];
     by_turn.row(at + j) += -weights.mass * arm.cross(kOut).transpose() -
-                           weights.damping * (kOut.transpose() * centripetal(c.spin, arm) - still[j] * outwards.transpose());
+                           weights.damping *
+                               (kOut.transpose() * centripetal(c.spin, arm) - still[j] * outwards.transpose());
     auto column = k.col(at + j);
     column.head<3>() = -m * (c.R * (weights.stiffness * out + weights.damping * across + weights.mass * kOut));
     column.segment<3>(3) = weights.stiffness * (-kOut.cross(c.acceleration * m + c.turned(arm)) - arm.cross(out) +

@@ -13,7 +13,8 @@ using Eigen::Vector2d;
 using mesh::Q9;
 
 const double kThird = 1 / std::sqrt(3.0), kFifths = std::sqrt(0.6);
-const std::array<std::pair<double, double>, 3> kGauss3{{{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}}};
+const std::array<std::pair<double, double>, 3> kGauss3{
+    {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}}};
 constexpr double kShearFactor = 5.0 / 6;
 
 Eigen::Matrix3d plane_stress(const PlateMaterial& m) {
@@ -74,7 +75,8 @@ Plate::Plate(DofMap& dof_map, mesh::PlateMesh mesh, const PlateMaterial& materia
       curved_(std::isfinite(curvature.bulge) || std::isfinite(curvature.roll)) {
   for (const auto& faults : {material.faults(), rim.faults()})
     if (!faults.empty()) throw std::invalid_argument("plate: " + faults.front());
-  if (thickness_.size() != mesh_.nodes.size()) throw std::invalid_argument("plate: a thickness for every node is needed");
+  if (thickness_.size() != mesh_.nodes.size())
+    throw std::invalid_argument("plate: a thickness for every node is needed");
   for (double t : thickness_)
     if (!(t > 0)) throw std::invalid_argument("plate: a thickness must be positive");
   const auto held = [&](double k) { return std::isinf(k); };
@@ -159,8 +161,7 @@ Plate::Strains Plate::strains(const std::array<int, 9>& nodes, double xi, double
     for (int i = 0; i < 2; ++i)
       for (int j = -1; j <= 1; ++j) {
         const double a = i == 0 ? -kThird : kThird, b = j * kFifths, r = across / kFifths;
-        const double weight = 0.5 * (1 + (i == 0 ? -1 : 1) * own / kThird) *
-                              (j == 0 ? 1 - r * r : 0.5 * r * (r + j));
+        const double weight = 0.5 * (1 + (i == 0 ? -1 : 1) * own / kThird) * (j == 0 ? 1 - r * r : 0.5 * r * (r + j));
         const Q9 tied = c == 0 ? Q9::at(a, b) : Q9::at(b, a);
         const Vector2d along = jacobian(nodes, tied).col(c);
         for (int k = 0; k < 9; ++k) {
@@ -188,8 +189,7 @@ void Plate::build(Element& e, const std::array<int, 9>& nodes) const {
       const Eigen::Matrix<double, 9, 9> NN = area * material_.density * q.value * q.value.transpose();
       for (int k = 0; k < 9; ++k)
         for (int l = 0; l < 9; ++l)
-          for (int i = 0; i < 5; ++i)
-            M(at(k, i), at(l, i)) += NN(k, l) * (i == kRotationY || i == kRotationZ ? t3 : t);
+          for (int i = 0; i < 5; ++i) M(at(k, i), at(l, i)) += NN(k, l) * (i == kRotationY || i == kRotationZ ? t3 : t);
     }
   e.stiffness = K(e.places, e.places);
   e.mass = M(e.places, e.places);
@@ -244,8 +244,7 @@ void Plate::residual(const State& s, Vector& inertia, Vector& force) const {
 }
 
 void Plate::tangent(const State&, const Weights& weights, TangentSink& sink) const {
-  for (const Element& e : elements_)
-    sink.add(e.dofs, e.dofs, weights.stiffness * e.stiffness + weights.mass * e.mass);
+  for (const Element& e : elements_) sink.add(e.dofs, e.dofs, weights.stiffness * e.stiffness + weights.mass * e.mass);
 }
 
 Energies Plate::energies(const State& s) const {
@@ -304,8 +303,8 @@ Vector Plate::load(const std::function<double(const Vector2d&)>& pressure) const
     const double f = s.area * pressure(s.place);
     if (f == 0) continue;
     for (int k = 0; k < 9; ++k)
-      if (const Index d = dof(mesh_.elements[static_cast<std::size_t>(s.element)][static_cast<std::size_t>(k)],
-                              kDeflection);
+      if (const Index d =
+              dof(mesh_.elements[static_cast<std::size_t>(s.element)][static_cast<std::size_t>(k)], kDeflection);
           d >= 0)
         out[d] += f * s.shape[k];
   }
@@ -321,8 +320,8 @@ Vector Plate::point_load(const Vector2d& place) const {
   if (p.element < 0) return out;
   const Q9 q = Q9::at(p.xi, p.eta);
   for (int k = 0; k < 9; ++k)
-    if (const Index d = dof(mesh_.elements[static_cast<std::size_t>(p.element)][static_cast<std::size_t>(k)],
-                            kDeflection);
+    if (const Index d =
+            dof(mesh_.elements[static_cast<std::size_t>(p.element)][static_cast<std::size_t>(k)], kDeflection);
         d >= 0)
       out[d] += q.value[k];
   return out;

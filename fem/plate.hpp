@@ -34,9 +34,9 @@ struct RimSupport {
   double rotation = std::numeric_limits<double>::infinity();    ///< about the rim [N/rad]
   double stretch = std::numeric_limits<double>::infinity();     ///< in the plate's plane [N/m2]
   std::vector<std::string> faults() const;
-  /// What a thin shell that leaves the rim at a right angle does to it: across the plate it is stretched over its length,
-  /// in the plate's plane and about the rim it bends as the edge of a long cylinder, 2 D b^3 and 2 D b with
-  /// b^4 = 3 (1 - nu^2) / (radius thickness)^2 [@plates-and-shells].
+  /// What a thin shell that leaves the rim at a right angle does to it: across the plate it is stretched over its
+  /// length, in the plate's plane and about the rim it bends as the edge of a long cylinder, 2 D b^3 and 2 D b with b^4
+  /// = 3 (1 - nu^2) / (radius thickness)^2 [@plates-and-shells].
   static RimSupport of_shell(const PlateMaterial& material, double thickness, double radius, double length);
 };
 
@@ -92,7 +92,7 @@ class Plate final : public Term {
   static constexpr int kMost = 45;
   struct Element {
     std::vector<Index> dofs, entries;  // free ones; their places in State::q
-    std::vector<int> places;  // of them among the element's 45
+    std::vector<int> places;           // of them among the element's 45
     Eigen::MatrixXd stiffness, mass;
   };
   struct Strains;  // at a point

@@ -40,7 +40,10 @@ struct ShapeSpline::Cell {
 
 ShapeSpline::ShapeSpline(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int columns, int rows,
                          const Eigen::MatrixXd& values)
-    : from_(from), step_((to - from).cwiseQuotient(Eigen::Vector2d(columns - 1, rows - 1))), columns_(columns), rows_(rows) {
+    : from_(from),
+      step_((to - from).cwiseQuotient(Eigen::Vector2d(columns - 1, rows - 1))),
+      columns_(columns),
+      rows_(rows) {
   if (columns < 2 || rows < 2 || values.cols() != Eigen::Index(columns) * rows || values.rows() > kSurfaceUnknowns)
     throw std::invalid_argument("spline: a value at every grid point of at most 32 functions is needed");
   const Eigen::MatrixXd Y = interpolation(columns), Z = interpolation(rows);

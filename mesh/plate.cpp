@@ -101,8 +101,7 @@ std::vector<std::string> PlateThickness::faults() const {
     all_thick(g->value);
     if (g->y.size() < 2 || g->z.size() < 2 || g->value.size() != g->y.size() * g->z.size())
       out.emplace_back("a thickness grid needs two lines each way and a value at every crossing");
-    else if (!ascending(g->y) || !ascending(g->z))
-      out.emplace_back("the lines of a thickness grid must ascend");
+    else if (!ascending(g->y) || !ascending(g->z)) out.emplace_back("the lines of a thickness grid must ascend");
   }
   return out;
 }
@@ -260,7 +259,8 @@ PlateMesh plate_mesh(const PlateOutline& outline, const PlateMeshOptions& option
       own += std::remainder(phi - own, 2 * kPi);
     }
     for (int k = 1; k < around; k += 2) {
-      const double last = angle[static_cast<std::size_t>(k - 1)], next = angle[static_cast<std::size_t>((k + 1) % around)];
+      const double last = angle[static_cast<std::size_t>(k - 1)],
+                   next = angle[static_cast<std::size_t>((k + 1) % around)];
       angle[static_cast<std::size_t>(k)] = last + 0.5 * std::remainder(next - last, 2 * kPi);
     }
   }
@@ -290,9 +290,9 @@ PlateMesh plate_mesh(const PlateOutline& outline, const PlateMeshOptions& option
       const double u = i / (2.0 * n), v = j / (2.0 * n);
       const Vector2d right = core(j), left = core(4 * n + 2 * n - j), top = core(2 * n + 2 * n - i),
                      bottom = core(6 * n + i);
-      m.nodes.push_back((1 - u) * left + u * right + (1 - v) * bottom + v * top -
-                        ((1 - u) * (1 - v) * corner[0] + u * (1 - v) * corner[1] + u * v * corner[2] +
-                         (1 - u) * v * corner[3]));
+      m.nodes.push_back(
+          (1 - u) * left + u * right + (1 - v) * bottom + v * top -
+          ((1 - u) * (1 - v) * corner[0] + u * (1 - v) * corner[1] + u * v * corner[2] + (1 - u) * v * corner[3]));
     }
   const int block = columns * columns;
   for (int l = 1; l <= layers; ++l)

@@ -95,8 +95,8 @@ Pairs lowest_modes(const Sparse& K, const Sparse& M, double zero, Index count) {
       zero;  // the decade of the last mode: rigid motions are not to drown it, so the shift is not far below
   while (below(K, M, wanted) < count)
     if (wanted *= 10; !std::isfinite(wanted)) throw NonConvergence("the modes have no finite frequencies");
-  // In units of that decade: Spectra's criterion of convergence has a floor at eps^(2/3), which values of 1 / omega^2 in
-  // SI units may lie below.
+  // In units of that decade: Spectra's criterion of convergence has a floor at eps^(2/3), which values of 1 / omega^2
+  // in SI units may lie below.
   const Sparse scaled = K / wanted;
   const double shift = std::max(zero / wanted, 1e-2);
   const Index n = K.rows(), ncv = std::min(n, std::max<Index>(2 * count + 1, 40));

@@ -27,8 +27,8 @@ constexpr double kLargest = 239, kTolerance = 18;
 bool conforms(const models::CharacteristicTime& ct) { return std::round(1e6 * ct.time) <= kLargest + kTolerance; }
 
 std::string rules_verdict(bool passes) {
-  return fmt::format("{} the rules' test: at most {} µs and a tolerance of {} µs", passes ? "passes" : "fails", kLargest,
-                     kTolerance);
+  return fmt::format("{} the rules' test: at most {} µs and a tolerance of {} µs", passes ? "passes" : "fails",
+                     kLargest, kTolerance);
 }
 
 class CharacteristicTimeJob final : public Job {
@@ -199,8 +199,8 @@ class PlateTapJob final : public Job {
     speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
     if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
     Table place = root.table("impact");
-    const double toe = place.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1},
-                                      0.0);
+    const double toe =
+        place.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1}, 0.0);
     const double high = place.quantity({"high", "of the tap, from the face's centre up"}, "mm", {-0.1, 0.1}, 0.0);
     place_ = Eigen::Vector2d(-toe, high);
     restitution_speed_ =
@@ -215,9 +215,10 @@ class PlateTapJob final : public Job {
   void run(Output& out) override {
     const Tap own = tap(1);
     const models::CharacteristicTime& ct = own.time;
-    out.say(fmt::format("characteristic time {:.1f} us, slope {:.1f} us (m/s)^0.329, largest departure from the line "
-                        "{:.3f} us",
-                        1e6 * ct.time, 1e6 * ct.slope, 1e6 * ct.departure));
+    out.say(
+        fmt::format("characteristic time {:.1f} us, slope {:.1f} us (m/s)^0.329, largest departure from the line "
+                    "{:.3f} us",
+                    1e6 * ct.time, 1e6 * ct.slope, 1e6 * ct.departure));
     const bool passes = conforms(ct);
     out.say("this face " + rules_verdict(passes));
     out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * ct.time),
@@ -257,8 +258,9 @@ class PlateTapJob final : public Job {
                          t.restitution, models::rules_line(1e-6 * us));
     }
     out.write("line.csv", csv);
-    out.say(fmt::format("{} plates, {:.0f} to {:.0f} us: within {:.4f} of the rules' line (farthest {:+.4f} at {:.0f} us)",
-                        faces_, faces.x.back(), faces.x.front(), std::abs(worst), worst, worst_at));
+    out.say(
+        fmt::format("{} plates, {:.0f} to {:.0f} us: within {:.4f} of the rules' line (farthest {:+.4f} at {:.0f} us)",
+                    faces_, faces.x.back(), faces.x.front(), std::abs(worst), worst, worst_at));
     out.page().answer(fmt::format("{} plates", faces_), fmt::format("within {:.4f}", std::abs(worst)),
                       fmt::format("of the rules' line, {:.0f} to {:.0f} µs", faces.x.back(), faces.x.front()));
     post::Panel rules{.title = "plates from thick to thin",
@@ -266,14 +268,14 @@ class PlateTapJob final : public Job {
                       .y_label = "restitution",
                       .series = {faces, wanted}};
     out.draw({.panels = {tap_panel, rules}, .columns = 2}, "characteristic-time");
-    out.write_summary({{"characteristic_time_us", 1e6 * ct.time},
-                       {"conforms", passes},
-                       {"slope_us", 1e6 * ct.slope},
-                       {"largest_departure_us", 1e6 * ct.departure},
-                       {"restitution", own.restitution},
-                       {"restitution_rigid",
-                        models::strike(models::golf_ball({}), own.head, {}, 0, restitution_speed_).restitution},
-                       {"largest_departure_from_line", worst}});
+    out.write_summary(
+        {{"characteristic_time_us", 1e6 * ct.time},
+         {"conforms", passes},
+         {"slope_us", 1e6 * ct.slope},
+         {"largest_departure_us", 1e6 * ct.departure},
+         {"restitution", own.restitution},
+         {"restitution_rigid", models::strike(models::golf_ball({}), own.head, {}, 0, restitution_speed_).restitution},
+         {"largest_departure_from_line", worst}});
   }
 
  private:

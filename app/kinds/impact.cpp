@@ -53,7 +53,8 @@ class ImpactJob final : public Job {
 
   void run(Output& out) override {
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
-    if (fe && !own_.fe.face && !own_.fe.plate && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
+    if (fe && !own_.fe.face && !own_.fe.plate && models::wants_yielding_face(own_.blow.club.head))
+      out.say(rigid_face_costs());
     if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
     if (flight_) flight_->show_in(out);
     nlohmann::json summary;
@@ -99,7 +100,8 @@ class ImpactJob final : public Job {
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
     const ImpactStory story{
-        blow, columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(), record_.vtk};
+        blow,       columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(),
+        record_.vtk};
     if (matched_) {
       std::string lofts;
       for (const auto& c : columns)

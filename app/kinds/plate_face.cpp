@@ -30,7 +30,7 @@ using Eigen::Vector2d;
 using nlohmann::json;
 
 constexpr double kRulesTime = 239e-6, kRulesTolerance = 18e-6;  // of the rules' pendulum [s]
-constexpr std::size_t kModes = 6;                       // in tables and pictures
+constexpr std::size_t kModes = 6;                               // in tables and pictures
 
 class PlateFaceJob final : public PointJob {
  public:
@@ -53,8 +53,8 @@ class PlateFaceJob final : public PointJob {
     sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));
     speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
     if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
-    restitution_speed_ = root.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps",
-                                       {1, 100}, 48.77);
+    restitution_speed_ =
+        root.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps", {1, 100}, 48.77);
     errors_ = root.flag({"numerical_error", "solve the first place twice more: coarser, and with more modes"}, true);
     vtk_ = root.flag({"vtk", "write the modes for ParaView"}, true);
     for (const double high : high_)
@@ -136,32 +136,35 @@ class PlateFaceJob final : public PointJob {
     for (const auto& s : plate.plate().samples()) {
       double deflection = 0;
       for (int k = 0; k < 9; ++k)
-        deflection += s.shape[k] * plate.plate().value(w,
-                                                       plate.plate().mesh().elements[std::size_t(s.element)][std::size_t(k)],
-                                                       fem::Plate::kDeflection);
+        deflection += s.shape[k] *
+                      plate.plate().value(w, plate.plate().mesh().elements[std::size_t(s.element)][std::size_t(k)],
+                                          fem::Plate::kDeflection);
       mass += s.mass * std::pow(deflection / compliance, 2);
     }
     out.say(fmt::format("as a lumped face: {:.2f} MN/m and {:.1f} g at its centre", 1e-6 / compliance, 1e3 * mass));
     summary["face_mass_g"] = 1e3 * plate.mass();
     summary["lumped"] = {{"stiffness_N_per_m", 1 / compliance}, {"effective_mass_g", 1e3 * mass}};
 
-    post::Figure figure{.title = std::string("natural modes; ") + post::kFaceView, .columns = 3, .panel_width = 520,
+    post::Figure figure{.title = std::string("natural modes; ") + post::kFaceView,
+                        .columns = 3,
+                        .panel_width = 520,
                         .panel_height = 330};
     const post::FaceGrid fine = drawn(61, 41);
     for (std::size_t m = 0; m < std::min(kModes, plate.omega().size()); ++m) {
       std::vector<double> values;
       for (std::size_t i = 0; i < fine.size(); ++i) {
         const Vector2d at(-fine.toe_at(i), fine.high_at(i));
-        values.push_back(plate.covers(at) ? plate.plate().deflection(plate.modes().col(Eigen::Index(m)), at) : std::nan(""));
+        values.push_back(plate.covers(at) ? plate.plate().deflection(plate.modes().col(Eigen::Index(m)), at)
+                                          : std::nan(""));
       }
       double most = 0;
       for (const double v : values)
         if (std::isfinite(v)) most = std::max(most, std::abs(v));
       for (double& v : values) v /= most;
-      figure.panels.push_back(post::face_panel(
-          fine, values,
-          fmt::format("mode {}, {:.0f} Hz{}", m + 1, plate.omega()[m] / (2 * kPi), in_plane(plate, m) ? ", in its plane" : ""),
-          "[-]", true));
+      figure.panels.push_back(post::face_panel(fine, values,
+                                               fmt::format("mode {}, {:.0f} Hz{}", m + 1, plate.omega()[m] / (2 * kPi),
+                                                           in_plane(plate, m) ? ", in its plane" : ""),
+                                               "[-]", true));
       figure.panels.back().map_contours = false;
     }
     out.draw(figure, "modes");
@@ -201,8 +204,9 @@ class PlateFaceJob final : public PointJob {
       p = {ct.time, ct.departure, strike.strike(ball, place, restitution_speed_).restitution, place.mass,
            2 * models::pendulum_patch(plate, at)};
     });
-    std::string csv = "toe_mm,high_mm,thickness_mm,characteristic_time_us,departure_us,restitution,head_mass_kg,"
-                      "ball_speed_ratio\n";
+    std::string csv =
+        "toe_mm,high_mm,thickness_mm,characteristic_time_us,departure_us,restitution,head_mass_kg,"
+        "ball_speed_ratio\n";
     std::vector<double> time, restitution, ratio, thickness;
     double longest = 0, fastest = 0;
     std::size_t beyond = 0, inside = 0;
@@ -218,19 +222,20 @@ class PlateFaceJob final : public PointJob {
       longest = std::max(longest, p.time);
       fastest = std::max(fastest, p.restitution);
       csv += fmt::format("{:g},{:g},{:.4f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f}\n", 1e3 * grid_.toe_at(i),
-                         1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure, p.restitution, p.mass,
-                         ratio.back());
+                         1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure, p.restitution,
+                         p.mass, ratio.back());
     }
     out.write("map.csv", csv);
     const models::CharacteristicTime centre = strike.characteristic_time(sphere_, Vector2d::Zero(), speeds_);
-    const double e = strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;
+    const double e =
+        strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;
     out.say(fmt::format("centre: characteristic time {:.1f} us, restitution {:.4f} (the rules' line {:.4f})",
                         1e6 * centre.time, e, models::rules_line(centre.time)));
     out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us", 1e6 * longest,
                         fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
     out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * centre.time),
-                      fmt::format("at most {:.1f} µs over the face; limit {:.0f} + {:.0f}", 1e6 * longest, 1e6 * kRulesTime,
-                                  1e6 * kRulesTolerance));
+                      fmt::format("at most {:.1f} µs over the face; limit {:.0f} + {:.0f}", 1e6 * longest,
+                                  1e6 * kRulesTime, 1e6 * kRulesTolerance));
     out.page().answer("restitution", fmt::format("{:.4f}", e), fmt::format("{:g} m/s, centre", restitution_speed_));
     summary["characteristic_time_us"] = 1e6 * centre.time;
     summary["largest_characteristic_time_us"] = 1e6 * longest;
@@ -239,11 +244,11 @@ class PlateFaceJob final : public PointJob {
     summary["largest_restitution"] = fastest;
     summary["restitution_less_rules_line"] = e - models::rules_line(centre.time);
     post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 400};
-    figure.panels = {post::face_panel(grid_, time, "characteristic time [us]; crosses: 257 us, limit and tolerance", "[us]", false),
-                     post::face_panel(grid_, restitution, fmt::format("restitution at {:g} m/s", restitution_speed_), "[-]",
-                                      false),
-                     post::face_panel(grid_, ratio, "ball speed over head speed, normal blow", "[-]", false),
-                     post::face_panel(grid_, thickness, "thickness [mm]", "[mm]", false)};
+    figure.panels = {
+        post::face_panel(grid_, time, "characteristic time [us]; crosses: 257 us, limit and tolerance", "[us]", false),
+        post::face_panel(grid_, restitution, fmt::format("restitution at {:g} m/s", restitution_speed_), "[-]", false),
+        post::face_panel(grid_, ratio, "ball speed over head speed, normal blow", "[-]", false),
+        post::face_panel(grid_, thickness, "thickness [mm]", "[mm]", false)};
     figure.panels.front().map_contours = false;
     limit_line(figure.panels.front(), time, 1e6 * (kRulesTime + kRulesTolerance));
     out.draw(figure, "map");
@@ -289,12 +294,13 @@ class PlateFaceJob final : public PointJob {
       speeds.push_back(launch->ball_speed());
       stress = std::max(stress, value("peak_stress_Pa"));
       closure = std::max(closure, std::abs(value("closure")));
-      table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), fmt::format("{:.2f}", launch->ball_speed()),
-                            fmt::format("{:.2f}", degrees(launch->launch_angle())), fmt::format("{:.0f}", rpm(launch->backspin())),
-                            fmt::format("{:.0f}", rpm(launch->sidespin())), fmt::format("{:.2f}", 1e3 * value("face_travel_m")),
-                            fmt::format("{:.0f}", 1e-6 * value("peak_stress_Pa"))});
-      csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.5f},{:.3e}\n", toe, high,
-                         launch->ball_speed(), degrees(launch->launch_angle()), degrees(launch->azimuth()),
+      table.rows.push_back(
+          {fmt::format("{:g}", toe), fmt::format("{:g}", high), fmt::format("{:.2f}", launch->ball_speed()),
+           fmt::format("{:.2f}", degrees(launch->launch_angle())), fmt::format("{:.0f}", rpm(launch->backspin())),
+           fmt::format("{:.0f}", rpm(launch->sidespin())), fmt::format("{:.2f}", 1e3 * value("face_travel_m")),
+           fmt::format("{:.0f}", 1e-6 * value("peak_stress_Pa"))});
+      csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.5f},{:.3e}\n",
+                         toe, high, launch->ball_speed(), degrees(launch->launch_angle()), degrees(launch->azimuth()),
                          rpm(launch->backspin()), rpm(launch->sidespin()), 1e3 * value("face_travel_m"),
                          1e-6 * value("peak_stress_Pa"), 1e3 * value("peak_stress_toe_m"),
                          1e3 * value("peak_stress_high_m"), value("face_energy_J"), value("closure"));
@@ -340,13 +346,15 @@ class PlateFaceJob final : public PointJob {
       std::vector<Vec3> moved;
       double most = 0;
       for (std::size_t n = 0; n < mesh.points.size(); ++n) {
-        const auto value = [&](fem::Plate::Unknown u) { return plate.value(face.modes().col(Eigen::Index(m)), int(n), u); };
+        const auto value = [&](fem::Plate::Unknown u) {
+          return plate.value(face.modes().col(Eigen::Index(m)), int(n), u);
+        };
         moved.emplace_back(-value(fem::Plate::kDeflection), value(fem::Plate::kStretchY), value(fem::Plate::kStretchZ));
         most = std::max(most, moved.back().norm());
       }
       for (Vec3& v : moved) v *= 1e-3 / most;
-      mesh.point_fields.push_back(post::vector_field(
-          fmt::format("mode {} ({:.0f} Hz)", m + 1, face.omega()[m] / (2 * kPi)), "m", moved));
+      mesh.point_fields.push_back(
+          post::vector_field(fmt::format("mode {} ({:.0f} Hz)", m + 1, face.omega()[m] / (2 * kPi)), "m", moved));
     }
     post::VtkSeries(out.directory() / "vtk", "modes", post::VtkSeries::Form::surface).write(0, mesh);
   }

@@ -35,7 +35,8 @@ class RestitutionFaceJob final : public Job {
     std::optional<models::PlateStrike> plate;
     if (plate_) plate.emplace(std::make_shared<const models::PlateFace>(*plate_, head_.face), head_);
     const auto restitution_at = [&](double toe, double high, double mass) {
-      if (plate) return plate->strike(ball, plate->at(Eigen::Vector2d(-toe, high), models::kBallPatch), speed_).restitution;
+      if (plate)
+        return plate->strike(ball, plate->at(Eigen::Vector2d(-toe, high), models::kBallPatch), speed_).restitution;
       return models::strike(ball, mass, face_, face_.shape(-toe, high).value, speed_).restitution;
     };
     std::vector<double> e_map, gain_map;
@@ -43,8 +44,7 @@ class RestitutionFaceJob final : public Job {
     for (const double high : high_)
       for (const double toe : toe_) {
         const double mass = models::mass_at(head_, -toe, high);
-        const double e = restitution_at(toe, high, mass),
-                     rigid = models::strike(ball, mass, {}, 0, speed_).restitution;
+        const double e = restitution_at(toe, high, mass), rigid = models::strike(ball, mass, {}, 0, speed_).restitution;
         const auto ratio = [&](double restitution) { return (1 + restitution) * mass / (mass + ball_.mass); };
         csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", 1e3 * toe, 1e3 * high, mass, e, rigid,
                            ratio(e), ratio(rigid));

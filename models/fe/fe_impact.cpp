@@ -26,7 +26,6 @@ double hertz_time(double mass, double radius, double young, double speed) {
   return 2.868 * std::pow(mass * mass / (radius * e * e * speed), 0.2);
 }
 
-
 }  // namespace
 
 void FeImpactOptions::resolve(Accuracy accuracy) {
@@ -208,8 +207,7 @@ BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions
   } else if (plate) {
     const Eigen::Vector2d place(-blow.delivery.impact_toe, blow.delivery.impact_high);
     parts.plate = plate;
-    const CondensedPlate& condensed = parts.condensed.emplace(
-        plate->condensed(place, planar ? mirror : Mirror::none));
+    const CondensedPlate& condensed = parts.condensed.emplace(plate->condensed(place, planar ? mirror : Mirror::none));
     const fem::DofMap::Block unknowns = system.dof_map.add_vector(condensed.face.size());
     surface = std::make_unique<fem::PlateSurface>(face, condensed.shapes, condensed.largest, unknowns);
     spring = std::make_unique<fem::FaceSpring>(condensed.face, carrier, unknowns);

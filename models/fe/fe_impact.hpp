@@ -33,7 +33,7 @@ struct FeImpactOptions {
   std::optional<double> transition_speed;              ///< where set, friction is regularised by velocity [m/s]
   std::optional<fem::StaticFriction> static_friction;  ///< where set, what holds a point until it has slid some way
 
-  std::optional<FaceCompliance> face;            ///< of the club; without it and a plate the face is rigid
+  std::optional<FaceCompliance> face;               ///< of the club; without it and a plate the face is rigid
   std::shared_ptr<const PlateOnDemand> plate = {};  ///< of the club: a face with a thickness
 
   mesh::MeridianOptions mesh;
@@ -70,21 +70,21 @@ struct FeImpactOptions {
 struct BallOnFace {
   fem::HarmonicSolid* ball = nullptr;
   fem::Contact* contact = nullptr;
-  const fem::FaceSpring* face = nullptr;  ///< of a face that yields
-  double compliance = 0;                  ///< of it where it is struck [m/N]
-  std::shared_ptr<const PlateFace> plate = {};  ///< that is the face
+  const fem::FaceSpring* face = nullptr;         ///< of a face that yields
+  double compliance = 0;                         ///< of it where it is struck [m/N]
+  std::shared_ptr<const PlateFace> plate = {};   ///< that is the face
   std::optional<CondensedPlate> condensed = {};  ///< of it about the place struck
-  const fem::Beam* shaft = nullptr;       ///< of a full club, for observers
+  const fem::Beam* shaft = nullptr;              ///< of a full club, for observers
 };
 
 /// First contact, and what of it is symmetric.
 struct Encounter : FirstContact {
-  double normal_speed = 0;  ///< approach along the normal [m/s]
-  bool axial = false;       ///< nothing but a normal blow through the centres
-  bool planar = false;      ///< a plane of symmetry exists
-  bool principal = false;   ///< the plane of normal and slip is one of the face's own about its centre
+  double normal_speed = 0;       ///< approach along the normal [m/s]
+  bool axial = false;            ///< nothing but a normal blow through the centres
+  bool planar = false;           ///< a plane of symmetry exists
+  bool principal = false;        ///< the plane of normal and slip is one of the face's own about its centre
   bool across_heel_toe = false;  ///< a principal plane is the one of out and up, not of out and heel-toe
-  Mat3 ball_axes;           ///< contact pole, direction of slip, across both
+  Mat3 ball_axes;                ///< contact pole, direction of slip, across both
   /// The face's mirror by a principal plane.
   Mirror mirror() const { return !principal ? Mirror::none : across_heel_toe ? Mirror::heel_toe : Mirror::up_down; }
 };

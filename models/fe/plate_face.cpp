@@ -72,7 +72,8 @@ std::vector<std::string> PlateDesign::faults() const {
 }
 
 PlateFace::PlateFace(PlateDesign design, const Face& curvature) : design_(std::move(design)), curvature_(curvature) {
-  if (const auto faults = design_.faults(); !faults.empty()) throw std::invalid_argument("face plate: " + faults.front());
+  if (const auto faults = design_.faults(); !faults.empty())
+    throw std::invalid_argument("face plate: " + faults.front());
   const mesh::PlateMesh mesh = mesh::plate_mesh(design_.outline, design_.mesh);
   std::vector<double> thickness;
   for (const Vector2d& node : mesh.nodes)
@@ -235,7 +236,8 @@ PlateFace::Stresses::Stresses(const fem::Plate& plate, const Eigen::MatrixXd& fi
     for (const auto& [xi, eta] : points) {
       const mesh::Q9 q = mesh::Q9::at(xi, eta);
       Vector2d place = Vector2d::Zero();
-      for (int k = 0; k < 9; ++k) place += q.value[k] * plate.mesh().nodes[std::size_t(plate.mesh().elements[e][std::size_t(k)])];
+      for (int k = 0; k < 9; ++k)
+        place += q.value[k] * plate.mesh().nodes[std::size_t(plate.mesh().elements[e][std::size_t(k)])];
       places_.push_back(place);
       rows_.middleRows<6>(row) = plate.stresses(fields, int(e), xi, eta);
       row += 6;

@@ -20,9 +20,9 @@ struct PlateDesign {
   mesh::PlateThickness thickness;
   fem::PlateMaterial material{114e9, 0.34, 4430};  ///< titanium (Ti-6Al-4V)
   fem::RimSupport rim;
-  double damping = 0.01;        ///< of each mode, over the critical [-]
+  double damping = 0.01;  ///< of each mode, over the critical [-]
   mesh::PlateMeshOptions mesh;
-  int modes = 8;                ///< of the rim at rest that a blow keeps; the pendulum keeps four times as many
+  int modes = 8;  ///< of the rim at rest that a blow keeps; the pendulum keeps four times as many
 
   std::vector<std::string> faults() const;
 };
@@ -48,9 +48,9 @@ class PlateFace {
   const Face& curvature() const { return curvature_; }
   const fem::Plate& plate() const { return *plate_; }
   const fem::System& system() const { return system_; }
-  double mass() const { return mass_; }                          ///< [kg]
-  const std::vector<double>& omega() const { return omega_; }    ///< natural, ascending [rad/s]
-  const Eigen::MatrixXd& modes() const { return modes_; }        ///< of the plate's equations, mass-normalised
+  double mass() const { return mass_; }                        ///< [kg]
+  const std::vector<double>& omega() const { return omega_; }  ///< natural, ascending [rad/s]
+  const Eigen::MatrixXd& modes() const { return modes_; }      ///< of the plate's equations, mass-normalised
   bool symmetric(Mirror mirror) const;
   bool covers(const Eigen::Vector2d& place) const { return design_.outline.share(place) < 1; }
 

@@ -40,8 +40,8 @@ PlateStrike::PlateStrike(std::shared_ptr<const PlateFace> plate, const Head& hea
   for (const auto& s : plate_->plate().samples()) {
     Eigen::VectorXd shape = Eigen::VectorXd::Zero(n);
     for (int k = 0; k < 9; ++k)
-      if (const auto dof = plate_->plate().dof(
-              plate_->plate().mesh().elements[std::size_t(s.element)][std::size_t(k)], fem::Plate::kDeflection);
+      if (const auto dof = plate_->plate().dof(plate_->plate().mesh().elements[std::size_t(s.element)][std::size_t(k)],
+                                               fem::Plate::kDeflection);
           dof >= 0)
         shape += s.shape[k] * modes.row(dof).transpose();
     const Vec3 arm = plate_->curvature().point(s.place.x(), s.place.y()) - head.cg;
@@ -111,9 +111,10 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
         F = force_at(d);
         const double error = d + place.residual * F - approach;
         (error > 0 ? high : low) = d;
-        const double slope = 1 + (F > 0 ? place.residual * (striker.exponent * F / d + striker.stiffness *
-                                                                std::pow(d, striker.exponent) * striker.damping / step)
-                                        : 0.0);
+        const double slope =
+            1 + (F > 0 ? place.residual * (striker.exponent * F / d +
+                                           striker.stiffness * std::pow(d, striker.exponent) * striker.damping / step)
+                       : 0.0);
         double next = d - error / slope;
         if (!(next > low && next < high)) next = 0.5 * (low + high);
         if (std::abs(next - d) < 1e-13 * approach) break;

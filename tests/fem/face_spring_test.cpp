@@ -11,7 +11,8 @@ const FaceCompliance kFace{.mass = 0.012, .stiffness = 9e6, .damping = 12, .half
 
 /// Three unknowns with every integral that a face may have, as particles would give them.
 ReducedFace three_shapes() {
-  ReducedFace out{Vector::Zero(3), Eigen::Matrix3Xd::Zero(3, 3), Eigen::MatrixXd::Zero(3, 3), {}, {}, {}, Vector::Ones(3)};
+  ReducedFace out{Vector::Zero(3), Eigen::Matrix3Xd::Zero(3, 3), Eigen::MatrixXd::Zero(3, 3), {}, {}, {},
+                  Vector::Ones(3)};
   for (unsigned p = 1; p <= 5; ++p) {
     const double mass = 1e-3 * p;
     const Vec3 r = test::random_vector(3, p, 0.04);

@@ -39,9 +39,7 @@ struct Model {
   double centre_under_pressure() const {
     return plate->deflection(solve(plate->load([](const Vector2d&) { return 1.0; })), Vector2d::Zero());
   }
-  std::vector<double> omega(int count) const {
-    return solvers::modes(system, system.dof_map.rest(), count).omega;
-  }
+  std::vector<double> omega(int count) const { return solvers::modes(system, system.dof_map.rest(), count).omega; }
 };
 
 double rigidity(double t, const PlateMaterial& m = kUnit) {
@@ -92,8 +90,8 @@ double inner_force(const Model& model, const State& s, int first, int last) {
   for (std::size_t n = 0; n < model.plate->mesh().nodes.size(); ++n)
     for (int i = first; i <= last; ++i)
       if (const Index d = model.plate->dof(int(n), Plate::Unknown(i)); d >= 0)
-        (model.plate->mesh().on_rim[n] ? rim : inside) = std::max(model.plate->mesh().on_rim[n] ? rim : inside,
-                                                                  std::abs(r[d]));
+        (model.plate->mesh().on_rim[n] ? rim : inside) =
+            std::max(model.plate->mesh().on_rim[n] ? rim : inside, std::abs(r[d]));
   EXPECT_GT(rim, 0);
   return inside / rim;
 }
@@ -171,7 +169,7 @@ TEST(Plate, ClampedDiscUnderPressure) {
 
 /// Side 1. Legendre-Ritz on Mindlin's plate with 14 functions each way, itself converged to six digits.
 struct Square {
-  double thickness, centre;  // times q a^4 / D
+  double thickness, centre;      // times q a^4 / D
   std::array<double, 4> lambda;  // omega a^2 sqrt(rho t / D)
 };
 const Square kSquares[] = {{0.01, 1.267853e-3, {35.94245, 73.23915, 73.23915, 107.89239}},
@@ -303,7 +301,8 @@ TEST(Plate, ClampedShallowCapUnderPressure) {
   };
   for (const Cap& c : {Cap{0.05, 10, 7.302004e-7}, Cap{0.02, 10, 3.032417e-6}, Cap{0.05, 3, 1.0825814e-7}}) {
     ASSERT_LT(c.centre, 0.6 * disc_centre(c.thickness));
-    EXPECT_NEAR(Model(disc(), c.thickness, {}, {c.radius, c.radius}).centre_under_pressure(), c.centre, 5e-4 * c.centre);
+    EXPECT_NEAR(Model(disc(), c.thickness, {}, {c.radius, c.radius}).centre_under_pressure(), c.centre,
+                5e-4 * c.centre);
   }
 }
 

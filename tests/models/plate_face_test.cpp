@@ -88,8 +88,8 @@ TEST(PlateFace, MoreModesChangeLittle) {
   PlateDesign all = plate_design(), few = all;
   all.modes = 27;
   few.modes = 1;
-  const Launch a = solve_free_body(blow, with_plate(plate_design())).launch, b = solve_free_body(blow, with_plate(all)).launch,
-               c = solve_free_body(blow, with_plate(few)).launch;
+  const Launch a = solve_free_body(blow, with_plate(plate_design())).launch,
+               b = solve_free_body(blow, with_plate(all)).launch, c = solve_free_body(blow, with_plate(few)).launch;
   EXPECT_NEAR(a.ball_speed(), b.ball_speed(), 5e-4 * b.ball_speed());
   EXPECT_NEAR(a.spin_rate(), b.spin_rate(), 5e-3 * b.spin_rate());
   EXPECT_GT(std::abs(c.ball_speed() - b.ball_speed()), std::abs(a.ball_speed() - b.ball_speed()));
@@ -111,7 +111,8 @@ TEST(PlateFace, AgreesWithTheUnreducedFace) {
   const Vector2d place(-0.015, 0.006);
   const fem::Vector load = flat.patch_load(place, 9e-3);
   double kept = 0;
-  for (int j = 0; j < whole.modes; ++j) kept += std::pow(flat.modes().col(j).dot(load) / flat.omega()[std::size_t(j)], 2);
+  for (int j = 0; j < whole.modes; ++j)
+    kept += std::pow(flat.modes().col(j).dot(load) / flat.omega()[std::size_t(j)], 2);
   ASSERT_NEAR(kept, flat.compliance(place, 9e-3), 1e-3 * kept);
   const FeOutcome a = solve_free_body(blow, with_plate(reduced)), b = solve_free_body(blow, with_plate(whole));
   ASSERT_GT(b.result.face_travel, 1e-4);
@@ -152,10 +153,8 @@ TEST(PlateFace, RigidIsItsLimit) {
 }
 
 Head bare_driver() {
-  return {.mass = 0.2,
-          .cg = Vec3(-0.035, 0, 0.004),
-          .inertia = Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(),
-          .face = {0.3, 0.3}};
+  return {
+      .mass = 0.2, .cg = Vec3(-0.035, 0, 0.004), .inertia = Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(), .face = {0.3, 0.3}};
 }
 
 /// A plate without mass follows the pendulum at rest: the lumped face as stiff as it is there.
