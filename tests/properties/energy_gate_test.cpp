@@ -32,7 +32,7 @@ Count in_frame_of_head(const std::string& model, Blow blow, const Launch& l) {
 }
 
 TEST(EnergyGate, NoModelLetsEnergyBeCreated) {
-  const int count = test::checks(400);
+  const int count = test::checks(2000);
   const auto names = test::reduced_models();
   ASSERT_EQ(names.size(), 8u);
   std::map<std::string, int> passed, refused;

@@ -138,7 +138,7 @@ double tolerance(const std::string& model) { return model == "volumetric" || mod
 TEST(Metamorphic, BlowsDoNotKnowTheirUnitsFramesAndHands) {
   const auto names = test::reduced_models();
   ASSERT_EQ(names.size(), 8u);
-  const int rounds = std::max(2, int(test::checks(960) / kFourRelations / double(names.size())));
+  const int rounds = std::max(2, int(test::checks(10000) / kFourRelations / double(names.size())));
   int done = 0, refused = 0;
   for (int k = 0; k < rounds; ++k)
     for (const std::string& name : names) {
@@ -189,7 +189,7 @@ TEST(Metamorphic, AHalfMirrorIsSeen) {
 
 /// A flight in a mirror, and one towards another target with the wind turned alike.
 TEST(Metamorphic, FlightsDoNotKnowLeftFromRight) {
-  const int rounds = std::max(10, test::checks(960) / 60);
+  const int rounds = std::max(10, test::checks(10000) / 60);
   for (int k = 0; k < rounds; ++k) {
     test::Random random(unsigned(2000 + k));
     Launch l;

@@ -111,7 +111,7 @@ TEST(UnitsAndOrder, AnInstrumentsFormulasAreFoundInAnyOfThem) {
   // Of all clubs but one, in whose rows another quantity stands (cases/loop-irons).
   ASSERT_TRUE(wanted.contains("ball_speed dynamic_loft launch_angle spin_rate in part")) << *wanted.begin();
   ASSERT_TRUE(wanted.contains("attack_angle dynamic_loft spin_loft"));
-  const int rounds = std::max(12, test::checks(960) / 40);
+  const int rounds = std::max(12, test::checks(10000) / 40);
   for (int k = 0; k < rounds; ++k) {
     std::mt19937_64 random(unsigned(3000 + k));
     post::Sheet s = plain;
