@@ -165,7 +165,7 @@ def blow(folder, view):
     scale.WindowLocation, scale.Position = "Any Location", [0.86, 0.3]
     scale.ScalarBarLength = 0.4
     cuts = []
-    for name, colour, opacity in (("face", [0.35, 0.35, 0.4], 1.0), ("head", [0.6, 0.6, 0.65], 0.2)):
+    for name, colour, opacity in (("face", [0.62, 0.64, 0.7], 1.0), ("head", [0.6, 0.6, 0.65], 0.2)):
         if has(folder, name):
             cut = Clip(Input=moved(series(folder, name)))
             cut.ClipType = "Plane"

@@ -61,15 +61,17 @@ void shuffle_rows(post::Sheet& sheet, R& random, std::size_t twice) {
   }
 }
 
-/// What was found, without units: column, sources, share of rows.
+/// What was found, without units: the columns that a relation ties, and whether on a part of the rows. Which of them
+/// was computed from the others is not compared: where a relation explains two columns alike, resolutions decide, and a
+/// conversion changes these.
 std::set<std::string> told(const post::Sheet& sheet) {
   const Shots shots = read_shots(sheet);
   std::set<std::string> all;
   for (const DerivedColumn& d : audit(shots, {})) {
-    std::set<std::string> from;
-    for (const std::string& f : d.from) from.insert(split_unit(f).stem);
-    std::string text = split_unit(d.column).stem + " of";
-    for (const std::string& f : from) text += " " + f;
+    std::set<std::string> tied = {split_unit(d.column).stem};
+    for (const std::string& f : d.from) tied.insert(split_unit(f).stem);
+    std::string text;
+    for (const std::string& t : tied) text += (text.empty() ? "" : " ") + t;
     all.insert(text + (d.share == 1 ? "" : " in part"));
   }
   return all;
@@ -107,8 +109,8 @@ TEST(UnitsAndOrder, AnInstrumentsFormulasAreFoundInAnyOfThem) {
   const post::Sheet plain = irons();
   const auto wanted = told(plain);
   // Of all clubs but one, in whose rows another quantity stands (cases/loop-irons).
-  ASSERT_TRUE(wanted.contains("dynamic_loft of ball_speed launch_angle spin_rate in part")) << *wanted.begin();
-  ASSERT_TRUE(wanted.contains("spin_loft of attack_angle dynamic_loft"));
+  ASSERT_TRUE(wanted.contains("ball_speed dynamic_loft launch_angle spin_rate in part")) << *wanted.begin();
+  ASSERT_TRUE(wanted.contains("attack_angle dynamic_loft spin_loft"));
   const int rounds = std::max(12, test::checks(960) / 40);
   for (int k = 0; k < rounds; ++k) {
     std::mt19937_64 random(unsigned(3000 + k));
@@ -126,8 +128,14 @@ TEST(UnitsAndOrder, AnInstrumentsFormulasAreFoundInAnyOfThem) {
       if (s.names[c] == "club")
         for (std::string& cell : s.columns[c]) cell = cell == "4i" ? "9 wood" : "x" + cell;
     EXPECT_EQ(told(s), wanted) << "seed " << 3000 + k;
-    // What is told of each shot is the same number, to the last bit: it was recorded so.
-    EXPECT_EQ(values(read_shots(s)), values(read_shots(plain))) << "seed " << 3000 + k;
+    // What is told of each shot is the same number: eight digits and more were written.
+    const auto there = values(read_shots(s)), here = values(read_shots(plain));
+    ASSERT_EQ(there.size(), here.size()) << "seed " << 3000 + k;
+    for (const auto& [stem, x] : here) {
+      const std::vector<double>& y = there.at(stem);
+      ASSERT_EQ(x.size(), y.size()) << stem;
+      for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-6 * std::abs(x[i]) + 1e-9) << stem;
+    }
   }
 }
 

@@ -9,20 +9,13 @@
 
 namespace hosel::test {
 
-/// What two rigid frictionless plates do to a sphere of radius 1 and Young's modulus 1.
-struct Squeezed {
-  double over_hertz = 0;     ///< force on each plate over Hertz's at that approach [-]
-  Eigen::VectorXd angle;     ///< edges of rings about the pole [rad], one more than there are rings
-  Eigen::VectorXd pressure;  ///< of each ring, along the axis, per area across the axis; none outside the patch
-};
-
-/// The plates come nearer to the centre by `approach`. Small strain; the exact profile of the sphere, pressure along
-/// the axis.
+/// Force on each of two rigid frictionless plates that come nearer to the centre of a sphere by `approach`, over
+/// Hertz's at that approach [-]. Radius 1; small strain; the exact profile of the sphere, pressure along the axis.
 ///
 /// Surface displacement of degree l (U P_l radially, V dP_l/dtheta along the meridian) under a traction of the same
 /// shape: a combination of r^(l-1) (l, 1) and the solution of order r^(l+1) of Navier's equations (Love, Treatise on
 /// the Mathematical Theory of Elasticity, art. 172-173). Rings of uniform axial pressure; contact where it is positive.
-inline Squeezed squeezed(double nu, double approach) {
+inline double squeezed_over_hertz(double nu, double approach) {
   constexpr double pi = std::numbers::pi;
   constexpr int rings = 60;
   const double lambda = nu / ((1 + nu) * (1 - 2 * nu)), mu = 0.5 / (1 + nu);  // E = 1
@@ -79,18 +72,10 @@ inline Squeezed squeezed(double nu, double approach) {
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < active.size(); ++i)
       if (pressure[static_cast<Eigen::Index>(i)] > 0) kept.push_back(active[i]);
-    if (kept.size() == active.size()) {
-      Squeezed out;
-      out.over_hertz = 2 * pi * pressure.dot(area(active)) * (1 - nu * nu) / (4.0 / 3 * std::pow(approach, 1.5));
-      out.angle = Eigen::VectorXd::LinSpaced(rings + 1, 0, outer);
-      out.pressure = Eigen::VectorXd::Zero(rings);
-      out.pressure(active) = pressure;
-      return out;
-    }
+    if (kept.size() == active.size())
+      return 2 * pi * pressure.dot(area(active)) * (1 - nu * nu) / (4.0 / 3 * std::pow(approach, 1.5));
     active = kept;
   }
 }
-
-inline double squeezed_over_hertz(double nu, double approach) { return squeezed(nu, approach).over_hertz; }
 
 }  // namespace hosel::test
