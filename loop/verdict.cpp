@@ -30,10 +30,12 @@ std::vector<Location> places(const Problem& problem, const Remainder& left) {
   return told;
 }
 
-/// A name is due where it says more of the training rows than a remainder without it, each foretold by the others.
+/// A name that needs no remainder beside it says as much of the training rows as a remainder without it, each foretold
+/// by the others; one that needs it says more, and pays for its parameters.
 bool beats(const Fit& named, const std::optional<Remainder>& left, const std::optional<Remainder>& bare,
            const Rules& rules) {
   if (!left || !bare) return true;
+  if (left->places.empty()) return left->after < bare->after + rules.tie;
   return left->after + rules.parameter_cost * double(named.size()) + rules.tie < bare->after;
 }
 

@@ -12,8 +12,10 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 150;  // rows
-constexpr double kForetold = 11;  // least fall of a channel's squared misses, in noise units
-constexpr int kParts = 5;         // of the rows, each foretold by the others
+// Least fall of a channel's squared misses, in noise units. Rows that others foretell gain t by chance in exp(-t / 2)
+// of such channels at most: of five channels one in fewer than one set in a thousand.
+constexpr double kForetold = 17;
+constexpr int kParts = 5;  // of the rows, each foretold by the others
 
 /// Columns that a remainder may follow, over the model's shots: standardised to some two units, inside the range of
 /// `rows`.
