@@ -141,7 +141,7 @@ std::optional<Kept> keep(const Study& study, const Fit& start) {
     return {};
   const Eigen::VectorXd before = held_out(problem, base), after = held_out(problem, out.fit);
   if (!(after.array() <= (1 + study.rules.worse) * before.array()).all()) return {};
-  out.criterion = out.fit.deviance + study.rules.parameter_cost * double(out.fit.size());
+  out.criterion = out.fit.deviance + study.rules.parameter_cost * double(out.fit.size()) + improbability(out.fit);
   for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k) {
     out.effects.push_back(out.fit.model.forms[k]->effect);
     out.criterion += out.fit.model.forms[k]->complexity;
@@ -157,6 +157,8 @@ BeyondDoubt beyond_doubt(const Study& study) {
   if (problem.subsets(Part::train).empty()) return {};
   // The chosen set, and those that do nearly as well in its place.
   const std::size_t size = s.chosen.model.forms.size();
+  // The sum of three effects follows any smooth form.
+  if (size > study.base.size() + 2) return {};
   std::vector<Kept> kept;
   for (const Candidate& c : s.candidates) {
     if (c.fit.model.forms.size() != size) continue;

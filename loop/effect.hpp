@@ -39,6 +39,15 @@ struct Parameter {
   double scale;      ///< a size that matters [SI]: step of finite differences, unit of the optimiser
   /// Standard deviation about zero by another measurement of what is declared [SI]; infinite: none is known.
   double known = std::numeric_limits<double>::infinity();
+  /// How far what is declared is usually off [SI]; its source stands where the effect declares it. Prices what a search
+  /// finds (improbability), does not draw its fits; infinite: nothing is known of that.
+  double usual = std::numeric_limits<double>::infinity();
+
+  Parameter within(double usual_size) const {
+    Parameter out = *this;
+    out.usual = usual_size;
+    return out;
+  }
 };
 
 /// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.

@@ -76,6 +76,15 @@ double deviance(const Problem& problem, Part part, const Fit& f) {
 
 double known(const Fit& f) { return (prior_of(f.model) * f.p.cwiseQuotient(scales(f.model))).squaredNorm(); }
 
+double improbability(const Fit& f) {
+  constexpr double freedom = 4;
+  double sum = 0;
+  Eigen::Index k = 0;
+  for (const Parameter* q : f.model.parameters())
+    sum += (freedom + 1) * std::log1p(std::pow(f.p[k++] / q->usual, 2) / freedom);
+  return sum;
+}
+
 std::vector<Eigen::VectorXd> starts(const Model& model) {
   std::vector<Eigen::VectorXd> all = {Eigen::VectorXd::Zero(model.size())};
   int at = 0;

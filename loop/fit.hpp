@@ -31,6 +31,10 @@ Fit beside(const Fit& fit, const Parametrisation* more);
 /// What is known of a fit's parameters beside the data, as a part of its deviance.
 double known(const Fit& fit);
 
+/// What sizes beyond the usual cost a candidate [units of deviance]: twice the fall of the logarithm of Student's
+/// density with four degrees of freedom, whose tails bear a size that is rare.
+double improbability(const Fit& fit);
+
 /// Covariance of the parameters [SI] on the selection's data; infinite along null vectors. Where the noise of a channel
 /// is not known, by the scatter of the scores.
 Eigen::MatrixXd covariance(const Problem& problem, const Fit& fit);

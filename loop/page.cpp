@@ -122,6 +122,22 @@ std::string bars(const std::vector<ChannelResult>& channels) {
   return svg(picture);
 }
 
+/// The remainder: where, how large, along which column.
+std::string without_name(const LoopResult& r) {
+  std::string s =
+      "<h2>What has no name</h2><div class='scroll'><table><tr><th>channel<th>RMS<th class='l'>along<th>share of it "
+      "that "
+      "goes with that column<th>largest<th>there</tr>";
+  for (const Remainder::Place& p : r.remainder->places)
+    s += fmt::format("<tr><td>{}<td>{}<td class='l'>{}<td>{:.0f} %<td>{}<td>{}</tr>",
+                     escape_html(post::label(r.channel_names[std::size_t(p.channel)])), number(p.size),
+                     escape_html(post::label(p.along)), 100 * p.share, number(p.largest), number(p.at));
+  return s + "</table></div>" +
+         gloss(
+             "What is left of the residual follows the inputs as a smooth function (a Gaussian process) that no effect "
+             "of the library is: learnt from the rows to learn from, it corrects the prediction of the others.");
+}
+
 const char* mood(Verdict v) {
   switch (v) {
     case Verdict::no_residual:
@@ -150,12 +166,15 @@ std::string page(const LoopResult& r, const Shots& table) {
 
   s += "<h2>Before and after</h2>";
   if (!r.channels.empty()) s += "<figure class='wide'>" + bars(r.channels) + "</figure>";
-  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS "
-       "after<th>bias before<th>bias after</tr>";
+  const bool smooth = r.remainder && !r.remainder->places.empty();
+  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS after";
+  s += smooth ? "<th>RMS after, remainder taken away" : "";
+  s += "<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)
-    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}<td>{}<td>{}</tr>",
+    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}{}<td>{}<td>{}</tr>",
                      escape_html(post::label(c.name)), number(c.noise), c.noise_source, number(c.scatter),
                      rms(c.before.holdout_rmse, c.before.holdout), rms(c.after.holdout_rmse, c.after.holdout),
+                     smooth ? "<td>" + rms(c.with_remainder.holdout_rmse, c.with_remainder.holdout) : "",
                      number(c.before.holdout_bias), number(c.after.holdout_bias));
   s += "</table></div>";
   s += gloss(
@@ -164,6 +183,7 @@ std::string page(const LoopResult& r, const Shots& table) {
       "about the fit over that noise, 1 where both are right. Held out: "
       "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers. "
       "Bias: their mean.");
+  if (smooth) s += without_name(r);
   if (r.corrected && !r.corrected->rows.empty()) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "loop/effect.hpp"
+#include "loop/remainder.hpp"
 #include "solvers/least_squares.hpp"
 
 namespace hosel::loop {
@@ -127,6 +128,8 @@ class Problem {
   /// are whitened columns, each a test of its own.
   virtual StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                                  const Rules& rules) const = 0;
+  /// What of it follows the inputs and has no name, learnt from the training rows alone. Absent: not looked for.
+  virtual std::optional<Remainder> remainder(const Fit& /*fit*/) const { return {}; }
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;
   /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.

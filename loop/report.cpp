@@ -63,7 +63,18 @@ json to_json(const LoopResult& r) {
                                {"noise_from_repeats", c.noise_source == "repeats"},
                                {"scatter_over_noise", value(c.scatter)},
                                {"before", errors(c.before)},
-                               {"after", errors(c.after)}});
+                               {"after", errors(c.after)},
+                               {"with_remainder", errors(c.with_remainder)}});
+  out["remainder"] = json::array();
+  if (r.remainder)
+    for (const Remainder::Place& p : r.remainder->places)
+      out["remainder"].push_back({{"channel", r.channel_names[std::size_t(p.channel)]},
+                                  {"rms", value(p.size)},
+                                  {"along", p.along},
+                                  {"share", value(p.share)},
+                                  {"largest", value(p.largest)},
+                                  {"at", value(p.at)}});
+  out["remainder_fall"] = r.remainder ? value(r.remainder->fall()) : json(nullptr);
   out["structure"] = json::array();
   const Selection& s = r.selection;
   int shown = 0;
@@ -176,15 +187,19 @@ std::string residuals_csv(const LoopResult& r, const Shots& table) {
   const Column *time = table.find("time_s"), *record = table.find("record");
   const bool records = time && record;
   std::string out = records ? "record,time_s,set" : "shot,set";
-  for (const ChannelResult& c : r.channels) out += fmt::format(",{0}__measured,{0}__before,{0}__after", c.name);
+  for (const ChannelResult& c : r.channels)
+    out += fmt::format(",{0}__measured,{0}__before,{0}__after{1}", c.name,
+                       r.remainder ? fmt::format(",{}__with_remainder", c.name) : "");
   out += '\n';
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.9g}", x) : std::string(","); };
   for (const UsedRow& u : r.rows) {
     const auto row = std::size_t(u.row);
     out += records ? post::csv_cell(record->text[row]) + cell(time->value[row]) : post::csv_cell(u.id);
     out += u.holdout ? ",holdout" : ",train";
-    for (std::size_t c = 0; c < r.channels.size(); ++c)
+    for (std::size_t c = 0; c < r.channels.size(); ++c) {
       out += cell(u.measured[c]) + cell(u.measured[c] + u.before[c]) + cell(u.measured[c] + u.after[c]);
+      if (r.remainder) out += cell(u.measured[c] + u.with_remainder[c]);
+    }
     out += '\n';
   }
   return out;

@@ -30,6 +30,7 @@ struct ChannelResult {
   std::optional<double> refuted;  ///< what was declared, where the data's own scatter contradicts it
   double scatter = 0;             ///< what the residual of the final model shows, over `noise`
   Errors before, after;
+  Errors with_remainder;  ///< after, and the remainder taken away
 
   std::string refutation() const;  ///< in a sentence
 };
@@ -70,6 +71,8 @@ struct UsedRow {
   std::string id;
   bool holdout;
   std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
+  std::vector<double> with_remainder =
+      {};  ///< after, the remainder taken away: of a training row as others foretell it
 };
 
 /// A slow base itself, without a surrogate, asked about shots that were held out.
@@ -119,6 +122,7 @@ struct LoopResult {
   Verdict verdict = Verdict::no_residual;
   std::vector<Detectable> minimum_detectable;
   std::vector<Location> unexplained;
+  std::optional<Remainder> remainder;  ///< of the model behind `after`
   NextExperiment next;
   std::vector<UsedRow> rows;
   std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions

@@ -16,7 +16,7 @@ struct Rules {
   double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + complexity of the forms
   double tie = 7;                 ///< candidates within this of the best criterion tie with it
   double holdout_loss = 4;        ///< the held-out deviance must not rise by more
-  double steady = 0.5;          ///< of its size an effect may differ between parts of the rows where structure is left,
+  double steady = 0.2;          ///< of its size an effect may differ between parts of the rows where structure is left,
   double present = 4;           ///< and be there in each by so many standard errors
   double worse = 0.02;          ///< of its held-out error a channel may lose by what is kept there
   double stand_in = 0.97;       ///< of the fall of the deviance makes another effect a rival there

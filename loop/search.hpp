@@ -11,7 +11,7 @@ namespace hosel::loop {
 struct Candidate {
   std::vector<std::string> effects;  ///< in the order of the registry
   Fit fit;                           ///< effects of the base first
-  double criterion = 0;              ///< deviance + cost of the parameters + complexity of the forms
+  double criterion = 0;  ///< deviance + cost of the parameters + complexity of the forms + improbability of their sizes
 };
 
 /// Place of an effect in the registry: the order in which sets of effects are told.

@@ -21,8 +21,37 @@ double score(const Problem& problem, const Fit& f) {
   return (log_whitening - 0.5 * deviance(problem, Part::holdout, f)) / values - 0.5 * std::log(2 * kPi);
 }
 
+std::vector<Location> places(const Problem& problem, const Remainder& left) {
+  std::vector<Location> told;
+  for (const Remainder::Place& p : left.places)
+    told.push_back(
+        {problem.channel(p.channel).name, p.along,
+         fmt::format("a remainder without a name, {:.3g} RMS and {:+.3g} at {:.4g}", p.size, p.largest, p.at)});
+  return told;
+}
+
+/// A name that needs no remainder beside it says as much of the training rows as a remainder without it, each foretold
+/// by the others; one that needs it says more, and pays for its parameters.
+bool beats(const Fit& named, const std::optional<Remainder>& left, const std::optional<Remainder>& bare,
+           const Rules& rules) {
+  if (!left || !bare) return true;
+  if (left->places.empty()) return left->after < bare->after + rules.tie;
+  return left->after + rules.parameter_cost * double(named.size()) + rules.tie < bare->after;
+}
+
+/// What follows the inputs and no name takes up: `left` by the chosen effects; `bare` by the base, where that says as
+/// much.
+std::vector<Location> nameless(const Study& study, const std::optional<Remainder>& left,
+                               const std::optional<Remainder>& bare) {
+  const Selection& s = study.selection;
+  if (left && left->fall() > study.rules.gain) return places(study.problem, *left);
+  if (s.level > 0 && !beats(s.chosen, left, bare, study.rules)) return places(study.problem, *bare);
+  return {};
+}
+
 /// The first that applies, in the contract's order.
-Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, std::vector<Location>& unexplained) {
+Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
+              std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
@@ -36,6 +65,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, std::
     return Verdict::unexplained;
   }
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
+  if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
   if (s.structured && s.level == 0) return Verdict::insufficient;
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
@@ -51,6 +81,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, std::
 
 /// Before and after, per row and per channel.
 void tell_errors(const Problem& problem, const Fit& base, const Fit& after, LoopResult& result) {
+  const std::optional<Remainder>& left = result.remainder;
   const Eigen::MatrixXd rb = problem.residuals(base.model, base.p), ra = problem.residuals(after.model, after.p);
   for (const Problem::Row& row : problem.rows()) {
     UsedRow u{.row = row.row, .id = row.id, .holdout = row.holdout, .measured = {}, .before = {}, .after = {}};
@@ -58,6 +89,7 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
       u.measured.push_back(problem.measured()(row.index, c));
       u.before.push_back(rb(row.index, c));
       u.after.push_back(ra(row.index, c));
+      u.with_remainder.push_back(ra(row.index, c) - (left ? left->value(row.index, c) : 0));
     }
     result.rows.push_back(std::move(u));
   }
@@ -71,7 +103,8 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
                                .refuted = ch.refuted ? ch.declared : std::nullopt,
                                .scatter = problem.scatter(c, ra, after.size()).ratio,
                                .before = errors(result.rows, &UsedRow::before, std::size_t(c)),
-                               .after = errors(result.rows, &UsedRow::after, std::size_t(c))});
+                               .after = errors(result.rows, &UsedRow::after, std::size_t(c)),
+                               .with_remainder = errors(result.rows, &UsedRow::with_remainder, std::size_t(c))});
   }
 }
 
@@ -127,7 +160,13 @@ void conclude(const Study& study, LoopResult& result) {
   for (int c = 0; c < problem.width(); ++c) result.channel_names.push_back(problem.channel(c).name);
   for (const Problem::Row& row : problem.rows()) ++(row.holdout ? result.holdout : result.train);
   result.used = result.train + result.holdout;
-  result.verdict = judge(study, result.columns, result.unexplained);
+  std::optional<Remainder> left, bare;
+  if (!problem.too_few()) {
+    left = problem.remainder(s.chosen);
+    bare = s.level > 0 ? problem.remainder(s.base) : left;
+  }
+  const std::vector<Location> without_name = nameless(study, left, bare);
+  result.verdict = judge(study, result.columns, without_name, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);
@@ -159,13 +198,17 @@ void conclude(const Study& study, LoopResult& result) {
   }
   // Structure remains: what is beyond doubt is kept all the same.
   BeyondDoubt kept;
-  if (result.verdict == Verdict::unexplained && s.level > 0 && !s.clean) kept = beyond_doubt(study);
+  if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
+    kept = beyond_doubt(study);
+    if (kept.fit.size() > 0 && !beats(kept.fit, problem.remainder(kept.fit), bare, study.rules)) kept = {};
+  }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();
   if (some_kept) {
     result.adopted = kept.adopted;
     result.ties = kept.ties;
   }
   const Fit& after = shown ? chosen : some_kept ? kept.fit : s.base;
+  result.remainder = &after == &s.base ? bare : problem.remainder(after);
   tell_errors(problem, s.base, after, result);
   for (const ChannelResult& c : result.channels)
     if (c.refuted) result.notes.push_back(c.refutation());

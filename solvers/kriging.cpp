@@ -11,7 +11,7 @@ namespace {
 constexpr double kStart = 3;  // length of an input of which nothing is known: some more than its range
 constexpr double kShortest = 0.1, kLongest = 200, kLeastNugget = 1e-8, kLargestNugget = 100;
 constexpr double kLengthStep = 2.5, kNuggetStep = 10;  // factors of the search
-constexpr double kGain = 0.1;                          // of log likelihood: less is not worth a step
+constexpr double kNuggetGain = 0.1;                    // of log likelihood: less is not worth a step of the nugget
 constexpr int kSweeps = 3;
 
 double matern(double distance) {
@@ -64,13 +64,29 @@ struct Regression {
 
 Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) : Kriging(x, y, Correlation{}) {}
 
-Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from) : correlation_(std::move(from)) {
-  const Eigen::Index n = x.rows(), d = x.cols(), p = terms(n, d);
+Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from)
+    : Kriging(x, y, std::move(from), Search{}) {}
+
+Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Search& search)
+    : Kriging(x, y, Correlation{}, search) {}
+
+Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from, const Search& search)
+    : correlation_(std::move(from)) {
+  const Eigen::Index n = x.rows(), d = x.cols(), p = search.plane ? terms(n, d) : 1;
   if (correlation_.length.size() != d) correlation_ = {.length = Eigen::VectorXd::Constant(d, kStart)};
   Eigen::MatrixXd trend = Eigen::MatrixXd::Ones(n, p);
   if (p > 1) trend.rightCols(d) = x;
 
   double best = Regression(x, trend, y, correlation_).likelihood(n - p);
+  for (const double length : {1.0, 2.5, 6.0, 15.0})
+    for (const double nugget : {0.01, 0.1, 1.0, 10.0, 100.0}) {
+      if (!search.together) continue;
+      Correlation tried{.length = Eigen::VectorXd::Constant(d, length), .nugget = nugget};
+      const double l = Regression(x, trend, y, tried).likelihood(n - p);
+      if (!(l > best)) continue;
+      best = l;
+      correlation_ = std::move(tried);
+    }
   /// One of the lengths, or the nugget, as far as it is worth while.
   const auto follow = [&](Eigen::Index k, double factor) {
     bool moved = false;
@@ -80,7 +96,7 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
       value *= factor;
       if (k < d ? value < kShortest || value > kLongest : value < kLeastNugget || value > kLargestNugget) return moved;
       const double l = Regression(x, trend, y, tried).likelihood(n - p);
-      if (!(l > best + kGain)) return moved;
+      if (!(l > best + (k < d ? search.gain : kNuggetGain))) return moved;
       best = l;
       correlation_ = std::move(tried);
     }

@@ -17,11 +17,23 @@ class Kriging {
     double nugget = 1e-6;    ///< variance of one point alone over that of the process
   };
 
+  /// How the likeliest is sought.
+  struct Search {
+    bool plane = true;  ///< below the process, where the points are enough for one; else a constant
+    double gain = 0.1;  ///< of log likelihood, that a step along one length must bring
+    /// First one length for all inputs and the nugget, over a grid: from points that are mostly noise no step along one
+    /// of them alone leads away.
+    bool together = false;
+  };
+  /// Of points that are mostly noise: a length of its own must be worth one unit.
+  static Search noisy() { return {.plane = false, .gain = 1, .together = true}; }
+
   Kriging() = default;  ///< says nothing, of no output
   /// `x`: points x inputs, some two units wide; `y`: points x outputs.
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y);
   /// `from`: where the search begins, e.g. that of fewer points.
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from);
+  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Search& search);
 
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   /// Mean square of the error to be expected there, outputs x outputs.
@@ -34,6 +46,7 @@ class Kriging {
   const Correlation& correlation() const { return correlation_; }
 
  private:
+  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from, const Search& search);
   Eigen::VectorXd covariances(const Eigen::VectorXd& x) const;
   Eigen::VectorXd trend(const Eigen::VectorXd& x) const;
 

@@ -5,8 +5,9 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> ball_tangential_compliance(const Setting& setting) {
   if (setting.deformable) return {};  // what its ball does by itself
-  const Parameter level{"tangential_restitution", "1", 1, -0.3, 0.8, 0.1};
-  const Parameter slope{"tangential_restitution_slope", "s/m", 1, -0.02, 0.02, 0.002};
+  // Usual: balls on a hard surface give back 0.2 to 0.3 [@cross-bounce].
+  const Parameter level = Parameter{"tangential_restitution", "1", 1, -0.3, 0.8, 0.1}.within(0.25);
+  const Parameter slope = Parameter{"tangential_restitution_slope", "s/m", 1, -0.02, 0.02, 0.002}.within(0.005);
   Parametrisation constant{
       .effect = "ball-tangential-compliance", .what = "constant tangential restitution", .parameters = {level}};
   constant.before = [](std::span<const double> p, Shot& t) { t.blow.contact.tangential_restitution += p[0]; };

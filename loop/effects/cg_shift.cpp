@@ -6,7 +6,8 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> cg_shift(const Setting& setting) {
   if (!setting.inertia_declared) return {};
-  const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}; };
+  // Usual: assumed, what weights that move shift.
+  const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}.within(4e-3); };
   const auto along = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
     Parametrisation f{.effect = "cg-shift", .what = what};

@@ -18,7 +18,8 @@ void add_moving_point(const Vec3& spin, const Shot& t, Launch& launch) {
 }  // namespace
 
 std::vector<Parametrisation> head_closure(const Setting& setting) {
-  const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}; };
+  // Usual: assumed, a club that closes at 2000 deg/s.
+  const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}.within(35); };
   const auto about = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
     Parametrisation f{.effect = "head-closure", .what = what};

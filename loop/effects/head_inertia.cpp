@@ -8,8 +8,8 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> head_inertia(const Setting& setting) {
   if (!setting.head_turns) return {};
-  // Logarithm of the factor: zero is the declared tensor, and no factor can turn negative.
-  const auto factor = [](const char* name) { return Parameter{name, "1", 1, -0.8, 1.5, 0.1}; };
+  // Logarithm of the factor: zero is the declared tensor, and no factor can turn negative. Usual: assumed, half again.
+  const auto factor = [](const char* name) { return Parameter{name, "1", 1, -0.8, 1.5, 0.1}.within(0.4); };
   Parametrisation all{
       .effect = "head-inertia", .what = "one factor on the tensor", .parameters = {factor("log_factor")}};
   all.before = [](std::span<const double> p, Shot& t) { t.blow.club.head.inertia *= std::exp(p[0]); };

@@ -4,8 +4,10 @@
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> loft_bias(const Setting&) {
-  const Parameter offset{"offset", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)};
-  const Parameter gain{"gain", "1", 1, -0.3, 0.3, 0.03};
+  // Usual: assumed, a club's loft within 1 deg of its stamp and a shaft's lean as much off again.
+  const Parameter offset =
+      Parameter{"offset", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}.within(radians(2));
+  const Parameter gain = Parameter{"gain", "1", 1, -0.3, 0.3, 0.03}.within(0.1);
   Parametrisation constant{.effect = "loft-bias", .what = "constant", .parameters = {offset}};
   constant.before = [](std::span<const double> p, Shot& t) { t.blow.delivery.dynamic_loft += p[0]; };
   Parametrisation scale{.effect = "loft-bias", .what = "in proportion to the loft", .parameters = {gain}};

@@ -6,9 +6,10 @@
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
-  // A monitor is levelled by its own sensors and aimed by eye: beyond this its angles are wrong, not its axes.
+  // A monitor is levelled by its own sensors and aimed by eye: beyond this its angles are wrong, not its axes. Usual:
+  // assumed, four tenths of that.
   const auto angle = [](const char* name, double most) {
-    return Parameter{name, "deg", kRadPerDeg, radians(-most), radians(most), radians(0.5)};
+    return Parameter{name, "deg", kRadPerDeg, radians(-most), radians(most), radians(0.5)}.within(radians(most / 2.5));
   };
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](const std::vector<int>& axes, const char* what) {

@@ -6,7 +6,8 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   if (setting.deformable) return {};  // what its ball does by itself
-  const Parameter offset{"offset", "1", 1, -0.2, 0.2, 0.01};
+  // Usual: assumed, a patch that wanders by 1 mm.
+  const Parameter offset = Parameter{"offset", "1", 1, -0.2, 0.2, 0.01}.within(0.05);
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
   Parametrisation couple{.effect = "normal-force-offset",
                          .what = "offset over the ball's radius, its couple added to rolling",

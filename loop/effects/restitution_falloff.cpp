@@ -8,8 +8,8 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> restitution_falloff(const Setting& setting) {
   if (setting.deformable) return {};  // has no impact law
   const char* name = "restitution-falloff";
-  // 100 / m^2 is a loss of 0.04 at 20 mm.
-  const auto square = [](const char* axis) { return Parameter{axis, "1/m^2", 1, -60, 900, 50}; };
+  // 100 / m^2 is a loss of 0.04 at 20 mm. Usual: assumed, twice that.
+  const auto square = [](const char* axis) { return Parameter{axis, "1/m^2", 1, -60, 900, 50}.within(200); };
   Parametrisation round{.effect = name, .what = "with the square of the distance", .parameters = {square("falloff")}};
   round.before = [](std::span<const double> p, Shot& t) { t.blow.contact.restitution_falloff += p[0]; };
   Parametrisation oval{.effect = name,
@@ -19,8 +19,9 @@ std::vector<Parametrisation> restitution_falloff(const Setting& setting) {
     const Delivery& d = t.blow.delivery;
     t.blow.contact.restitution -= p[0] * d.impact_toe * d.impact_toe + p[1] * d.impact_high * d.impact_high;
   };
-  Parametrisation cone{
-      .effect = name, .what = "with the distance", .parameters = {{"falloff_per_distance", "1/m", 1, -1, 12, 1}}};
+  Parametrisation cone{.effect = name,
+                       .what = "with the distance",
+                       .parameters = {Parameter{"falloff_per_distance", "1/m", 1, -1, 12, 1}.within(4)}};
   cone.before = [](std::span<const double> p, Shot& t) {
     t.blow.contact.restitution -= p[0] * std::hypot(t.blow.delivery.impact_toe, t.blow.delivery.impact_high);
   };

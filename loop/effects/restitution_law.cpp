@@ -11,8 +11,9 @@ std::vector<Parametrisation> restitution_law(const Setting& setting) {
     f.before = [](std::span<const double> p, Shot& s) { s.change.losses += p[0]; };
     return {f};
   }
-  const Parameter level{"level", "1", 1, -0.2, 0.2, 0.02};
-  const Parameter slope{"slope", "s/m", 1, -0.015, 0.015, 0.001};
+  // Usual: from a head that does not yield to one at the rules' limit, 0.06 [@frankly-golf]; half of it either way.
+  const Parameter level = Parameter{"level", "1", 1, -0.2, 0.2, 0.02}.within(0.03);
+  const Parameter slope = Parameter{"slope", "s/m", 1, -0.015, 0.015, 0.001}.within(0.003);
   Parametrisation constant{.effect = "restitution-law", .what = "level", .parameters = {level}};
   constant.before = [](std::span<const double> p, Shot& t) { t.blow.contact.restitution += p[0]; };
   Parametrisation tilt{.effect = "restitution-law", .what = "slope", .parameters = {slope}};

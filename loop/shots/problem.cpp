@@ -8,6 +8,7 @@
 #include "loop/median.hpp"
 #include "loop/shots/experiment.hpp"
 #include "loop/shots/mixture.hpp"
+#include "loop/shots/remainder.hpp"
 #include "loop/shots/scatter.hpp"
 #include "models/reduced/face_strike.hpp"
 
@@ -325,6 +326,7 @@ bool ShotProblem::screen(const Selection& selection) {
   flags_ = std::move(screening.flags);
   if (held_rows_) std::erase_if(flags_, [&](const RowFlag& f) { return f.shot >= 0 && held_rows_->contains(f.row); });
   widespread_ = std::move(screening.widespread);
+  many_ = screening.many;
   std::set<int> now;
   for (const RowFlag& f : flags_)
     if (f.shot >= 0) now.insert(f.shot);
@@ -401,6 +403,16 @@ StructureMap ShotProblem::structure(const Fit& fit, const Fit& near, const Eigen
     weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
   return loop::structure(*model_, select_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
                          directions, rules.flips, rules.seed);
+}
+
+/// Whole clusters are held out: whole clusters foretell each other.
+std::optional<Remainder> ShotProblem::remainder(const Fit& fit) const {
+  std::vector<int> group(static_cast<std::size_t>(model_->shots()));
+  const Column* by = case_.split.by.empty() ? nullptr : case_.shots.find(case_.split.by);
+  const Groups clusters = by ? groups(*by) : Groups{};
+  for (int i = 0; i < model_->shots(); ++i)
+    group[std::size_t(i)] = by ? clusters.of_row[std::size_t(inputs_.row_of[std::size_t(i)])] : i;
+  return loop::remainder(*model_, case_.shots, inputs_.row_of, rows_.train, group, fit);
 }
 
 Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }
@@ -525,19 +537,25 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
 /// shots that is no exception.
 std::vector<Location> ShotProblem::shapes(const Selection& s) const {
   if (const auto two = two_populations(s)) return {*two};
+  const auto told = [&](const std::string& channel, const std::string& column) {
+    return Location{
+        channel, column,
+        fmt::format("{} of {} shots far off in {}, the others within the noise", many_, model_->shots(), widespread_)};
+  };
   for (int c = 0; c < width(); ++c) {
     const std::string& name = channel(c).name;
     if (!channel(c).refuted && name != widespread_) continue;
     for (const Finding& f : s.after.findings)
       if (f.channel == c && f.p_adjusted < 0.05) return {place(f)};
     if (name == widespread_) {
-      Location l{name, "", "many shots far off, the others within the noise"};
+      Location l = told(name, "");
       for (const StructureMap* map : {&s.after, &s.before})
         for (const Finding& f : map->findings)
           if (f.channel == c && l.regressor.empty()) l.regressor = f.regressor;
       return {l};
     }
   }
+  if (!widespread_.empty()) return {told("", widespread_)};
   return {};
 }
 
@@ -550,12 +568,16 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   const std::size_t flagged = flags().size();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
   const solvers::Loss loss = stages().back().loss;
-  double lost = double(flagged);
+  double lost = double(flagged), far = 0;
+  std::map<int, int> of_finding;
+  for (const RowFlag& f : flags_) ++of_finding[f.finding];
+  for (const auto& [finding, rows] : of_finding) far += rows == 1;
   std::vector<Location> told;
   std::vector<std::vector<double>> size(static_cast<std::size_t>(width()));
   for (std::size_t i = 0; i < used.size(); ++i) {
     const auto of = z.segment(std::ptrdiff_t(i) * width(), width());
     lost += of.squaredNorm() > loss.cap;
+    far += of.squaredNorm() > loss.knee;
     for (int c = 0; c < width(); ++c)
       if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(of[c]));
   }
@@ -574,6 +596,9 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                     fmt::format("{:.0f} % of the rows are flagged or explained by nothing: what fits the others "
                                 "is no explanation of the set",
                                 100 * share)});
+  else if (const double all = double(flagged + used.size()); far > std::max(3.0, kMany * all))
+    told.push_back(
+        {"", "", fmt::format("{:.0f} of {:.0f} shots further off than one in a thousand should be", far, all)});
   return told;
 }
 

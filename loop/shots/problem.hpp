@@ -53,6 +53,7 @@ class ShotProblem final : public Problem {
 
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                          const Rules& rules) const override;
+  std::optional<Remainder> remainder(const Fit& fit) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
   std::vector<Location> doubts(const Selection& selection) const override;
@@ -80,6 +81,7 @@ class ShotProblem final : public Problem {
   std::set<int> out_;                   ///< shots that are flagged
   std::vector<RowFlag> early_, flags_;  ///< before rows could become shots; all
   std::string widespread_;              ///< see Screening
+  int many_ = 0;
   std::vector<Regressor> regressors_;
   std::vector<std::string> notes_;
   bool updated_ = false;

@@ -77,8 +77,9 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   }
   std::ranges::stable_sort(pooled, {}, &UsedRow::row);
   for (std::size_t k = 0; k < whole.channels.size(); ++k)
-    for (const auto& [of, into] :
-         {std::pair{&UsedRow::before, &whole.channels[k].before}, {&UsedRow::after, &whole.channels[k].after}}) {
+    for (const auto& [of, into] : {std::pair{&UsedRow::before, &whole.channels[k].before},
+                                   {&UsedRow::after, &whole.channels[k].after},
+                                   {&UsedRow::with_remainder, &whole.channels[k].with_remainder}}) {
       const Errors held = errors(pooled, of, k);
       *into = {into->train_rmse, held.holdout_rmse, held.holdout_bias, into->train, held.holdout};
     }

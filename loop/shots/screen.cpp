@@ -305,7 +305,15 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
   std::map<int, int> of_finding;
   for (const RowFlag& f : flags) ++of_finding[f.finding];
   const auto single = [&](const RowFlag& f) { return f.slip && f.shot >= 0 && of_finding[f.finding] == 1; };
-  if (double(std::ranges::count_if(flags, single)) > std::max(3.0, 0.08 * n)) {
+  const auto widespread = [&](const std::map<std::string, int>& of_column) {
+    screening.widespread = std::ranges::max_element(of_column, {}, [](const auto& v) { return v.second; })->first;
+    for (const auto& [column, count] : of_column) screening.many += count;
+  };
+  if (double(std::ranges::count_if(flags, single)) > std::max(3.0, kMany * n)) {
+    std::map<std::string, int> slipping;
+    for (const RowFlag& f : flags)
+      if (single(f)) ++slipping[f.column];
+    widespread(slipping);
     const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(model.width()), 2e-4));
     std::erase_if(flags, [&](const RowFlag& f) { return single(f) && f.distance < plain; });
   }
@@ -317,9 +325,9 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
       ++count;
       ++unreasoned[f.column];
     }
-  if (count > std::max(2.0, 0.08 * n)) {
+  if (count > std::max(2.0, kMany * n)) {
     std::erase_if(flags, [](const RowFlag& f) { return !f.slip && f.shot >= 0; });
-    screening.widespread = std::ranges::max_element(unreasoned, {}, [](const auto& v) { return v.second; })->first;
+    widespread(unreasoned);
   }
   std::ranges::stable_sort(flags, {}, &RowFlag::row);
   return screening;

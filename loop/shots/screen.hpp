@@ -21,11 +21,16 @@ struct RowFlag {
   bool cluster = false;  ///< one slip explains most of its cluster
 };
 
+/// Share of the shots beyond which those far off are no exceptions; three at least.
+constexpr double kMany = 0.08;
+
 struct Screening {
   std::vector<RowFlag> flags;  ///< by row
-  /// Channel in which so many shots are far off, without a slip that would bring them back, that they are no
-  /// exceptions: then they are not flagged, and the residual is to be explained. Empty: none.
+  /// So many shots are far off that they are no exceptions: those that no slip would bring back, or only a slip of a
+  /// record in which few slip, are not flagged, and the residual is to be explained. The likeliest column, input or
+  /// channel; empty: no such thing.
   std::string widespread;
+  int many = 0;  ///< such shots
 };
 
 /// Which column of the data holds an input or a channel of the model.

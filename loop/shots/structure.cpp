@@ -108,8 +108,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
 
 }  // namespace
 
-std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
-                                  const ShotModel& model) {
+std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of, const ShotModel& model) {
   const int n = model.shots();
   std::vector<Line> lines;
   for (const Column& c : shots.columns) {
@@ -127,6 +126,15 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
   }
   Eigen::VectorXd order(n);
   for (int i = 0; i < n; ++i) order[i] = model.trial(i).order;
+  lines.push_back({"shot", true, std::move(order)});
+  return lines;
+}
+
+std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+                                  const ShotModel& model) {
+  std::vector<Line> lines = columns_of(shots, row_of, model);
+  const Eigen::VectorXd order = lines.back().x;
+  lines.pop_back();
   std::vector<Regressor> all = regressors(shots, row_of, rows, lines, order);
   // Before what only the place in the session drives.
   const auto session =

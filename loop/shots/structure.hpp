@@ -31,6 +31,8 @@ struct Line {
   bool foreign;       ///< see Finding
   Eigen::VectorXd x;  ///< per shot of the model, any unit
 };
+/// Of the shots' data: inputs as a fit sees them, columns that no model knows, the place in the session last.
+std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of, const ShotModel& model);
 /// Regressors from such columns: trends, curvatures, products of two, groups of the text columns, steps and
 /// oscillations over the session (`order` per shot, 0 to 1).
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,

@@ -3,9 +3,10 @@
 
     rivals.py OUT/1 [OUT/2 ...]                 each holds truth/, sets/ and runs/, as `run` makes them
 
-Base predictions, the loop's own and the split are those of the loop's residuals.csv. The rivals see the training rows alone:
-recorded inputs, shot number, every other numeric column that is no output. A ratio is the loop's root mean square error on the
-rows held out over the best rival's, chosen on those rows: the choice favours the rivals.
+Base predictions, the loop's own (named effects, and the remainder beside them where there is one) and the split are those of
+the loop's residuals.csv. The rivals see the training rows alone: recorded inputs, shot number, every other numeric column that is
+no output. A ratio is the loop's root mean square error on the rows held out over the best rival's, chosen on those rows: the
+choice favours the rivals.
 """
 
 import argparse
@@ -119,7 +120,8 @@ def compare(sets, run):
         return None
     errors = {}
     for channel in [c[: -len("__measured")] for c in rows[0] if c.endswith("__measured")]:
-        m, b, a = (np.array([value(r[f"{channel}__{k}"]) for r in rows]) for k in ("measured", "before", "after"))
+        last = "with_remainder" if f"{channel}__with_remainder" in rows[0] else "after"
+        m, b, a = (np.array([value(r[f"{channel}__{k}"]) for r in rows]) for k in ("measured", "before", last))
         good = np.isfinite(m) & np.isfinite(b) & np.isfinite(a)
         t, h = good & ~held, good & held
         if t.sum() < 15 or h.sum() < 5:

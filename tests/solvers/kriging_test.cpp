@@ -82,6 +82,29 @@ TEST(Kriging, NeighboursErrAlike) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(together).eigenvalues()[0], 0);
 }
 
+/// Noise of which no input tells anything is foretold by its mean; a wave below as much noise is found, along its
+/// input.
+TEST(Kriging, OfNoisyPointsOnlyWhatTheOthersForetellIsSaid) {
+  std::mt19937_64 random(6);
+  const Eigen::MatrixXd x = anywhere(120, 6, random), noise = anywhere(120, 1, random),
+                        there = anywhere(400, 6, random);
+  const Eigen::MatrixXd wave = 0.8 * (3 * x.col(2).array()).sin();
+  const Kriging none(x, noise, Kriging::noisy()), some(x, noise + wave, Kriging::noisy());
+  double of_none = 0, of_some = 0, left = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::VectorXd at = there.row(i).transpose();
+    of_none += std::pow(none(at)[0], 2) / 400;
+    of_some += std::pow(0.8 * std::sin(3 * at[2]), 2) / 400;
+    left += std::pow(some(at)[0] - 0.8 * std::sin(3 * at[2]), 2) / 400;
+  }
+  EXPECT_GT(of_some, 0.2);  // the wave is there
+  EXPECT_LT(left, 0.2 * of_some);
+  EXPECT_LT(of_none, 0.1 / 3);  // of a variance of 1/3
+  Eigen::Index shortest = 0;
+  some.correlation().length.minCoeff(&shortest);
+  EXPECT_EQ(shortest, 2);
+}
+
 TEST(Kriging, NoiseIsNotInterpolated) {
   std::mt19937_64 random(3);
   const Eigen::MatrixXd x = anywhere(120, 3, random);

@@ -1,0 +1,18 @@
+/// A discrepancy without a name: per channel a Gaussian process of the residual over the inputs, the session and the
+/// columns that no model knows.
+#pragma once
+
+#include "loop/remainder.hpp"
+#include "loop/shots/structure.hpp"
+
+namespace hosel::loop {
+
+/// Of the residuals of a fit on the training rows `rows` (of long sets on some, evenly spread). Lengths and noise by
+/// the marginal likelihood (`solvers::Kriging::noisy`). A channel has one where the rows in five parts of whole groups
+/// (`group` per shot of the model), each foretold by the other parts alone, are nearer to what was measured: in squared
+/// noise units by more than chance brings. Values that stand far off are drawn in, inputs kept inside the range of the
+/// training rows. Absent where the rows are too few.
+std::optional<Remainder> remainder(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                   const std::vector<int>& rows, const std::vector<int>& group, const Fit& fit);
+
+}  // namespace hosel::loop
