@@ -86,7 +86,7 @@ TEST(InputFile, ANewCaseFindsWhatItsModelNamed) {
   const fs::path dir = fresh_directory("new_case");
   write(dir / "here/base/case.toml", kEccentricBlow);
   write(dir / "here/sweep/case.toml",
-        "kind = \"sweep\"\ncase = \"../base\"\n[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
+        "kind = \"study\"\ncase = \"../base\"\n[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
   ASSERT_EQ(command("new " + (dir / "far/away/mine").string() + " --from " + (dir / "here/sweep").string()).status, 0);
   const Outcome o = command("check " + (dir / "far/away/mine").string());
   EXPECT_EQ(o.status, 0) << o.text;

@@ -302,46 +302,6 @@ max_s_per_m = 3.0e-2
   EXPECT_GT(off[1], 20);    // what the hands change in them
 }
 
-TEST(CrossCheck, NamesPlaceAndQuantity) {
-  const auto d = scratch("cross_check_case");
-  std::ofstream(d / "case.toml") << R"(kind = "cross-check"
-models = ["rigid-eccentric", "stick-slip", "volumetric"]
-reference = "rigid-eccentric"
-[[grid]]
-name = "dynamic_loft"
-values_deg = [10.0, 50.0]
-[[grid]]
-name = "common_friction"
-values = [0.1, 0.4]
-[delivery]
-club_speed_mps = 40.0
-[head]
-mass_kg = 0.26
-cg_mm = [0.0, 0.0, 0.0]
-inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
-[volumetric]
-published = "driver"
-)";
-  const nlohmann::json s = run(d);
-  EXPECT_EQ(s["points"], 4);
-  bool saw = false;
-  for (const auto& e : s["differences"]) {
-    if (e["channel"] != "backspin") continue;
-    if (e["model"] == "stick-slip") {
-      EXPECT_LT(std::abs(e["largest"].get<double>()), 1e-6);  // one and the same on the centre line
-    }
-    if (e["model"] == "volumetric") {
-      saw = true;
-      EXPECT_GT(std::abs(e["largest"].get<double>()), 50);
-      EXPECT_FALSE(e["where"].get<std::string>().empty());
-      EXPECT_NE(e["differs_most"], "-");
-    }
-  }
-  EXPECT_TRUE(saw);
-  for (const char* name : {"index.md", "points.csv", "differences.csv", "map-volumetric.png"})
-    EXPECT_TRUE(std::filesystem::exists(d / "out" / name)) << name;
-}
-
 TEST(RollingIrons, FiguresAndFitsOfTheSecondSource) {
   const auto d = scratch("rolling_irons");
   std::filesystem::copy(std::filesystem::path(HOSEL_SOURCE_DIR) / "cases" / "rolling-irons", d,
