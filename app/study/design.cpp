@@ -15,7 +15,7 @@
 namespace hosel::app {
 namespace {
 
-using Kind = DesignFactor::Kind;
+using FactorKind = DesignFactor::Kind;
 
 std::optional<double> cell_number(const std::string& cell) {
   double x = 0;
@@ -36,7 +36,7 @@ bool same_quantity(const std::string& a, const std::string& b) {
 }
 
 DesignFactor read_variants(Table root) {
-  DesignFactor out{.kind = Kind::variants, .columns = {"variant"}};
+  DesignFactor out{.kind = FactorKind::variants, .columns = {"variant"}};
   std::vector<std::string> taken;
   for (Table t : root.tables("variant")) {
     constexpr std::size_t most = 1000;  // each is read with the case of every one
@@ -52,7 +52,7 @@ DesignFactor read_variants(Table root) {
 }
 
 DesignFactor read_rows(Table t) {
-  DesignFactor out{.kind = Kind::rows, .columns = {}};
+  DesignFactor out{.kind = FactorKind::rows, .columns = {}};
   const auto file = t.file({"file", "CSV of blows: a head with a dot is a key of the case, `name` a row's name, any "
                                     "other head a measured quantity"});
   const post::Sheet sheet = read_sheet(file);
@@ -80,7 +80,7 @@ DesignFactor read_rows(Table t) {
 }
 
 DesignFactor read_places(Table root) {
-  DesignFactor out{.kind = Kind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
+  DesignFactor out{.kind = FactorKind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
   const post::FaceGrid grid = read_face_grid(root);
   for (std::size_t p = 0; p < grid.size(); ++p) {
     DesignLevel level;
@@ -124,7 +124,7 @@ const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
   return factors_[factor].levels[point / block % factors_[factor].levels.size()];
 }
 
-bool Design::has(Kind kind) const { return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end(); }
+bool Design::has(FactorKind kind) const { return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end(); }
 
 std::vector<std::string> Design::columns() const {
   std::vector<std::string> out;
@@ -169,7 +169,7 @@ std::vector<std::string> Design::levels(std::size_t column) const {
 std::vector<std::string> Design::set(std::size_t point, const std::vector<std::string>& between) const {
   std::vector<std::string> first, last;
   for (std::size_t f = 0; f < factors_.size(); ++f) {
-    auto& to = factors_[f].kind == Kind::variants || factors_[f].kind == Kind::rows ? first : last;
+    auto& to = factors_[f].kind == FactorKind::variants || factors_[f].kind == FactorKind::rows ? first : last;
     const auto& set = level(f, point).set;
     to.insert(to.end(), set.begin(), set.end());
   }
@@ -216,7 +216,7 @@ Design read_design(Table root) {
   const bool latin = !sample || sample->choice({"method", "a value in each of as many strata as there are points, or "
                                                           "values drawn without regard to one another"},
                                                {"latin-hypercube", "random"}, "latin-hypercube") == "latin-hypercube";
-  DesignFactor sampled{.kind = Kind::sample};
+  DesignFactor sampled{.kind = FactorKind::sample};
   sampled.levels.resize(points);
   std::vector<DesignFactor> axes;
   std::vector<std::pair<std::string, Table>> swept;
@@ -236,7 +236,7 @@ Design read_design(Table root) {
       for (const std::string& key : keys) l.set.push_back(key + "=" + toml);
       return l;
     };
-    DesignFactor axis{.kind = Kind::axis, .columns = {name}};
+    DesignFactor axis{.kind = FactorKind::axis, .columns = {name}};
     if (!t.has("range")) {
       for (const std::string& x : t.scalars({"values", "of the key, each crossed with all other axes"}))
         axis.levels.push_back(level(x));
