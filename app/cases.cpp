@@ -93,6 +93,13 @@ void copy_case(const std::string& from, const fs::path& to) {
     fs::remove_all(to);
     throw InputError(fmt::format("{}: cannot be copied to {}: {}", from, to.string(), error.message()));
   }
+  // Text and pictures of the old case say nothing of the new one.
+  std::vector<fs::path> told;
+  for (const auto& entry : fs::directory_iterator(to))
+    if (fs::is_regular_file(entry.symlink_status()) &&
+        (entry.path().filename() == "README.md" || entry.path().extension() == ".png"))
+      told.push_back(entry.path());
+  for (const fs::path& file : told) fs::remove(file);
   // What lies beside the old case is named from the new one.
   for (const std::string& name : all) {
     const fs::path path = name;

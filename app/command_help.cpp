@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/cases.hpp"
 #include "app/job.hpp"
 #include "build_info.hpp"
 
@@ -86,13 +85,13 @@ done
 a file that cannot be written, no memory left, or an error of the program
 .TP
 .B 2
-bad input: what, where, and what is allowed is said
+bad input; the message says what, where and what is allowed
 .TP
 .B 3
-no convergence, or an answer that cannot be
+no convergence, or an impossible answer
 .TP
 .B 130, 143
-stopped by a signal; the same command goes on where it was
+stopped by a signal; the same command continues where it was
 .SH ENVIRONMENT
 .TP
 .B HOSEL_DATA
@@ -111,28 +110,33 @@ series for ParaView
 }
 
 std::string bash_completion(const CLI::App& command) {
-  std::string names, cases, kinds_, branches;
-  for (const auto& [name, title] : shipped_cases()) cases += " " + name;
+  std::string names, kinds_, branches;
   for (const Kind& kind : kinds()) kinds_ += fmt::format(" {}", kind.name);
   const auto words = [&](const CLI::App& of) {
     std::string all;
     for (const CLI::App* sub : commands(of)) all += " " + sub->get_name();
     for (const CLI::Option* o : options(of)) {
       if (!o->get_positional()) all += " " + o->get_name();
-      if (o->get_name(true) == "CASE" || o->get_name() == "--from") all += cases;
+      if (o->get_name(true) == "CASE" || o->get_name() == "--from") all += " $cases";
       if (o->get_name(true) == "OF") all += kinds_;
     }
     return all.substr(std::min<std::size_t>(1, all.size()));
   };
   for (const CLI::App* c : commands(command)) {
     names += (names.empty() ? "" : " ") + c->get_name();
-    branches += fmt::format("    {}) words='{}' ;;\n", c->get_name(), words(*c));
+    branches += fmt::format("    {}) words=\"{}\" ;;\n", c->get_name(), words(*c));
     for (const CLI::App* sub : commands(*c))
-      branches += fmt::format("    '{} {}') words='{}' ;;\n", c->get_name(), sub->get_name(), words(*sub));
+      branches += fmt::format("    '{} {}') words=\"{}\" ;;\n", c->get_name(), sub->get_name(), words(*sub));
   }
   return fmt::format(R"(# hosel: completion for bash. In ~/.bashrc: source <(hosel completion)
 _hosel() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} words='{}' command=${{COMP_WORDS[1]}}
+  local word=${{COMP_WORDS[COMP_CWORD]}} words='{}' command=${{COMP_WORDS[1]}} home cases=
+  for home in {} {}; do
+    [ -d "$home" ] || continue
+    cases=$(cd -- "$home" >/dev/null && printf '%s ' */case.toml)
+    cases=${{cases//\/case.toml/}}
+    break
+  done
   ((COMP_CWORD > 2)) && [ "$command" = sweep ] && command="sweep ${{COMP_WORDS[2]}}"
   ((COMP_CWORD > 1)) && case $command in
 {}    *) words= ;;
@@ -141,7 +145,7 @@ _hosel() {{
 }}
 complete -o filenames -F _hosel hosel
 )",
-                     names, branches);
+                     names, shell_word(HOSEL_SOURCE_DIR "/cases"), shell_word(HOSEL_INSTALLED_CASES), branches);
 }
 
 }  // namespace hosel::app

@@ -89,6 +89,10 @@ double error_of(const post::Channel& c, const json& launch, const NumericalError
   return e.angle * std::max(size("launch_angle_deg"), 1.0);
 }
 
+/// Digits of arithmetic are no answer: below this a speed, an angle or a spin is zero, in any unit of the tables.
+constexpr double kNothing = 1e-9;
+double tidy(double x) { return std::abs(x) < kNothing ? 0 : x; }
+
 void flatten(const json& j, const std::string& name, std::map<std::string, double>& out) {
   if (j.is_number()) out[name] = j.get<double>();
   if (!j.is_structured()) return;
@@ -130,15 +134,15 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
     for (const post::Channel& c : post::channels()) {
       const std::string key = fmt::format("{}_{}", c.name, c.unit);
       if (!launch.contains(key) || !right[model].contains(key)) continue;
-      const double p = launch[key], q = right[model][key];
+      const double p = tidy(launch[key]), q = tidy(right[model][key]);
       const auto estimated = [&](const json& l) {
         return l.contains("numerical_error") ? l["numerical_error"].value(key, 0.0) : error_of(c, l, e);
       };
       const double error = std::max(estimated(launch), estimated(right[model]));
       x.erase(fmt::format("models.{}.{}", model, key));
-      if (p == q) continue;
+      if (std::abs(q - p) <= kNothing * std::max({std::abs(p), std::abs(q), 1.0})) continue;
       rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12.2g}  {}\n", model + " " + key, p, q, q - p,
-                          error, std::abs(q - p) > error ? "beyond" : "within");
+                          tidy(error), std::abs(q - p) > error ? "beyond" : "within");
     }
   }
   for (const auto& [model, launch] : right.items())
@@ -157,7 +161,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
     if (it == y.end()) continue;
     ++others;
     const double size = std::max(std::abs(p), std::abs(it->second)),
-                 relative = size > 0 ? std::abs(it->second - p) / size : 0;
+                 relative = size > 1e-15 ? std::abs(it->second - p) / size : 0;
     if (relative <= 1e-9) continue;
     ++moved;
     if (relative > most) most = relative, largest = fmt::format("{}: {:.6g} and {:.6g}", key, p, it->second);

@@ -26,7 +26,7 @@ struct Kind {
   std::unique_ptr<Job> (*read)(CaseFile& file);
 };
 
-/// Every kind by its name. Adding one: app/kinds/<kind>.cpp and one line in job.cpp.
+/// Every kind by its name. Adding one: app/kinds/KIND.cpp and one line in job.cpp.
 std::span<const Kind> kinds();
 
 /// Reads `kind` and `title`, the whole case by its kind, and refuses what is left over.

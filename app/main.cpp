@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     std::_Exit(2);
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, said in words
-  CLI::App cli{"hosel: what does the ball do after this blow, and how much of it is the shaft's doing?"};
+  CLI::App cli{"hosel: what does the ball do after this blow, and how much of that is due to the shaft?"};
   cli.name("hosel");
   cli.set_version_flag("--version", [] { return "hosel " + app::program_version(); });  // not at every start
   cli.require_subcommand(1);
@@ -115,43 +115,44 @@ int main(int argc, char** argv) {
   run_command->add_option("--out", a.out, "output directory (default: out/<case>)");
   run_command->add_flag("--force", a.force, "overwrite a finished run");
   run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
-  run_command->add_flag("--strict", a.strict, "fail where the numbers are in doubt, instead of warning");
-  run_command->add_option("--units", a.units, "of what is shown: metric (m/s, m) or golf (mph, yards)")
+  run_command->add_flag("--strict", a.strict, "fail, instead of warning, where the numbers are in doubt");
+  run_command->add_option("--units", a.units, "units of tables and pages: metric (m/s, m) or golf (mph, yards)")
       ->check(CLI::IsMember({"metric", "golf"}));
   run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
   run_command->callback([&] { run(a); });
   CLI::App* check_command = cli.add_subcommand("check", "read and validate a case, print it resolved, run nothing");
   add_case(check_command);
   check_command->callback([&] { check(a); });
-  cli.add_subcommand("list", "the kinds, models, materials, balls, shafts, effects and cases there are")
-      ->callback(list);
-  CLI::App* keys_command = cli.add_subcommand("keys", "every key of a case: unit, range, default, meaning");
+  cli.add_subcommand("list", "list kinds, models, materials, balls, shafts, effects and cases")->callback(list);
+  CLI::App* keys_command = cli.add_subcommand("keys", "print the keys of a case: unit, range, default, meaning");
   keys_command->add_option("OF", a.of, "a kind of case, or a table such as ball or delivery; all where absent");
   keys_command->add_flag("--markdown", a.markdown, "all of them as a page: docs/reference.md");
   keys_command->callback([&] { keys(a); });
-  CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another");
+  CLI::App* new_command = cli.add_subcommand("new", "start a case directory from another: its case.toml and data");
   new_command->add_option("DIR", a.case_dir, "the new directory")->required();
   new_command->add_option("--from", a.from, "case directory or the name of a shipped case")->required();
   new_command->callback([&] { app::copy_case(a.from, a.case_dir); });
 
   app::ImportOptions import;
-  CLI::App* import_command = cli.add_subcommand("import", "make a case of the loop from a launch monitor's export");
+  CLI::App* import_command =
+      cli.add_subcommand("import", "make a case of the loop from the export of a launch monitor");
   import_command->add_option("FILE", import.file, "CSV or JSON as exported")->required();
   import_command->add_option("--out", import.out, "the new case directory")->required();
-  import_command->add_option("--units", import.units, "imperial or metric, where the file names no units");
+  import_command->add_option("--units", import.units, "imperial or metric, where the file states no units");
   import_command->add_option("--club", import.club,
-                             "only the shots with this club; or the club of all shots, where the file names none");
+                             "read only the shots with this club; or state the club, where the file names none");
   import_command
       ->add_option("--column", import.columns,
                    "'header=quantity_unit', by hand; '=-quantity_unit' turns its sign (repeatable)")
       ->take_all();
-  import_command->add_option("--keep", import.keep, "an unknown column that may explain something (repeatable)")
+  import_command->add_option("--keep", import.keep, "keep this unknown column as a possible explanation (repeatable)")
       ->take_all();
   import_command->add_flag("--modelled", import.modelled, "take spin that the instrument modelled as measured");
   import_command->add_option("--dictionary", import.dictionary, "header names of your own, beside the shipped ones");
   import_command->callback([&] { app::import_shots(import); });
 
-  CLI::App* sweep = cli.add_subcommand("sweep", "the points of a sweep or a face map, in shards on several machines");
+  CLI::App* sweep =
+      cli.add_subcommand("sweep", "compute the points of a sweep or a face map in shards, on several machines");
   sweep->require_subcommand(1);
   const auto add_directory = [&](CLI::App* c) {
     c->add_option("OUT", a.out, "directory of the plan")->required();
@@ -160,43 +161,43 @@ int main(int argc, char** argv) {
   CLI::App* plan = sweep->add_subcommand("plan", "read the case, count its points, write OUT/plan.json");
   add_case(plan);
   plan->add_option("--out", a.out, "directory for the plan and its points")->required();
-  plan->add_flag("--force", a.force, "discard what lies there");
+  plan->add_flag("--force", a.force, "discard an older plan and its points");
   plan->callback(
       [&] { app::sweep_plan(a.case_dir, a.sets, {.directory = a.out, .force = a.force, .quiet = a.quiet}); });
   CLI::App* shard = sweep->add_subcommand("run", "compute the missing points of one shard");
   add_directory(shard);
   shard->add_option("--shard", a.shard, "k/n: the k-th of n shares (default 1/1)");
   shard->callback([&] { app::sweep_run(a.out, app::parse_shard(a.shard), a.quiet); });
-  CLI::App* merge = sweep->add_subcommand("merge", "tables and figures from all shards");
+  CLI::App* merge = sweep->add_subcommand("merge", "write tables and figures from all shards");
   add_directory(merge);
   merge->add_flag("--force", a.force, "overwrite a finished merge");
   merge->callback([&] { app::sweep_merge(a.out, a.force, a.quiet); });
-  CLI::App* status = sweep->add_subcommand("status", "how many points are finished");
+  CLI::App* status = sweep->add_subcommand("status", "print how many points are finished");
   add_directory(status);
   status->callback([&] { app::sweep_status(a.out); });
 
   CLI::App* adopt_command =
-      cli.add_subcommand("adopt", "make entries of your library of a finished calibration or loop");
+      cli.add_subcommand("adopt", "copy the result of a finished calibration or loop into your library");
   adopt_command->add_option("OUT", a.out, "directory of a run")->required();
   adopt_command->add_option("--as", a.from, "name of the entries, for cases")->required();
   adopt_command->add_flag("--force", a.force, "replace entries of this name");
   adopt_command->callback([&] { adopt(a); });
-  CLI::App* diff_command = cli.add_subcommand("diff", "two finished runs: inputs and launches that differ");
+  CLI::App* diff_command = cli.add_subcommand("diff", "compare two finished runs: inputs and launches that differ");
   diff_command->add_option("A", a.from, "directory of a run")->required();
   diff_command->add_option("B", a.out, "directory of another")->required();
   diff_command->callback([&] { fmt::print("{}", app::difference(a.from, a.out)); });
-  CLI::App* open_command = cli.add_subcommand("open", "a run's series in ParaView");
+  CLI::App* open_command = cli.add_subcommand("open", "open the series of a run in ParaView");
   open_command->add_option("OUT", a.out, "directory of a run")->required();
   open_command->callback([&] { app::open_in_paraview(a.out); });
   cli.add_subcommand("completion",
-                     "a bash script that completes commands, options and cases: source <(hosel completion)")
+                     "print a bash script that completes commands, options and cases: source <(hosel completion)")
       ->callback([&] { fmt::print("{}", app::bash_completion(cli)); });
-  cli.add_subcommand("man", "the man page, as roff: hosel man | man -l -")->callback([&] {
+  cli.add_subcommand("man", "print the manual page, as roff: hosel man | man -l -")->callback([&] {
     fmt::print("{}", app::man_page(cli));
   });
 
   // `hosel help` and `hosel help COMMAND` are what people type first.
-  CLI::App* help = cli.add_subcommand("help", "this text, or that of a command");
+  CLI::App* help = cli.add_subcommand("help", "print this text, or that of a command");
   help->add_option("COMMAND", a.from, "a command");
   help->callback([&] {
     CLI::App* of = a.from.empty() ? &cli : nullptr;

@@ -1,4 +1,4 @@
-/// What a finished run offers the library: OUT/entries/<shelf>.toml in the library's format. `hosel adopt OUT --as
+/// What a finished run offers the library: OUT/entries/SHELF.toml in the library's format. `hosel adopt OUT --as
 /// NAME` makes entries of the user's of them.
 #pragma once
 
@@ -32,7 +32,7 @@ std::string head_tables(const Head& head, std::string_view face, const std::opti
 /// The parts that are there.
 std::string contact_tables(const NamedContact& contact);
 
-/// Writes OUT/entries/<shelf>.toml and reads it again by the library's reader: what it would refuse is not offered, and
+/// Writes OUT/entries/SHELF.toml and reads it again by the library's reader: what it would refuse is not offered, and
 /// the run says so.
 void offer(Output& out, Shelf shelf, const Offer& offer, const std::string& tables);
 /// Nothing is offered: entries of an earlier run in OUT go.

@@ -35,6 +35,6 @@ endforeach()
 install(EXPORT hosel NAMESPACE hosel:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)
 configure_package_config_file(cmake/hosel-config.cmake.in ${PROJECT_BINARY_DIR}/hosel-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/hosel-config-version.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/hosel-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/hosel-config.cmake ${PROJECT_BINARY_DIR}/hosel-config-version.cmake
         cmake/FindSuiteSparse.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hosel)

@@ -66,7 +66,7 @@ inline constexpr const char* kFaceView =
     "seen from behind (right-handed): heel left, toe right; dashed: 12 mm from the face centre";
 
 /// The face's surface through the grid points (face frame) with every quantity of every map, and its
-/// differences to the reference, as point arrays `<model>.<quantity>` and `<model>-minus-<reference>.<quantity>`.
+/// differences to the reference, as point arrays `MODEL.QUANTITY` and `MODEL-minus-REFERENCE.QUANTITY`.
 VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps,
                       const FaceMap& reference);
 

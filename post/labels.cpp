@@ -26,6 +26,7 @@ std::string symbol(std::string_view unit) {
       i += 4;
     } else if (unit[i] == '_') {
       out += ' ';
+    } else if (unit[i] == '^') {  // "1/m^2": the power is raised below
     } else if (unit[i] == '2' || unit[i] == '3') {
       out += unit[i] == '2' ? "²" : "³";
     } else {

@@ -59,7 +59,7 @@ void answer(Output& out, const ImpactStory& s) {
   page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, "rpm"));
   const double axis = degrees(l.spin_axis());
   if (rpm(l.spin_rate()) > 0.5)
-    page.answer("spin axis", fmt::format("{:.1f}°", std::abs(axis)),
+    page.answer("spin axis", fmt::format("{:.1f}°", axis),
                 beside(axis < -0.05  ? "a draw"
                        : axis > 0.05 ? "a fade"
                                      : "level",

@@ -4,6 +4,9 @@ local page = ""
 local function target(url)
   local name = url:match("cases/([%w-]+)/README%.md$")
   if name then return "cases/" .. name .. ".html" end
+  if url:match("cases/README%.md$") then return "gallery.html" end
+  if url:match("library/README%.md$") then return "library.html" end
+  url = url:gsub("^%.%./([A-Z]+%.md)", "%1"):gsub("^docs/", "")
   if page:match("^cases/") or url:match("^%a+:") then return url end
   return (url:gsub("^README%.md", "index.md"):gsub("%.md(#?)", ".html%1"))
 end
@@ -13,12 +16,20 @@ function Meta(meta)
 end
 
 function Link(link)
+  if page:match("^cases/") and link.target:match("%.toml$") then return link.content end  -- the site has no files of cases
   link.target = target(link.target)
   return link
 end
 
 function Image(image)
   local name, file = image.src:match("cases/([%w-]+)/([%w-]+%.png)$")
+  if page:match("^cases/") then
+    local other, drawn = image.src:match("^%.%./([%w-]+)/([%w-]+%.png)$")
+    if other then
+      image.src = other .. "-" .. drawn
+      return image
+    end
+  end
   if name then image.src = "cases/" .. name .. "-" .. file end
   if page:match("^cases/") and not name then image.src = page:match("^cases/([%w-]+)/") .. "-" .. image.src end
   return image

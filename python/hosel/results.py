@@ -18,6 +18,17 @@ class Table(dict):
         except KeyError:
             raise AttributeError(f"no column {name!r} (there are {', '.join(self)})") from None
 
+    def __repr__(self):
+        rows = len(next(iter(self.values()), ()))
+        width = max((len(name) for name in self), default=0)
+        lines = [f"hosel.Table of {rows} rows"]
+        for name, column in self.items():
+            cells = [f"{c:.6g}" if column.dtype.kind == "f" else str(c) for c in (column if rows <= 4 else column[[0, 1, 2, -1]])]
+            if rows > 4:
+                cells.insert(3, "...")
+            lines.append(f"  {name:<{width}}  {', '.join(cells)}")
+        return "\n".join(lines)
+
     def where(self, **equal):
         """The rows in which each named column has the given value."""
         keep = np.ones(len(next(iter(self.values()))), dtype=bool)

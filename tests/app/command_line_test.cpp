@@ -63,11 +63,36 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_NE(moved.text.find("rigid-eccentric ball_speed_mps"), std::string::npos) << moved.text;
   EXPECT_NE(moved.text.find("beyond"), std::string::npos) << moved.text;
   EXPECT_EQ(moved.text.find("dynamic_loft"), std::string::npos) << moved.text;
+  EXPECT_EQ(moved.text.find("e-1"), std::string::npos) << "digits of arithmetic: " << moved.text;
   EXPECT_NE(same.text.find("inputs\n  the same\nlaunches\n  the same"), std::string::npos) << same.text;
   EXPECT_EQ(same.text.find("beyond"), std::string::npos) << same.text;
   const Outcome none = diff("a", "nothing");
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
+}
+
+TEST(CommandLine, AStrikeOffTheFaceWarns) {
+  const fs::path home = fresh_directory("off_the_face"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow);
+  const auto run = [&](const std::string& more) {
+    return command("run '" + blow.string() + "' --force --out '" + (home / "out").string() + "' " + more);
+  };
+  const Outcome on = run("--set delivery.impact_toe_mm=30"), off = run("--set delivery.impact_toe_mm=70");
+  EXPECT_EQ(on.status, 0);
+  EXPECT_EQ(on.text.find("off the face"), std::string::npos) << on.text;
+  EXPECT_EQ(off.status, 0);
+  EXPECT_NE(off.text.find("struck off the face: 70 mm towards the toe"), std::string::npos) << off.text;
+  EXPECT_EQ(run("--strict --set delivery.impact_toe_mm=70").status, 3);
+}
+
+TEST(CommandLine, ACharacteristicTimePassesOrFails) {
+  const fs::path out = fresh_directory("characteristic_time");
+  const auto run = [&](const std::string& more) {
+    return command("run characteristic-time --force --set line.faces=2 --out '" + out.string() + "' " + more).text;
+  };
+  const std::string at_the_limit = run(""), softer = run("--set face.stiffness_N_per_m=4e6");
+  EXPECT_NE(at_the_limit.find("passes the rules' test"), std::string::npos) << at_the_limit;
+  EXPECT_NE(softer.find("fails the rules' test"), std::string::npos) << softer;
 }
 
 TEST(CommandLine, AFolderThatIsNoCaseHidesNoShippedOne) {

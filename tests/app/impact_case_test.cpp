@@ -277,7 +277,7 @@ TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
   ASSERT_TRUE(WIFEXITED(asked));
   EXPECT_EQ(WEXITSTATUS(asked), 143);
   EXPECT_NE(content(out / "log.txt").find("goes on from t = "), std::string::npos);
-  const std::string version = command("--version").text;  // "hosel 0.1.0 build ..."
+  const std::string version = command("--version").text;  // "hosel 1.0.0 build ..."
   EXPECT_NE(content(out / "checkpoint.cbor").find(version.substr(6, version.find('\n') - 6)), std::string::npos)
       << "a checkpoint of another build is not gone on from";
   const fs::path without = fresh_directory("no_history") / "out";

@@ -87,7 +87,11 @@ TEST(InputFile, ANewCaseFindsWhatItsModelNamed) {
   write(dir / "here/base/case.toml", kEccentricBlow);
   write(dir / "here/sweep/case.toml",
         "kind = \"study\"\ncase = \"../base\"\n[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
+  write(dir / "here/sweep/README.md", "of the other case");
+  write(dir / "here/sweep/data.csv", "a\n1\n");
   ASSERT_EQ(command("new " + (dir / "far/away/mine").string() + " --from " + (dir / "here/sweep").string()).status, 0);
+  EXPECT_FALSE(fs::exists(dir / "far/away/mine/README.md")) << "it is about the other case";
+  EXPECT_TRUE(fs::exists(dir / "far/away/mine/data.csv"));
   const Outcome o = command("check " + (dir / "far/away/mine").string());
   EXPECT_EQ(o.status, 0) << o.text;
 }

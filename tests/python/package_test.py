@@ -35,6 +35,10 @@ class Launches(unittest.TestCase):
         for name in asked:
             self.assertAlmostEqual(float(asked[name]), said[name], delta=1e-9 * (1 + abs(said[name])), msg=name)
 
+    def test_a_table_prints_short(self):
+        table = hosel.Table(club=np.array(["7i"] * 9), spin_rpm=np.arange(9.0))
+        self.assertEqual(repr(table), "hosel.Table of 9 rows\n  club      7i, 7i, 7i, ..., 7i\n  spin_rpm  0, 1, 2, ..., 8")
+
     def test_bad_input_is_named(self):
         model = hosel.Model("driver-toe", "rigid-eccentric")
         for inputs, words in [({"club_sped_mph": 1.0}, "club_sped_mph"), ({"club_speed_deg": 1.0}, "club_speed_deg"),

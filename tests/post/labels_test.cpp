@@ -1,0 +1,18 @@
+// Units as people read them.
+#include <gtest/gtest.h>
+
+#include "post/labels.hpp"
+
+namespace {
+
+using hosel::post::symbol;
+
+TEST(Labels, UnitsAreRaisedOnce) {
+  EXPECT_EQ(symbol("mps"), "m/s");
+  EXPECT_EQ(symbol("kg_m2"), "kg m²");
+  EXPECT_EQ(symbol("1/m^2"), "1/m²");
+  EXPECT_EQ(symbol("kg m^2"), "kg m²");
+  EXPECT_EQ(symbol("N_s_per_m"), "N s/m");
+}
+
+}  // namespace
