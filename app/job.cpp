@@ -95,8 +95,9 @@ constexpr std::array kFormerKinds = {
     FormerKind{"sweep", "[[parameters]] is [[axis]], record is outputs, sweep.csv is points.csv"},
     FormerKind{"variants", "[[variants]] is [[variant]], outputs names the quantities, variants.csv is points.csv"},
     FormerKind{"curves", "[family] and [x] are an [[axis]] each, channels is outputs, history is histories"},
-    FormerKind{"cross-check", "[[grid]] is [[axis]] with a key, reference is [compare] with = \"model\", outputs names "
-                              "the quantities"},
+    FormerKind{"cross-check",
+               "[[grid]] is [[axis]] with a key, reference is [compare] with = \"model\", outputs names "
+               "the quantities"},
 };
 
 }  // namespace

@@ -65,8 +65,7 @@ VectorXd shares(const std::vector<Block>& blocks, const MatrixXd& all, const Vec
   Eigen::Index at = 1;
   for (std::size_t f = 0; f < blocks.size(); ++f) {
     const Eigen::Index width = blocks[f].columns.cols();
-    out[Eigen::Index(f)] =
-        whole > 0 ? variance(x.middleCols(at, width) * coefficients.segment(at, width)) / whole : 0;
+    out[Eigen::Index(f)] = whole > 0 ? variance(x.middleCols(at, width) * coefficients.segment(at, width)) / whole : 0;
     at += width;
   }
   return out;

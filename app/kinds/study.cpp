@@ -88,7 +88,8 @@ class StudyJob final : public PointJob {
     reference_ = read_compare(root, table_);
     statements_ = read_study_statements(root, columns, table_.outputs, reference_.has_value());
     figures_ = read_study_figures(root, table_, reference_.has_value());
-    for (std::size_t d = 0; d < table_.design.size(); ++d) {  // what a case refuses is an error before anything is computed
+    for (std::size_t d = 0; d < table_.design.size();
+         ++d) {  // what a case refuses is an error before anything is computed
       nesting.count(root);
       read_point(root, d);
     }
@@ -131,15 +132,16 @@ class StudyJob final : public PointJob {
     out.page().answer("points", fmt::format("{}", points.size()),
                       fmt::format("{} without an answer", summary["failed"].get<int>()));
     out.write_summary(summary);
-    out.tell(fmt::format("{} points, {} without an answer; the table is {}", points.size(), summary["failed"].get<int>(),
-                         (out.directory() / "points.csv").string()));
+    out.tell(fmt::format("{} points, {} without an answer; the table is {}", points.size(),
+                         summary["failed"].get<int>(), (out.directory() / "points.csv").string()));
   }
 
  private:
   /// Another case answers: its keys are what the design sets, entries of its summary what is recorded.
   void read_case(CaseFile& file, Table root) {
-    const std::string named = root.text({"case", "the case whose keys are varied: beside this one, or a shipped one; "
-                                                 "without it the study's own tables are the blow"});
+    const std::string named = root.text({"case",
+                                         "the case whose keys are varied: beside this one, or a shipped one; "
+                                         "without it the study's own tables are the blow"});
     const fs::path own = file.case_beside(named);
     const fs::path found = own.empty() ? find_case(named) : own;
     set_ = root.texts({"set", "keys changed in every point, table.key=value"}, std::vector<std::string>{});
@@ -190,9 +192,11 @@ class StudyJob final : public PointJob {
     }
     CaseFile one(*blow_, overrides(d));
     const StudyBlow asked = read_study_blow(one.root());
-    if (asked.models.size() != table_.models.size()) root.fail("models", "a point may not change how many models answer");
+    if (asked.models.size() != table_.models.size())
+      root.fail("models", "a point may not change how many models answer");
     if (conditions_.matched_launch && !launch_angle(d))
-      root.fail("matched_launch", fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
+      root.fail("matched_launch",
+                fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
     leave_study_keys(one.root());
     one.finish();
   }

@@ -43,55 +43,79 @@ struct BlowQuantity {
 constexpr std::array kBlowQuantities = {
     BlowQuantity{"contact_time", {}, Dimension::time, [](const StudyAnswer& a) { return a.launch.contact_time; }, true},
     BlowQuantity{"peak_force", {}, Dimension::force, [](const StudyAnswer& a) { return a.launch.peak_force; }, true},
-    BlowQuantity{"normal_impulse", "N_s", {},
-                 [](const StudyAnswer& a) -> MaybeNumber { return momentum(a).dot(first_contact(a.blow).normal); }, true},
-    BlowQuantity{"tangential_impulse", "N_s", {},
+    BlowQuantity{"normal_impulse",
+                 "N_s",
+                 {},
+                 [](const StudyAnswer& a) -> MaybeNumber { return momentum(a).dot(first_contact(a.blow).normal); },
+                 true},
+    BlowQuantity{"tangential_impulse",
+                 "N_s",
+                 {},
                  [](const StudyAnswer& a) -> MaybeNumber {
                    const Vec3 n = first_contact(a.blow).normal, J = momentum(a);
                    return (J - J.dot(n) * n).norm();
-                 }, true},
-    BlowQuantity{"head_rotation", {}, Dimension::angular_velocity,
+                 },
+                 true},
+    BlowQuantity{"head_rotation",
+                 {},
+                 Dimension::angular_velocity,
                  [](const StudyAnswer& a) -> MaybeNumber {
                    return (a.launch.head_spin - a.blow.delivery.head_angular_velocity).norm();
-                 }, true},
-    BlowQuantity{"tangential_restitution", {}, {},
+                 },
+                 true},
+    BlowQuantity{"tangential_restitution",
+                 {},
+                 {},
                  [](const StudyAnswer& a) { return models::tangential_restitution(a.blow, a.launch); }},
     BlowQuantity{"launch_ratio", {}, {}, [](const StudyAnswer& a) { return models::launch_ratio(a.blow, a.launch); }},
-    BlowQuantity{"smash_factor", {}, {},
-                 [](const StudyAnswer& a) -> MaybeNumber {
-                   return a.launch.ball_speed() / a.blow.delivery.club_speed;
-                 }},
-    BlowQuantity{"spin_over_rolling", {}, {},
+    BlowQuantity{
+        "smash_factor",
+        {},
+        {},
+        [](const StudyAnswer& a) -> MaybeNumber { return a.launch.ball_speed() / a.blow.delivery.club_speed; }},
+    BlowQuantity{"spin_over_rolling",
+                 {},
+                 {},
                  [](const StudyAnswer& a) -> MaybeNumber {
                    Blow rolling = a.blow;
                    rolling.contact = {};
                    const double spin = models::StickSlip().launch(rolling).spin_rate();
                    return spin > 0 ? MaybeNumber(a.launch.spin_rate() / spin) : MaybeNumber();
                  }},
-    BlowQuantity{"largest_tangential_force", {}, Dimension::force,
-                 [](const StudyAnswer& a) { return extreme_force(a, 1); }},
-    BlowQuantity{"least_tangential_force", {}, Dimension::force,  // below zero where it reverses
+    BlowQuantity{
+        "largest_tangential_force", {}, Dimension::force, [](const StudyAnswer& a) { return extreme_force(a, 1); }},
+    BlowQuantity{"least_tangential_force",
+                 {},
+                 Dimension::force,  // below zero where it reverses
                  [](const StudyAnswer& a) { return extreme_force(a, -1); }},
-    BlowQuantity{"dynamic_loft", {}, Dimension::angle,
+    BlowQuantity{"dynamic_loft",
+                 {},
+                 Dimension::angle,
                  [](const StudyAnswer& a) -> MaybeNumber { return a.blow.delivery.dynamic_loft; }},
-    BlowQuantity{"wall_restitution", {}, {},
-                 [](const StudyAnswer& a) {
-                   return a.bounce ? MaybeNumber(a.bounce->point.restitution) : MaybeNumber();
-                 }},
-    BlowQuantity{"wall_contact_time", {}, Dimension::time,
-                 [](const StudyAnswer& a) {
-                   return a.bounce ? MaybeNumber(a.bounce->point.contact_time) : MaybeNumber();
-                 }},
-    BlowQuantity{"elastic_factor", {}, {},
+    BlowQuantity{
+        "wall_restitution",
+        {},
+        {},
+        [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->point.restitution) : MaybeNumber(); }},
+    BlowQuantity{
+        "wall_contact_time",
+        {},
+        Dimension::time,
+        [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->point.contact_time) : MaybeNumber(); }},
+    BlowQuantity{"elastic_factor",
+                 {},
+                 {},
                  [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->elastic) : MaybeNumber(); }},
-    BlowQuantity{"viscous_factor", {}, {},
+    BlowQuantity{"viscous_factor",
+                 {},
+                 {},
                  [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->viscous) : MaybeNumber(); }},
 };
 
 /// Moduli and branches are scaled until restitution and contact time on a wall are the reference's again: a change of
 /// the ball is else judged by its bounce.
-KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double speed, const models::NormalImpactPoint& own,
-                       const models::NormalImpactPoint& reference) {
+KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double speed,
+                       const models::NormalImpactPoint& own, const models::NormalImpactPoint& reference) {
   KeptBounce out{.point = own};
   if (std::abs(own.restitution - reference.restitution) < 5e-4 &&
       std::abs(own.contact_time / reference.contact_time - 1) < 2e-3)
@@ -175,9 +199,9 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
   const std::string near = nearest(name, known);
   std::string all;
   for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-  table.fail(key, fmt::format("nothing of a blow is called '{}'; {}", name,
-                              near.empty() ? "known, with any unit of the dimension: " + all
-                                           : "did you mean '" + near + "'?"));
+  table.fail(key, fmt::format(
+                      "nothing of a blow is called '{}'; {}", name,
+                      near.empty() ? "known, with any unit of the dimension: " + all : "did you mean '" + near + "'?"));
 }
 
 models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
@@ -210,7 +234,8 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
   }
   if (asked.flight) try {
       out.flight = asked.flight->follow(out.launch, asked.blow.ball);
-    } catch (const std::invalid_argument&) {}  // the ball does not reach the landing: the launch is an answer all the same
+    } catch (const std::invalid_argument&) {
+    }  // the ball does not reach the landing: the launch is an answer all the same
   return out;
 }
 

@@ -17,7 +17,8 @@ std::size_t number_of(const Table& t, std::string_view key, const std::string& n
   const auto at = std::ranges::find(names, name);
   if (at != names.end()) return std::size_t(at - names.begin());
   const std::string near = nearest(name, names);
-  t.fail(key, fmt::format("no {} '{}' in this study{}", key, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
+  t.fail(key,
+         fmt::format("no {} '{}' in this study{}", key, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 }  // namespace
@@ -59,7 +60,8 @@ std::vector<StudySeries> references(const StudyTable& table, const StudyReferenc
         s.y[d] = s.model == *reference.model ? NAN : table.at(*reference.model, s.output).y[d];
       } else if (reference.variant) {
         const std::size_t level = d / block;
-        s.y[d] = level == *reference.variant ? NAN : table.at(s.model, s.output).y[d % block + *reference.variant * block];
+        s.y[d] = level == *reference.variant ? NAN
+                                             : table.at(s.model, s.output).y[d % block + *reference.variant * block];
       } else {
         const auto seen = table.seen(d, s.output);
         s.y[d] = seen && std::isfinite(own) ? std::clamp(own, seen->low, seen->high) : NAN;
@@ -97,8 +99,8 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       if (count == 0) continue;
       mean /= double(count);
       const double rms = std::sqrt(square / double(count));
-      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(table.models[m]), post::csv_cell(table.outputs[o]),
-                         count, mean, rms, largest);
+      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(table.models[m]),
+                         post::csv_cell(table.outputs[o]), count, mean, rms, largest);
       for (const std::string& cell : table.design.cells(where)) csv += "," + post::csv_cell(cell);
       std::string cause = "-";
       double most = 0;
@@ -121,8 +123,9 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       row = {spoken, fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", rms), fmt::format("{:+.4g}", largest),
              table.design.said(where)};
       if (any_cause) row.push_back(cause);
-      nlohmann::json j = {{"output", table.outputs[o]}, {"points", count},    {"mean", mean},
-                          {"rms", rms},                 {"largest", largest}, {"where", table.design.said(where)}};
+      nlohmann::json j = {
+          {"output", table.outputs[o]},       {"points", count}, {"mean", mean}, {"rms", rms}, {"largest", largest},
+          {"where", table.design.said(where)}};
       if (!table.models[m].empty()) j["model"] = table.models[m];
       if (!shares.empty()) j["differs_most"] = cause, j["quantities_pct"] = shares;
       json["differences"].push_back(std::move(j));

@@ -53,8 +53,9 @@ DesignFactor read_variants(Table root) {
 
 DesignFactor read_rows(Table t) {
   DesignFactor out{.kind = FactorKind::rows, .columns = {}};
-  const auto file = t.file({"file", "CSV of blows: a head with a dot is a key of the case, `name` a row's name, any "
-                                    "other head a measured quantity"});
+  const auto file = t.file({"file",
+                            "CSV of blows: a head with a dot is a key of the case, `name` a row's name, any "
+                            "other head a measured quantity"});
   const post::Sheet sheet = read_sheet(file);
   out.levels.resize(sheet.rows());
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
@@ -124,7 +125,9 @@ const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
   return factors_[factor].levels[point / block % factors_[factor].levels.size()];
 }
 
-bool Design::has(FactorKind kind) const { return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end(); }
+bool Design::has(FactorKind kind) const {
+  return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end();
+}
 
 std::vector<std::string> Design::columns() const {
   std::vector<std::string> out;
@@ -210,11 +213,11 @@ Design read_design(Table root) {
   if (root.has("grid")) out.add(read_places(root), root, "grid");
 
   auto sample = root.optional_table("sample");
-  const auto points =
-      sample ? std::size_t(sample->integer({"points", "of the sample"}, 1, long(kMostPoints))) : 0;
+  const auto points = sample ? std::size_t(sample->integer({"points", "of the sample"}, 1, long(kMostPoints))) : 0;
   std::mt19937_64 random(sample ? std::uint64_t(sample->integer({"seed", "of the sample"}, 0, 1L << 62)) : 0);
-  const bool latin = !sample || sample->choice({"method", "a value in each of as many strata as there are points, or "
-                                                          "values drawn without regard to one another"},
+  const bool latin = !sample || sample->choice({"method",
+                                                "a value in each of as many strata as there are points, or "
+                                                "values drawn without regard to one another"},
                                                {"latin-hypercube", "random"}, "latin-hypercube") == "latin-hypercube";
   DesignFactor sampled{.kind = FactorKind::sample};
   sampled.levels.resize(points);
@@ -228,7 +231,8 @@ Design read_design(Table root) {
     const std::string name = t.text({"name", "of the axis in tables and figures"}, keys.front());
     for (const std::string& key : keys) {
       for (const auto& [other, table] : swept)
-        if (same_quantity(key, other)) t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
+        if (same_quantity(key, other))
+          t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
       swept.emplace_back(key, t);
     }
     const auto level = [&](const std::string& toml) {
@@ -245,8 +249,9 @@ Design read_design(Table root) {
     }
     const auto range = t.numbers({"range", "lowest and highest value"}, 2);
     if (!sample || t.has("count")) {
-      const long count = t.integer({"count", "of values from one end of the range to the other, crossed with all other axes; "
-                                             "without it the [sample] draws them"},
+      const long count = t.integer({"count",
+                                    "of values from one end of the range to the other, crossed with all other axes; "
+                                    "without it the [sample] draws them"},
                                    2, long(kMostPoints));
       for (long i = 0; i < count; ++i)
         axis.levels.push_back(

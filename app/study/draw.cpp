@@ -104,8 +104,7 @@ post::Figure lines(const StudyTable& table, const StudyView& view, const std::st
       const StudySeries& s = table.at(m, o);
       const std::size_t number = m * table.outputs.size() + o;
       std::optional<std::size_t> x = asked;
-      if (sampled && wanted.x.empty() && effects.of[number])
-        x = effects.columns[effects.of[number]->order.front()];
+      if (sampled && wanted.x.empty() && effects.of[number]) x = effects.columns[effects.of[number]->order.front()];
       if (!x || view.numbers(*x).empty() || (sampled && still(s.y))) continue;
       std::set<std::size_t> free;
       std::size_t many = table.models.size();
@@ -152,7 +151,8 @@ post::Figure maps(const StudyTable& table, const StudyView& view, const std::str
                       .map = std::vector<double>(xs.size() * ys.size(), NAN),
                       .map_label = wanted.difference ? "difference " + unit : unit,
                       .map_symmetric = wanted.difference};
-    panel.map_equal_axes = view.name(x).find("impact_") != std::string::npos && view.name(y).find("impact_") != std::string::npos;
+    panel.map_equal_axes = view.name(x).find("impact_") != std::string::npos &&
+                           view.name(y).find("impact_") != std::string::npos;
     for (std::size_t d = 0; d < s.y.size(); ++d) {
       if (!view.in_middle(d, free)) continue;
       const auto at = [](const std::vector<double>& all, double v) {
@@ -176,10 +176,8 @@ post::Figure bars(const StudyTable& table, const std::string& title, const std::
     names.push_back(table.design.said(d));
     widest = std::max(widest, names.back().size());
   }
-  post::Figure figure{.title = title,
-                      .columns = 3,
-                      .panel_width = 400 + 8 * int(widest),
-                      .panel_height = 130 + 22 * int(names.size())};
+  post::Figure figure{
+      .title = title, .columns = 3, .panel_width = 400 + 8 * int(widest), .panel_height = 130 + 22 * int(names.size())};
   for (const std::size_t o : outputs) {
     post::Panel panel{.x_label = post::label(table.outputs[o]), .y_names = names};
     for (std::size_t m = 0; m < table.models.size(); ++m) {
@@ -231,8 +229,8 @@ std::vector<StudyFigure> read_study_figures(Table root, const StudyTable& table,
     const std::string kind =
         t.choice({"kind", "lines over a column, a map over two, every point in a row, or what moves the answers most"},
                  {"line", "map", "bars", "tornado"});
-    f.kind = kind == "line" ? StudyFigure::Kind::line
-             : kind == "map" ? StudyFigure::Kind::map
+    f.kind = kind == "line"   ? StudyFigure::Kind::line
+             : kind == "map"  ? StudyFigure::Kind::map
              : kind == "bars" ? StudyFigure::Kind::bars
                               : StudyFigure::Kind::tornado;
     f.outputs = t.texts({"outputs", "that are drawn; empty: all"}, std::vector<std::string>{});
@@ -244,7 +242,8 @@ std::vector<StudyFigure> read_study_figures(Table root, const StudyTable& table,
       *to = t.text({key, meaning}, "");
       const auto at = std::ranges::find(columns, *to);
       if (to->empty()) continue;
-      if (at == columns.end()) t.fail(key, fmt::format("'{}' is no column of this design ({})", *to, fmt::join(columns, ", ")));
+      if (at == columns.end())
+        t.fail(key, fmt::format("'{}' is no column of this design ({})", *to, fmt::join(columns, ", ")));
       if (table.design.numbers(std::size_t(at - columns.begin())).empty())
         t.fail(key, fmt::format("'{}' holds words: it cannot be an axis", *to));
     }
@@ -263,7 +262,8 @@ void draw_study(Output& out, const StudyTable& table, const std::string& title, 
   const bool sampled = table.design.has(DesignFactor::Kind::sample);
   std::set<std::string> taken;
   const auto draw = [&](const post::Figure& figure, std::string stem) {
-    for (int k = 2; taken.contains(stem); ++k) stem = fmt::format("{}-{}", stem.substr(0, stem.find_last_not_of("-0123456789") + 1), k);
+    for (int k = 2; taken.contains(stem); ++k)
+      stem = fmt::format("{}-{}", stem.substr(0, stem.find_last_not_of("-0123456789") + 1), k);
     taken.insert(stem);
     if (post::shows(figure)) out.draw(figure, "figures/" + stem);
   };
@@ -273,7 +273,9 @@ void draw_study(Output& out, const StudyTable& table, const std::string& title, 
       if (f.outputs.empty() || std::ranges::find(f.outputs, table.outputs[o]) != f.outputs.end()) outputs.push_back(o);
     const std::string of = f.difference && reference ? fmt::format("minus {}", reference->name) : "";
     switch (f.kind) {
-      case StudyFigure::Kind::line: draw(lines(table, view, behind(title, of), f, outputs, effects, sampled), "line"); break;
+      case StudyFigure::Kind::line:
+        draw(lines(table, view, behind(title, of), f, outputs, effects, sampled), "line");
+        break;
       case StudyFigure::Kind::bars: draw(bars(table, title, outputs), "bars"); break;
       case StudyFigure::Kind::tornado: {
         std::vector<std::size_t> series;
@@ -290,9 +292,9 @@ void draw_study(Output& out, const StudyTable& table, const std::string& title, 
           if (f.difference && reference && reference->model == m) continue;
           const bool named = !table.models[m].empty();
           const std::string what = f.difference ? fmt::format("{} {}", named ? table.models[m] : "", of)
-                                                : named ? behind(table.models[m], title) : title;
-          draw(maps(table, view, what, f, outputs, m, *x, *y),
-               named ? "map-" + out.file_name(table.models[m]) : "map");
+                                   : named      ? behind(table.models[m], title)
+                                                : title;
+          draw(maps(table, view, what, f, outputs, m, *x, *y), named ? "map-" + out.file_name(table.models[m]) : "map");
         }
       }
     }

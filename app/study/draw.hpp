@@ -21,8 +21,8 @@ struct StudyFigure {
 /// `[[figure]]` of a study; empty: as its design suggests.
 std::vector<StudyFigure> read_study_figures(Table root, const StudyTable& table, bool compared);
 
-/// Draws into OUT/figures. Columns that a picture does not show stand at the middle of their values where there would be
-/// too many lines, and always in a map; the title says so.
+/// Draws into OUT/figures. Columns that a picture does not show stand at the middle of their values where there would
+/// be too many lines, and always in a map; the title says so.
 void draw_study(Output& out, const StudyTable& table, const std::string& title, std::vector<StudyFigure> figures,
                 const StudyEffects& effects, const std::optional<StudyReference>& reference,
                 const std::vector<StudySeries>& against);

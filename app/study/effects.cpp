@@ -68,7 +68,8 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   const auto name = [&](std::size_t rank) { return spoken_column(columns[effects.columns[e->order[rank]]]); };
   const auto share = [&](std::size_t rank) {
     const solvers::MainEffect& f = e->factors[e->order[rank]];
-    return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(f.share), percent(f.low), percent(f.high));
+    return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(f.share), percent(f.low),
+                       percent(f.high));
   };
   const solvers::MainEffect& first = e->factors[e->order[0]];
   std::string text = fmt::format("{} goes most with {}: {}, from {:.4g} to {:.4g} over its range.",
@@ -77,17 +78,18 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
               ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[e->order[1]].share))
               : fmt::format(" Whether {} with {} moves it as much, these points do not decide.", name(1), share(1));
   if (e->predicted < 0.8)
-    text += fmt::format(" One parameter at a time explains {} % of it at points left out: the rest are interactions and "
-                        "curvature.",
-                        percent(std::max(0.0, e->predicted)));
+    text += fmt::format(
+        " One parameter at a time explains {} % of it at points left out: the rest are interactions and "
+        "curvature.",
+        percent(std::max(0.0, e->predicted)));
   return text;
 }
 
 void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effects, nlohmann::json& summary) {
   const bool several = effects.columns.size() > 1;
   const auto columns = table.design.columns();
-  post::TextTable shown{.rows = {{"answer", "lowest", "mean", "highest"}}, .first_width = 10, .least_width = 10,
-                        .even = false};
+  post::TextTable shown{
+      .rows = {{"answer", "lowest", "mean", "highest"}}, .first_width = 10, .least_width = 10, .even = false};
   if (several) shown.rows[0].insert(shown.rows[0].end(), {"goes most with", "share of variance [%]"});
   bool begun = false;
   for (std::size_t s = 0; s < table.series.size(); ++s) {
@@ -114,12 +116,15 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
     const solvers::MainEffects& e = *effects.of[s];
     for (std::size_t f = 0; f < e.factors.size(); ++f)
-      summary["main_effects"][series.name][columns[effects.columns[f]]] = {
-          {"share", e.factors[f].share},   {"low", e.factors[f].low},         {"high", e.factors[f].high},
-          {"at_low", e.factors[f].at_low}, {"at_high", e.factors[f].at_high}};
+      summary["main_effects"][series.name][columns[effects.columns[f]]] = {{"share", e.factors[f].share},
+                                                                           {"low", e.factors[f].low},
+                                                                           {"high", e.factors[f].high},
+                                                                           {"at_low", e.factors[f].at_low},
+                                                                           {"at_high", e.factors[f].at_high}};
     const solvers::MainEffect& first = e.factors[e.order[0]];
-    row.insert(row.end(), {spoken_column(columns[effects.columns[e.order[0]]]),
-                           fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
+    row.insert(row.end(),
+               {spoken_column(columns[effects.columns[e.order[0]]]),
+                fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
     const std::string said = sentence(table, effects, s);
     constexpr std::size_t most = 8;  // a page begins with what somebody reads
     if (s < most) {

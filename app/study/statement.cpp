@@ -143,7 +143,10 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
         held += *true_here;
       }
       const double share = judged ? double(held) / double(judged) : 0;
-      const char* verdict = judged == 0 ? "not judged" : share >= 0.95 ? "holds" : share <= 0.05 ? "fails" : "undecided";
+      const char* verdict = judged == 0     ? "not judged"
+                            : share >= 0.95 ? "holds"
+                            : share <= 0.05 ? "fails"
+                                            : "undecided";
       nlohmann::json j = {{"text", s.text}, {"verdict", verdict}, {"share", share}, {"points", judged}};
       if (table.models.size() > 1) j["model"] = table.models[m];
       json.push_back(std::move(j));

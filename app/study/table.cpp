@@ -111,8 +111,9 @@ post::TextTable StudyTable::rows() const {
         if (!measured_too[o]) continue;
         const auto range = seen(d, o);
         const bool one = range && range->low == range->high;
-        row.push_back(!range ? "-" : one ? fmt::format("{:.5g}", range->low)
-                                         : fmt::format("{:.4g} to {:.4g}", range->low, range->high));
+        row.push_back(!range ? "-"
+                      : one  ? fmt::format("{:.5g}", range->low)
+                             : fmt::format("{:.4g} to {:.4g}", range->low, range->high));
         row.push_back(one && std::isfinite(y) ? fmt::format("{:+.2f}", 100 * (y / range->low - 1)) : "-");
       }
     }

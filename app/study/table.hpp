@@ -13,8 +13,8 @@ namespace hosel::app {
 
 /// One output of one model, at every point of the design.
 struct StudySeries {
-  std::string name;     ///< as the summary has it: the output, behind its model where there are several
-  std::string spoken;   ///< in words, with its unit
+  std::string name;    ///< as the summary has it: the output, behind its model where there are several
+  std::string spoken;  ///< in words, with its unit
   std::size_t model = 0, output = 0;
   std::vector<double> y;  ///< NaN where there is no answer
 };
@@ -22,10 +22,10 @@ struct StudySeries {
 /// A design, what was asked at each of its points, and the answers: point = design point * models + model.
 struct StudyTable {
   Design design;
-  std::vector<std::string> models;   ///< one empty name where another case answers
-  std::vector<std::string> outputs;  ///< names with their units, or entries of a summary
+  std::vector<std::string> models;      ///< one empty name where another case answers
+  std::vector<std::string> outputs;     ///< names with their units, or entries of a summary
   std::vector<MeasuredRange> measured;  ///< of every point; those of a variant or row come before
-  std::vector<StudySeries> series;   ///< models x outputs
+  std::vector<StudySeries> series;      ///< models x outputs
 
   /// Fills `series`, and `outputs` where none is named: all numbers that the points hold.
   void fill(const std::vector<nlohmann::json>& points);

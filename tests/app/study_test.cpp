@@ -347,7 +347,8 @@ values = [20.0, 24.0, 28.0]
 [[axis]]
 key = "head.mass_kg"
 values = [0.25, 0.26, 0.27]
-)" + kCentredBlow, &o);
+)" + kCentredBlow,
+                                   &o);
   // Variance of a product of independent factors: of one factor alone that of its own values over that of the product.
   std::vector<double> speeds = {36, 40, 44}, sines, masses;
   for (const double loft : {20.0, 24.0, 28.0}) sines.push_back(std::sin(loft * std::acos(-1.0) / 180));
@@ -373,17 +374,21 @@ TEST(Study, RowsBringKeysAndMeasuredValues) {
   const fs::path dir = fresh_directory("study_rows");
   write(dir / "blows.csv",
         "name,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mph\nslow,30,20,90\nfast,45,12,\n");
-  write(dir / "case.toml", "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
-                           "rows.file = \"blows.csv\"\n" + kCentredBlow);
+  write(dir / "case.toml",
+        "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
+        "rows.file = \"blows.csv\"\n" +
+            kCentredBlow);
   const std::string out = (dir / "out").string();
   ASSERT_EQ(command("run " + dir.string() + " --quiet --out " + out).status, 0);
   const auto s = nlohmann::json::parse(content(dir / "out/summary.json"));
   ASSERT_EQ(s["compare"]["differences"].size(), 1U);
   EXPECT_EQ(s["compare"]["differences"][0]["points"], 1) << "the fast one was not measured";
-  EXPECT_NEAR(s["compare"]["differences"][0]["largest"].get<double>(), s["range"]["ball_speed_mps"][0].get<double>() - 90 * 0.44704,
-              1e-9);
-  EXPECT_NE(content(dir / "out/points.csv").find("point,model,row,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mps,error\n"
-                                                 "0,stick-slip,slow,30,20,"), std::string::npos);
+  EXPECT_NEAR(s["compare"]["differences"][0]["largest"].get<double>(),
+              s["range"]["ball_speed_mps"][0].get<double>() - 90 * 0.44704, 1e-9);
+  EXPECT_NE(content(dir / "out/points.csv")
+                .find("point,model,row,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mps,error\n"
+                      "0,stick-slip,slow,30,20,"),
+            std::string::npos);
   write(dir / "blows.csv", "name,delivery.club_sped_mps\na,30\n");
   const Outcome bad = command("run " + dir.string() + " --quiet --out " + out + "-bad");
   EXPECT_EQ(bad.status, 2);
@@ -403,9 +408,11 @@ TEST(Study, AFormerKindSaysWhatItIsNow) {
 TEST(Study, AStatementThatCannotBeReadIsRefused) {
   const fs::path dir = fresh_directory("study_statement");
   for (const char* formula : {"ball_sped_mps > 1", "ball_speed_mps >", "difference.ball_speed_mps > 1"}) {
-    write(dir / "case.toml", std::string("kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
-                             "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n[[statement]]\ntext = \"it is\"\n"
-                             "holds = \"") + formula + "\"\n" + kCentredBlow);
+    write(dir / "case.toml",
+          std::string("kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
+                      "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n[[statement]]\ntext = \"it is\"\n"
+                      "holds = \"") +
+              formula + "\"\n" + kCentredBlow);
     const Outcome o = command("check " + dir.string());
     EXPECT_EQ(o.status, 2) << formula;
     EXPECT_NE(o.text.find("statement[1].holds"), std::string::npos) << o.text;
