@@ -79,18 +79,21 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
   const VectorXd y = Eigen::Map<const VectorXd>(response.data(), n);
   if (!(y.maxCoeff() - y.minCoeff() > 1e-12 * y.cwiseAbs().maxCoeff())) return {};
 
-  std::vector<Block> blocks;
-  Eigen::Index width = 0;
-  for (const bool quadratic : {true, false}) {
-    blocks.clear();
-    width = 1;
+  // Columns of all factors; straight lines alone where the points are few.
+  bool quadratic = true;
+  const auto unknowns = [&] {
+    Eigen::Index width = 1;
     for (const EffectFactor& f : factors) {
-      blocks.push_back(block_of(f, quadratic));
-      width += blocks.back().columns.cols();
+      const auto levels = Eigen::Index(std::set<double>(f.x.begin(), f.x.end()).size());
+      width += f.ordered ? Eigen::Index(quadratic && levels > 2 ? 2 : 1) : levels - 1;
     }
-    if (n >= 3 * width) break;  // else straight lines, if they are fewer than the points
-  }
+    return width;
+  };
+  if (n < 3 * unknowns()) quadratic = false;
+  const Eigen::Index width = unknowns();
   if (n < width + 2) return {};
+  std::vector<Block> blocks;
+  for (const EffectFactor& f : factors) blocks.push_back(block_of(f, quadratic));
   MatrixXd all(n, width);
   all.col(0).setOnes();
   Eigen::Index at = 1;

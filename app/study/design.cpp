@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "app/read_face_map.hpp"
 #include "app/read_sheet.hpp"
@@ -164,8 +165,9 @@ std::vector<double> Design::numbers(std::size_t column) const {
 std::vector<std::string> Design::levels(std::size_t column) const {
   const auto [f, c] = place(column);
   std::vector<std::string> out;
+  std::set<std::string_view> taken;
   for (const DesignLevel& l : factors_[f].levels)
-    if (std::ranges::find(out, l.cells[c]) == out.end()) out.push_back(l.cells[c]);
+    if (taken.insert(l.cells[c]).second) out.push_back(l.cells[c]);
   return out;
 }
 

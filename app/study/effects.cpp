@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "post/labels.hpp"
@@ -32,13 +33,14 @@ StudyEffects effects_of(const StudyTable& table) {
   const auto columns = table.design.columns();
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const auto levels = table.design.levels(c);
-    if (levels.size() < 2) continue;
+    if (levels.size() < 2 || columns[c] == "row") continue;  // a row's name stands for its other columns
     out.columns.push_back(c);
     solvers::EffectFactor f{.x = table.design.numbers(c), .ordered = true};
     if (f.x.empty()) {
       f.ordered = false;
-      for (std::size_t d = 0; d < table.design.size(); ++d)
-        f.x.push_back(double(std::ranges::find(levels, table.design.cells(d)[c]) - levels.begin()));
+      std::map<std::string, double> number;
+      for (std::size_t l = 0; l < levels.size(); ++l) number[levels[l]] = double(l);
+      for (std::size_t d = 0; d < table.design.size(); ++d) f.x.push_back(number.at(table.design.cells(d)[c]));
     }
     factors.push_back(std::move(f));
   }
