@@ -91,6 +91,8 @@ double error_of(const post::Channel& c, const json& launch, const NumericalError
 
 /// Digits of arithmetic are no answer: below this a speed, an angle or a spin is zero, in any unit of the tables.
 constexpr double kNothing = 1e-9;
+/// Of a quotient that is zero: of other numbers, whose units are not known here.
+constexpr double kRoundOff = 1e-13;
 double tidy(double x) { return std::abs(x) < kNothing ? 0 : x; }
 
 void flatten(const json& j, const std::string& name, std::map<std::string, double>& out) {
@@ -161,7 +163,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
     if (it == y.end()) continue;
     ++others;
     const double size = std::max(std::abs(p), std::abs(it->second)),
-                 relative = size > 1e-15 ? std::abs(it->second - p) / size : 0;
+                 relative = size > kRoundOff ? std::abs(it->second - p) / size : 0;
     if (relative <= 1e-9) continue;
     ++moved;
     if (relative > most) most = relative, largest = fmt::format("{}: {:.6g} and {:.6g}", key, p, it->second);

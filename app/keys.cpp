@@ -31,7 +31,7 @@ std::vector<Sample> samples() {
       {"driver-toe", {"grip={hold='hands', " + springs + "}", "face={effective_mass_g=10, stiffness_N_per_m=5e6}"}},
       {"driver-toe", {"joint={kind='hinge', axis=[0,1,0]}"}},
       {"driver-toe", {"shaft={table={file='case.toml'}}"}},
-      {"driver-toe", {"ball.changes={}"}},
+      {"driver-toe", {"ball.changes={}", "ball.temperature={now_C=5}"}},
       {"driver-toe",
        {"shaft={polynomial={length_m=1, bending_stiffness_N_m2=[40], torsional_stiffness_N_m2=[40], "
         "mass_per_length_kg_per_m=[0.06], mean_radius_m=[0.005]}, offsets={arc_length_mm=[0]}}"}},
@@ -41,6 +41,8 @@ std::vector<Sample> samples() {
       {"material-point", {"material={law='mooney-rivlin', c10_MPa=1, c01_MPa=1, bulk_MPa=100}", "path.kind=uniaxial"}},
       {"material-point", {"material={law='yeoh', c10_MPa=1, c20_MPa=1, bulk_MPa=100}"}},
       {"material-point", {"material={law='ogden', bulk_MPa=100, moduli_MPa=[1], exponents=[2]}"}},
+      {"material-point",
+       {"material={law='gent', shear_MPa=1, limit=5, bulk_MPa=100, temperature={now_C=5}}", "path.kind=uniaxial"}},
       {"radar-drive", {"flight.law=table", "flight.coefficients=case.toml"}},
       {"radar-drive",
        {"flight.spin_decay_per_s=0.04", "flight.wind={speed_mps=3, towards_deg=0}",

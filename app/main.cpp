@@ -14,6 +14,7 @@
 #include "app/check_memory.hpp"
 #include "app/command_help.hpp"
 #include "app/diff.hpp"
+#include "app/film.hpp"
 #include "app/import/import.hpp"
 #include "app/job.hpp"
 #include "app/keys.hpp"
@@ -189,6 +190,10 @@ int main(int argc, char** argv) {
   CLI::App* open_command = cli.add_subcommand("open", "open the series of a run in ParaView");
   open_command->add_option("OUT", a.out, "directory of a run")->required();
   open_command->callback([&] { app::open_in_paraview(a.out); });
+  CLI::App* film_command = cli.add_subcommand("film", "a film of a blow, by ParaView and ffmpeg");
+  film_command->add_option("OUT", a.out, "directory of a run, or of one of its models")->required();
+  film_command->add_option("--to", a.from, "the film, NAME.mp4 or NAME.gif (default: OUT/film.mp4)");
+  film_command->callback([&] { fmt::print("{}\n", app::film(a.out, a.from).string()); });
   cli.add_subcommand("completion",
                      "print a bash script that completes commands, options and cases: source <(hosel completion)")
       ->callback([&] { fmt::print("{}", app::bash_completion(cli)); });

@@ -235,9 +235,14 @@ void Output::draw(const post::Figure& figure, std::string_view name, bool on_pag
     say(fmt::format("no picture: there is nothing to show in {}", path(name).string()));
     return;
   }
-  if (const std::string why = post::draw(figure, path(name), on_page, directory()); !why.empty()) lack(why);
-  else if (on_page) state_->page.figure(figure, path(name));
-  else state_->page.link(fmt::format("{}.png", name));
+  if (const std::string why = post::draw(figure, path(name), on_page, directory()); !why.empty()) {
+    lack(why);
+    return;
+  }
+  if (on_page) state_->page.figure(figure, path(name));
+  // Of a figure that the page does not show, or not whole, all panels are a click away.
+  if (!on_page || !std::ranges::all_of(figure.panels, &post::Panel::on_page))
+    state_->page.link(fmt::format("{}.png", name));
 }
 
 RunPage& Output::page() { return state_->page; }

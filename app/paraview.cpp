@@ -10,21 +10,11 @@
 
 #include "app/command_help.hpp"
 #include "app/reader.hpp"
-#include "build_info.hpp"
+#include "app/shipped.hpp"
 #include "post/file.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
-
-namespace {
-
-/// The tree's script first (a build in its checkout), then the installed one.
-fs::path script() {
-  const fs::path own = fs::path(HOSEL_SOURCE_DIR) / "post" / "paraview" / "open.py";
-  return fs::exists(own) ? own : fs::path(HOSEL_INSTALLED_CASES).parent_path() / "paraview" / "open.py";
-}
-
-}  // namespace
 
 void open_in_paraview(const fs::path& out) {
   if (!fs::is_directory(out)) throw InputError(fmt::format("{}: no such directory", out.string()));
@@ -53,7 +43,7 @@ void open_in_paraview(const fs::path& out) {
   fmt::print("{}\n", fmt::join(folders, "\n"));
   std::fflush(stdout);
   setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, ":")).c_str(), 1);
-  const std::string argument = "--script=" + script().string();
+  const std::string argument = "--script=" + shipped("post/paraview/open.py", "paraview/open.py").string();
   execl(program.c_str(), program.c_str(), argument.c_str(), static_cast<char*>(nullptr));
   throw std::runtime_error("ParaView could not be started");
 }

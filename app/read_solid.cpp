@@ -6,10 +6,12 @@
 
 #include "app/library.hpp"
 #include "app/read_blow.hpp"
+#include "fem/materials/gent.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "fem/materials/linear_elastic.hpp"
 #include "fem/materials/ogden.hpp"
 #include "fem/materials/st_venant_kirchhoff.hpp"
+#include "fem/materials/time_temperature.hpp"
 #include "models/fe/changeable_fe.hpp"
 
 namespace hosel::app {
@@ -53,6 +55,12 @@ fem::Elastic ogden(Table& t) {
   return law;
 }
 
+fem::Elastic gent(Table& t) {
+  const double shear = t.quantity({"shear", "shear modulus at small strain"}, "MPa", Range::positive());
+  const double limit = t.number({"limit", "what I1 - 3 never reaches: chains of limited length"}, Range::positive());
+  return fem::Gent(fem::GentEnergy{shear, limit, t.quantity({"bulk", "bulk modulus"}, "MPa", Range::positive())});
+}
+
 fem::Elastic st_venant_kirchhoff(Table& t) { return fem::StVenantKirchhoff{read_lame(t)}; }
 fem::Elastic linear(Table& t) { return fem::LinearElastic{read_lame(t)}; }
 
@@ -61,6 +69,7 @@ constexpr std::array kLaws = {
     NamedLaw{"mooney-rivlin", "c10, c01 and bulk modulus", mooney_rivlin},
     NamedLaw{"yeoh", "c10, c20, c30 and bulk modulus", yeoh},
     NamedLaw{"ogden", "moduli and exponents of principal stretches, and bulk modulus", ogden},
+    NamedLaw{"gent", "shear modulus, limit of the chains and bulk modulus", gent},
     NamedLaw{"st-venant-kirchhoff", "Green's strain, linear: Young's modulus and Poisson's ratio", st_venant_kirchhoff},
     NamedLaw{"linear", "small strain: Young's modulus and Poisson's ratio", linear},
 };
@@ -68,6 +77,27 @@ constexpr std::array kLaws = {
 }  // namespace
 
 std::span<const NamedLaw> solid_laws() { return kLaws; }
+
+namespace {
+
+/// Turns the solids into what they are at the temperature that `table` states, where it does.
+void read_temperature(Table& table, std::span<fem::Solid* const> solids) {
+  auto t = table.optional_table("temperature");
+  if (!t) return;
+  constexpr double zero = 273.15;
+  // Between the frost and the sun of a golf course: the constants of the shift are far from the glass there.
+  const Range celsius{-20, 60};
+  fem::TimeTemperature law;
+  const double now = zero + t->number({"now_C", "temperature of the rubber [deg C]"}, celsius);
+  law.measured = zero + t->number({"measured_C", "temperature at which its constants hold [deg C]"}, celsius, 23.0);
+  law.c1 = t->number({"wlf_c1", "Williams-Landel-Ferry constant at 298 K, of cis-polybutadiene unless stated [-]"},
+                     {0, 50}, law.c1);
+  law.c2 = t->number({"wlf_c2_K", "the other one [K]"}, {60, 1000}, law.c2);
+  if (const auto faults = law.faults(now); !faults.empty()) t->fail("now_C", faults.front());
+  for (fem::Solid* solid : solids) *solid = fem::at_temperature(std::move(*solid), law, now);
+}
+
+}  // namespace
 
 fem::Solid read_solid(Table table) {
   const double density =
@@ -84,6 +114,8 @@ fem::Solid read_solid(Table table) {
   if (moduli.size() != times.size()) table.fail("branch_times_ms", "one relaxation time for each branch modulus");
   for (std::size_t i = 0; i < moduli.size(); ++i) solid.branches.push_back({moduli[i], times[i]});
   if (const auto faults = solid.faults(); !faults.empty()) table.fail("law", faults.front());
+  fem::Solid* const one[] = {&solid};
+  read_temperature(table, one);
   return solid;
 }
 
@@ -132,6 +164,9 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
     } catch (const std::invalid_argument& e) { t->fail("", e.what()); }
     if (const auto faults = ball.faults(); !faults.empty()) t->fail("", faults.front());
   }
+  std::vector<fem::Solid*> rubbers;
+  for (models::BallLayer& layer : ball.layers) rubbers.push_back(&layer.material);
+  read_temperature(table, rubbers);
   return ball;
 }
 

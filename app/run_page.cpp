@@ -10,8 +10,10 @@
 
 #include "app/command_help.hpp"
 #include "app/job.hpp"
+#include "app/shipped.hpp"
 #include "app/version.hpp"
 #include "golf/units.hpp"
+#include "post/file.hpp"
 #include "post/html.hpp"
 #include "post/labels.hpp"
 
@@ -47,14 +49,52 @@ void RunPage::figure(std::string_view caption, std::string svg) {
   figures_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>", svg, escape_html(std::string(caption)));
 }
 
+void RunPage::moving(std::string_view caption, const std::string& blow) {
+  if (blow.empty()) return;
+  const fs::path viewer = shipped("post/viewer", "viewer");
+  if (!fs::exists(viewer / "viewer.js")) {
+    doubt(fmt::format("The moving picture is not drawn: {} is not installed.", (viewer / "viewer.js").string()));
+    return;
+  }
+  script_ = post::read_file(viewer / "viewer.js");
+  checksum_ = post::read_file(viewer / "viewer.sha256");
+  while (checksum_.ends_with('\n')) checksum_.pop_back();
+  close_figures();
+  const std::string said = escape_html(std::string(caption));
+  body_ += fmt::format(
+      "<figure class='moving wide' data-blow='blow-{0}' hidden><p><button data-view='side'>From the "
+      "side</button><button "
+      "data-view='face'>Through the face</button><button data-view='club'>Whole club</button><label>colours <select "
+      "data-part='colour'><option value='stress'>stress<option value='pressure'>pressure</select></label><label><input "
+      "type='checkbox' data-part='cut'> cut open</label></p><div data-part='view' role='img' aria-label='{1}'></div><p>"
+      "<button data-part='play'>Play</button><input type='range' data-part='time' min='0' max='0' value='0' "
+      "aria-label='time'><output data-part='said'></output></p><p data-part='legend'><b></b><span>0</span><i></i><span>"
+      "</span></p><figcaption>{1} Drag to turn it; ctrl and the wheel zoom.</figcaption></figure><script "
+      "type='application/json' id='blow-{0}'>{2}</script>",
+      ++moving_, said, blow);
+}
+
 void RunPage::figure(const post::Figure& figure, const fs::path& stem) {
   close_figures();
   const auto panels = post::panel_files(figure, stem.string());
   if (!figure.title.empty()) body_ += "<p class='soft'>" + escape_html(figure.title) + "</p>";
-  for (const post::PanelFile& p : panels)
-    figures_ += fmt::format("<figure{}><img class='{}' alt='{}' src='{}'></figure>",
-                            panels.size() == 1 ? " class='alone'" : "", p.map ? "map" : "curves", escape_html(p.title),
-                            post::data_uri(p.picture));
+  constexpr std::size_t kTold = 1500;  // places of a map at most that tell their values
+  for (const post::PanelFile& p : panels) {
+    const post::Panel& panel = figure.panels[p.panel];
+    if (!panel.on_page) continue;
+    const bool tells = p.map ? panel.map.size() <= kTold : post::tells_values(panel);
+    std::string drawn = fmt::format("<img class='{}' alt='{}' src='{}'>", p.map ? "map" : "curves",
+                                    escape_html(p.title), post::data_uri(p.picture));
+    if (p.map && tells) {
+      drawn = fmt::format("<div class='told'>{}{}</div>", drawn, post::map_values(panel, p));
+    } else if (tells) {
+      // In the page's own text: points tell their values nowhere else.
+      drawn = post::read_file(p.picture);
+      drawn.erase(0, drawn.find("<svg"));
+      drawn.insert(4, fmt::format(" class='curves' role='img' aria-label='{}'", escape_html(p.title)));
+    }
+    figures_ += fmt::format("<figure{}>{}</figure>", panels.size() == 1 ? " class='alone'" : "", drawn);
+  }
   close_figures();
 }
 
@@ -146,7 +186,7 @@ std::string RunPage::html(const std::string& resolved, const std::string& comman
            "page names every one; summary.json there has the numbers.</small></p>",
            escape_html(program_version()), now());
   if (own && !printed_.empty()) s += "<h2>Printed by the run</h2>" + printed;
-  return post::html_page(title.empty() ? question : title, s);
+  return post::html_page(title.empty() ? question : title, s, script_, checksum_);
 }
 
 }  // namespace hosel::app

@@ -24,6 +24,9 @@ class RunPage {
   void section(std::string_view heading, std::string_view html);
   /// A picture that stands in the page's own text, beside others that come with it.
   void figure(std::string_view caption, std::string svg);
+  /// A blow in three dimensions, by post::json_for_viewer; hidden where a browser cannot draw it. Says so where the
+  /// script that draws it is not installed, and shows nothing.
+  void moving(std::string_view caption, const std::string& blow);
   /// What post::draw has made: lines as they are, maps as one picture of points.
   void figure(const post::Figure& figure, const std::filesystem::path& stem);
   /// A picture beside the page.
@@ -41,7 +44,9 @@ class RunPage {
  private:
   void close_figures();
 
-  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_;
+  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_,
+      script_, checksum_;
+  int moving_ = 0;
   bool sections_ = false;
   std::vector<std::pair<std::string, std::string>> next_;
 };

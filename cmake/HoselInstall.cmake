@@ -19,8 +19,16 @@ install(TARGETS hosel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY golf mesh fem solvers models post loop app
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hosel FILES_MATCHING PATTERN "*.hpp")
 install(FILES app/import/launch_monitors.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
-install(DIRECTORY cases library DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+install(DIRECTORY cases library DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel PATTERN "make" EXCLUDE)
+file(GLOB makes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*/make)
+foreach(make ${makes})  # scripts that made a case's data
+  cmake_path(GET make PARENT_PATH folder)
+  install(PROGRAMS ${make} DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/${folder})
+endforeach()
 install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
+# What draws the moving pictures of the pages, bundled by scripts/build-viewer.
+install(FILES post/viewer/viewer.js post/viewer/viewer.sha256 post/viewer/LICENSES
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/viewer)
 install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
 # What the command says of itself, where man and bash look for it.
 foreach(page "man|share/man/man1/hosel.1" "completion|share/bash-completion/completions/hosel")

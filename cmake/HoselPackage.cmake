@@ -39,13 +39,24 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-math(EXPR next "${Python_VERSION_MINOR} + 1")
+execute_process(COMMAND "${Python_EXECUTABLE}" -c "import sys; print(*sys.version_info[:2], sys.version_info[1] + 1, sep=';')"
+                OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+list(GET version 0 major)
+list(GET version 1 minor)
+list(GET version 2 next)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next}), python3-numpy, gnuplot-nox | gnuplot-qt | gnuplot-x11")
+    "python3 (>= ${major}.${minor}), python3 (<< ${major}.${next}), python3-numpy, gnuplot-nox | gnuplot-qt | gnuplot-x11")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, bash-completion")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
     "paraview, g++, cmake, libeigen3-dev, libsuitesparse-dev, libsundials-dev, libceres-dev, libtbb-dev, libboost-dev, libvtk9-dev, libfmt-dev, libspdlog-dev, libcli11-dev, libtomlplusplus-dev, nlohmann-json3-dev")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "finite elements for the impact of a golf club on a ball")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-    "finite elements for the impact of a golf club on a ball\n hosel computes what a ball does after a blow and how much of it is the shaft's doing.\n The ball is viscoelastic, the head is rigid with a face that yields, and the shaft\n is tapered beam elements. Reduced models answer the same question in microseconds.\n A loop compares each model with measurement and names the missing effect.\n .\n The package holds the command, the C++ libraries, the Python package, the cases\n and the library of balls, faces and heads.")
+    "hosel computes what a ball does after a blow, and how much of that is due
+to the shaft. The ball is viscoelastic, the head is rigid with a face that
+deflects, and the shaft consists of tapered beam elements. Reduced models
+answer the same question in microseconds. A loop compares each model with
+measurement and names the missing effect.
+
+The package holds the command, the C++ libraries, the Python package, the
+cases and the library of balls, faces and heads.")
 include(CPack)

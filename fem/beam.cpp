@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fem/rotation_forms.hpp"
+#include "mesh/gauss.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -15,13 +16,6 @@ using Mat18 = Eigen::Matrix<double, 18, 18>;
 
 Vec3 shape(double x) { return {0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)}; }
 Vec3 shape_derivative(double x) { return {x - 0.5, -2 * x, x + 0.5}; }
-
-// Gauss points and weights on [-1, 1]; four integrate mass times two shape functions of a cubic taper.
-constexpr std::array kGauss2 = {-0.57735026918962576451, 0.57735026918962576451};
-constexpr std::array kGauss4 = {-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480,
-                                0.86113631159405257522};
-constexpr std::array kWeight4 = {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263,
-                                 0.34785484513745385737};
 
 /// Shear-rigid: stiff against the bending of one element, so that the frequencies move by
 /// less than 1e-5 of what the mesh does, and the tangent stays well conditioned.
@@ -147,6 +141,8 @@ Beam::Beam(DofMap& dof_map, const std::vector<mesh::LineNode>& line, const Secti
   moment_.assign(line.size(), Vec3::Zero());
   weight_.assign(line.size(), 0);
 
+  // Four points integrate mass times two shape functions of a cubic taper.
+  const auto stiffness_rule = mesh::gauss(2), mass_rule = mesh::gauss(4);
   for (std::size_t first = 0; first + 2 < line.size(); first += 2) {
     Element e;
     for (std::size_t i = first; i < first + 3; ++i)
@@ -162,7 +158,7 @@ Beam::Beam(DofMap& dof_map, const std::vector<mesh::LineNode>& line, const Secti
 
     for (std::size_t i = 0; i < 2; ++i) {
       Point& g = e.points[i];
-      const double x = kGauss2[i];
+      const double x = stiffness_rule[i].first;
       g.N = shape(x);
       const double ds = shape_derivative(x).dot(arc);
       g.dN = shape_derivative(x) / ds;
@@ -181,9 +177,9 @@ Beam::Beam(DofMap& dof_map, const std::vector<mesh::LineNode>& line, const Secti
       g.stiffness = frames * section_stiffness(force, s) * frames.transpose();
     }
     e.mass.setZero();
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vec3 N = shape(kGauss4[i]);
-      const double weight = kWeight4[i] * shape_derivative(kGauss4[i]).dot(arc), at = N.dot(arc);
+    for (const auto& [x, w] : mass_rule) {
+      const Vec3 N = shape(x);
+      const double weight = w * shape_derivative(x).dot(arc), at = N.dot(arc);
       const Section s = sections(at);
       check(s, at);
       e.mass += weight * s.mass * N * N.transpose();

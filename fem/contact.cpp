@@ -8,31 +8,9 @@
 #include <utility>
 
 #include "golf/parallel.hpp"
+#include "mesh/gauss.hpp"
 
 namespace hosel::fem {
-namespace {
-
-std::vector<std::pair<double, double>> gauss(int n) {
-  switch (n) {
-    case 1: return {{0, 2}};
-    case 2: return {{-1 / std::sqrt(3.0), 1}, {1 / std::sqrt(3.0), 1}};
-    case 3: return {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
-    case 4: {
-      const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)), b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
-      const double wa = (18 + std::sqrt(30.0)) / 36, wb = (18 - std::sqrt(30.0)) / 36;
-      return {{-b, wb}, {-a, wa}, {a, wa}, {b, wb}};
-    }
-    case 5: {
-      const double a = std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 3, b = std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 3;
-      const double wa = (322 + 13 * std::sqrt(70.0)) / 900, wb = (322 - 13 * std::sqrt(70.0)) / 900;
-      return {{-b, wb}, {-a, wa}, {0, 128.0 / 225}, {a, wa}, {b, wb}};
-    }
-    default: throw std::invalid_argument("contact: 1 to 5 Gauss points along an edge");
-  }
-}
-
-}  // namespace
-
 Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurface> surface, SurfaceCarrier carrier,
                  ContactLaws laws, const AngularRule& angles, Symmetry symmetry, int edge_points)
     : solid_(solid),
@@ -64,7 +42,7 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
     for (Index k = 0; k < K; ++k)
       functions_.block<3, 1>(3 * static_cast<Index>(a), k) = solid.placement().axes *
                                                              solid.basis()[static_cast<std::size_t>(k)].at(angles_[a]);
-  const auto rule = gauss(edge_points);
+  const auto rule = mesh::gauss(edge_points);
   for (const auto& nodes : solid.mesh().surface) {
     Edge edge{nodes, {}, {}, {}};
     for (int i = 0; i < 3; ++i)
@@ -508,9 +486,13 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
-                   local.pressure, k.gap, past.slip, k.station->area, past.sliding});
+                   local.pressure, k.gap, past.slip, k.station->area, past.sliding, k.station->edge, angles_[k.angle]});
   });
   return out;
+}
+
+double Contact::surface_travel(const State& s, const Vec3& place) const {
+  return own_ ? surface_->travel(place, moved(s).own) : 0;
 }
 
 double Contact::centre_gap(const State& s) const {

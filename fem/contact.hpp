@@ -34,6 +34,8 @@ struct ContactPoint {
   double slip = 0;      ///< path slid so far [m]
   double area = 0;      ///< reference area that it stands for [m^2]
   bool sliding = false;
+  std::size_t edge = 0;  ///< of the solid's surface (mesh::Meridian::surface) on which it lies
+  double angle = 0;      ///< theta [rad]
 };
 
 /// What the patch does at the last accepted state, and its largest errors so far.
@@ -74,6 +76,8 @@ class Contact final : public Term {
   SurfacePose surface_pose(const State& s) const { return pose(carrier_, s); }
   ContactReport report(const State& accepted) const;
   std::vector<ContactPoint> points(const State& accepted) const;
+  /// How far the surface has moved inwards at a place of its own axes (see Travel) [m]; 0 where it is rigid.
+  double surface_travel(const State& s, const Vec3& place) const;
   /// Distance of the solid's centre of mass from the surface [m].
   double centre_gap(const State& s) const;
 

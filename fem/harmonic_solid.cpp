@@ -10,21 +10,12 @@
 #include <utility>
 
 #include "golf/parallel.hpp"
+#include "mesh/gauss.hpp"
 
 namespace hosel::fem {
 namespace {
 
 using Fields = Eigen::Matrix<double, 8, Eigen::Dynamic>;
-
-/// Gauss points and weights on [-1, 1].
-std::vector<std::pair<double, double>> gauss(int n) {
-  switch (n) {
-    case 1: return {{0, 2}};
-    case 2: return {{-1 / std::sqrt(3.0), 1}, {1 / std::sqrt(3.0), 1}};
-    case 3: return {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
-    default: throw std::invalid_argument("harmonic solid: 1, 2 or 3 Gauss points each way");
-  }
-}
 
 int largest_order(const FourierBasis& basis) {
   int order = 0;
@@ -120,7 +111,7 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     frames_.push_back(frame);
   }
 
-  const auto rule = gauss(quadrature_.points), mass_rule = gauss(3);
+  const auto rule = mesh::gauss(quadrature_.points), mass_rule = mesh::gauss(3);
   const auto shape = [&](const std::array<int, 8>& element, double x, double y, double w) {
     const mesh::Q8 q = mesh::Q8::at(x, y);
     Eigen::Matrix<double, 8, 2> nodes;

@@ -2,109 +2,152 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <unordered_set>
 
 #include "fem/materials/equivalent_stress.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::post {
-namespace {
 
-/// Nodes of the meridian and, behind them, the centre of each element.
-struct Swept {
-  const fem::HarmonicSolid& ball;
-  int nodes, points, angles;
-  std::vector<bool> axial;          // one point instead of a ring
-  std::vector<std::int64_t> first;  // point number of each meridian point at angle 0
-
-  Swept(const fem::HarmonicSolid& b, int n)
-      : ball(b), nodes(int(b.mesh().nodes.size())), points(nodes + int(b.mesh().elements.size())), angles(n) {
-    std::int64_t next = 0;
-    for (int i = 0; i < points; ++i) {
-      axial.push_back(i < nodes && b.mesh().on_axis(i));
-      first.push_back(next);
-      next += axial.back() ? 1 : n;
+SurfaceMeans::SurfaceMeans(const fem::HarmonicSolid& ball, const std::vector<fem::ContactPoint>& points)
+    : axes_(ball.placement().axes) {
+  for (const fem::ContactPoint& p : points) {
+    if (!angles_.empty() && p.angle <= angles_.back()) break;  // the next station begins
+    angles_.push_back(p.angle);
+  }
+  const auto& edges = ball.mesh().surface;
+  means_.resize(ball.mesh().nodes.size() * angles_.size());
+  std::vector<double> area(means_.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const fem::ContactPoint& p = points[i];
+    for (const int node : edges[p.edge]) {
+      const std::size_t at = std::size_t(node) * angles_.size() + i % angles_.size();
+      means_[at].pressure += p.area * p.pressure;
+      means_[at].traction += p.area * p.traction;
+      area[at] += p.area;
     }
   }
-  std::int64_t at(int point, int angle) const {
-    return first[size_t(point)] + (axial[size_t(point)] ? 0 : angle % angles);
+  for (std::size_t i = 0; i < means_.size(); ++i)
+    if (area[i] > 0) {
+      means_[i].pressure /= area[i];
+      means_[i].traction /= area[i];
+    }
+}
+
+SurfaceMeans::Value SurfaceMeans::at_angle(int node, std::size_t angle) const {
+  return means_[std::size_t(node) * angles_.size() + angle];
+}
+
+SurfaceMeans::Value SurfaceMeans::operator()(int node, double theta) const {
+  if (angles_.empty()) return {};
+  if (angles_.size() == 1) {  // the same all around the axis
+    Value v = at_angle(node, 0);
+    v.traction = Eigen::AngleAxisd(theta, axes_.col(0)) * v.traction;
+    return v;
   }
-};
+  theta = std::remainder(theta, 2 * kPi);
+  const bool half = angles_.back() < kPi, mirrored = half && theta < 0;  // a half circle, midpoints of equal parts
+  if (theta < 0) theta = half ? -theta : theta + 2 * kPi;
+  const double step = angles_[1] - angles_[0], place = (theta - angles_[0]) / step, below = std::floor(place);
+  const auto count = std::ptrdiff_t(angles_.size());
+  const auto value = [&](std::ptrdiff_t i) {
+    if (!half) return at_angle(node, std::size_t((i + count) % count));
+    // Beyond the ends lie the mirror images.
+    const bool image = i < 0 || i >= count;
+    Value v = at_angle(node, std::size_t(i < 0 ? -1 - i : i >= count ? 2 * count - 1 - i : i));
+    if (image) v.traction -= 2 * v.traction.dot(axes_.col(2)) * axes_.col(2);
+    return v;
+  };
+  const Value a = value(std::ptrdiff_t(below)), b = value(std::ptrdiff_t(below) + 1);
+  const double share = place - below;
+  Value v{std::lerp(a.pressure, b.pressure, share), (1 - share) * a.traction + share * b.traction};
+  if (mirrored) v.traction -= 2 * v.traction.dot(axes_.col(2)) * axes_.col(2);
+  return v;
+}
 
-}  // namespace
+RevolvedPoints::RevolvedPoints(const mesh::Meridian& meridian, int angles) : angles_(angles) {
+  for (int i = 0; i < int(meridian.nodes.size()); ++i) {
+    axial_.push_back(meridian.on_axis(i));
+    first_.push_back(count_);
+    count_ += axial_.back() ? 1 : angles;
+  }
+}
 
-VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceTraction& traction,
-                  int angles) {
-  const Swept swept(ball, angles);
+VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceMeans& acting, int angles) {
+  if (angles < 4 || angles % 2 != 0) throw std::invalid_argument("ball mesh: an even number of angles, four at least");
   const mesh::Meridian& meridian = ball.mesh();
+  const RevolvedPoints numbers(meridian, angles);
+  const int nodes = int(meridian.nodes.size());
   std::vector<double> theta;
-  for (int i = 0; i < angles; ++i) theta.push_back(2 * M_PI * i / angles);
+  for (int i = 0; i < angles; ++i) theta.push_back(2 * kPi * i / angles);
 
   const auto displacement = ball.displacement_fields(state), velocity = ball.velocity_fields(state);
   const auto stress = ball.cauchy_at_nodes(state, theta);
   std::unordered_set<int> surface;
   for (const auto& edge : meridian.surface) surface.insert(edge.begin(), edge.end());
-  const auto centre = mesh::Q8::at(0, 0).value;
 
   VtkMesh out;
   std::vector<Vec3> u, v, t;
   VtkField cauchy{"cauchy_stress", "Pa", 6, {}}, mises{"von_mises", "Pa", 1, {}},
       pressure{"contact_pressure", "Pa", 1, {}};
-  for (int p = 0; p < swept.points; ++p)
-    for (int a = 0; a < (swept.axial[size_t(p)] ? 1 : angles); ++a) {
-      Vec3 x = Vec3::Zero(), du = Vec3::Zero(), dv = Vec3::Zero(), force = Vec3::Zero();
-      fem::Sym s = fem::Sym::Zero();
-      if (p < swept.nodes) {
-        x = ball.reference(p, theta[size_t(a)]);
-        du = ball.vector_at(displacement, p, theta[size_t(a)]);
-        dv = ball.vector_at(velocity, p, theta[size_t(a)]);
-        s = stress[size_t(p * angles + a)];
-        if (surface.contains(p)) force = traction(p, theta[size_t(a)]);
-      } else {
-        const auto& element = meridian.elements[size_t(p - swept.nodes)];
-        for (int i = 0; i < 8; ++i) {
-          x += centre[i] * ball.reference(element[size_t(i)], theta[size_t(a)]);
-          du += centre[i] * ball.vector_at(displacement, element[size_t(i)], theta[size_t(a)]);
-          dv += centre[i] * ball.vector_at(velocity, element[size_t(i)], theta[size_t(a)]);
-          s += centre[i] * stress[size_t(element[size_t(i)] * angles + a)];
-        }
-      }
-      out.points.push_back(x);
-      u.push_back(du);
-      v.push_back(dv);
-      t.push_back(force);
-      cauchy.values.insert(cauchy.values.end(), s.data(), s.data() + 6);
-      mises.values.push_back(fem::von_mises(s));
-      pressure.values.push_back(force.norm());
-    }
+  const auto add = [&](const Vec3& x, const Vec3& du, const Vec3& dv, const fem::Sym& s,
+                       const SurfaceMeans::Value& on) {
+    out.points.push_back(x);
+    u.push_back(du);
+    v.push_back(dv);
+    t.push_back(on.traction);
+    cauchy.values.insert(cauchy.values.end(), s.data(), s.data() + 6);
+    mises.values.push_back(fem::von_mises(s));
+    pressure.values.push_back(on.pressure);
+  };
+  for (int p = 0; p < nodes; ++p)
+    for (int a = 0; a < (numbers.axial(p) ? 1 : angles); ++a)
+      add(ball.reference(p, theta[size_t(a)]), ball.vector_at(displacement, p, theta[size_t(a)]),
+          ball.vector_at(velocity, p, theta[size_t(a)]), stress[size_t(p * angles + a)],
+          surface.contains(p) ? acting(p, theta[size_t(a)]) : SurfaceMeans::Value{});
 
-  VtkField layer{"layer", "", 1, {}};
+  VtkField layer{"layer", "", 1, {}}, around{"angle", "rad", 1, {}};
+  const auto centre = mesh::Q8::at(0, 0).value;
   for (std::size_t e = 0; e < meridian.elements.size(); ++e) {
-    const auto& n = meridian.elements[e];
-    const int c = swept.nodes + int(e);
-    const std::array<std::array<int, 4>, 4> quads{
-        {{n[0], n[4], c, n[7]}, {n[4], n[1], n[5], c}, {c, n[5], n[2], n[6]}, {n[7], c, n[6], n[3]}}};
-    for (const auto& quad : quads) {
-      std::array<int, 4> q = quad;
-      // Turn it so that an edge on the axis comes first: it closes the cell to a wedge.
-      int turn = 0;
-      while (turn < 4 && !(swept.axial[size_t(q[0])] && swept.axial[size_t(q[1])])) {
-        std::rotate(q.begin(), q.begin() + 1, q.end());
-        ++turn;
+    // Turned so that a side on the axis comes first: it closes the cells to wedges.
+    std::array<int, 8> n = meridian.elements[e];
+    int turn = 0;
+    for (; turn < 4 && !(numbers.axial(n[0]) && numbers.axial(n[1])); ++turn) {
+      std::rotate(n.begin(), n.begin() + 1, n.begin() + 4);
+      std::rotate(n.begin() + 4, n.begin() + 5, n.end());
+    }
+    const bool wedge = turn < 4;
+    const auto middle = std::int64_t(out.points.size());  // of the element at every second angle: a wedge's alone
+    for (int a = 0; wedge && a < angles; a += 2) {
+      Vec3 x = Vec3::Zero(), du = Vec3::Zero(), dv = Vec3::Zero();
+      fem::Sym s = fem::Sym::Zero();
+      for (std::size_t i = 0; i < 8; ++i) {
+        const int node = meridian.elements[e][i];
+        const double share = centre[Eigen::Index(i)], angle = theta[size_t(a)];
+        x += share * ball.reference(node, angle);
+        du += share * ball.vector_at(displacement, node, angle);
+        dv += share * ball.vector_at(velocity, node, angle);
+        s += share * stress[size_t(node * angles + a)];
       }
-      const bool wedge = turn < 4;
-      for (int a = 0; a < angles; ++a) {
-        VtkMesh::Cell cell{};
-        if (wedge)
-          cell = {CellShape::wedge,
-                  {swept.at(q[0], 0), swept.at(q[3], a), swept.at(q[3], a + 1), swept.at(q[1], 0), swept.at(q[2], a),
-                   swept.at(q[2], a + 1)}};
-        else
-          cell = {CellShape::hexahedron,
-                  {swept.at(q[0], a), swept.at(q[1], a), swept.at(q[2], a), swept.at(q[3], a), swept.at(q[0], a + 1),
-                   swept.at(q[1], a + 1), swept.at(q[2], a + 1), swept.at(q[3], a + 1)}};
-        out.cells.push_back(cell);
-        layer.values.push_back(meridian.layer[e]);
-      }
+      add(x, du, dv, s, {});
+    }
+    for (int a = 0; a < angles; a += 2) {
+      const auto low = [&](int i) { return numbers.at(n[size_t(i)], a); };
+      const auto mid = [&](int i) { return numbers.at(n[size_t(i)], a + 1); };
+      const auto high = [&](int i) { return numbers.at(n[size_t(i)], a + 2); };
+      if (wedge)
+        out.cells.push_back(
+            {CellShape::quadratic_wedge,
+             {low(0), low(3), high(3), low(1), low(2), high(2), low(7), mid(3), high(7), low(5), mid(2), high(5),
+              low(4), low(6), high(6), middle + a / 2, mid(6), middle + (a + 2) % angles / 2}});
+      else
+        out.cells.push_back(
+            {CellShape::quadratic_hexahedron,
+             {low(0),  low(1),  low(2),  low(3),  high(0), high(1), high(2), high(3), low(4), low(5), low(6), low(7),
+              high(4), high(5), high(6), high(7), mid(0),  mid(1),  mid(2),  mid(3),  mid(7), mid(5), mid(4), mid(6)}});
+      layer.values.push_back(meridian.layer[e]);
+      around.values.push_back(2 * kPi * (a + 1) / angles);
     }
   }
   out.point_fields = {vector_field("displacement", "m", u),
@@ -113,7 +156,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
                       std::move(cauchy),
                       std::move(mises),
                       std::move(pressure)};
-  out.cell_fields = {std::move(layer)};
+  out.cell_fields = {std::move(layer), std::move(around)};
   return out;
 }
 

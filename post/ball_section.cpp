@@ -95,7 +95,7 @@ BallSection ball_section(const models::ImpactView& view, const Face& face) {
     double u = 0;
     for (int i = 0; i < 8; ++i) {
       const Vec3 x = to_face * (middle + u * right + v * up - view.face.centre), along = to_face * right;
-      const double miss = x.x() - face.height(x.y(), x.z());
+      const double miss = x.x() - face.height(x.y(), x.z()) + view.contact.surface_travel(view.state, x);
       u -= miss / (along.x() + along.y() * x.y() / face.bulge + along.z() * x.z() / face.roll);
     }
     if (std::abs(u) < 3 * radius) s.face.emplace_back(u, v);

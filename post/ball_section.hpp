@@ -19,7 +19,7 @@ struct BallSection {
   std::vector<double> von_mises;          ///< at the points [Pa]
   std::vector<std::array<int, 4>> cells;  ///< quadrilaterals
   std::vector<std::array<int, 3>> seams;  ///< edges between layers, and the surface: end, middle, end
-  std::vector<Point> face;                ///< the club's, from low to high
+  std::vector<Point> face;                ///< the club's as it stands, yielding included, from low to high
 };
 
 BallSection ball_section(const models::ImpactView& view, const Face& face);

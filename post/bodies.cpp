@@ -53,16 +53,20 @@ VtkMesh head_mesh(const Head& head, double width, double height) {
   return m;
 }
 
-VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin) {
+VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin,
+               const std::vector<double>& travel) {
   std::vector<Vec3> displacement, speed;
-  for (Vec3& p : mesh.points) {
-    const Vec3 arm = now.rotation * p, here = now.origin + arm;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    Vec3& p = mesh.points[i];
+    const Vec3 moved = travel.empty() ? p : Vec3(p - travel[i] * Vec3::UnitX()), arm = now.rotation * moved,
+               here = now.origin + arm;
     p = start.origin + start.rotation * p;
     displacement.push_back(here - p);
     speed.push_back(velocity + spin.cross(arm));
   }
   mesh.point_fields.push_back(vector_field("displacement", "m", displacement));
   mesh.point_fields.push_back(vector_field("velocity", "m/s", speed));
+  if (!travel.empty()) mesh.point_fields.push_back({"travel", "m", 1, travel});
   return mesh;
 }
 

@@ -20,8 +20,11 @@ VtkMesh face_mesh(const Face& face, double width, double height, int n = 24);
 /// is for looking; mass and inertia are the case's own.
 VtkMesh head_mesh(const Head& head, double width, double height);
 /// The mesh moved to `start` (its reference), with the `displacement` and `velocity` of the pose `now`,
-/// the velocity of the frame's origin [m/s] and the angular velocity [rad/s], global frame.
-VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin);
+/// the velocity of the frame's origin [m/s] and the angular velocity [rad/s], global frame. `travel`: of a face that
+/// yields, how far each point has moved inwards, against the frame's first axis [m]; part of the displacement, and an
+/// array of its own. Its rate is not in the velocity.
+VtkMesh placed(VtkMesh mesh, const Pose& start, const Pose& now, const Vec3& velocity, const Vec3& spin,
+               const std::vector<double>& travel = {});
 
 /// The shaft's line with `radius` for ParaView's Tube filter, displacement and velocity, `deflection` from the straight
 /// shaft that the grip would carry along, and what its sections carry.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
@@ -18,7 +19,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 6";
+constexpr std::string_view kFormat = "hosel impact checkpoint 7";
 
 template <class Dense>
 json numbers(const Dense& x) {
@@ -103,6 +104,52 @@ void from_json(const json& j, BallSection& s) {
     throw std::length_error("checkpoint");
 }
 
+/// Numbers in single precision as they lie in memory.
+json packed(const std::vector<float>& values) {
+  std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());  // none: no place to copy from
+  return json::binary(std::move(bytes));
+}
+
+std::vector<float> unpacked(const json& j) {
+  const auto& bytes = j.get_binary();
+  if (bytes.size() % sizeof(float) != 0) throw std::length_error("checkpoint");
+  std::vector<float> values(bytes.size() / sizeof(float));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
+json to_json(const MovingBlow& m) {
+  json out = {{"stride", m.stride}, {"radius", m.radius}, {"face_axes", numbers(m.face_axes)}};
+  out["bodies"] = json::array();
+  for (const MovingBlow::Body& b : m.bodies) out["bodies"].push_back({b.name, b.points, b.grid, b.cells, b.radius});
+  out["frames"] = json::array();
+  for (const MovingBlow::Frame& f : m.frames) {
+    json bodies = json::array();
+    for (const MovingBlow::Instant& i : f.bodies)
+      bodies.push_back({packed(i.place), packed(i.stress), packed(i.pressure)});
+    out["frames"].push_back({f.time, f.force, numbers(f.centre), std::move(bodies)});
+  }
+  return out;
+}
+
+void from_json(const json& j, MovingBlow& m) {
+  m.stride = j.at("stride");
+  m.radius = j.at("radius");
+  numbers(j.at("face_axes"), m.face_axes);
+  for (const json& b : j.at("bodies"))
+    m.bodies.push_back({b.at(0), b.at(1), b.at(2).get<std::array<int, 2>>(), b.at(3).get<std::vector<int>>(),
+                        b.at(4).get<std::vector<double>>()});
+  for (const json& f : j.at("frames")) {
+    MovingBlow::Frame& frame = m.frames.emplace_back();
+    frame.time = f.at(0);
+    frame.force = f.at(1);
+    numbers(f.at(2), frame.centre);
+    for (const json& i : f.at(3)) frame.bodies.push_back({unpacked(i.at(0)), unpacked(i.at(1)), unpacked(i.at(2))});
+  }
+  if (m.stride < 1 || !m.whole()) throw std::length_error("checkpoint");
+}
+
 SavedImpact saved_impact(const json& j) {
   SavedImpact out;
   models::ImpactCheckpoint& i = out.impact;
@@ -136,6 +183,7 @@ SavedImpact saved_impact(const json& j) {
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
   out.history = {j.at("history").at(0), j.at("history").at(1)};
+  from_json(j.at("moving"), out.moving);
   if (j.contains("section")) from_json(j.at("section"), out.section.emplace());
   if (j.contains("series"))
     for (const auto& [body, mark] : j.at("series").items())
@@ -182,6 +230,7 @@ void save_checkpoint(const fs::path& file, const std::string& run, const SavedIm
             {"face_centre", numbers(saved.face_centre)},
             {"face_axes", numbers(saved.face_axes)},
             {"history", {saved.history.rows, saved.history.digest}}};
+  j["moving"] = to_json(saved.moving);
   if (saved.section) j["section"] = to_json(*saved.section);
   for (const auto& [body, mark] : saved.series) j["series"][body] = {mark.times, mark.digest};
   std::string bytes;

@@ -9,6 +9,7 @@
 #include "models/fe/fe_impact.hpp"
 #include "post/ball_section.hpp"
 #include "post/history.hpp"
+#include "post/moving_blow.hpp"
 #include "post/vtk_series.hpp"
 
 namespace hosel::post {
@@ -18,6 +19,7 @@ struct SavedImpact {
   Vec3 face_centre = Vec3::Zero();                ///< at the start, global [m]
   Mat3 face_axes = Mat3::Identity();              ///< at the start: columns, face frame in the global one
   std::optional<BallSection> section;             ///< at the largest force so far
+  MovingBlow moving;                              ///< so far
   History::Mark history;                          ///< one row a recorded step
   std::map<std::string, VtkSeries::Mark> series;  ///< by body
 };

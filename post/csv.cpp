@@ -136,7 +136,8 @@ int decimals(const std::string& cell) {
 
 std::string csv_cell(std::string_view text) {
   std::string cell(text);
-  if (!cell.empty() && std::string_view("=@+-\t\r\n").find(cell.front()) != std::string_view::npos && !number(cell))
+  const std::size_t first = cell.find_first_not_of(' ');  // an import may trim blanks
+  if (first != cell.npos && std::string_view("=@+-\t\r\n").find(cell[first]) != std::string_view::npos && !number(cell))
     cell.insert(0, 1, '\'');
   const bool blank = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ' || cell.back() == '\t');
   if (!blank && cell.find_first_of(",\"\r\n") == std::string::npos) return cell;

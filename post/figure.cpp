@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "post/file.hpp"
+#include "post/html.hpp"
 
 extern char** environ;
 
@@ -17,19 +19,44 @@ namespace hosel::post {
 namespace fs = std::filesystem;
 namespace {
 
+/// The text with a blank for what no picture can hold: control characters, and what is no character (U+FFFE, U+FFFF).
+std::string characters(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto three = text.substr(i, 3);
+    const bool none = three == "\xEF\xBF\xBE" || three == "\xEF\xBF\xBF";
+    out += none || static_cast<unsigned char>(text[i]) < 0x20 || text[i] == 0x7f ? ' ' : text[i];
+    if (none) i += 2;
+  }
+  return out;
+}
+
 /// A gnuplot string in single quotes; enhanced markup is off, so the text stands as it is. A line break would end the
-/// string and let what follows be executed: it and its kind become blanks. gnuplot hands on to its SVG what begins an
-/// entity (&#) or ends a section (]]>): a blank parts them.
+/// string and let what follows be executed: it is a blank here. A quote becomes its printed form: gnuplot reads doubled
+/// ones wrongly where a string begins with them or where they follow each other. gnuplot hands on to its SVG what
+/// begins an entity (&#) or ends a section (]]>): blanks part them.
 std::string literal(std::string_view text) {
   std::string out = "'";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
+  for (const char c : characters(text)) {
     if ((c == '#' && out.ends_with('&')) || (c == '>' && out.ends_with("]]"))) out += ' ';
-    out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    if (c == '\'') out += '\'';
+    if (c == '\'') out += "’";
+    else out += c;
   }
   return out + "'";
 }
+
+/// At most so many characters: a longer name would leave no room for the curves.
+std::string shortened(std::string_view text, std::size_t most) {
+  std::size_t characters = 0, end = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) == 0x80) continue;  // goes on with a character
+    if (++characters == most) end = i;
+  }
+  return characters <= most ? std::string(text) : std::string(text.substr(0, end)) + "…";
+}
+
+/// What is to be read in a picture.
+std::string shown(std::string_view text) { return literal(shortened(text, 80)); }
 
 void append_number(std::string& out, double value) {
   out += std::isfinite(value) ? fmt::format("{:.10g}", value) : "NaN";
@@ -71,18 +98,19 @@ std::string map_block(const std::string& name, const Panel& p) {
 }
 
 /// In lines that fit a width [pixel], as a gnuplot expression.
-std::string title(std::string_view text, int width) {
+std::string title(std::string_view whole, int width) {
   const std::size_t most = std::size_t(std::max(20, int(width / 7.8)));
+  const std::string text = shortened(whole, 3 * most);
   std::string out, line;
   std::size_t begin = 0;
   const auto flush = [&] {
-    out += (out.empty() ? "" : R"(."\n".)") + literal(line);
+    out += (out.empty() ? "" : R"(."\n".)") + literal(shortened(line, most));
     line.clear();
   };
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     if (!line.empty() && line.size() + 1 + end - begin > most) flush();
-    line += (line.empty() ? "" : " ") + std::string(text.substr(begin, end - begin));
+    line += (line.empty() ? "" : " ") + text.substr(begin, end - begin);
     begin = end + 1;
   }
   flush();
@@ -93,12 +121,28 @@ bool shows_something(const Panel& p) {
   return !p.map.empty() || std::ranges::any_of(p.series, [](const Series& s) { return !s.x.empty(); });
 }
 
-/// Data of panel k, and behind it the words that plot them.
-std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width) {
+/// Where the axes of a map stand in its own picture, `above` pixels of which are the figure's title.
+void place_axes(PanelFile& file, const Panel& p, int above) {
+  const double w = file.width, h = file.height,
+               lines = p.title.empty() ? 0 : 1 + std::floor(7.8 * double(p.title.size()) / w);
+  double left = 92, right = w - 88, top = above + 14 + 20 * lines, bottom = h - 58;
+  if (p.map_equal_axes) {
+    const double across = p.map_x.back() - p.map_x.front(), up = p.map_y.back() - p.map_y.front();
+    const double scale = std::min((right - left) / across, (bottom - top) / up);
+    const double x = 0.5 * (right - left - scale * across), y = 0.5 * (bottom - top - scale * up);
+    left += x, right -= x, top += y, bottom -= y;
+  }
+  file.left = left / w, file.right = right / w, file.top = top / h, file.bottom = bottom / h;
+}
+
+/// Data of panel k, and behind it the words that plot them. `alone`: the place of a map's axes in its own picture;
+/// `told`: the points of curves carry their numbers, for tell_values.
+std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width, const PanelFile* alone = nullptr,
+                                                 bool told = false) {
   // A key below stands so near the label that an empty line must part them.
   const bool key = p.map.empty() && std::ranges::any_of(p.series, [](const Series& c) { return !c.label.empty(); });
-  std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + literal(p.x_label) +
-                        (key ? R"(."\n" offset 0,0.4)" : "") + "\nset ylabel " + literal(p.y_label) + "\n";
+  std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + shown(p.x_label) +
+                        (key ? R"(."\n" offset 0,0.4)" : "") + "\nset ylabel " + shown(p.y_label) + "\n";
   s += p.log_x ? "set logscale x\n" : "unset logscale x\n";
   s += p.log_y ? "set logscale y\n" : "unset logscale y\n";
   if (!p.map.empty()) {
@@ -121,8 +165,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
         "[{:.10g}:{:.10g}]\n",
         p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"
                         : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
-        p.map_equal_axes ? "ratio -1" : "noratio", literal(p.map_label), low, high, p.map_x.front(), p.map_x.back(),
-        p.map_y.front(), p.map_y.back());
+        p.map_equal_axes && !alone ? "ratio -1" : "noratio", shown(p.map_label), low, high, p.map_x.front(),
+        p.map_x.back(), p.map_y.front(), p.map_y.back());
     if (p.map_contours)
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
@@ -132,7 +176,12 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
       return std::max<std::size_t>(2, 120 / std::max<std::size_t>(1, points));
     };
     // Wide numbers at the axis and at the colours would push their labels out of the picture.
-    s += "set lmargin 12\nset rmargin 10\n";
+    if (alone)
+      s += fmt::format(
+          "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\nset tmargin at screen {:.6f}\nset bmargin at "
+          "screen {:.6f}\n",
+          alone->left, alone->right, 1 - alone->top, 1 - alone->bottom);
+    else s += "set lmargin 12\nset rmargin 10\n";
     s += fmt::format("set pm3d map interpolate {},{}\nsplot ${} with pm3d nocontour notitle", parts(p.map_x.size()),
                      parts(p.map_y.size()), name);
     if (p.map_contours) s += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";
@@ -140,11 +189,11 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
       const std::string mark = fmt::format("s{}_{}", k, i);
       data += data_block(mark, p.series[i]);
       s += ", $" + mark + " using 1:2:(0) with " + p.series[i].style + " lc rgb '#000000' nocontour " +
-           (p.series[i].label.empty() ? "notitle" : "title " + literal(p.series[i].label));
+           (p.series[i].label.empty() ? "notitle" : "title " + shown(p.series[i].label));
     }
     if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
-    return {data,
-            s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nset size noratio\nset autoscale xy\n"};
+    return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nunset tmargin\nunset bmargin\nset "
+                      "size noratio\nset autoscale xy\n"};
   }
   std::string plot;
   bool marks = false;
@@ -157,18 +206,24 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     data += data_block(name, c);
     if (!plot.empty()) plot += ", \\\n     ";
     plot += "$" + name + (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
-    plot += fmt::format(" lt {} lw 1.8 ", i + 1);
+    plot += fmt::format(" lt {} lw 1.8 ", c.colour > 0 ? std::size_t(c.colour) : i + 1);
     // The colours come round: the next eight curves are dashed.
-    if (i >= 8 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
+    if (i >= 8 && c.colour == 0 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
     if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + static_cast<int>(i) % 8);
-    plot += c.label.empty() ? "notitle" : "title " + literal(c.label);
+    plot += c.label.empty() ? "notitle" : "title " + shown(c.label);
   }
+  for (std::size_t i = 0; told && i < p.series.size(); ++i)
+    if (!p.series[i].x.empty())
+      plot += fmt::format(
+          ", \\\n     $s{0}_{1} using 1:2:(sprintf('{1} %d', $0)) with labels hypertext point pt 7 ps 1.2 lc rgb "
+          "'#ff000000' notitle",
+          k, i);
   if (!p.y_names.empty()) {
     std::string names;
     for (std::size_t i = 0; i < p.y_names.size(); ++i) {
       std::string name;  // a tic's words are a format
       for (const char c : p.y_names[i]) name += c == '%' ? std::string("%%") : std::string(1, c);
-      names += fmt::format("{}{} {}", i ? ", " : "", literal(name), -std::ptrdiff_t(i));
+      names += fmt::format("{}{} {}", i ? ", " : "", shown(name), -std::ptrdiff_t(i));
     }
     s += fmt::format("set ytics ({})\nset yrange [{}:0.5]\n", names, 0.5 - double(p.y_names.size()));
   }
@@ -192,12 +247,26 @@ constexpr const char* kLook =
     "set linetype 7 lc rgb '#000000'\nset linetype 8 lc rgb '#8c8c8c'\nset linetype cycle 8\n"
     "set key below center horizontal Left reverse samplen 2 maxrows 4\n";
 
+/// Pixels above the panels for the figure's title.
+int title_height(const Figure& f, int width) {
+  if (f.title.empty()) return 0;
+  return 22 * (1 + int(title(f.title, width).size() / std::size_t(width / 7.8))) + 18;
+}
+
 }  // namespace
+
+bool tells_values(const Panel& p) {
+  constexpr std::size_t kMost = 400;  // points
+  std::size_t count = 0;
+  for (const Series& c : p.series) count += c.x.size();
+  return p.map.empty() && p.y_names.empty() && count <= kMost;
+}
 
 std::vector<PanelFile> panel_files(const Figure& f, std::string_view stem) {
   std::vector<PanelFile> out;
   const auto n = std::ranges::count_if(f.panels, shows_something);
-  for (const Panel& p : f.panels) {
+  for (std::size_t k = 0; k < f.panels.size(); ++k) {
+    const Panel& p = f.panels[k];
     if (!shows_something(p)) continue;
     std::string file(stem);
     if (n > 1) {
@@ -209,8 +278,10 @@ std::vector<PanelFile> panel_files(const Figure& f, std::string_view stem) {
       }
       while (file.ends_with('-')) file.pop_back();
     }
+    const int above = n == 1 ? title_height(f, f.panel_width) : 0;
     out.push_back({file + (p.map.empty() ? ".svg" : ".png"), file + ".pdf", called(p).empty() ? f.title : called(p),
-                   !p.map.empty()});
+                   !p.map.empty(), k, f.panel_width, f.panel_height + above});
+    if (!p.map.empty()) place_axes(out.back(), p, above);
   }
   return out;
 }
@@ -220,38 +291,40 @@ std::string gnuplot_script(const Figure& f, std::string_view stem, bool each) {
   const int n = static_cast<int>(files.size());
   const int columns = std::max(1, std::min(f.columns, n)), rows = std::max(1, (n + columns - 1) / columns);
   std::string data;
-  std::vector<std::string> panels;
-  for (const Panel& p : f.panels) {
-    if (!shows_something(p)) continue;
-    auto [block, words] = panel_script(p, static_cast<int>(panels.size()), f.panel_width);
+  std::vector<std::string> together, panels, telling;  // words of each panel, in company, alone and with its values
+  for (const PanelFile& file : files) {
+    const Panel& p = f.panels[file.panel];
+    const int k = int(panels.size());
+    auto [block, words] = panel_script(p, k, f.panel_width, &file);
     data += block;
     panels.push_back(std::move(words));
+    together.push_back(n == 1 ? panels.back() : panel_script(p, k, f.panel_width).second);
+    telling.push_back(tells_values(p) ? panel_script(p, k, f.panel_width, &file, true).second : panels.back());
   }
   std::string s = data + kLook;
   const int width = columns * f.panel_width;
   const std::string above = f.title.empty() ? "" : title(f.title, width);
-  const int lines = above.empty() ? 0 : 1 + int(above.size() / std::size_t(width / 7.8));
   s += fmt::format("set terminal pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'\nset output {}\n",
-                   width, rows * f.panel_height + 22 * lines + 18 * (lines > 0), literal(std::string(stem) + ".png"));
+                   width, rows * f.panel_height + title_height(f, width), literal(std::string(stem) + ".png"));
   s += fmt::format("set multiplot layout {},{}{}\n", rows, columns, above.empty() ? "" : " title " + above);
-  for (const std::string& p : panels) s += p;
+  for (const std::string& p : together) s += p;
   s += "\nunset multiplot\n";
-  const auto alone = [&](std::string_view terminal, const std::string& file, int k) {
-    s += fmt::format("set terminal {}\nset output {}\n{}", terminal, literal(file), panels[std::size_t(k)]);
+  const auto alone = [&](std::string_view terminal, const std::string& file, const std::string& words) {
+    s += fmt::format("set terminal {}\nset output {}\n{}", terminal, literal(file), words);
   };
   for (int k = 0; each && k < n; ++k) {
     const PanelFile& file = files[std::size_t(k)];
     if (!file.map)
       alone(fmt::format("svg noenhanced size {},{} font 'sans-serif,13' background '#ffffff'", f.panel_width,
                         f.panel_height),
-            file.picture, k);
+            file.picture, telling[std::size_t(k)]);
     else if (n > 1)
       alone(fmt::format("pngcairo noenhanced size {},{} font 'Sans,11' background '#ffffff'", f.panel_width,
                         f.panel_height),
-            file.picture, k);
+            file.picture, panels[std::size_t(k)]);
     alone(fmt::format("pdfcairo noenhanced size {:.2f},{:.2f} font 'Sans,10'", f.panel_width / 110.0,
                       f.panel_height / 110.0),
-          file.pdf, k);
+          file.pdf, panels[std::size_t(k)]);
   }
   return s + "unset output\n";
 }
@@ -266,7 +339,75 @@ bool has_its_end(const fs::path& file) {
   return last.find(kind == ".svg" ? "</svg>" : kind == ".png" ? "IEND" : "%%EOF") != std::string_view::npos;
 }
 
+/// "spin [rpm]" and 2500: "spin 2500 rpm".
+std::string value_of(const std::string& label, double value) {
+  const std::size_t open = label.find(" ["), close = label.find(']', open);
+  std::string name = label.substr(0, open);
+  if (const std::size_t arrow = name.rfind("<- "); arrow != name.npos)
+    name.erase(0, name.find_first_not_of(' ', arrow + 3));
+  return fmt::format("{}{}{:.5g}{}", name, name.empty() ? "" : " ", value,
+                     open == label.npos || close == label.npos ? "" : " " + label.substr(open + 2, close - open - 2));
+}
+
+/// Gives each point its values as a title, for browsers, in place of the number that gnuplot would show by a script.
+void tell_values(const fs::path& file, const Panel& p) {
+  static constexpr std::string_view kBegin = "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'",
+                                    kEnd = "<title> </title>";
+  const std::string drawn = read_file(file);
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t begin; (begin = drawn.find(kBegin, at)) != drawn.npos;) {
+    const std::size_t end = drawn.find(kEnd, begin);
+    std::size_t series = 0, point = 0;
+    if (end == drawn.npos || std::sscanf(drawn.c_str() + begin + kBegin.size(), "%zu %zu", &series, &point) != 2 ||
+        series >= p.series.size() || point >= p.series[series].x.size())
+      throw std::runtime_error(file.string() + ": gnuplot wrote points that are not understood");
+    const Series& c = p.series[series];
+    std::string told = (c.label.empty() ? "" : c.label + ": ") + value_of(p.x_label, c.x[point]) + ", " +
+                       value_of(p.y_label, c.y[point]);
+    if (!c.error.empty()) told += fmt::format(" ± {:.2g}", c.error[point]);
+    out += drawn.substr(at, begin - at) + "<g><title>" + escape_html(characters(told)) + "</title>";
+    at = end + kEnd.size();
+  }
+  out += drawn.substr(at);
+  // Names that gnuplot gives itself and its groups would be told as well.
+  if (const std::size_t own = out.find("<title>Gnuplot</title>"); own != out.npos) out.erase(own, 22);
+  for (std::size_t begin; (begin = out.find("<title>gnuplot_plot_")) != out.npos;)
+    out.erase(begin, out.find("</title>", begin) + 8 - begin);
+  write_file(file, out, false);
+}
+
 }  // namespace
+
+std::string map_values(const Panel& p, const PanelFile& file) {
+  std::string s = fmt::format("<svg viewBox='0 0 {} {}'>", file.width, file.height);
+  const auto columns = p.map_x.size(), rows = p.map_y.size();
+  const double w = file.width * (file.right - file.left), h = file.height * (file.bottom - file.top);
+  const auto X = [&](double x) {
+    return file.width * file.left + w * (x - p.map_x.front()) / (p.map_x.back() - p.map_x.front());
+  };
+  const auto Y = [&](double y) {
+    return file.height * file.bottom - h * (y - p.map_y.front()) / (p.map_y.back() - p.map_y.front());
+  };
+  // A place reaches half way to the next.
+  const auto edge = [](const std::vector<double>& at, std::size_t i, bool upper) {
+    const std::size_t j = upper ? std::min(i + 1, at.size() - 1) : i - (i > 0);
+    return 0.5 * (at[i] + at[j]);
+  };
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const double v = p.map[j * columns + i];
+      if (!std::isfinite(v)) continue;
+      const double x0 = X(edge(p.map_x, i, false)), x1 = X(edge(p.map_x, i, true)), y0 = Y(edge(p.map_y, j, true)),
+                   y1 = Y(edge(p.map_y, j, false));
+      s += fmt::format(
+          "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill-opacity='0'><title>{}\n{}, "
+          "{}</title></rect>",
+          x0, y0, x1 - x0, y1 - y0, escape_html((p.title.empty() ? "" : p.title + ": ") + value_of(p.map_label, v)),
+          escape_html(value_of(p.x_label, p.map_x[i])), escape_html(value_of(p.y_label, p.map_y[j])));
+    }
+  return s + "</svg>";
+}
 
 bool shows(const Figure& figure) { return std::ranges::any_of(figure.panels, shows_something); }
 
@@ -281,6 +422,7 @@ std::string draw(const Figure& figure, const fs::path& stem, bool panels, const 
   if (program.empty())
     return "no picture: gnuplot is not installed where PATH says absolutely (the script is " + gp.string() + ")";
   const WorkFolder work(place);
+  const WrittenFiles passing(work.path());  // what is written there goes with it: no run misses it
   std::vector<std::string> made = {name + ".png"};
   const auto files = panel_files(figure, name);
   if (panels && files.size() > 1) {
@@ -312,6 +454,9 @@ std::string draw(const Figure& figure, const fs::path& stem, bool panels, const 
       throw std::runtime_error(
           fmt::format("{}: cannot be written: gnuplot wrote a part of it: is the disk full?", (place / file).string()));
   }
+  for (const PanelFile& file : files)
+    if (panels && !file.map && tells_values(figure.panels[file.panel]))
+      tell_values(work.path() / file.picture, figure.panels[file.panel]);
   for (const std::string& file : made) move_file(work.path() / file, place / file);
   return {};
 }

@@ -14,6 +14,7 @@ struct Series {
   std::vector<double> x = {}, y = {};  ///< same length
   std::string style = "lines";         ///< gnuplot style: lines, points, linespoints, ...
   std::vector<double> error = {};      ///< half-length of a bar in y; empty: none
+  int colour = 0;                      ///< 1 to 8, that of a curve which belongs with it; 0: the next in turn
 };
 
 /// One set of axes. With `map` non-empty it is a coloured map with contour lines, else curves.
@@ -30,6 +31,8 @@ struct Panel {
   bool map_symmetric = false;                  ///< colours diverge from zero, as far to either side: for differences
   bool map_equal_axes = false;                 ///< one unit is as long in x as in y
   bool map_contours = true;                    ///< lines with their values: for smooth fields
+
+  bool on_page = true;  ///< beside the others on a run's page; else in the picture of all panels alone
 };
 
 struct Figure {
@@ -39,11 +42,16 @@ struct Figure {
   int panel_width = 620, panel_height = 440;  ///< [pixel]
 };
 
-/// One panel alone: `picture`, and the same as PDF. Curves as SVG; maps, which are thousands of coloured cells, as PNG.
+/// One panel alone: `picture`, and the same as PDF. Curves as SVG, whose points tell their values where they are few;
+/// maps, which are thousands of coloured cells, as PNG.
 struct PanelFile {
   std::string picture, pdf;
   std::string title;  ///< what to call it: its own title, else what stands at its axes
   bool map;
+  std::size_t panel;           ///< number in Figure::panels
+  int width, height;           ///< [pixel]
+  double left = 0, right = 0;  ///< of a map's axes, shares of the width
+  double top = 0, bottom = 0;  ///< and of the height, from above
 };
 
 /// The gnuplot script with its data: where gnuplot is started it draws `stem`.png, all panels that hold something, and
@@ -52,6 +60,11 @@ struct PanelFile {
 /// std::invalid_argument on series or maps whose lengths do not match.
 std::string gnuplot_script(const Figure& figure, std::string_view stem, bool panels = true);
 std::vector<PanelFile> panel_files(const Figure& figure, std::string_view stem);
+
+/// Whether the points of a panel's curves tell their values.
+bool tells_values(const Panel& panel);
+/// Places of a map, invisible, each with its value for who points at it: an SVG that fits over the map's picture.
+std::string map_values(const Panel& panel, const PanelFile& file);
 
 /// Whether there is anything to draw.
 bool shows(const Figure& figure);

@@ -14,7 +14,7 @@ constexpr const char* kStyle =
 @media screen and (prefers-color-scheme:dark){:root{--page:#14191f;--ink:#e4e9ee;--soft:#9aa7b4;--rule:#2b343e;--band:#2e2a1c;
 --gold:#d3ad4a;--blue:#56b4e9;--orange:#f08a3c;--green:#3cc39b;--pink:#dd8fbd;--sky:#8ccbf0;--grey:#77828d;
 --chosen:#1b2a38;--good:#14291d;--good-ink:#7fd0a0;--open:#2c2412;--open-ink:#e5bd62;--bad:#311b18;--bad-ink:#f0988b}
-img.curves{filter:invert(.92) hue-rotate(180deg)}}
+img.curves,svg.curves{filter:invert(.92) hue-rotate(180deg)}}
 body{font:15px/1.55 system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif;max-width:64rem;
 margin:0 auto;padding:2rem 1.25rem 4rem;color:var(--ink);background:var(--page)}
 h1{font-size:1.55rem;line-height:1.25;margin:0 0 .3rem}h1:first-letter{text-transform:uppercase}
@@ -54,6 +54,11 @@ svg text.line-4{fill:var(--pink)}svg text.line-5{fill:var(--sky)}.mark{fill:none
 .layer{fill:none;stroke:var(--page);stroke-width:.8}
 @media screen and (max-width:34rem){.figures figure{margin:.4rem -1.2rem}.wide svg text{font-size:16px}
 td,th{padding:.25rem .5rem .25rem 0;font-size:.86rem}}
+.moving [data-part=view]{height:min(30rem,75vw);border:1px solid var(--rule);border-radius:6px;overflow:hidden;cursor:grab}
+.moving p{display:flex;flex-wrap:wrap;gap:.4rem .7rem;align-items:center}.moving input[type=range]{flex:1 1 10rem}
+.moving output{font-variant-numeric:tabular-nums;min-width:11rem}.moving b{font-weight:600}
+.moving [data-part=legend]{flex-wrap:nowrap}.moving i{flex:1 1 6rem;max-width:16rem;height:.8rem;border-radius:2px}
+svg.curves text{font-size:13px;fill:#000}.told{position:relative}.told svg{position:absolute;inset:0;height:100%}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
 @media print{:root{color-scheme:light}body{padding:0;font-size:11px;max-width:none}h2{break-after:avoid}
 .figures{grid-template-columns:1fr 1fr}figure,table,.answers,.verdict,tr{break-inside:avoid}
@@ -82,10 +87,14 @@ std::string data_uri(const std::filesystem::path& picture) {
   return (picture.extension() == ".svg" ? "data:image/svg+xml;base64," : "data:image/png;base64,") + text;
 }
 
-std::string html_page(const std::string& title, const std::string& body) {
-  return "<!doctype html><html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
-         "content='width=device-width'><title>" +
-         escape_html(title) + "</title><style>" + kStyle + "</style></head><body>" + body + "</body></html>\n";
+std::string html_page(const std::string& title, const std::string& body, const std::string& script,
+                      const std::string& checksum) {
+  const std::string allowed = script.empty() ? "'none'" : "'sha256-" + checksum + "'";
+  return "<!doctype html><html lang='en'><head><meta charset='utf-8'><meta http-equiv='Content-Security-Policy' "
+         "content=\"default-src 'none';img-src data:;style-src 'unsafe-inline';script-src " +
+         allowed + "\"><meta name='viewport' content='width=device-width'><title>" + escape_html(title) +
+         "</title><style>" + kStyle + "</style></head><body>" + body +
+         (script.empty() ? "" : "<script>" + script + "</script>") + "</body></html>\n";
 }
 
 }  // namespace hosel::post

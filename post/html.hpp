@@ -14,7 +14,10 @@ std::string data_uri(const std::filesystem::path& picture);
 
 /// The whole document around a body, for a light and a dark screen and for paper. Classes: `verdict` with `good`,
 /// `open` or `bad`; `answers`, `figures`, `inputs`, `scroll`, `key`, `wide`; `l` sets a cell left; `command` of a
-/// `pre`; `curves` of a picture that may be inverted in the dark; those of the pictures in svg.
-std::string html_page(const std::string& title, const std::string& body);
+/// `pre`; `moving` of a figure that a script draws; `curves` of a picture that may be inverted in the dark; those of
+/// the pictures in svg. `script`: the one that the page may run, at its end; `checksum`: base64 of its SHA-256. The
+/// page's policy lets nothing be fetched, and no other script run.
+std::string html_page(const std::string& title, const std::string& body, const std::string& script = {},
+                      const std::string& checksum = {});
 
 }  // namespace hosel::post

@@ -19,40 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The traction of the nearest quadrature point of the patch, mirrored where only half of it is computed.
-class NearestTraction {
- public:
-  explicit NearestTraction(const models::ImpactView& view)
-      : ball_(view.ball), points_(view.contact.points(view.state)) {
-    half_ = true;
-    for (const fem::ContactPoint& p : points_) half_ = half_ && across(p.reference) > -1e-12;
-  }
-
-  Vec3 operator()(int node, double theta) const {
-    Vec3 x = ball_.reference(node, theta);
-    const Vec3 normal = ball_.placement().axes.col(2);
-    const bool mirrored = half_ && across(x) < 0;
-    if (mirrored) x -= 2 * across(x) * normal;
-    const fem::ContactPoint* nearest = nullptr;
-    double least = 0;
-    for (const fem::ContactPoint& p : points_)
-      if (const double d = (p.reference - x).squaredNorm(); !nearest || d < least) {
-        nearest = &p;
-        least = d;
-      }
-    if (!nearest || least > 4 * nearest->area) return Vec3::Zero();
-    Vec3 t = nearest->traction;
-    if (mirrored) t -= 2 * t.dot(normal) * normal;
-    return t;
-  }
-
- private:
-  double across(const Vec3& x) const { return (x - ball_.placement().origin).dot(ball_.placement().axes.col(2)); }
-  const fem::HarmonicSolid& ball_;
-  std::vector<fem::ContactPoint> points_;
-  bool half_ = true;
-};
-
 /// A checkpoint costs the solver its factors, so that a run which goes on from it takes the same steps to the last bit.
 constexpr long kFramesPerCheckpoint = 8;
 
@@ -73,6 +39,7 @@ struct ImpactRecorder::State {
   std::optional<SavedImpact> resumed;
   std::optional<Pose> start;
   std::optional<BallSection> section;
+  MovingBlow moving;
   long steps = 0;
 
   fs::path checkpoint() const { return directory / "checkpoint.cbor"; }
@@ -120,12 +87,15 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   }
   s.start = Pose{s.resumed->face_centre, s.resumed->face_axes};
   s.section = s.resumed->section;
+  s.moving = s.resumed->moving;
   s.steps = s.resumed->history.rows;
 }
 
 ImpactRecorder::~ImpactRecorder() = default;
 
 const std::optional<BallSection>& ImpactRecorder::at_largest_force() const { return state_->section; }
+
+const MovingBlow& ImpactRecorder::moving() const { return state_->moving; }
 
 const models::ImpactCheckpoint* ImpactRecorder::resume() const {
   return state_->resumed ? &state_->resumed->impact : nullptr;
@@ -170,15 +140,26 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   const Pose now{face.centre, face.axes};
   if (!s.start) s.start = now;
   const long step = s.steps++;
-  if (step % s.options.steps_per_frame != 0) return;
+  const bool frame = step % s.options.steps_per_frame == 0, moves = s.moving.wants(step);
+  if (!frame && !moves) return;
+  const double time = view.state.time;
+  const VtkMesh ball =
+      ball_mesh(view.ball, view.state, SurfaceMeans(view.ball, view.contact.points(view.state)), s.options.angles);
+  std::vector<double> travel;
+  for (const Vec3& p : s.face_shape.points) travel.push_back(view.contact.surface_travel(view.state, p));
+  const VtkMesh struck = placed(s.face_shape, *s.start, now, face.velocity, face.spin, travel),
+                head = placed(s.head_shape, *s.start, now, face.velocity, face.spin);
+  const std::optional<VtkMesh> shaft =
+      view.shaft ? std::optional(shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state)) : std::nullopt;
+  if (moves) s.moving.add(view, ball, s.options.angles, struck, head, shaft ? &*shaft : nullptr);
+  if (!frame) return;
   if (s.options.vtk) {
-    const double time = view.state.time;
-    s.write("ball", time, ball_mesh(view.ball, view.state, NearestTraction(view), s.options.angles));
+    s.write("ball", time, ball);
     s.write("patch", time, patch_mesh(view.contact.points(view.state)));
-    s.write("face", time, placed(s.face_shape, *s.start, now, face.velocity, face.spin));
-    s.write("head", time, placed(s.head_shape, *s.start, now, face.velocity, face.spin));
-    if (view.shaft) {
-      s.write("shaft", time, shaft_mesh(*view.shaft, *s.blow.club.shaft, view.state));
+    s.write("face", time, struck);
+    s.write("head", time, head);
+    if (shaft) {
+      s.write("shaft", time, *shaft);
       const Vec3 start = view.shaft->line().front().position,
                  grip = view.state.q.segment<3>(view.shaft->nodes().front().translation.q);
       VtkMesh hands = hands_mesh(start, models::grip_load(*view.shaft, view.state));
@@ -188,7 +169,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   }
   if (!s.options.checkpoints) return;
   if (step / s.options.steps_per_frame % kFramesPerCheckpoint != 0) return;
-  SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.section, s.history->mark(), {}};
+  SavedImpact saved{view.checkpoint(), s.start->origin, s.start->rotation, s.section, s.moving, s.history->mark(), {}};
   for (const auto& [body, series] : s.series) saved.series[body] = series.mark();
   save_checkpoint(s.checkpoint(), s.run, saved);
 }

@@ -9,6 +9,7 @@
 #include "golf/blow.hpp"
 #include "models/fe/fe_impact.hpp"
 #include "post/ball_section.hpp"
+#include "post/moving_blow.hpp"
 
 namespace hosel::post {
 
@@ -32,6 +33,8 @@ class ImpactRecorder {
   void operator()(const models::ImpactView& view);
   /// The ball when the force was largest; nothing where there was none.
   const std::optional<BallSection>& at_largest_force() const;
+  /// The blow in three dimensions; kept with the checkpoints.
+  const MovingBlow& moving() const;
   /// Where the impact goes on from; null: from the start.
   const models::ImpactCheckpoint* resume() const;
   /// The series written, for a person to open.

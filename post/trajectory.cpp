@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "golf/units.hpp"
@@ -21,8 +22,46 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
       top = side;
   top.title = "from above";
   top.y_label = fmt::format("left  <-  [{}]  ->  right", shown);
+  // Many flights are told apart by their first words, "7-iron" of "7-iron, measured", in colour; by the others in
+  // dashes.
+  struct Look {
+    std::string name;
+    int colour, dashes;
+  };
+  std::vector<std::string> names, variants;
+  std::vector<Look> looks;
+  const auto place = [](std::vector<std::string>& in, const std::string& word) {
+    const auto at = std::ranges::find(in, word);
+    if (at != in.end()) return int(at - in.begin()) + 1;
+    in.push_back(word);
+    return int(in.size());
+  };
   for (const NamedFlight& f : flights) {
-    Series height{.label = f.title}, right{.label = f.title};
+    const std::size_t comma = f.title.rfind(", ");
+    const std::string name = f.title.substr(0, comma);
+    const int dashes = comma == f.title.npos ? 1 : place(variants, f.title.substr(comma + 2));
+    looks.push_back({name, place(names, name), dashes});
+  }
+  const bool grouped = flights.size() > 8 && names.size() <= 8 && variants.size() <= 4 && names.size() < flights.size();
+  if (grouped) {
+    static constexpr std::array<const char*, 4> kDashes = {"solid", "dashed", "dotted", "dash-dotted"};
+    for (std::size_t i = 1; i < variants.size(); ++i)
+      figure.title += fmt::format("{}{}: {}", i == 1 ? "; " : ", ", kDashes[i], variants[i]);
+    figure.panel_height = 330 + 5 * int(names.size());
+  }
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    const NamedFlight& f = flights[k];
+    Series height{.label = f.title};
+    if (grouped) {
+      const Look& look = looks[k];
+      height.label = k > 0 && std::ranges::any_of(looks.begin(), looks.begin() + std::ptrdiff_t(k),
+                                                  [&](const Look& l) { return l.name == look.name; })
+                         ? ""
+                         : look.name;
+      height.colour = look.colour;
+      if (look.dashes > 1) height.style = fmt::format("lines dt {}", look.dashes);
+    }
+    Series right = height;
     const auto add = [&](const Vec3& x) {
       height.x.push_back(x.x() / size(unit));
       height.y.push_back(x.z() / size(unit));

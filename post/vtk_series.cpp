@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "post/file.hpp"
+#include "post/html.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -33,10 +34,22 @@ Shape shape(CellShape s) {
     case CellShape::line: return {VTK_LINE, 2};
     case CellShape::triangle: return {VTK_TRIANGLE, 3};
     case CellShape::quad: return {VTK_QUAD, 4};
-    case CellShape::wedge: return {VTK_WEDGE, 6};
-    case CellShape::hexahedron: return {VTK_HEXAHEDRON, 8};
+    case CellShape::quadratic_wedge: return {VTK_BIQUADRATIC_QUADRATIC_WEDGE, 18};
+    case CellShape::quadratic_hexahedron: return {VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, 24};
   }
   return {VTK_EMPTY_CELL, 0};
+}
+
+/// VTK writes an array's name into the XML as it is: what markup is made of becomes entities, which readers turn back,
+/// and what no XML may hold a blank.
+std::string xml_name(const std::string& name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool none = name.compare(i, 3, "\xEF\xBF\xBE") == 0 || name.compare(i, 3, "\xEF\xBF\xBF") == 0;
+    if (none) i += 2;
+    out += none || static_cast<unsigned char>(name[i]) < 0x20 ? ' ' : name[i];
+  }
+  return escape_html(out);
 }
 
 vtkNew<vtkDoubleArray> array_of(const VtkField& field, std::size_t tuples) {
@@ -44,7 +57,7 @@ vtkNew<vtkDoubleArray> array_of(const VtkField& field, std::size_t tuples) {
     throw std::invalid_argument(fmt::format("array '{}' has {} values, expected {} x {}", field.name,
                                             field.values.size(), tuples, field.components));
   vtkNew<vtkDoubleArray> array;
-  array->SetName(field.name.c_str());
+  array->SetName(xml_name(field.name).c_str());
   array->SetNumberOfComponents(field.components);
   array->SetNumberOfTuples(vtkIdType(tuples));
   std::copy(field.values.begin(), field.values.end(), array->GetPointer(0));
@@ -132,7 +145,7 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
     grid->Allocate(vtkIdType(mesh.cells.size()));
     fill(*grid, mesh, time);
     for (const auto& cell : mesh.cells) {
-      std::array<vtkIdType, 8> ids;
+      std::array<vtkIdType, VtkMesh::Cell::most> ids;
       std::copy(cell.points.begin(), cell.points.end(), ids.begin());
       grid->InsertNextCell(shape(cell.shape).vtk, shape(cell.shape).points, ids.data());
     }
@@ -142,7 +155,7 @@ void VtkSeries::write(double time, const VtkMesh& mesh) {
     fill(*surface, mesh, time);
     vtkNew<vtkCellArray> verts, lines, faces;
     for (const auto& cell : mesh.cells) {
-      std::array<vtkIdType, 8> ids;
+      std::array<vtkIdType, VtkMesh::Cell::most> ids;
       std::copy(cell.points.begin(), cell.points.end(), ids.begin());
       const int n = shape(cell.shape).points;
       (n == 1 ? verts : n == 2 ? lines : faces)->InsertNextCell(n, ids.data());

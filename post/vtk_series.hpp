@@ -12,7 +12,9 @@
 
 namespace hosel::post {
 
-enum class CellShape : std::uint8_t { vertex, line, triangle, quad, wedge, hexahedron };
+/// quadratic_wedge and quadratic_hexahedron are eight-node squares swept quadratically: VTK_BIQUADRATIC_QUADRATIC_WEDGE
+/// (18 points) and VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON (24), in VTK's order.
+enum class CellShape : std::uint8_t { vertex, line, triangle, quad, quadratic_wedge, quadratic_hexahedron };
 
 /// One array at points or cells. Six components are a symmetric tensor in VTK's order XX YY ZZ XY YZ XZ.
 struct VtkField {
@@ -25,8 +27,9 @@ struct VtkField {
 struct VtkMesh {
   std::vector<Vec3> points;  ///< reference coordinates [m]
   struct Cell {
+    static constexpr std::size_t most = 24;  ///< points
     CellShape shape;
-    std::array<std::int64_t, 8> points;
+    std::array<std::int64_t, most> points;
   };
   std::vector<Cell> cells;
   std::vector<VtkField> point_fields, cell_fields;

@@ -201,7 +201,9 @@ class ClubsJob final : public Job {
                              {"inside_error_bars", inside}};
 
     if (flight_) follow(clubs, launches, out, summary["flights"][model_]);
-    for (const std::string& name : beside_) compare(name, clubs, out, summary);
+    std::vector<Curves> further;
+    for (const std::string& name : beside_)
+      for (Curves& curves : compare(name, clubs, out, summary)) further.push_back(std::move(curves));
 
     out.say(fmt::format("\n{:<34} {:>10} {:>10} {:>8} {:>10} {:>10} {:>8}", "straight-line fit", "spin slope",
                         "intercept", "R2", "launch", "intercept", "R2"));
@@ -225,20 +227,26 @@ class ClubsJob final : public Job {
                         top / bottom, own / (top / bottom)));
     summary["sine_through_origin_rpm"] = top / bottom;
 
-    post::Figure figure{.title = "loft against spin, launch angle and ball speed: theory (above), seven clubs (below)",
+    // The theory has a row of its own where it alone is asked; beside further models the clubs are the question.
+    post::Figure figure{.title = further.empty()
+                                     ? "loft against spin, launch angle and ball speed: theory (above), seven "
+                                       "clubs (below)"
+                                     : "seven clubs against their loft, predicted and measured",
                         .columns = 3,
                         .panel_width = 520};
+    if (further.empty())
+      figure.panels = {{.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}},
+                       {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}},
+                       {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}}};
     const Line spin_fit = straight_line(means[0], means[1]), launch_fit = straight_line(means[0], means[2]);
-    figure.panels = {{.x_label = "dynamic loft [deg]", .y_label = "spin rate [rpm]", .series = {spin}},
-                     {.x_label = "dynamic loft [deg]", .y_label = "launch angle [deg]", .series = {launch}},
-                     {.x_label = "dynamic loft [deg]", .y_label = "ball speed [m/s]", .series = {speed}}};
     const std::array<const char*, 3> labels = {"spin rate [rpm]", "launch angle [deg]", "ball speed [mph]"};
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       measured[k].label = "measured (printed bars)";
       predicted[k].label = model_;
       predicted[k].style = "linespoints";
       post::Panel p{.x_label = "dynamic loft [deg]", .y_label = labels[k], .series = {measured[k], predicted[k]}};
-      if (k < 2) {
+      for (const Curves& curves : further) p.series.push_back(curves[k]);
+      if (further.empty() && k < 2) {
         const Line& f = k == 0 ? spin_fit : launch_fit;
         p.series.push_back({.label = fmt::format("{:.4g} loft + {:.4g}", f.slope, f.intercept),
                             .x = {12, 33},
@@ -281,7 +289,13 @@ class ClubsJob final : public Job {
 
   /// Another model club by club, without the theory's curves: it may be expensive. At the recorded loft, which a launch
   /// monitor may have computed from the ball, and at the measured launch angle with the loft unknown.
-  void compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out, nlohmann::json& summary) const {
+  /// Of the seven clubs against their loft [deg]: spin [rpm], launch angle [deg], ball speed [mph].
+  using Curves = std::array<post::Series, 3>;
+
+  /// What a further model says at the recorded loft, and at the measured launch angle: for the figure.
+  std::array<Curves, 2> compare(const std::string& name, const std::vector<ClubRow>& clubs, Output& out,
+                                nlohmann::json& summary) const {
+    std::array<Curves, 2> curves;
     const auto model = models::find(name)->make(options_);
     struct Prediction {
       Blow blow;
@@ -307,10 +321,16 @@ class ClubsJob final : public Job {
       nlohmann::json& rows = summary["beside"][name][answers == &matched ? "matched_launch" : "recorded_loft"];
       std::array<double, 2> square{}, unseen{};  // of the relative errors of spin and speed
       int left = 0;
+      Curves& shown = curves[answers == &matched ? 1 : 0];
+      for (post::Series& s : shown) s.label = fmt::format("{} {}", name, how), s.style = "linespoints";
       for (std::size_t i = 0; i < clubs.size(); ++i) {
         const ClubRow& c = clubs[i];
         const auto& [blow, l] = (*answers)[i];
         const double spin = rpm(l.spin_rate()), launch = degrees(l.launch_angle()), speed = l.ball_speed() / kMpsPerMph;
+        for (std::size_t k = 0; k < 3; ++k) {
+          shown[k].x.push_back(degrees(blow.delivery.dynamic_loft));
+          shown[k].y.push_back(std::array{spin, launch, speed}[k]);
+        }
         const double e_t = models::tangential_restitution(blow, l).value_or(NAN);
         const double ratio = models::launch_ratio(blow, l).value_or(NAN);
         const std::array<double, 2> off = {spin / c.mean[1] - 1, speed / c.mean[3] - 1};
@@ -348,6 +368,7 @@ class ClubsJob final : public Job {
       rows["rms_unseen_pct"] = {{"spin", percent(unseen[0], std::size_t(left))},
                                 {"speed", percent(unseen[1], std::size_t(left))}};
     }
+    return curves;
   }
 
   std::vector<ClubRow> read_rows(Output& out) const {

@@ -261,6 +261,9 @@ class FaceMapJob final : public PointJob {
   void draw(Output& out, const post::FaceMap& map, const post::FaceMap* reference, bool of_flight, bool on_page) const {
     const std::string what = reference ? fmt::format("{} minus {}", map.title, reference->title) : map.title;
     post::Figure figure{.title = what + "; " + post::kFaceView, .columns = 3, .panel_width = 640, .panel_height = 330};
+    // What a map is asked for; the other quantities are in the picture of them all.
+    static constexpr std::array<std::string_view, 8> kAnswers = {"ball_speed", "launch_angle", "azimuth", "backspin",
+                                                                 "sidespin",   "carry",        "side",    "lost_carry"};
     for (const post::MapQuantity& q : post::map_quantities(map)) {
       if (q.of_flight != of_flight) continue;
       const auto v = reference ? post::differences(map, *reference, q) : post::values(map, q);
@@ -269,6 +272,7 @@ class FaceMapJob final : public PointJob {
       figure.panels.push_back(post::face_panel(
           grid_, v, fmt::format("{}{} [{}]", reference ? "difference of " : "", post::spoken(q.name), unit),
           fmt::format("[{}]", unit), reference != nullptr));
+      figure.panels.back().on_page = std::ranges::find(kAnswers, q.name) != kAnswers.end();
     }
     picture(out, figure,
             fmt::format("figures/{}{}{}", of_flight ? "flight-" : "", reference ? "difference-" : "map-",

@@ -290,6 +290,7 @@ class ImpactJob final : public Job {
     for (const fs::path& f : recorder.files()) files.push_back(f);
     runs.push_back({name, home, outcome.result});
     runs.back().section = recorder.at_largest_force();
+    runs.back().moving = recorder.moving();
     if (record_.vtk)
       runs.back().patch =
           post::read_patch(home / "vtk", models::encounter(blow).ball_axes, models::mesh_axes(blow, own_.fe));
@@ -333,11 +334,12 @@ class ImpactJob final : public Job {
     doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
     doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
           "a higher contact.tangential_penalty");
-    // A centred sphere that only normal forces push cannot be spun: what turns it is the mesh, not quite a sphere.
+    // Pressure alone turns no sphere; but the ball is flattened, and a face that turns or dishes carries the flat
+    // round.
     if (const double spin = outcome.launch.spin.norm(); own_.fe.friction == 0 && spin > 1)
       out.warn(
-          fmt::format("{}: without friction nothing spins the ball: the {:.1f} rad/s ({:.0f} rpm) with which it "
-                      "leaves are the mesh's own: a finer accuracy has less",
+          fmt::format("{}: without friction the ball leaves with {:.1f} rad/s ({:.0f} rpm): the face turns or dishes "
+                      "under the flattened ball; \"look\" is off by as much (docs/limits.md)",
                       name, spin, rpm(spin)));
     out.say(fmt::format(
         "{}: contact {:.4f} ms, peak force {:.3f} kN, compression {:.2f} mm, penetration {:.1f} um, "

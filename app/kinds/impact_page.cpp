@@ -157,6 +157,7 @@ void show_impact(Output& out, const ImpactStory& s) {
   if (!s.runs.empty()) {
     page.section("While the ball touches the face", "");
     const FeRun& r = s.runs.back();
+    page.moving(r.model + ": the ball on the face, to scale; the face as it yields.", post::json_for_viewer(r.moving));
     if (r.section)
       page.figure(fmt::format("{}: the ball cut open in the plane of slip at the largest force, {:.2f} kN after "
                               "{:.3f} ms, and the face behind it; the target is to the right.",

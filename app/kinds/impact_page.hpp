@@ -9,6 +9,7 @@
 #include "models/fe/fe_impact.hpp"
 #include "post/ball_section.hpp"
 #include "post/launch_table.hpp"
+#include "post/moving_blow.hpp"
 #include "post/patch_figure.hpp"
 
 namespace hosel::app {
@@ -19,7 +20,8 @@ struct FeRun {
   std::filesystem::path home;  ///< of history.csv
   models::FeImpactResult result;
   std::optional<post::BallSection> section = {};  ///< at the step with the largest force
-  std::optional<post::PatchHistory> patch = {};   ///< where series were written
+  post::MovingBlow moving = {};
+  std::optional<post::PatchHistory> patch = {};  ///< where series were written
 };
 
 struct ImpactStory {

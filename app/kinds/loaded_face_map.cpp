@@ -458,6 +458,7 @@ class LoadedFaceMapJob final : public PointJob {
           mean.push_back(over_swings(maps, part, *q, [&](const std::vector<double>& v) { return v[p]; }).mean);
         figure.panels.push_back(post::face_panel(grid, mean, fmt::format("{}: {}", part.name, words(q->name)),
                                                  fmt::format("[{}]", unit_text(*q)), true));
+        figure.panels.back().on_page = part.with == loaded && part.without == free_head;  // the sum of the others
       }
     for (const post::MapQuantity* q : shown(maps)) {
       if (std::ranges::find(kDrawn, q->name) == kDrawn.end()) continue;

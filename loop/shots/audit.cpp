@@ -92,7 +92,8 @@ class Audit {
     // Long sets: an evenly spread sample is enough to find a formula.
     const std::size_t step = std::max<std::size_t>(1, shots.rows() / 1500);
     std::vector<std::size_t> rows;
-    for (std::size_t i = 0; i < shots.rows(); i += step) rows.push_back(i);
+    const std::vector<std::size_t> sorted = rows_by_value(shots);
+    for (std::size_t i = 0; i < sorted.size(); i += step) rows.push_back(sorted[i]);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
       Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution / c.si, 0, false};

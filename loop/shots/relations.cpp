@@ -22,8 +22,8 @@ constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {
   const Column* column;
-  std::vector<double> x;  ///< header's unit; NaN where missing
-  double step;            ///< of the recording
+  std::vector<double> x;  ///< SI, so that no relation hangs on a unit; NaN where missing
+  double step;            ///< of the recording, SI
   double spread;
   bool divides;  ///< keeps its sign and stays away from zero
 };
@@ -54,13 +54,14 @@ class Relations {
   explicit Relations(const Shots& shots) {
     std::vector<std::size_t> rows;
     const std::size_t n = std::min(shots.rows(), kMostRelated);
-    for (std::size_t k = 0; k < n; ++k) rows.push_back(k * shots.rows() / n);
+    const std::vector<std::size_t> sorted = rows_by_value(shots);
+    for (std::size_t k = 0; k < n; ++k) rows.push_back(sorted[k * shots.rows() / n]);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
-      RelationSource s{&c, {}, c.resolution / c.si, 0, false};
+      RelationSource s{&c, {}, c.resolution, 0, false};
       std::vector<double> seen;
       for (const std::size_t row : rows) {
-        s.x.push_back(c.native(row));
+        s.x.push_back(c.value[row]);
         if (std::isfinite(s.x.back())) seen.push_back(s.x.back());
       }
       if (seen.size() < 20 || seen.size() * 2 < rows.size()) continue;
@@ -105,7 +106,18 @@ class Relations {
   }
   bool same_dimension(int a, int b) const {
     const auto p = split_unit(header(a)).unit, q = split_unit(header(b)).unit;
-    return p && q && p->suffix == q->suffix;
+    return p && q && p->dimension == q->dimension;
+  }
+  double si(int k) const { return column(k).si; }
+  /// A number and the header that it multiplies, as they stand in the units of the headers: none where it is one.
+  std::string times(double number, int k, int y) const {
+    number *= si(k) / si(y);
+    return std::abs(number - 1) < 1e-9 ? header(k) : fmt::format("{:.5g} * {}", number, header(k));
+  }
+  std::string plus(double number, int k, int y) const {
+    number *= si(k) / si(y);
+    if (std::abs(std::abs(number) - 1) < 1e-9) return fmt::format("{} {}", number < 0 ? '-' : '+', header(k));
+    return fmt::format("{:+.5g} * {}", number, header(k));
   }
 
   struct Residual {
@@ -192,40 +204,46 @@ class Relations {
     for (int a = 0; a < count(); ++a) {
       if (a == y) continue;
       const auto xa = [&, a](std::size_t i) { return x(a, i); };
-      linear(y, {a}, {}, zero, xa, [&](double k) { return fmt::format("{:.5g} * {}", k, header(a)); });
+      linear(y, {a}, {}, zero, xa, [&](double k) { return fmt::format("{:.5g} * {}", k * si(a) / si(y), header(a)); });
       if (same_dimension(y, a))
-        linear(y, {a}, {}, xa, one, [&](double k) { return fmt::format("{} {:+.5g}", header(a), k); });
+        linear(y, {a}, {}, xa, one, [&](double k) { return fmt::format("{} {:+.5g}", times(1, a, y), k / si(y)); });
       for (int b = 0; b < count(); ++b) {
         if (b == y || b == a) continue;
         const auto xb = [&, b](std::size_t i) { return x(b, i); };
         if (a < b)
           linear(
               y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) * x(b, i); },
-              [&](double k) { return fmt::format("{:.5g} * {} * {}", k, header(a), header(b)); });
+              [&](double k) {
+                return fmt::format("{:.5g} * {} * {}", k * si(a) * si(b) / si(y), header(a), header(b));
+              });
         if (sources_[std::size_t(b)].divides)
           linear(
               y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) / x(b, i); },
-              [&](double k) { return fmt::format("{:.5g} * {} / {}", k, header(a), header(b)); });
+              [&](double k) {
+                return fmt::format("{:.5g} * {} / {}", k * si(a) / si(b) / si(y), header(a), header(b));
+              });
         if (same_dimension(a, b)) {
           // A mean of the two, or one beyond the other.
           linear(
               y, {a, b}, {}, xb, [&](std::size_t i) { return x(a, i) - x(b, i); },
-              [&](double k) { return fmt::format("{:.4g} * {} {:+.4g} * {}", k, header(a), 1 - k, header(b)); });
+              [&](double k) { return fmt::format("{} {}", times(k, a, y), plus(1 - k, b, y)); });
           linear(
               y, {a, b}, 1.0, xa, [&](std::size_t i) { return -x(b, i); },
-              [&](double) { return fmt::format("{} - {}", header(a), header(b)); });
+              [&](double) { return fmt::format("{} {}", times(1, a, y), plus(-1, b, y)); });
           if (a < b)
-            linear(y, {a, b}, 1.0, xa, xb, [&](double) { return fmt::format("{} + {}", header(a), header(b)); });
+            linear(y, {a, b}, 1.0, xa, xb, [&](double) { return fmt::format("{} {}", times(1, a, y), plus(1, b, y)); });
         } else if (same_dimension(y, a)) {
-          linear(y, {a, b}, {}, xa, xb,
-                 [&](double k) { return fmt::format("{} {:+.5g} * {}", header(a), k, header(b)); });
+          linear(y, {a, b}, {}, xa, xb, [&](double k) { return fmt::format("{} {}", times(1, a, y), plus(k, b, y)); });
         }
         if (!same_dimension(y, a)) continue;
         for (int c = 0; c < count(); ++c)
           if (c != y && c != a && c != b && sources_[std::size_t(c)].divides)
             linear(
                 y, {a, b, c}, {}, xa, [&](std::size_t i) { return x(b, i) / x(c, i); },
-                [&](double k) { return fmt::format("{} {:+.5g} * {} / {}", header(a), k, header(b), header(c)); });
+                [&](double k) {
+                  return fmt::format("{} {:+.5g} * {} / {}", times(1, a, y), k * si(b) / si(c) / si(y), header(b),
+                                     header(c));
+                });
       }
     }
   }
@@ -238,8 +256,8 @@ class Relations {
 
   /// y = value(row, k) [SI], the number between 0.4 and 1.1 that most rows agree on.
   void directed(int y, const std::vector<int>& from, bool free, const std::string& text, auto&& value) {
-    const double si = column(y).si, t = 0.5 * sources_[std::size_t(y)].step;
-    const auto miss = [&](std::size_t i, double k) { return x(y, i) - value(i, k) / si; };
+    const double t = 0.5 * sources_[std::size_t(y)].step;
+    const auto miss = [&](std::size_t i, double k) { return x(y, i) - value(i, k); };
     std::vector<std::size_t> good;
     for (std::size_t i = 0; i < rows(); ++i)
       if (std::isfinite(miss(i, 0.8))) good.push_back(i);
@@ -276,14 +294,13 @@ class Relations {
     const int loft = of("dynamic_loft"), face = of("face_angle"), attack = of("attack_angle"), path = of("club_path"),
               launch = of("launch_angle"), azimuth = of("azimuth"), back = of("backspin"), side = of("sidespin");
     if (attack < 0 || path < 0) return;
-    const auto si = [&](int k, std::size_t i) { return x(k, i) * column(k).si; };
-    const auto club = [&](std::size_t i) { return direction(si(attack, i), si(path, i)); };
+    const auto club = [&](std::size_t i) { return direction(x(attack, i), x(path, i)); };
     if (loft >= 0 && face >= 0 && launch >= 0 && azimuth >= 0) {
       const auto normal = [&](std::size_t i, double k) {
-        return Vec3(direction(si(launch, i), si(azimuth, i)) - (1 - k) * club(i));
+        return Vec3(direction(x(launch, i), x(azimuth, i)) - (1 - k) * club(i));
       };
       const auto ball = [&](std::size_t i, double k) {
-        return Vec3(k * direction(si(loft, i), si(face, i)) + (1 - k) * club(i));
+        return Vec3(k * direction(x(loft, i), x(face, i)) + (1 - k) * club(i));
       };
       const char* from_ball = "direction of ball - (1 - k) club";
       const char* from_face = "direction of k face + (1 - k) club";
@@ -301,7 +318,7 @@ class Relations {
                  [&](auto i, double k) { return right(ball(i, k)); });
     }
     if (loft < 0 || face < 0) return;
-    const auto normal = [&](std::size_t i) { return direction(si(loft, i), si(face, i)); };
+    const auto normal = [&](std::size_t i) { return direction(x(loft, i), x(face, i)); };
     const auto spin = [&](std::size_t i) { return Vec3(club(i).cross(normal(i))); };
     const std::vector<int> planes{loft, face, attack, path};
     const char* square = "spin square to face and club";
@@ -312,10 +329,10 @@ class Relations {
       });
     if (y == side && back >= 0)
       directed(y, {loft, face, attack, path, back}, false, square,
-               [&](auto i, double) { return si(back, i) * spin(i).z() / spin(i).y(); });
+               [&](auto i, double) { return x(back, i) * spin(i).z() / spin(i).y(); });
     if (y == back && side >= 0)
       directed(y, {loft, face, attack, path, side}, false, square,
-               [&](auto i, double) { return si(side, i) * spin(i).y() / spin(i).z(); });
+               [&](auto i, double) { return x(side, i) * spin(i).y() / spin(i).z(); });
     if (const auto unit = split_unit(header(y)).unit;
         column(y).role == Role::other && unit && unit->dimension == Dimension::angle)
       directed(y, planes, false, "angle between face and club: the spin loft",
@@ -343,8 +360,9 @@ std::vector<DerivedColumn> partly_derived(const Shots& shots, const std::vector<
     if (std::ranges::any_of(whole, follows) || std::ranges::any_of(told, follows)) continue;
     DerivedColumn d{.column = relations.header(r.target), .from = {}, .formula = r.text};
     for (const int k : r.from) d.from.push_back(relations.header(k));
-    d.residual_sd = r.residual;
-    d.recording_resolution = relations.step(r.target);
+    const double si = relations.column(r.target).si;
+    d.residual_sd = r.residual / si;
+    d.recording_resolution = relations.step(r.target) / si;
     d.rows = r.held;
     d.share = double(r.held) / double(r.rows);
     d.input = relations.column(r.target).role == Role::input;

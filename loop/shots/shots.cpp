@@ -7,7 +7,9 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
+#include <tuple>
 
 #include "golf/units.hpp"
 
@@ -26,9 +28,25 @@ bool misspelt(std::string_view name, std::string_view meant) {
   return x.substr(1) == y.substr(1) || (x.size() > 1 && x[0] == y[1] && x[1] == y[0] && x.substr(2) == y.substr(2));
 }
 
-/// The step of the recording: 10^-d for the most digits that at least 2 % of the cells carry; a coarser
-/// step that all values share (100 rpm recorded without decimals) is found from the values.
-double resolution(const std::vector<std::string>& cells, const std::vector<double>& native) {
+/// The step of a recording with so many decimals, and a coarser one that all values share (100 rpm recorded without
+/// decimals), in the values' unit.
+double shared_step(const std::vector<double>& values, double step) {
+  std::set<double> different;
+  for (const double x : values)
+    if (std::isfinite(x) && different.size() < 20) different.insert(x);
+  if (different.size() < 8) return step;
+  for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
+    const auto off = [&](double x) {
+      const double q = x / (step * factor);
+      return std::isfinite(x) && std::abs(q - std::round(q)) > 1e-6;
+    };
+    if (std::ranges::none_of(values, off)) return step * factor;
+  }
+  return step;
+}
+
+/// The step of the recording, header's unit: 10^-d for the most digits that at least 2 % of the cells carry.
+double written_step(const std::vector<std::string>& cells, const std::vector<double>& native) {
   std::map<int, std::size_t> count;
   std::size_t n = 0;
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -40,19 +58,47 @@ double resolution(const std::vector<std::string>& cells, const std::vector<doubl
   int digits = count.begin()->first;
   for (const auto& [d, k] : count)
     if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
-  const double step = std::pow(10.0, -digits);
+  return std::pow(10.0, -digits);
+}
+
+/// Values that were recorded in another unit of the same dimension and then converted lie on that unit's decimal steps
+/// to within their own last digit. Then they are taken from there, as if the header said that unit. SI; 0: they do not.
+double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step) {
+  constexpr double kCoarser = 4;  // than what is written; and so many bits against chance, over all different values
+  constexpr double kBits = 24;
   std::set<double> different;
-  for (const double x : native)
+  for (const double x : si)
     if (std::isfinite(x) && different.size() < 20) different.insert(x);
-  if (different.size() < 8) return step;
-  for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
-    const auto off = [&](double x) {
-      const double q = x / (step * factor);
-      return std::isfinite(x) && std::abs(q - std::round(q)) > 1e-6;
-    };
-    if (std::ranges::none_of(native, off)) return step * factor;
+  double best = 0;
+  std::vector<double> taken;
+  for (const Unit& other : units()) {
+    if (other.dimension != unit.dimension || other.suffix == unit.suffix) continue;
+    for (int digits = 0; digits <= 6; ++digits) {
+      const double power = std::pow(10.0, digits), coarse = other.si / power;
+      const double ratio = coarse / std::max(step * unit.si, 1e-9 * coarse);
+      if (ratio < kCoarser || double(different.size()) * std::log2(ratio) < kBits) break;
+      std::vector<double> values = si;
+      std::size_t off = 0, n = 0;
+      for (double& x : values) {
+        if (!std::isfinite(x)) continue;
+        const double whole = std::round(x / coarse);
+        const double rounding = std::max(0.51 * step * unit.si, 1e-12 * std::abs(x));
+        ++n;
+        if (std::abs(x - whole * coarse) > rounding) ++off;
+        else x = whole / power * other.si;
+      }
+      if (double(off) > 0.02 * double(n)) continue;
+      std::vector<double> there = values;
+      for (double& x : there) x /= other.si;
+      if (const double found = shared_step(there, 1 / power) * other.si; found > best) {
+        best = found;
+        taken = std::move(values);
+      }
+      break;
+    }
   }
-  return step;
+  if (best > 0) si = std::move(taken);
+  return best;
 }
 
 Column make_column(const std::string& header, const std::vector<std::string>& cells, const post::Sheet& sheet,
@@ -108,8 +154,11 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   // Names of clubs and sessions are labels even where they are written as numbers.
   if (c.role == Role::bookkeeping && header != "shot") c.numeric = false;
   if (c.numeric) {
-    c.resolution = resolution(cells, c.value) * c.si;
+    const double step = written_step(cells, c.value);
+    c.resolution = shared_step(c.value, step) * c.si;
     for (double& x : c.value) x *= c.si;
+    if (split.unit && c.role != Role::bookkeeping)
+      c.resolution = std::max(c.resolution, recorded_elsewhere(c.value, *split.unit, step));
   } else {
     c.value.clear();
     c.broken.clear();
@@ -138,6 +187,28 @@ std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
   return kept;
 }
 
+/// In the order of their numbers where every row has one of its own: the order of the file then tells nothing.
+void in_order_of_shots(const post::Sheet& sheet, std::vector<std::size_t>& rows) {
+  const auto numbered = std::ranges::find(sheet.names, "shot");
+  if (numbered == sheet.names.end()) return;
+  const auto& cells = sheet.columns[std::size_t(numbered - sheet.names.begin())];
+  std::map<double, std::size_t> by_number;
+  for (const std::size_t i : rows)
+    if (const auto x = post::number(cells[i]); !x || !std::isfinite(*x) || !by_number.emplace(*x, i).second) return;
+  rows.clear();
+  for (const auto& [number, i] : by_number) rows.push_back(i);
+}
+
+/// Columns in an order that does not depend on the file's: bookkeeping, inputs, outputs, and the others by their names
+/// without units.
+void in_order_of_quantities(std::vector<Column>& columns) {
+  const auto place = [](const Column& c) {
+    const int k = c.role == Role::input ? int(*input_of(c.stem)) : c.role == Role::output ? int(*output_of(c.stem)) : 0;
+    return std::tuple(int(c.role), k, std::string_view(c.stem), std::string_view(c.name));
+  };
+  std::ranges::stable_sort(columns, {}, place);
+}
+
 post::Sheet only(const post::Sheet& sheet, const std::vector<std::size_t>& rows) {
   post::Sheet out{.file = sheet.file, .names = sheet.names};
   out.columns.resize(sheet.columns.size());
@@ -160,8 +231,23 @@ const Column* Shots::find_stem(std::string_view wanted) const {
   return it == columns.end() ? nullptr : &*it;
 }
 
+std::vector<std::size_t> rows_by_value(const Shots& shots) {
+  std::vector<std::size_t> rows(shots.rows());
+  std::iota(rows.begin(), rows.end(), std::size_t(0));
+  // A missing value before all others.
+  const auto key = [](double x) { return std::pair(!std::isnan(x), std::isnan(x) ? 0.0 : x); };
+  std::ranges::stable_sort(rows, [&](std::size_t a, std::size_t b) {
+    for (const Column& c : shots.columns)
+      if (c.numeric && c.role != Role::bookkeeping)
+        if (const auto x = key(c.value[a]), y = key(c.value[b]); x != y) return x < y;
+    return false;
+  });
+  return rows;
+}
+
 Shots read_shots(const post::Sheet& all, bool flights) {
-  const std::vector<std::size_t> kept = different_rows(all);
+  std::vector<std::size_t> kept = different_rows(all);
+  in_order_of_shots(all, kept);
   const post::Sheet sheet = only(all, kept);
   Shots shots;
   shots.repeated = all.rows() - kept.size();
@@ -175,13 +261,13 @@ Shots read_shots(const post::Sheet& all, bool flights) {
             fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
     shots.columns.push_back(std::move(column));
   }
-  const Column* shot = shots.find("shot");
-  shots.has_shot_column = shot != nullptr;
-  const auto shot_at = shot ? std::size_t(shot - shots.columns.data()) : 0;
+  const auto shot = std::ranges::find(sheet.names, "shot");
+  shots.has_shot_column = shot != sheet.names.end();
   for (std::size_t i = 0; i < sheet.rows(); ++i) {
-    const std::string& cell = shot ? sheet.columns[shot_at][i] : std::string();
+    const std::string cell = shots.has_shot_column ? sheet.columns[std::size_t(shot - sheet.names.begin())][i] : "";
     shots.id.push_back(cell.empty() ? std::to_string(kept[i] + 1) : cell);
   }
+  in_order_of_quantities(shots.columns);
   return shots;
 }
 
@@ -216,6 +302,7 @@ void join(Shots& shots, const post::Sheet& sheet, const std::string& by) {
       if (std::isnan(target->value[i]) && group.of_row[i] >= 0)
         target->value[i] = source.value[row_of.at(group.name[std::size_t(group.of_row[i])])];
   }
+  in_order_of_quantities(shots.columns);
 }
 
 Groups groups(const Column& column) {

@@ -38,10 +38,14 @@ struct Shots {
   const Column* find_stem(std::string_view stem) const;  ///< by name without unit
 };
 
-/// Roles, units, SI values and recording resolution of a sheet. A row that repeats an earlier one letter for letter is
-/// left out: a file pasted twice holds no more shots. Throws DataError: an output or input column
-/// with a wrong unit, text in it, the same quantity twice. `flights`: carry and the like are outputs, too; otherwise
-/// columns like any other.
+/// All rows by their values, so that what is sampled or split from them does not hang on the file's order.
+std::vector<std::size_t> rows_by_value(const Shots& shots);
+
+/// Roles, units, SI values and recording resolution of a sheet. Columns stand in the order of the quantities, rows in
+/// that of their shot numbers where each has one. Values that were recorded in another unit and converted are taken
+/// from there: their resolution is that unit's. A row that repeats an earlier one letter for letter is left out: a file
+/// pasted twice holds no more shots. Throws DataError: an output or input column with a wrong unit, text in it, the
+/// same quantity twice. `flights`: carry and the like are outputs, too; otherwise columns like any other.
 Shots read_shots(const post::Sheet& sheet, bool flights = false);
 
 /// The launch that a row records: ball speed, launch angle and spin (by components, or by rate and tilt), straight

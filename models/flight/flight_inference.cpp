@@ -19,11 +19,13 @@ constexpr std::array<double, kShotUnknowns> kStep = {1e-3, 1e-3, 1e-3, 1e-3, 1e-
 constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient's standard deviation
 
 constexpr double kShotSettled = 1e-3;  // of a shot's sum of squares (times its misfit): a step that brings less
-constexpr int kShotSteps = 100;        // of one shot
-constexpr double kSettled = 0.05;      // standard errors: a step of what is shared below that is the estimate
-constexpr int kSteps = 60;             // of what is shared
-constexpr int kScaling = 5;            // steps after which the robust scale stays: then one sum is brought down
-constexpr double kLoss = 6;            // median misfits at which a shot's weight has fallen to a half
+constexpr double kShotRough = 0.1;  // the same where no step, however short, brings anything: the integration's jitter
+constexpr int kShotSteps = 100;     // of one shot
+constexpr double kSettled = 0.05;   // standard errors: a step of what is shared below that is the estimate
+constexpr int kSteps = 60;          // of what is shared
+constexpr int kFlat = 3;            // steps that brought no more than the shots' own tolerance
+constexpr int kScaling = 5;         // steps after which the robust scale stays: then one sum is brought down
+constexpr double kLoss = 6;         // median misfits at which a shot's weight has fallen to a half
 
 /// One shot's residuals and their derivatives by its own unknowns.
 struct OwnLinear {
@@ -63,6 +65,7 @@ class Estimate {
                                         " standard errors");
         change = step();
         if (fit_.iterations < kScaling) change = 1;
+        else if (flat_ >= kFlat && change < 10 * kSettled) break;  // nothing is left to bring down
       }
     }
     finish();
@@ -118,8 +121,13 @@ class Estimate {
       l.b = l.J.transpose() * l.r;
       for (int k = 0; k < kShotUnknowns; ++k)
         if (shots_[i].sd[k] > 0) l.b[k] += u[k] / std::pow(shots_[i].sd[k], 2);
-      done = l.b.dot(A.llt().solve(l.b)) < kShotSettled * std::max(1.0, sum / double(l.r.size()));
+      const double left = l.b.dot(A.llt().solve(l.b)) / std::max(1.0, sum / double(l.r.size()));
+      done = left < kShotSettled;
       for (; !done; damping *= 4) {
+        if (damping > 1e12 && left < kShotRough) {
+          done = true;
+          break;
+        }
         if (n == kShotSteps || damping > 1e12)
           throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle");
         Eigen::MatrixXd damped = A;
@@ -232,7 +240,10 @@ class Estimate {
       }
       for (std::size_t i = 0; i < shots_.size(); ++i) fit_.shots[i] = kept.shots[i] - follow[i] * (share * d);
       settle_shots();
-      if (loss() <= before + kShotSettled * double(shots_.size())) break;
+      const double now = loss(), rough = kShotSettled * double(shots_.size());
+      if (now > before + rough) continue;
+      flat_ = now > before - rough ? flat_ + 1 : 0;
+      break;
     }
     if (fit_.iterations < kScaling) set_scale();
     return largest;
@@ -283,6 +294,7 @@ class Estimate {
   PathFit fit_;
   std::vector<OwnLinear> own_;
   double scale_ = 1;
+  int flat_ = 0;  ///< steps in a row that brought nothing
   Eigen::MatrixXd covariance_;
 };
 

@@ -17,6 +17,8 @@ class ShaftCoupled final : public ImpactModel {
                         ShaftMount mount = {})
       : law_(law), options_(options), beam_(beam), mount_(std::move(mount)) {}
   Launch launch(const Blow& blow) const override;
+  /// Whether the swing has loaded the shaft, whose energy then goes into the blow.
+  bool loaded() const { return mount_.loaded || mount_.load; }
 
  private:
   VolumetricLaw law_;

@@ -1,17 +1,32 @@
 #include "models/rigid/jointed_club.hpp"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <stdexcept>
 
 namespace hosel::models {
+namespace {
 
-Mat6 jointed_mobility(const Blow& blow, bool hinged) {
+/// The hosel and the head's cg from the butt, face axes.
+struct FromButt {
+  Vec3 axis, hosel, cg;
+  explicit FromButt(const Club& club) {
+    if (!club.shaft || club.shaft->stations.size() < 2)
+      throw std::invalid_argument("this model needs a club with a shaft");
+    axis = club.geometry.shaft_axis.normalized();
+    hosel = -club.shaft->length() * axis;
+    cg = hosel + club.head.cg - club.geometry.hosel;
+  }
+};
+
+/// Generalised velocities' effect on the head's twist, and their mass; face axes.
+struct Jointed {
+  Eigen::MatrixXd B, mass;
+};
+
+Jointed jointed(const Blow& blow, bool hinged) {
   const Club& club = blow.club;
-  if (!club.shaft || club.shaft->stations.size() < 2)
-    throw std::invalid_argument("this model needs a club with a shaft");
-  // Face axes; the butt is the origin.
-  const Vec3 axis = club.geometry.shaft_axis.normalized();
-  const Vec3 hosel = -club.shaft->length() * axis, cg = hosel + club.head.cg - club.geometry.hosel;
+  const auto [axis, hosel, cg] = FromButt(club);
   const Vec3 hinge = axis.cross(Vec3::UnitX()).normalized();
 
   double second_moment = 0, about_axis = 0, across = 0;
@@ -43,10 +58,31 @@ Mat6 jointed_mobility(const Blow& blow, bool hinged) {
   head.bottomRightCorner<3, 3>() = club.head.inertia;
   mass = B.transpose() * head * B;
   mass.topLeftCorner(3, 3) += rod;
+  return {B, mass};
+}
+
+}  // namespace
+
+Mat6 jointed_mobility(const Blow& blow, bool hinged) {
+  const auto [B, mass] = jointed(blow, hinged);
   const Mat6 face = B * mass.inverse() * B.transpose();
   Mat6 turn = Mat6::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = blow.delivery.face_to_global();
   return turn * face * turn.transpose();
+}
+
+Vec3 butt_velocity(const Blow& blow) {
+  const Vec3 cg = blow.delivery.face_to_global() * FromButt(blow.club).cg;
+  return blow.delivery.velocity() - blow.delivery.head_angular_velocity.cross(cg);
+}
+
+double jointed_energy(const Blow& blow, bool hinged, const Vec3& velocity, const Vec3& spin) {
+  const auto [B, mass] = jointed(blow, hinged);
+  const Mat3 to_face = blow.delivery.face_to_global().transpose();
+  Vec6 twist;
+  twist << to_face * velocity, to_face * spin;
+  const Eigen::VectorXd rates = B.colPivHouseholderQr().solve(twist);
+  return rates.dot(mass * rates) / 2;
 }
 
 }  // namespace hosel::models

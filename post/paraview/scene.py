@@ -1,5 +1,6 @@
 """What the pictures of this folder share: the arguments, a run's series, a white view, its labels and its camera."""
 import csv
+import math
 import os
 import sys
 
@@ -98,11 +99,19 @@ def arrows(source, view, vector, scale, colour):
     return arrow
 
 
+def label(view, text="", place="Upper Left Corner"):
+    """Words in a corner; what is returned has a Text to be changed."""
+    source = Text(Text=text)
+    display = Show(source, view)
+    display.Color = [0, 0, 0]
+    display.Justification = "Left"
+    display.WindowLocation = place
+    display.FontSize = 24
+    return source
+
+
 def caption(view, text, place="Upper Left Corner"):
-    label = Show(Text(Text=text), view)
-    label.Color = [0, 0, 0]
-    label.Justification = "Left"
-    label.WindowLocation = place
+    label(view, text, place)
 
 
 def look(view, at, eye, height=None):
@@ -114,6 +123,71 @@ def look(view, at, eye, height=None):
         ResetCamera(view)
     else:
         view.CameraParallelScale = height
+
+
+def side(ball, upper):
+    """The cells of a ball on one side of the plane of its mesh's axis and the slip, and where its points are in the mean."""
+    cells = Threshold(Input=ball)
+    cells.Scalars = ["CELLS", "angle"]
+    cells.LowerThreshold, cells.UpperThreshold = (math.pi, 2 * math.pi) if upper else (0.0, math.pi)
+    points = servermanager.Fetch(cells).GetPoints()
+    count = points.GetNumberOfPoints()
+    return cells, [sum(points.GetPoint(i)[k] for i in range(count)) / count for k in range(3)]
+
+
+def blow(folder, view):
+    """Ball, face, head and shaft of a blow, seen from the toe and a little from above; the ball is cut in the plane of its
+    mesh's axis and the slip, and what lies nearer is away, so that the flattened patch is seen against the face. Returns the
+    times [s], and a function that shows one of them."""
+    ball = series(folder, "ball")
+    halves = [side(ball, upper) for upper in (False, True)]
+    if halves[0][1][1] < halves[1][1][1]:  # that on the heel's side stays
+        halves.reverse()
+    away = [a - b for a, b in zip(halves[0][1], halves[1][1])]
+    length = math.sqrt(sum(x * x for x in away))
+    away = [x / length for x in away]
+    whole = moved(ball)
+    stress = Calculator(Input=moved(halves[0][0]), ResultArrayName="MPa", Function="von_mises/1e6")
+    # Linear pieces of the quadratic cells, so fine that they look smooth.
+    surface = GenerateSurfaceNormals(Input=ExtractSurface(Input=stress, NonlinearSubdivisionLevel=3), FeatureAngle=40)
+    display = coloured(surface, view, "MPa")
+    display.Specular, display.Ambient, display.Diffuse = 0.1, 0.25, 0.8
+    times = list(ball.TimestepValues)
+    most = 0.0
+    for time in times:  # one scale for all of them
+        stress.UpdatePipeline(time)
+        most = max(most, stress.PointData["MPa"].GetRange()[1])
+    colours = GetColorTransferFunction("MPa")
+    colours.ApplyPreset("Viridis (matplotlib)", True)
+    colours.RescaleTransferFunction(0.0, most)
+    scale = bar(display, view, "MPa", "von Mises stress [MPa]")
+    scale.TitleFontSize = scale.LabelFontSize = 22
+    scale.WindowLocation, scale.Position = "Any Location", [0.86, 0.3]
+    scale.ScalarBarLength = 0.4
+    cuts = []
+    for name, colour, opacity in (("face", [0.62, 0.64, 0.7], 1.0), ("head", [0.6, 0.6, 0.65], 0.2)):
+        if has(folder, name):
+            cut = Clip(Input=moved(series(folder, name)))
+            cut.ClipType = "Plane"
+            cut.ClipType.Normal = away
+            cut.Invert = 0
+            cuts.append(cut)
+            painted(cut, view, colour, opacity)
+    if has(folder, "shaft"):
+        painted(Tube(Input=moved(series(folder, "shaft")), Radius=0.005, NumberofSides=32), view, [0.2, 0.2, 0.2])
+
+    def show(time):
+        view.ViewTime = time
+        whole.UpdatePipeline(time)
+        box = whole.GetDataInformation().GetBounds()
+        middle = [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, (box[4] + box[5]) / 2]
+        for cut in cuts:
+            cut.ClipType.Origin = middle
+        # The face's side of the ball a little nearer to the middle of the picture.
+        at = [middle[0] - 0.004, middle[1], middle[2]]
+        look(view, at, [at[0] - 0.16 * away[0] - 0.03, at[1] - 0.16 * away[1], at[2] - 0.16 * away[2] + 0.03], 0.03)
+
+    return times, show
 
 
 def save(view, picture):

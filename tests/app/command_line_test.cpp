@@ -125,5 +125,26 @@ TEST(CommandLine, OpenSaysWhatIsMissing) {
   EXPECT_NE(started.find((home / "vtk").string()), std::string::npos) << started;
 }
 
+TEST(CommandLine, FilmSaysWhatIsMissing) {
+  const fs::path home = fresh_directory("film");
+  EXPECT_NE(command("film '" + home.string() + "'").text.find("no series of a blow"), std::string::npos);
+  write(home / "vtk" / "ball.pvd", "");
+  const std::string film = HOSEL_COMMAND " film '" + home.string() + "'";
+  EXPECT_NE(bash("PATH=/nowhere " + film).find("pvbatch is not installed (Debian: apt-get install paraview)"),
+            std::string::npos);
+  const fs::path bin = fresh_directory("film_bin");
+  for (const char* name : {"pvbatch", "xvfb-run"}) {
+    write(bin / name, "#!/bin/sh\n");
+    fs::permissions(bin / name, fs::perms::owner_all);
+  }
+  EXPECT_NE(
+      bash("PATH='" + bin.string() + "' " + film).find("ffmpeg is not installed (Debian: apt-get install ffmpeg)"),
+      std::string::npos);
+  EXPECT_NE(bash(film + " --to film.avi").find("a film is an .mp4 or a .gif"), std::string::npos);
+  write(home / "film.mp4", "mine");
+  EXPECT_NE(bash(film).find("exists"), std::string::npos);
+  EXPECT_EQ(content(home / "film.mp4"), "mine");
+}
+
 }  // namespace
 }  // namespace hosel::test

@@ -201,6 +201,13 @@ std::string cut_open(const fs::path& out) {
   return begin == std::string::npos ? "" : page.substr(begin, page.find("</svg>", begin) - begin);
 }
 
+/// What moves in the page of a finished run; empty where nothing does.
+std::string moving(const fs::path& out) {
+  const std::string page = content(out / "report.html");
+  const std::size_t begin = page.find("<script type='application/json'");
+  return begin == std::string::npos ? "" : page.substr(begin, page.find("</script>", begin) - begin);
+}
+
 void expect_same_files(const fs::path& out, const std::map<std::string, std::string>& whole) {
   const auto mine = files(out);
   for (const auto& [name, bytes] : whole) {
@@ -291,6 +298,8 @@ TEST(ImpactCase, StoppedRunsGoOnToTheSameBytes) {
             double(summary.at("models").at("fe-full-club").at("solution").at("peak_time_ms")));
   EXPECT_GT(cut_open(whole).size(), 1000u);
   EXPECT_EQ(cut_open(out), cut_open(whole));
+  EXPECT_GT(moving(whole).size(), 100'000u);
+  EXPECT_TRUE(moving(out) == moving(whole));
   expect_same_files(out, expected);
 
   // A history that is gone, a frame that is cut: nothing to go on from, the run begins afresh.

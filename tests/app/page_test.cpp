@@ -15,8 +15,16 @@ using nlohmann::json;
 
 bool holds(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
 
-/// Nothing that a browser would fetch.
-void expect_alone(const std::string& page) {
+/// Nothing that a browser would fetch. Its one script may name addresses: the page's policy lets nothing be fetched.
+void expect_alone(std::string page) {
+  EXPECT_TRUE(holds(page, "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none';img-src data:;"));
+  if (const std::size_t begin = page.find("<script>"); begin != std::string::npos) {
+    const std::size_t end = page.find("</script>", begin);
+    EXPECT_TRUE(page.substr(begin + 8, end - begin - 8) == content(HOSEL_SOURCE_DIR "/post/viewer/viewer.js"));
+    page.erase(begin, end - begin);
+  }
+  if (const std::size_t begin = page.find("<script type='application/json'"); begin != std::string::npos)
+    page.erase(begin, page.find("</script>", begin) - begin);
   EXPECT_FALSE(std::regex_search(page, std::regex("<(script|link|iframe)|(src|href)=.?(https?:|//)|@import|url\\(")));
   // By its attributes: no style of a page may stretch it.
   EXPECT_FALSE(std::regex_search(page, std::regex("<svg[^>]*style=|[^>]svg,img\\{")));
@@ -44,7 +52,7 @@ TEST(RunPage, SaysWhatABlowAndItsFlightCameTo) {
   EXPECT_TRUE(holds(page, "it&#39;s &lt;b&gt;mine")) << "a title is no markup";
   EXPECT_TRUE(holds(page, "<td>club speed<td>100 mph")) << "inputs with their units";
   EXPECT_TRUE(holds(page, "hosel " + typed)) << "the command as it was typed";
-  EXPECT_TRUE(holds(page, "data:image/svg+xml;base64,")) << "side and top view of the flight";
+  EXPECT_TRUE(holds(page, "class='curves'")) << "side and top view of the flight";
 }
 
 TEST(RunPage, SpeaksTheUnitsThatWereAskedFor) {
@@ -81,6 +89,27 @@ TEST(RunPage, ShowsTheLargestForceAndTheLedger) {
   EXPECT_TRUE(holds(page, fmt::format("at the largest force, {:.2f} kN after {:.3f} ms", 1e-3 * force, time)));
   EXPECT_TRUE(holds(page, fmt::format("unaccounted for<td>{:.4f}", solution["energy_J"]["closure"].get<double>())));
   EXPECT_TRUE(holds(page, "data:image/png;base64,")) << "the patch";
+
+  // What moves: every body in every frame, 16 bits a number in base64.
+  EXPECT_LT(page.size(), 6e6);
+  const std::size_t begin = page.find('>', page.find("<script type='application/json'")) + 1;
+  const json blow = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  const std::vector<double> times = blow["time_ms"], forces = blow["force_kN"];
+  ASSERT_GE(times.size(), 24u);
+  ASSERT_LE(times.size(), 48u);
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+  EXPECT_EQ(std::ranges::max_element(forces) - forces.begin(), blow["start"].get<long>());
+  EXPECT_NEAR(std::ranges::max(forces), 1e-3 * force, 0.02 * 1e-3 * force) << "a frame near the largest force";
+  std::vector<std::string> bodies;
+  for (const json& body : blow["bodies"]) {
+    bodies.push_back(body["name"]);
+    const std::size_t bytes = times.size() * body["points"].get<std::size_t>() * 3 * 2;
+    EXPECT_EQ(body["place"].get<std::string>().size(), (bytes + 2) / 3 * 4) << bodies.back();
+  }
+  EXPECT_EQ(bodies, (std::vector<std::string>{"ball", "section", "face", "head"}));
+  const double pressure = blow["bodies"][0]["fields"]["pressure"]["most"];
+  EXPECT_GT(pressure, 10) << "MPa";
+  EXPECT_LT(pressure, 100);
 }
 
 TEST(RunPage, AnswersBeforeItPrintsAndShowsAFigure) {
@@ -92,7 +121,8 @@ TEST(RunPage, AnswersBeforeItPrintsAndShowsAFigure) {
     const std::string page = content(out / "report.html");
     expect_alone(page);
     const std::size_t answer = std::min(page.find("<div class='answers'>"), page.find("<table>"));
-    const std::size_t question = page.find("<p class='lead'>"), figure = page.find("data:image/svg");
+    const std::size_t question = page.find("<p class='lead'>"),
+                      figure = std::min(page.find("data:image/svg"), page.find("class='curves'"));
     ASSERT_NE(question, std::string::npos) << run;
     EXPECT_TRUE(question < answer && answer < page.find("<pre")) << run;
     EXPECT_TRUE(answer < figure || run == "restitution-face") << run << ": its maps are points";

@@ -1,8 +1,10 @@
 #include "fem/materials/solid.hpp"
+#include "fem/materials/gent.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "fem/materials/linear_elastic.hpp"
 #include "fem/materials/ogden.hpp"
 #include "fem/materials/st_venant_kirchhoff.hpp"
+#include "fem/materials/time_temperature.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +37,8 @@ std::vector<Named> materials() {
       {"yeoh",
        {.elastic = Hyperelastic{.c10 = 10e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9}, .branches = {}, .density = 1100}},
       {"ogden", {.elastic = Ogden{.powers = {{15e6, 1.8}, {4e6, -2.5}}, .bulk = 1e9}, .branches = {}, .density = 1100}},
+      {"gent", {.elastic = Gent(GentEnergy{20e6, 5, 1e9}), .branches = {}, .density = 1100}},
+      {"gent with branches", {.elastic = Gent(GentEnergy{20e6, 5, 1e9}), .branches = two, .density = 1100}},
       {"neo-hooke with branches", {.elastic = Hyperelastic::neo_hooke(l), .branches = two, .density = 1100}},
       {"ogden with branches", {.elastic = Ogden{.powers = {{15e6, 3}}, .bulk = 1e9}, .branches = two, .density = 1100}},
       {"yeoh with branches",
@@ -90,6 +94,91 @@ TEST(Solid, OgdenHoldsMooneyRivlin) {
 }
 
 /// [@neo-hooke]: stretch, lateral stretch, Cauchy stress of uniaxial tension, W = mu/2 (I1'-3) + K/2 (J-1)^2.
+/// The energies of laws whose tangents are written by hand.
+struct YeohEnergy : Hyperelastic {
+  template <class X, class Y, class Z>
+  auto energy(const X& I1, const Y& I2, const Z& J) const {
+    const X x = I1 - 3.0;
+    return x * (c10 + x * (c20 + x * c30)) + c01 * (I2 - 3.0) + 0.5 * bulk * (J - 1.0) * (J - 1.0);
+  }
+};
+
+/// A law by automatic differentiation of its energy is the law by hand: to round-off.
+TEST(Solid, ALawFromItsEnergyIsTheLawByHand) {
+  const Hyperelastic by_hand{.c10 = 10e6, .c01 = 4e6, .c20 = -1e6, .c30 = 2e6, .bulk = 1e9};
+  const Solid written{.elastic = by_hand, .branches = {}, .density = 1},
+      differentiated{.elastic = EnergyLaw(YeohEnergy{by_hand}), .branches = {}, .density = 1};
+  std::mt19937 g(5);
+  for (int i = 0; i < 20; ++i) {
+    const Mat3 F = random_gradient(g, 0.25);
+    PointResponse a, b, only_stress;
+    evaluate(written, F, Mat3::Identity(), 0, {}, true, a);
+    evaluate(differentiated, F, Mat3::Identity(), 0, {}, true, b);
+    evaluate(differentiated, F, Mat3::Identity(), 0, {}, false, only_stress);
+    ASSERT_GT(a.stress.norm(), 1e5);
+    EXPECT_NEAR(a.energy, b.energy, 1e-12 * a.energy);
+    EXPECT_LE((a.stress - b.stress).norm(), 1e-12 * a.stress.norm());
+    EXPECT_LE((a.stress - only_stress.stress).norm(), 1e-12 * a.stress.norm());
+    EXPECT_LE((a.tangent - b.tangent).norm(), 1e-12 * a.tangent.norm());
+  }
+}
+
+/// Uniaxial tension of an incompressible Gent rubber: P = mu (l - 1/l^2) L / (L - I1 + 3) [A.N. Gent 1996]; K of 1e6 mu
+/// leaves some 1e-5 of it.
+TEST(Solid, GentLocks) {
+  const double mu = 1e6, limit = 3;
+  const Solid gent{.elastic = Gent(GentEnergy{mu, limit, 1e6 * mu}), .branches = {}, .density = 1};
+  for (const double l : {0.6, 1.5, 2.0}) {
+    double across = 1 / std::sqrt(l);
+    PointResponse r;
+    for (int i = 0; i < 20; ++i) {
+      evaluate(gent, Vec3(l, across, across).asDiagonal(), Mat3::Identity(), 0, {}, true, r);
+      across -= r.stress(1, 1) / (r.tangent(4, 4) + r.tangent(4, 8));
+    }
+    const double exact = mu * (l - 1 / (l * l)) * limit / (limit - (l * l + 2 / l) + 3);
+    EXPECT_NEAR(r.stress(0, 0), exact, 1e-4 * std::abs(exact)) << l;
+  }
+  PointResponse beyond;  // I1 - 3 = 3.67
+  evaluate(gent, Vec3(2.5, 1 / std::sqrt(2.5), 1 / std::sqrt(2.5)).asDiagonal(), Mat3::Identity(), 0, {}, false,
+           beyond);
+  EXPECT_TRUE(std::isnan(beyond.energy));
+}
+
+/// Time and temperature: what a rubber at T answers in a time t is what it answers where its constants hold in t /
+/// a(T), times the ratio of the absolute temperatures.
+TEST(Solid, ColdIsSlowAndSoft) {
+  const TimeTemperature law{.measured = 296.15};
+  // By hand at 278.15 and 313.15 K, of T0 = 298 K.
+  const auto by_hand = [](double T) { return -3.44 * (T - 298) / (196.6 + T - 298); };
+  for (const double T : {278.15, 313.15}) EXPECT_NEAR(std::log10(law.shift(T)), by_hand(T) - by_hand(296.15), 1e-12);
+  EXPECT_GT(law.shift(278.15), 2);
+  EXPECT_LT(law.shift(313.15), 0.6);
+  EXPECT_EQ(law.shift(law.measured), 1);
+  EXPECT_FALSE(law.faults(100).empty());
+  EXPECT_TRUE(law.faults(278.15).empty());
+  EXPECT_THROW(at_temperature(materials().back().solid, law, 90), std::invalid_argument);
+
+  // Neither bulk modulus nor density follows: an isochoric path is compared.
+  const Solid warm{.elastic = Hyperelastic{.c10 = 10e6, .bulk = 1e9}, .branches = {{20e6, 1e-4}}, .density = 1100};
+  const double T = 278.15, a = law.shift(T);
+  const Solid cold = at_temperature(warm, law, T);
+  const auto stress_after = [](const Solid& solid, double time) {
+    std::vector<double> history(std::size_t(solid.history_size()));
+    solid.start(history);
+    Mat3 F = Mat3::Identity();
+    PointResponse r;
+    for (int i = 1; i <= 50; ++i) {
+      F(0, 1) = 0.2 * i / 50;
+      evaluate(solid, F, Mat3::Identity(), time / 50, history, false, r);
+      update_internal_variables(solid, F, time / 50, history);
+    }
+    return r.stress(0, 1);
+  };
+  const double now = stress_after(cold, 2e-4), then = stress_after(warm, 2e-4 / a);
+  EXPECT_NEAR(now, then * T / law.measured, 1e-12 * then);
+  EXPECT_GT(now, 1.05 * stress_after(warm, 2e-4));  // within an impact's time the cold rubber is the stiffer one
+}
+
 TEST(Solid, NeoHookeUniaxial) {
   Hyperelastic law{.c10 = 33.5570469798658e6 / 2, .bulk = 1666.66666666667e6};
   const Solid solid{.elastic = law, .branches = {}, .density = 1};

@@ -103,6 +103,8 @@ inline std::string good_checkpoint() {
   saved.impact.solver.ledger.strain = {{"ball", 1.5}};
   saved.section = post::BallSection{
       .points = {{0, 0}, {1, 0}, {1, 1}}, .von_mises = {1, 2, 3}, .cells = {{0, 1, 2, 0}}, .seams = {{0, 1, 2}}};
+  saved.moving.bodies = {{"face", 1, {}, {0, 0, 0}, {}}};
+  saved.moving.frames = {{1e-5, 1.0, Vec3(1, 2, 3), {{{0, 0, 0}, {}, {}}}}};
   saved.series["ball"] = {{0.0, 1e-5}, "digest"};
   const fs::path file = file_of("", "good.cbor");
   post::save_checkpoint(file, "run", saved);

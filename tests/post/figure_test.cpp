@@ -30,6 +30,30 @@ Figure two_panels() {
   return f;
 }
 
+/// Quotes at the begin of a name or after each other, what is no character, and more than a picture has room for.
+TEST(Figure, AnyNameIsDrawn) {
+  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_names";
+  std::string accents;
+  for (int i = 0; i < 1000; ++i) accents += "\xC3\xA9";
+  for (const std::string& name :
+       {std::string("' at the begin"), std::string("two '' and four ''''"), std::string("\xEF\xBF\xBF]]>&#x0;"),
+        std::string(1000, 'n'), accents, std::string("%s%n {} @ _ ^ `id` $(id) \\ \"")}) {
+    Figure f = two_panels();
+    f.title = name;
+    for (Panel& p : f.panels) {
+      p.title = p.x_label = p.y_label = p.map_label = name;
+      for (Series& s : p.series) s.label = name;
+    }
+    EXPECT_EQ(draw(f, stem, true), "") << name;
+    std::ifstream svg(stem.parent_path() / panel_files(f, "hosel_figure_names").front().picture);
+    const std::string text{std::istreambuf_iterator<char>(svg), {}};
+    EXPECT_NE(text.find("</svg>"), std::string::npos) << name;
+    EXPECT_EQ(text.find("\xEF\xBF\xBF"), std::string::npos) << name;
+    EXPECT_EQ(text.find("&#x0;"), std::string::npos) << name;
+    std::filesystem::remove_all(stem);
+  }
+}
+
 TEST(Figure, PictureIsDrawn) {
   const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure";
   ASSERT_EQ(draw(two_panels(), stem), "");
@@ -55,6 +79,26 @@ TEST(Figure, EachPanelIsAFileOfItsOwn) {
       EXPECT_GT(std::filesystem::file_size(name), 5000u) << name;
     }
   EXPECT_NE(draw({.title = "empty", .panels = {Panel{}}}, stem), "") << "no picture of nothing";
+}
+
+TEST(Figure, PointsAndPlacesTellTheirValues) {
+  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_told";
+  Figure f = two_panels();
+  f.panels[0].series[1].label = "<b>";
+  f.panels[0].series[1].y[0] = NAN;  // not drawn: the next one keeps its own values
+  ASSERT_EQ(draw(f, stem), "");
+  const auto files = panel_files(f, stem.string());
+  std::ifstream in(files[0].picture);
+  const std::string curves(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(curves.find("<title>sine: loft 3 deg, spin 586.33 rpm</title>"), std::string::npos);
+  EXPECT_NE(curves.find("<title>&lt;b&gt;: loft 30 deg, spin 6000 rpm ± 3e+02</title>"), std::string::npos);
+  EXPECT_EQ(curves.find("onmouse"), std::string::npos);
+  EXPECT_EQ(curves.find("<title>gnuplot"), std::string::npos);
+  const std::string map = map_values(f.panels[1], files[1]);
+  EXPECT_NE(map.find("<title>map: ball speed 67.984 m/s\ntoe 4 mm, high 0 mm</title>"), std::string::npos) << map;
+  // The place of the greatest value in the picture is where the axes say: the map fills them.
+  EXPECT_NEAR(files[1].left * files[1].width, 92, 1e-9);
+  EXPECT_LT(files[1].top, files[1].bottom);
 }
 
 TEST(Figure, LongTitlesAreBroken) {

@@ -101,6 +101,11 @@ SavedImpact some_impact() {
   s.section->cells = {{0, 1, 1, 0}};
   s.section->seams = {{1, 0, 1}};
   s.section->face = {{0.03, 0.04}};
+  s.moving = {
+      .radius = 0.02,
+      .bodies = {{"face", 3, {}, {0, 1, 2}, {}}, {"shaft", 2, {}, {}, {0.004, 0.006}}},
+      .frames = {{1e-5, 2e3, Vec3(1, 2, 3), {{{0, 0, 0, 1, 0, 0, 0, 1, 0.1f}, {}, {1, 2, 3}}, {{0, 0, 0, 0, 0, 1}}}}},
+      .stride = 4};
   s.history = {12, "history"};
   s.series["ball"] = {{0, 1e-5}, "ball"};
   return s;
@@ -115,6 +120,9 @@ TEST(Checkpoint, ReadsBackToTheLastBit) {
   EXPECT_EQ(back->impact.solver.state.q, saved.impact.solver.state.q);
   ASSERT_TRUE(back->section);
   EXPECT_EQ(svg(*back->section), svg(*saved.section));
+  EXPECT_EQ(json_for_viewer(back->moving), json_for_viewer(saved.moving));
+  EXPECT_GT(json_for_viewer(back->moving).size(), 300u);
+  EXPECT_TRUE(back->moving.wants(8) && !back->moving.wants(6));
   EXPECT_EQ(back->history.rows, 12);
   EXPECT_EQ(back->series.at("ball").times, saved.series.at("ball").times);
   EXPECT_FALSE(load_checkpoint(file, "another case")) << "of another case or another build";

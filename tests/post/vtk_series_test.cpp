@@ -25,11 +25,13 @@ namespace fs = std::filesystem;
 
 VtkMesh one_hexahedron() {
   VtkMesh m;
-  for (int k = 0; k < 2; ++k)
-    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
-      m.points.emplace_back(x, y, k + 1e-9);
-  m.cells.push_back({CellShape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}});
-  m.point_fields.push_back(vector_field("displacement", "m", std::vector<Vec3>(8, Vec3(1e-3, 0, 2e-3))));
+  constexpr std::array<std::pair<double, double>, 8> square = {
+      {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}}};
+  for (const double z : {0.0, 0.5, 1.0})
+    for (const auto& [x, y] : square) m.points.emplace_back(x, y, z + 1e-9);
+  m.cells.push_back({CellShape::quadratic_hexahedron,
+                     {0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23, 8, 9, 10, 11, 15, 13, 12, 14}});
+  m.point_fields.push_back(vector_field("displacement", "m", std::vector<Vec3>(24, Vec3(1e-3, 0, 2e-3))));
   m.cell_fields.push_back({"cauchy_stress", "Pa", 6, {1, 2, 3, 4, 5, 6}});
   return m;
 }
@@ -56,13 +58,20 @@ TEST(VtkSeries, VolumeReadsBack) {
   reader->SetFileName((dir / "ball" / "ball_0001.vtu").c_str());
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
-  ASSERT_EQ(grid->GetNumberOfPoints(), 8);
+  ASSERT_EQ(grid->GetNumberOfPoints(), 24);
   EXPECT_EQ(grid->GetPoints()->GetDataType(), VTK_DOUBLE);
   EXPECT_EQ(grid->GetPoint(0)[2], 1e-9);
   vtkDataArray* u = grid->GetPointData()->GetArray("displacement");
   ASSERT_NE(u, nullptr);
   EXPECT_EQ(u->GetNumberOfComponents(), 3);
-  EXPECT_EQ(u->GetComponent(7, 2), 2e-3);
+  EXPECT_EQ(u->GetComponent(23, 2), 2e-3);
+  // Of the order that VTK knows: every point lies where the cell expects it.
+  for (int i = 0; i < 24; ++i)
+    EXPECT_LT((Eigen::Map<const Vec3>(grid->GetPoint(grid->GetCell(0)->GetPointId(i))) - Vec3(0, 0, 1e-9) -
+               Eigen::Map<const Vec3>(grid->GetCell(0)->GetParametricCoords() + 3 * i))
+                  .norm(),
+              1e-12)
+        << i;
   EXPECT_STREQ(u->GetInformation()->Get(vtkDataArray::UNITS_LABEL()), "m");
   vtkDataArray* s = grid->GetCellData()->GetArray("cauchy_stress");
   ASSERT_NE(s, nullptr);
