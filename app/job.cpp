@@ -5,12 +5,10 @@
 #include <array>
 
 #include "app/kinds/ball_rule.hpp"
-#include "app/kinds/bounce.hpp"
 #include "app/kinds/calibrate_ball.hpp"
 #include "app/kinds/calibrate_face.hpp"
 #include "app/kinds/calibrate_reduced.hpp"
 #include "app/kinds/characteristic_time.hpp"
-#include "app/kinds/clubs.hpp"
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/flight.hpp"
 #include "app/kinds/flight_law.hpp"
@@ -22,7 +20,6 @@
 #include "app/kinds/loop.hpp"
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
-#include "app/kinds/restitution_face.hpp"
 #include "app/kinds/shaft_modes.hpp"
 #include "app/kinds/slopes.hpp"
 #include "app/kinds/study.hpp"
@@ -51,8 +48,6 @@ constexpr std::array kKinds = {
          "What must a ball at the limit give up, and who loses how much?", read_ball_rule},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by",
          "How does the launch change over the face, and what does the club change in it?", read_face_map},
-    Kind{"clubs", "a rolling model against the means of several clubs, with straight-line fits",
-         "Does the model predict what several clubs do?", read_clubs},
     Kind{"tune", "parameters of a model against measured shots",
          "Which parameters make the model agree with the shots, and on shots it has not seen?", read_tune},
     Kind{"study", "a design of blows (axes, sample, variants, rows, places) through models or another case",
@@ -77,12 +72,8 @@ constexpr std::array kKinds = {
          "What do the models without a deformable ball need of this ball?", read_calibrate_reduced},
     Kind{"characteristic-time", "the rules' pendulum test of a face that yields: contact time against speed",
          "How long does the rules' pendulum touch this face?", read_characteristic_time},
-    Kind{"restitution-face", "restitution and ball speed over a face that yields",
-         "How fast is this face away from its centre?", read_restitution_face},
     Kind{"calibrate-face", "a face that yields from characteristic times, restitution and mass",
          "Which face behaves as measured?", read_calibrate_face},
-    Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside",
-         "How does the ball leave a plate that it meets obliquely?", read_bounce},
     Kind{"slopes", "slopes of the launch over the face: measured by robust regression, and of models",
          "How does the launch change with the place of impact, measured and computed?", read_slopes},
 };
@@ -94,10 +85,11 @@ struct FormerKind {
 constexpr std::array kFormerKinds = {
     FormerKind{"sweep", "[[parameters]] is [[axis]], record is outputs, sweep.csv is points.csv"},
     FormerKind{"variants", "[[variants]] is [[variant]], outputs names the quantities, variants.csv is points.csv"},
+    FormerKind{"clubs", "each club is a row of [rows] or a [[variant]], beside and model are models"},
+    FormerKind{"restitution-face", "[grid] is two [[axis]], face_restitution is one of the outputs"},
+    FormerKind{"bounce", "the plate is a head of mass inf, the angle its club_path, balls are variants"},
     FormerKind{"curves", "[family] and [x] are an [[axis]] each, channels is outputs, history is histories"},
-    FormerKind{"cross-check",
-               "[[grid]] is [[axis]] with a key, reference is [compare] with = \"model\", outputs names "
-               "the quantities"},
+    FormerKind{"cross-check", "[[grid]] is [[axis]], reference is [compare], outputs names the quantities"},
 };
 
 }  // namespace

@@ -44,8 +44,7 @@ class RunPage {
  private:
   void close_figures();
 
-  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_,
-      script_, checksum_;
+  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_, script_, checksum_;
   int moving_ = 0;
   bool sections_ = false;
   std::vector<std::pair<std::string, std::string>> next_;

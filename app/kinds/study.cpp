@@ -39,35 +39,21 @@ void flatten(const json& j, const std::string& name, json& out) {
   }
 }
 
-/// The studies that are being read, outermost first: one that studies itself would never end.
-class Nesting {
- public:
-  Nesting(Table& root, const fs::path& own) : depth_(open().size()) {
+/// The studies that are being read, outermost first, and their points: one that studies itself would never end.
+thread_local std::vector<fs::path> open_studies;
+thread_local std::size_t points_read = 0;
+
+struct Nesting {
+  Nesting(Table& root, const fs::path& own) {
     const fs::path here = fs::weakly_canonical(own);
-    if (std::ranges::find(open(), here) != open().end())
+    if (std::ranges::find(open_studies, here) != open_studies.end())
       root.fail("case", "this study names itself, directly or by way of another: it would never end");
-    if (depth_ == 0) counted() = 0;
-    open().push_back(here);
+    if (open_studies.empty()) points_read = 0;
+    open_studies.push_back(here);
   }
-  /// A point of this study, or of one inside it.
-  void count(Table& root) {
-    if (++counted() > kMostPoints)
-      root.fail("case", fmt::format("with the studies inside it, this one has more than {} points", kMostPoints));
-  }
-  ~Nesting() { open().resize(depth_); }
+  ~Nesting() { open_studies.pop_back(); }
   Nesting(const Nesting&) = delete;
   Nesting& operator=(const Nesting&) = delete;
-
- private:
-  static std::vector<fs::path>& open() {
-    thread_local std::vector<fs::path> files;
-    return files;
-  }
-  static std::size_t& counted() {
-    thread_local std::size_t points = 0;
-    return points;
-  }
-  std::size_t depth_;
 };
 
 class StudyJob final : public PointJob {
@@ -75,7 +61,7 @@ class StudyJob final : public PointJob {
   explicit StudyJob(CaseFile& file) {
     const BlowsBeside beside;
     Table root = file.root();
-    Nesting nesting(root, file.file());
+    const Nesting nesting(root, file.file());
     title_ = root.text({"title", "of tables, pages and figures"}, "");
     table_.models = {""};
     if (root.has("case")) read_case(file, root);
@@ -88,10 +74,17 @@ class StudyJob final : public PointJob {
     reference_ = read_compare(root, table_);
     statements_ = read_study_statements(root, columns, table_.outputs, reference_.has_value());
     figures_ = read_study_figures(root, table_, reference_.has_value());
-    for (std::size_t d = 0; d < table_.design.size();
-         ++d) {  // what a case refuses is an error before anything is computed
-      nesting.count(root);
-      read_point(root, d);
+    // What a case refuses is an error before anything is computed.
+    for (std::size_t d = 0; d < table_.design.size(); ++d) {
+      if (++points_read > kMostPoints)
+        root.fail("case", fmt::format("with the studies inside it, this one has more than {} points", kMostPoints));
+      try {
+        read_point(root, d);
+      } catch (const InputError& e) {
+        const std::string from = table_.design.from(d);
+        if (from.empty()) throw;
+        throw InputError(fmt::format("{}: {}", from, e.what()));
+      }
     }
   }
 
@@ -111,8 +104,7 @@ class StudyJob final : public PointJob {
     out.write("points.csv", table.csv(points));
     json summary = {{"points", points.size()}};
     summary["failed"] = std::ranges::count_if(points, [](const json& p) { return p.contains("error"); });
-    StudyEffects effects;
-    if (named) effects = effects_of(table);
+    StudyEffects effects = named ? effects_of(table) : StudyEffects{};
     effects.of.resize(table.series.size());
     if (named) {
       tell_effects(out, table, effects, summary);

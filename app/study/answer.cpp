@@ -13,6 +13,7 @@
 #include "models/checked_launch.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
+#include "models/reduced/face_strike.hpp"
 #include "models/registry.hpp"
 #include "models/rigid/hertz_maw.hpp"
 #include "models/rigid/stick_slip.hpp"
@@ -22,7 +23,13 @@ namespace {
 
 using MaybeNumber = std::optional<double>;
 
-Vec3 momentum(const StudyAnswer& a) { return a.blow.ball.mass * a.launch.velocity; }
+/// The ball's momentum along the normal of first contact, and the rest of it [N s].
+std::pair<double, double> impulse(const StudyAnswer& a) {
+  const Vec3 n = first_contact(a.blow).normal, J = a.blow.ball.mass * a.launch.velocity;
+  return {J.dot(n), (J - J.dot(n) * n).norm()};
+}
+
+double head_turn(const StudyAnswer& a) { return (a.launch.head_spin - a.blow.delivery.head_angular_velocity).norm(); }
 
 /// Along the slip at first contact, zero before and after the contact; nothing where no forces were kept.
 MaybeNumber extreme_force(const StudyAnswer& a, double sign) {
@@ -32,91 +39,87 @@ MaybeNumber extreme_force(const StudyAnswer& a, double sign) {
   return sign * out;
 }
 
+/// A blow by a wall as a bounce: velocities along the wall's normal, and along the wall after over before.
+struct WallBounce {
+  MaybeNumber restitution, ratio, angle;
+};
+WallBounce off_wall(const StudyAnswer& a) {
+  if (!std::isinf(a.blow.club.head.mass)) return {};
+  const Vec3 n = first_contact(a.blow).normal, before = -a.blow.delivery.velocity(), after = a.launch.velocity + before;
+  const double v_n = -before.dot(n), u_n = after.dot(n);
+  const Vec3 across = before + v_n * n;
+  if (!(across.norm() > 0)) return {u_n / v_n, {}, {}};
+  const double u_t = after.dot(across.normalized());
+  return {u_n / v_n, u_t / across.norm(), std::atan2(u_t, u_n)};
+}
+
+/// A normal blow of ball, face and head in series, at the club's speed and the place of the impact.
+struct SeriesStrike {
+  double mass, restitution, speed_ratio;  ///< of the head at that place [kg]; of the ball's speed over the head's
+};
+SeriesStrike in_series(const StudyAnswer& a, bool yields) {
+  const double yc = -a.blow.delivery.impact_toe, zc = a.blow.delivery.impact_high;
+  const double mass = models::mass_at(a.blow.club.head, yc, zc), ball = a.blow.ball.mass;
+  const auto face = yields ? a.face : std::nullopt;
+  const double e = models::strike(models::golf_ball(a.blow.ball), mass, face, face ? face->shape(yc, zc).value : 0,
+                                  a.blow.delivery.club_speed)
+                       .restitution;
+  return {mass, e, (1 + e) * mass / (mass + ball)};
+}
+
+MaybeNumber spin_over_rolling(const StudyAnswer& a) {
+  Blow rolling = a.blow;
+  rolling.contact = {};
+  const double spin = models::StickSlip().launch(rolling).spin_rate();
+  return spin > 0 ? MaybeNumber(a.launch.spin_rate() / spin) : MaybeNumber();
+}
+
+MaybeNumber kept(const StudyAnswer& a, double KeptBounce::*value) {
+  return a.bounce ? MaybeNumber((*a.bounce).*value) : MaybeNumber();
+}
+
 /// Beyond the launch's and the flight's own.
 struct BlowQuantity {
-  std::string_view name;  ///< without its unit
-  std::string_view unit;  ///< that it has where the table of units knows none for it
-  std::optional<Dimension> dimension;
+  std::string_view name;               ///< whole, where the table of units knows none for it
+  std::optional<Dimension> dimension;  ///< of the unit behind the name
   MaybeNumber (*value)(const StudyAnswer&);
   bool cause = false;
 };
-constexpr std::array kBlowQuantities = {
-    BlowQuantity{"contact_time", {}, Dimension::time, [](const StudyAnswer& a) { return a.launch.contact_time; }, true},
-    BlowQuantity{"peak_force", {}, Dimension::force, [](const StudyAnswer& a) { return a.launch.peak_force; }, true},
-    BlowQuantity{"normal_impulse",
-                 "N_s",
-                 {},
-                 [](const StudyAnswer& a) -> MaybeNumber { return momentum(a).dot(first_contact(a.blow).normal); },
-                 true},
-    BlowQuantity{"tangential_impulse",
-                 "N_s",
-                 {},
-                 [](const StudyAnswer& a) -> MaybeNumber {
-                   const Vec3 n = first_contact(a.blow).normal, J = momentum(a);
-                   return (J - J.dot(n) * n).norm();
-                 },
-                 true},
-    BlowQuantity{"head_rotation",
-                 {},
-                 Dimension::angular_velocity,
-                 [](const StudyAnswer& a) -> MaybeNumber {
-                   return (a.launch.head_spin - a.blow.delivery.head_angular_velocity).norm();
-                 },
-                 true},
-    BlowQuantity{"tangential_restitution",
-                 {},
-                 {},
-                 [](const StudyAnswer& a) { return models::tangential_restitution(a.blow, a.launch); }},
-    BlowQuantity{"launch_ratio", {}, {}, [](const StudyAnswer& a) { return models::launch_ratio(a.blow, a.launch); }},
+using Given = const StudyAnswer&;
+const std::array kBlowQuantities = {
+    BlowQuantity{"contact_time", Dimension::time, [](Given a) { return a.launch.contact_time; }, true},
+    BlowQuantity{"peak_force", Dimension::force, [](Given a) { return a.launch.peak_force; }, true},
+    BlowQuantity{"normal_impulse_N_s", {}, [](Given a) { return MaybeNumber(impulse(a).first); }, true},
+    BlowQuantity{"tangential_impulse_N_s", {}, [](Given a) { return MaybeNumber(impulse(a).second); }, true},
+    BlowQuantity{"head_rotation", Dimension::angular_velocity, [](Given a) { return MaybeNumber(head_turn(a)); }, true},
     BlowQuantity{
-        "smash_factor",
-        {},
-        {},
-        [](const StudyAnswer& a) -> MaybeNumber { return a.launch.ball_speed() / a.blow.delivery.club_speed; }},
-    BlowQuantity{"spin_over_rolling",
-                 {},
-                 {},
-                 [](const StudyAnswer& a) -> MaybeNumber {
-                   Blow rolling = a.blow;
-                   rolling.contact = {};
-                   const double spin = models::StickSlip().launch(rolling).spin_rate();
-                   return spin > 0 ? MaybeNumber(a.launch.spin_rate() / spin) : MaybeNumber();
-                 }},
+        "tangential_restitution", {}, [](Given a) { return models::tangential_restitution(a.blow, a.launch); }},
+    BlowQuantity{"launch_ratio", {}, [](Given a) { return models::launch_ratio(a.blow, a.launch); }},
+    BlowQuantity{"tangential_ratio", {}, [](Given a) { return off_wall(a).ratio; }},
+    BlowQuantity{"normal_restitution", {}, [](Given a) { return off_wall(a).restitution; }},
+    BlowQuantity{"rebound_angle", Dimension::angle, [](Given a) { return off_wall(a).angle; }},
     BlowQuantity{
-        "largest_tangential_force", {}, Dimension::force, [](const StudyAnswer& a) { return extreme_force(a, 1); }},
-    BlowQuantity{"least_tangential_force",
-                 {},
-                 Dimension::force,  // below zero where it reverses
-                 [](const StudyAnswer& a) { return extreme_force(a, -1); }},
-    BlowQuantity{"dynamic_loft",
-                 {},
-                 Dimension::angle,
-                 [](const StudyAnswer& a) -> MaybeNumber { return a.blow.delivery.dynamic_loft; }},
-    BlowQuantity{
-        "wall_restitution",
-        {},
-        {},
-        [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->point.restitution) : MaybeNumber(); }},
-    BlowQuantity{
-        "wall_contact_time",
-        {},
-        Dimension::time,
-        [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->point.contact_time) : MaybeNumber(); }},
-    BlowQuantity{"elastic_factor",
-                 {},
-                 {},
-                 [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->elastic) : MaybeNumber(); }},
-    BlowQuantity{"viscous_factor",
-                 {},
-                 {},
-                 [](const StudyAnswer& a) { return a.bounce ? MaybeNumber(a.bounce->viscous) : MaybeNumber(); }},
+        "smash_factor", {}, [](Given a) { return MaybeNumber(a.launch.ball_speed() / a.blow.delivery.club_speed); }},
+    BlowQuantity{"spin_over_rolling", {}, spin_over_rolling},
+    BlowQuantity{"striking_mass_kg", {}, [](Given a) { return MaybeNumber(in_series(a, false).mass); }},
+    BlowQuantity{"face_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, true).restitution); }},
+    BlowQuantity{"rigid_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, false).restitution); }},
+    BlowQuantity{"face_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); }},
+    BlowQuantity{"rigid_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, false).speed_ratio); }},
+    BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
+    BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
+    BlowQuantity{"dynamic_loft", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.dynamic_loft); }},
+    BlowQuantity{"wall_restitution", {}, [](Given a) { return kept(a, &KeptBounce::restitution); }},
+    BlowQuantity{"wall_contact_time", Dimension::time, [](Given a) { return kept(a, &KeptBounce::contact_time); }},
+    BlowQuantity{"elastic_factor", {}, [](Given a) { return kept(a, &KeptBounce::elastic); }},
+    BlowQuantity{"viscous_factor", {}, [](Given a) { return kept(a, &KeptBounce::viscous); }},
 };
 
 /// Moduli and branches are scaled until restitution and contact time on a wall are the reference's again: a change of
 /// the ball is else judged by its bounce.
 KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double speed,
                        const models::NormalImpactPoint& own, const models::NormalImpactPoint& reference) {
-  KeptBounce out{.point = own};
+  KeptBounce out{own.restitution, own.contact_time};
   if (std::abs(own.restitution - reference.restitution) < 5e-4 &&
       std::abs(own.contact_time / reference.contact_time - 1) < 2e-3)
     return out;
@@ -134,7 +137,8 @@ KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double spe
   const models::BallCalibration fit = models::calibrate_ball(
       {.options = axial, .ball = ball, .wall = target, .free = {{What::long_term}, {What::branches}}});
   fe.ball = fit.ball;
-  return {fit.points.front(), fit.values[0] / fit.start[0], fit.values[1] / fit.start[1]};
+  const models::NormalImpactPoint& then = fit.points.front();
+  return {then.restitution, then.contact_time, fit.values[0] / fit.start[0], fit.values[1] / fit.start[1]};
 }
 
 /// The launch of a model that tells its forces as it goes.
@@ -156,6 +160,15 @@ StudyBlow read_study_blow(Table root) {
   out.blow = read_blow(root, out.models);
   out.options = read_options(root, out.models);
   out.flight = read_optional_flight(root);
+  if (auto t = root.optional_table("plate")) {
+    out.plate = {
+        t->quantity({"young", "Young's modulus of a thick elastic plate; absent: rigid"}, "GPa", Range::positive()),
+        t->number({"poisson", "Poisson's ratio of the plate"}, {0, 0.49})};
+    if (!std::isinf(out.blow.club.head.mass)) t->fail("", "a plate is a wall: head.mass_kg = inf");
+    try {
+      models::ElasticPlate(out.options.fe, *out.plate, out.blow.ball);
+    } catch (const std::invalid_argument& e) { t->fail("", e.what()); }
+  }
   return out;
 }
 
@@ -175,25 +188,22 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
     const OutputQuantity& q = quantity(hosel::Output(o));
     const auto unit = of_flight(hosel::Output(o)) ? std::nullopt : unit_of(q.name, q.dimension);
     if (!unit) continue;
-    return {name, split.stem, std::string(unit->suffix), unit->si,
-            [of = q.of](const StudyAnswer& a) -> MaybeNumber { return (a.launch.*of)(); }};
+    return {name, unit->si, [of = q.of](const StudyAnswer& a) -> MaybeNumber { return (a.launch.*of)(); }};
   }
   for (const post::FlightChannel& c : post::flight_channels(post::DistanceUnit::metres)) {
     const auto all = units();
     const auto unit = unit_of(c.name, std::ranges::find(all, c.unit, &Unit::suffix)->dimension);
     if (!unit) continue;
     if (!flies) table.fail(key, fmt::format("'{}' is of the flight, and there is no [flight]", name));
-    return {name, split.stem, std::string(unit->suffix), unit->si,
+    return {name, unit->si,
             [value = c.value](const StudyAnswer& a) { return a.flight ? value(*a.flight) : MaybeNumber(); }};
   }
   for (const BlowQuantity& q : kBlowQuantities) {
-    const std::string whole = q.unit.empty() ? std::string(q.name) : fmt::format("{}_{}", q.name, q.unit);
     if (q.dimension) {
-      if (const auto unit = unit_of(q.name, *q.dimension))
-        return {name, split.stem, std::string(unit->suffix), unit->si, q.value, q.cause};
+      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause};
     } else {
-      known.push_back(whole);
-      if (name == whole) return {name, std::string(q.name), std::string(q.unit), 1, q.value, q.cause};
+      known.emplace_back(q.name);
+      if (name == q.name) return {name, 1, q.value, q.cause};
     }
   }
   const std::string near = nearest(name, known);
@@ -213,14 +223,17 @@ models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
 
 StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
                    const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference) {
-  StudyAnswer out{.blow = asked.blow};
+  StudyAnswer out{.blow = asked.blow, .face = asked.options.volumetric.face};
   models::Options options = asked.options;
   if (conditions.bounce_speed) {
     const models::NormalImpactPoint own = wall_bounce(asked, *conditions.bounce_speed);
     out.bounce = reference ? keep_bounce(options.fe, asked.blow.ball, *conditions.bounce_speed, own, *reference)
-                           : KeptBounce{.point = own};
+                           : KeptBounce{own.restitution, own.contact_time};
   }
-  const auto made = models::find(model)->make(options);
+  const std::unique_ptr<models::ImpactModel> made =
+      asked.plate && model.starts_with("fe-")
+          ? std::make_unique<models::ElasticPlate>(options.fe, *asked.plate, asked.blow.ball)
+          : models::find(model)->make(options);
   if (conditions.matched_launch) {
     constexpr double tolerance = radians(0.03);
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);

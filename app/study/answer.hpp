@@ -10,7 +10,9 @@
 #include "app/read_flight.hpp"
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
+#include "golf/face_compliance.hpp"
 #include "models/calibration/ball_calibration.hpp"
+#include "models/fe/elastic_plate.hpp"
 #include "models/options.hpp"
 
 namespace hosel::app {
@@ -21,6 +23,7 @@ struct StudyBlow {
   Blow blow;
   models::Options options;
   std::optional<FlightSetup> flight;
+  std::optional<models::ElasticSolid> plate;  ///< the wall, where it is not rigid
 };
 StudyBlow read_study_blow(Table root);
 
@@ -37,12 +40,13 @@ struct ForceSample {
 };
 
 struct KeptBounce {
-  models::NormalImpactPoint point;  ///< on a rigid wall, before the moduli were scaled
-  double elastic = 1, viscous = 1;  ///< factors on the moduli
+  double restitution, contact_time;  ///< on a rigid wall, before the moduli were scaled
+  double elastic = 1, viscous = 1;   ///< factors on the moduli
 };
 
 struct StudyAnswer {
   Blow blow;
+  std::optional<FaceCompliance> face;
   Launch launch;
   std::optional<post::ShotFlight> flight;
   std::optional<KeptBounce> bounce;
@@ -51,7 +55,7 @@ struct StudyAnswer {
 
 /// A quantity by its name and unit, as a study asks for it: "ball_speed_mph", "launch_ratio".
 struct StudyOutput {
-  std::string name, stem, unit;  ///< unit: its suffix, empty for a plain number
+  std::string name;
   double si = 1;
   std::function<std::optional<double>(const StudyAnswer&)> value;  ///< SI; nothing where the answer does not have it
   bool cause = false;  ///< of the contact itself: may explain why a launch differs

@@ -14,8 +14,7 @@ namespace {
 
 std::size_t number_of(const Table& t, std::string_view key, const std::string& name,
                       const std::vector<std::string>& names) {
-  const auto at = std::ranges::find(names, name);
-  if (at != names.end()) return std::size_t(at - names.begin());
+  if (const auto at = std::ranges::find(names, name); at != names.end()) return std::size_t(at - names.begin());
   const std::string near = nearest(name, names);
   t.fail(key,
          fmt::format("no {} '{}' in this study{}", key, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -33,26 +32,31 @@ std::optional<StudyReference> read_compare(Table root, const StudyTable& table) 
     }
   auto t = root.optional_table("compare");
   if (!t) return measured ? std::optional(StudyReference{.name = "measured"}) : std::nullopt;
+  std::optional<std::size_t> by;
+  if (t->has("by"))
+    by = number_of(*t, "by",
+                   t->text({"by", "column of the design; the points of each of its values are compared apart"}),
+                   table.design.columns());
   const std::string with = t->choice({"with", "what the answers are compared with"}, {"model", "variant", "measured"});
   if (with == "model") {
     const std::string name = t->text({"model", "with which the other models are compared"});
     if (table.models.size() < 2) t->fail("model", "a comparison of models needs at least two");
-    return StudyReference{.model = number_of(*t, "model", name, table.models), .name = name};
+    return StudyReference{.model = number_of(*t, "model", name, table.models), .name = name, .by = by};
   }
   if (with == "variant") {
     const std::string name = t->text({"variant", "with which the other variants are compared"});
-    return StudyReference{.variant = number_of(*t, "variant", name, variants), .name = name};
+    return StudyReference{.variant = number_of(*t, "variant", name, variants), .name = name, .by = by};
   }
   if (!measured) t->fail("with", "nothing measured stands in [measured], a variant's `measured` or the rows");
-  return StudyReference{.name = "measured"};
+  return StudyReference{.name = "measured", .by = by};
 }
 
 std::vector<StudySeries> references(const StudyTable& table, const StudyReference& reference) {
   std::vector<StudySeries> out = table.series;
-  std::size_t block = 1, levels = 1;  // points of one level of the variants
+  std::size_t levels = 1;
   for (const DesignFactor& f : table.design.factors())
     if (f.kind == DesignFactor::Kind::variants) levels = f.levels.size();
-  block = table.design.size() / levels;  // they are the first factor
+  const std::size_t block = table.design.size() / levels;  // of one variant: they are the first factor
   for (StudySeries& s : out)
     for (std::size_t d = 0; d < s.y.size(); ++d) {
       const double own = s.y[d];
@@ -74,14 +78,16 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
                        const std::vector<StudySeries>& against, const std::vector<bool>& causes) {
   nlohmann::json json = {{"with", reference.name}, {"differences", nlohmann::json::array()}};
   const auto columns = table.design.columns();
-  std::string csv = "model,output,points,mean,rms,largest";
+  const auto groups = reference.by ? table.design.levels(*reference.by) : std::vector<std::string>{""};
+  std::string csv = reference.by ? "model,of,output,points,mean,rms,largest" : "model,output,points,mean,rms,largest";
   for (const std::string& c : columns) csv += "," + post::csv_cell(c);
   for (std::size_t o = 0; o < table.outputs.size(); ++o)
     if (causes[o]) csv += "," + post::csv_cell(fmt::format("{} difference there [%]", table.outputs[o]));
   csv += '\n';
-  bool any_cause = false;
-  for (const bool c : causes) any_cause = any_cause || c;
-  for (std::size_t m = 0; m < table.models.size(); ++m) {
+  const bool any_cause = std::ranges::find(causes, true) != causes.end();
+  for (std::size_t k = 0; k < table.models.size() * groups.size(); ++k) {
+    const std::size_t m = k / groups.size();
+    const std::string& group = groups[k % groups.size()];
     if (reference.model == m) continue;
     post::TextTable shown{.rows = {{"output", "mean", "rms", "largest", "where"}}, .least_width = 9, .even = false};
     if (any_cause) shown.rows[0].push_back("differs most there");
@@ -91,7 +97,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       std::size_t where = 0, count = 0;
       for (std::size_t d = 0; d < mine.y.size(); ++d) {
         const double difference = mine.y[d] - theirs.y[d];
-        if (!std::isfinite(difference)) continue;
+        if (!std::isfinite(difference) || (reference.by && table.design.cells(d)[*reference.by] != group)) continue;
         if (count++ == 0 || std::abs(difference) > std::abs(largest)) largest = difference, where = d;
         mean += difference;
         square += difference * difference;
@@ -99,8 +105,9 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       if (count == 0) continue;
       mean /= double(count);
       const double rms = std::sqrt(square / double(count));
-      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(table.models[m]),
-                         post::csv_cell(table.outputs[o]), count, mean, rms, largest);
+      csv += post::csv_cell(table.models[m]) + ",";
+      if (reference.by) csv += post::csv_cell(group) + ",";
+      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(table.outputs[o]), count, mean, rms, largest);
       for (const std::string& cell : table.design.cells(where)) csv += "," + post::csv_cell(cell);
       std::string cause = "-";
       double most = 0;
@@ -127,12 +134,15 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
           {"output", table.outputs[o]},       {"points", count}, {"mean", mean}, {"rms", rms}, {"largest", largest},
           {"where", table.design.said(where)}};
       if (!table.models[m].empty()) j["model"] = table.models[m];
+      if (reference.by) j["of"] = group;
       if (!shares.empty()) j["differs_most"] = cause, j["quantities_pct"] = shares;
       json["differences"].push_back(std::move(j));
     }
     if (shown.rows.size() < 2) continue;
-    const std::string what = table.models[m].empty() ? "difference" : table.models[m];
-    out.show(shown, fmt::format("{} minus {}", what, reference.name));
+    const std::string title = fmt::format("{} minus {}{}{}", table.models[m].empty() ? "difference" : table.models[m],
+                                          reference.name, group.empty() ? "" : ", ", group);
+    out.tell(title);
+    out.show(shown, title);
   }
   out.write("differences.csv", csv);
   return json;

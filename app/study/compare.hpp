@@ -14,6 +14,7 @@ struct StudyReference {
   std::optional<std::size_t> model;    ///< number of the model
   std::optional<std::size_t> variant;  ///< number of the variant's level
   std::string name;                    ///< in sentences: "volumetric", "measured"
+  std::optional<std::size_t> by;       ///< column of the design whose cells are compared apart
 };
 
 /// `[compare]`; without one what was measured, if anything was; else nothing.

@@ -61,19 +61,15 @@ DesignFactor read_rows(Table t) {
   out.levels.resize(sheet.rows());
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const std::string& head = sheet.names[c];
-    const bool key = head.find('.') != std::string::npos;
-    if (key || head == "name") out.columns.push_back(head == "name" ? "row" : head);
+    const bool key = head.find('.') != std::string::npos, column = key || head == "name";
+    if (column) out.columns.push_back(key ? head : "row");
+    const auto measured = column ? std::vector<double>() : column_with_gaps(sheet, head);
     for (std::size_t r = 0; r < sheet.rows(); ++r) {
-      const std::string& cell = sheet.columns[c][r];
       DesignLevel& level = out.levels[r];
-      if (key || head == "name") level.cells.push_back(cell);
-      const auto x = cell_number(cell);
-      if (key) level.set.push_back(fmt::format("{}={}", head, cell));
-      else if (head != "name" && !cell.empty()) {
-        if (!x || !std::isfinite(*x))
-          throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], head, cell));
-        level.measured.push_back({head, *x, *x});
-      }
+      level.from = fmt::format("{}:{}", sheet.file, sheet.lines[r]);
+      if (column) level.cells.push_back(sheet.columns[c][r]);
+      if (key) level.set.push_back(fmt::format("{}={}", head, sheet.columns[c][r]));
+      if (!column && std::isfinite(measured[r])) level.measured.push_back({head, measured[r], measured[r]});
     }
   }
   if (out.levels.empty()) t.fail("file", "holds no row");
@@ -203,8 +199,12 @@ std::string said_cell(const std::string& column, const std::string& cell) {
 std::string Design::said(std::size_t point) const {
   std::string text;
   const auto heads = columns(), own = cells(point);
-  for (std::size_t c = 0; c < heads.size(); ++c)
-    if (levels(c).size() > 1) text += (text.empty() ? "" : ", ") + said_cell(heads[c], own[c]);
+  const auto row = std::size_t(std::ranges::find(heads, "row") - heads.begin());
+  const bool named = row < heads.size() && levels(row).size() == factors_[place(row).first].levels.size();
+  for (std::size_t c = 0; c < heads.size(); ++c) {
+    if (levels(c).size() < 2 || (named && c != row && tied(c, row))) continue;  // a row's own name says all of it
+    text += (text.empty() ? "" : ", ") + said_cell(heads[c], own[c]);
+  }
   return text;
 }
 

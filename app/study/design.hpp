@@ -27,6 +27,7 @@ struct DesignLevel {
   std::vector<std::string> cells;  ///< one a column of its factor
   std::vector<std::string> set;    ///< overrides, key=value
   std::vector<MeasuredRange> measured;
+  std::string from;  ///< file and line, of a row
 };
 
 struct DesignFactor {
@@ -48,11 +49,21 @@ class Design {
   std::vector<std::string> cells(std::size_t point) const;
   /// A column's number at every point; empty where one is not a number.
   std::vector<double> numbers(std::size_t column) const;
+  /// Whether two columns change together, those of [rows] or of a sample.
+  bool tied(std::size_t column, std::size_t other) const {
+    return place(column).first == place(other).first && factors_[place(column).first].kind != DesignFactor::Kind::grid;
+  }
   /// A column's distinct cells, in the order of the design.
   std::vector<std::string> levels(std::size_t column) const;
   /// What a point changes: variants and rows first, then `between`, then sample, grid and axes.
   std::vector<std::string> set(std::size_t point, const std::vector<std::string>& between) const;
   std::vector<MeasuredRange> measured(std::size_t point) const;
+  /// File and line of a point's row; empty without [rows].
+  std::string from(std::size_t point) const {
+    std::string out;
+    for (std::size_t f = 0; f < factors_.size(); ++f) out += level(f, point).from;
+    return out;
+  }
   /// "dynamic loft 30 deg, friction 0.2": where a point lies, in words; columns of one value are left out.
   std::string said(std::size_t point) const;
 

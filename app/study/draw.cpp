@@ -58,11 +58,10 @@ class StudyView {
     return text;
   }
   /// What tells a line from the others.
-  std::string line(const StudySeries& s, std::size_t d, std::size_t but, const std::set<std::size_t>& free) const {
+  std::string line(const StudySeries& s, std::size_t d, const std::set<std::size_t>& told) const {
     std::string text = table_.models.size() > 1 ? table_.models[s.model] : "";
     for (std::size_t c = 0; c < columns(); ++c)
-      if (c != but && free.contains(c) && levels(c) > 1)
-        text += (text.empty() ? "" : ", ") + said_cell(names_[c], cells_[d][c]);
+      if (told.contains(c) && levels(c) > 1) text += (text.empty() ? "" : ", ") + said_cell(names_[c], cells_[d][c]);
     return text;
   }
   /// The values of a column from the lowest to the highest.
@@ -83,10 +82,8 @@ std::string spoken_series(const StudyTable& table, const StudySeries& s) {
   return table.models.size() > 1 ? post::label(table.outputs[s.output]) : s.spoken;
 }
 
-bool still(const std::vector<double>& y) {
-  double low = INFINITY, high = -INFINITY;
-  for (const double v : y)
-    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+bool still(const StudySeries& s) {
+  const auto [low, mean, high] = s.spread();
   return !(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)));
 }
 
@@ -94,40 +91,58 @@ std::string behind(std::string title, const std::string& rest) {
   return rest.empty() ? title : fmt::format("{}{}{}", title, title.empty() ? "" : "; ", rest);
 }
 
+/// What was measured of an output, over `x` of each point: one mark a value, two a range.
+template <typename F>
+post::Series measured_at(const StudyTable& table, std::size_t output, F x) {
+  post::Series s{.label = "measured", .style = "points"};
+  for (std::size_t d = 0; d < table.design.size(); ++d)
+    if (const auto seen = table.seen(d, output))
+      for (const double y : {seen->low, seen->high}) s.x.push_back(x(d)), s.y.push_back(y);
+  return s;
+}
+
 post::Figure lines(const StudyTable& table, const StudyView& view, const std::string& title, const StudyFigure& wanted,
                    const std::vector<std::size_t>& outputs, const StudyEffects& effects, bool sampled) {
   post::Figure figure{.title = title, .columns = 2};
-  const auto asked = wanted.x.empty() ? view.longest() : view.column(wanted.x);
+  const auto across = wanted.x.empty() ? view.longest() : view.column(wanted.x);
   for (const std::size_t o : outputs) {
     post::Panel panel;
     for (std::size_t m = 0; m < table.models.size(); ++m) {
       const StudySeries& s = table.at(m, o);
       const std::size_t number = m * table.outputs.size() + o;
-      std::optional<std::size_t> x = asked;
+      std::optional<std::size_t> x = across;
       if (sampled && wanted.x.empty() && effects.of[number]) x = effects.columns[effects.of[number]->order.front()];
-      if (!x || view.numbers(*x).empty() || (sampled && still(s.y))) continue;
-      std::set<std::size_t> free;
+      if (!x || view.numbers(*x).empty() || (sampled && still(s))) continue;
+      std::set<std::size_t> told, free = {*x};  // in a line's name; as they come
       std::size_t many = table.models.size();
       for (std::size_t c = 0; c < view.columns(); ++c) {
-        if (c == *x) continue;
-        if (!sampled && many * view.levels(c) > kMostLines) continue;
-        free.insert(c);
-        if (!sampled) many *= view.levels(c);
+        if (c == *x || sampled || table.design.tied(c, *x)) {
+          free.insert(c);
+        } else if (many * view.levels(c) <= kMostLines) {
+          told.insert(c);
+          free.insert(c);
+          many *= view.levels(c);
+        }
       }
-      free.insert(*x);
       if (!sampled) figure.title = behind(title, view.middle(free));
       panel.x_label = post::label(view.name(*x));
       panel.y_label = (wanted.difference ? "difference of " : "") + spoken_series(table, s);
       for (std::size_t d = 0; d < s.y.size(); ++d) {
         const double y = view.value(s, d, wanted.difference);
         if (!std::isfinite(y) || !view.in_middle(d, free)) continue;
-        const std::string name = sampled ? (table.models.size() > 1 ? table.models[m] : "") : view.line(s, d, *x, free);
+        const std::string name = view.line(s, d, told);
         auto line = std::ranges::find(panel.series, name, &post::Series::label);
         if (line == panel.series.end())
           line = panel.series.insert(line, {.label = name, .style = sampled ? "points" : "linespoints"});
-        line->x.push_back(view.numbers(*x)[d]);
-        line->y.push_back(y);
+        // From left to right, whatever the order of the rows.
+        const auto at = (sampled ? line->x.end() : std::ranges::upper_bound(line->x, view.numbers(*x)[d])) -
+                        line->x.begin();
+        line->x.insert(line->x.begin() + at, view.numbers(*x)[d]);
+        line->y.insert(line->y.begin() + at, y);
       }
+      if (m + 1 < table.models.size() || wanted.difference) continue;
+      const auto measured = measured_at(table, o, [&](std::size_t d) { return view.numbers(*x)[d]; });
+      if (!measured.x.empty()) panel.series.push_back(measured);
     }
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
@@ -141,9 +156,10 @@ post::Figure maps(const StudyTable& table, const StudyView& view, const std::str
   const std::vector<double> xs = view.rising(x), ys = view.rising(y);
   for (const std::size_t o : outputs) {
     const StudySeries& s = table.at(model, o);
-    const SplitName split = split_unit(table.outputs[o]);
-    const std::string unit = fmt::format("[{}]", split.unit ? post::symbol(split.unit->suffix) : "-");
-    post::Panel panel{.title = wanted.difference ? post::spoken(split.stem) : spoken_series(table, s),
+    const std::string label = post::label(table.outputs[o]);
+    const auto cut = label.find(" [");
+    const std::string unit = cut == label.npos ? "[-]" : label.substr(cut + 1);
+    post::Panel panel{.title = wanted.difference ? label.substr(0, cut) : spoken_series(table, s),
                       .x_label = post::label(view.name(x)),
                       .y_label = post::label(view.name(y)),
                       .map_x = xs,
@@ -186,10 +202,8 @@ post::Figure bars(const StudyTable& table, const std::string& title, const std::
         if (const double y = table.at(m, o).y[d]; std::isfinite(y)) s.x.push_back(y), s.y.push_back(-double(d));
       panel.series.push_back(std::move(s));
     }
-    post::Series measured{.label = "measured", .style = "points"};
-    for (std::size_t d = 0; d < names.size(); ++d)
-      if (const auto range = table.seen(d, o))
-        for (const double x : {range->low, range->high}) measured.x.push_back(x), measured.y.push_back(-double(d));
+    post::Series measured = measured_at(table, o, [](std::size_t d) { return -double(d); });
+    std::swap(measured.x, measured.y);
     if (!measured.x.empty()) panel.series.push_back(std::move(measured));
     figure.panels.push_back(std::move(panel));
   }
@@ -226,13 +240,10 @@ std::vector<StudyFigure> read_study_figures(Table root, const StudyTable& table,
   const auto columns = table.design.columns();
   for (Table t : root.tables("figure")) {
     StudyFigure f;
-    const std::string kind =
-        t.choice({"kind", "lines over a column, a map over two, every point in a row, or what moves the answers most"},
-                 {"line", "map", "bars", "tornado"});
-    f.kind = kind == "line"   ? StudyFigure::Kind::line
-             : kind == "map"  ? StudyFigure::Kind::map
-             : kind == "bars" ? StudyFigure::Kind::bars
-                              : StudyFigure::Kind::tornado;
+    const std::vector<std::string> kinds = {"line", "map", "bars", "tornado"};  // as StudyFigure::Kind
+    const std::string kind = t.choice(
+        {"kind", "lines over a column, a map over two, every point in a row, or what moves the answers most"}, kinds);
+    f.kind = StudyFigure::Kind(std::ranges::find(kinds, kind) - kinds.begin());
     f.outputs = t.texts({"outputs", "that are drawn; empty: all"}, std::vector<std::string>{});
     for (const std::string& o : f.outputs)
       if (!table.outputs.empty() && std::ranges::find(table.outputs, o) == table.outputs.end())

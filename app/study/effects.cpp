@@ -96,20 +96,12 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
   bool begun = false;
   for (std::size_t s = 0; s < table.series.size(); ++s) {
     const StudySeries& series = table.series[s];
-    double low = INFINITY, high = -INFINITY, sum = 0;
-    int count = 0;
-    for (const double y : series.y) {
-      if (!std::isfinite(y)) continue;
-      low = std::min(low, y);
-      high = std::max(high, y);
-      sum += y;
-      ++count;
-    }
-    if (count == 0) continue;
+    const auto [low, mean, high] = series.spread();
+    if (std::isnan(mean)) continue;
     summary["range"][series.name] = {low, high};
-    summary["mean"][series.name] = sum / count;
+    summary["mean"][series.name] = mean;
     auto& row = shown.rows.emplace_back();
-    row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", sum / count), fmt::format("{:.4g}", high)};
+    row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", mean), fmt::format("{:.4g}", high)};
     shown.first_width = std::max(shown.first_width, series.spoken.size() + 1);
     if (!several) continue;
     if (!effects.of[s]) {
@@ -149,18 +141,18 @@ post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const
   for (const std::size_t s : which) {
     if (!effects.of[s]) continue;
     const solvers::MainEffects& e = *effects.of[s];
-    double centre = 0;
-    for (const double y : table.series[s].y) centre += std::isfinite(y) ? y : 0;
-    centre /= double(std::ranges::count_if(table.series[s].y, [](double y) { return std::isfinite(y); }));
+    const double centre = table.series[s].spread().mean;
     post::Panel panel{.x_label = table.series[s].spoken};
-    post::Series low{.label = "lowest value", .style = "lines linewidth 12"}, high = low;
-    high.label = "highest value";
+    post::Series low{.label = "lowest value", .style = "filledcurves closed"},
+        high{.label = "highest value", .style = "filledcurves closed"};
     for (int k = 0; k < bars; ++k) {
       const std::size_t f = e.order[std::size_t(k)];
       panel.y_names.push_back(spoken_column(columns[effects.columns[f]]));
-      for (const auto& [side, value] : {std::pair{&low, e.factors[f].at_low}, {&high, e.factors[f].at_high}}) {
-        side->x.insert(side->x.end(), {centre, value, NAN});
-        side->y.insert(side->y.end(), {-double(k), -double(k), NAN});
+      // The bar of the highest value is narrower: both are seen where both ends lie on one side.
+      for (const auto& [side, value, half] :
+           {std::tuple{&low, e.factors[f].at_low, 0.32}, {&high, e.factors[f].at_high, 0.2}}) {
+        side->x.insert(side->x.end(), {centre, value, value, centre, NAN});
+        side->y.insert(side->y.end(), {half - k, half - k, -half - k, -half - k, NAN});
       }
     }
     panel.series = {std::move(low), std::move(high)};

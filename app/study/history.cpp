@@ -40,8 +40,7 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
       tangential.series.push_back(std::move(line));
       ratio.series.push_back(std::move(share));
     }
-    figure.panels.push_back(std::move(tangential));
-    figure.panels.push_back(std::move(ratio));
+    figure.panels.insert(figure.panels.end(), {tangential, ratio});
   }
   out.write("histories.csv", csv);
   out.draw(figure, "figures/histories");

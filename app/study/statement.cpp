@@ -111,18 +111,10 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
       };
       for (std::size_t o = 0; o < table.outputs.size(); ++o) {
         const std::string name = formula_name(table.outputs[o]);
-        double least = NAN, largest = NAN, sum = 0;
-        int count = 0;
-        for (const double y : table.at(m, o).y) {
-          if (!std::isfinite(y)) continue;
-          least = std::fmin(least, y);
-          largest = std::fmax(largest, y);
-          sum += y;
-          ++count;
-        }
-        set("mean." + name, sum / count);
-        set("least." + name, least);
-        set("largest." + name, largest);
+        const StudySeries::Spread all = table.at(m, o).spread();
+        set("mean." + name, all.mean);
+        set("least." + name, all.low);
+        set("largest." + name, all.high);
       }
       std::size_t judged = 0, held = 0;
       for (std::size_t d = 0; d < table.design.size(); ++d) {
@@ -150,13 +142,12 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
       nlohmann::json j = {{"text", s.text}, {"verdict", verdict}, {"share", share}, {"points", judged}};
       if (table.models.size() > 1) j["model"] = table.models[m];
       json.push_back(std::move(j));
-      auto& row = shown.rows.emplace_back();
-      row.push_back(s.text);
+      auto& row = shown.rows.emplace_back(std::vector{s.text});
       shown.first_width = std::max(shown.first_width, s.text.size() + 2);
       if (table.models.size() > 1) row.push_back(table.models[m]);
       row.insert(row.end(), {verdict, fmt::format("{:.1f} %", 100 * share), fmt::format("{}", judged)});
     }
-  if (!statements.empty()) out.show(shown, "Statements");
+  out.show(shown, "Statements");
   return json;
 }
 

@@ -12,6 +12,20 @@
 namespace hosel::app {
 using nlohmann::json;
 
+StudySeries::Spread StudySeries::spread() const {
+  Spread s{NAN, 0, NAN};
+  int count = 0;
+  for (const double v : y) {
+    if (!std::isfinite(v)) continue;
+    s.low = std::fmin(s.low, v);
+    s.high = std::fmax(s.high, v);
+    s.mean += v;
+    ++count;
+  }
+  s.mean /= count;  // NaN of nothing
+  return s;
+}
+
 /// An entry in words. Which of several of one name is meant stands in the tables before it: "holds" of what?
 std::string StudyTable::spoken_entry(std::size_t output) const {
   const auto own = [](std::string entry) {
@@ -100,8 +114,7 @@ post::TextTable StudyTable::rows() const {
   }
   for (std::size_t d = 0; d < design.size(); ++d)
     for (std::size_t m = 0; m < models.size(); ++m) {
-      auto& row = table.rows.emplace_back();
-      row.push_back(design.said(d));
+      auto& row = table.rows.emplace_back(std::vector{design.said(d)});
       if (row.front().empty()) row.front() = fmt::format("{}", d);
       table.first_width = std::max(table.first_width, row.front().size() + 1);
       if (models.size() > 1) row.push_back(models[m]);

@@ -17,6 +17,11 @@ struct StudySeries {
   std::string spoken;  ///< in words, with its unit
   std::size_t model = 0, output = 0;
   std::vector<double> y;  ///< NaN where there is no answer
+
+  struct Spread {
+    double low, mean, high;  ///< NaN where there is no answer at all
+  };
+  Spread spread() const;
 };
 
 /// A design, what was asked at each of its points, and the answers: point = design point * models + model.

@@ -67,18 +67,18 @@ std::size_t lines(const fs::path& file) {
   return std::size_t(std::ranges::count(text, '\n'));
 }
 
-TEST(Study, KilledTenTimesGivesTheSameTable) {
-  const fs::path dir = sweep_case("sweep_killed", kSample);
-  const std::string sweep = (dir / "sweep").string(), whole = (dir / "whole").string(),
-                    killed = (dir / "killed").string();
-  ASSERT_EQ(command("run " + sweep + " --quiet --out " + whole).status, 0);
+/// A study that is killed `kills` times, each time after at most `few` further points, ends with the bytes of one that
+/// was left alone, and computes nothing twice.
+void expect_killed_is_whole(const fs::path& dir, const std::string& study, std::size_t size, int kills, unsigned few) {
+  const std::string whole = (dir / "whole").string(), killed = (dir / "killed").string();
+  ASSERT_EQ(command("run " + study + " --quiet --out " + whole).status, 0);
 
   std::mt19937 random(20181);
   const fs::path points = dir / "killed" / "shards" / "1-of-1" / "points.jsonl";
-  for (int kill_number = 0; kill_number < 10; ++kill_number) {
-    const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % 25;
+  for (int kill_number = 0; kill_number < kills; ++kill_number) {
+    const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % few;
     std::string program = HOSEL_COMMAND, run = "run", quiet = "--quiet", option = "--out";
-    std::string where = sweep, out = killed;
+    std::string where = study, out = killed;
     char* argv[] = {program.data(), run.data(), where.data(), quiet.data(), option.data(), out.data(), nullptr};
     pid_t child = 0;
     ASSERT_EQ(posix_spawn(&child, program.c_str(), nullptr, nullptr, argv, environ), 0);
@@ -94,14 +94,48 @@ TEST(Study, KilledTenTimesGivesTheSameTable) {
     ASSERT_FALSE(fs::exists(dir / "killed" / "points.csv"));
   }
   const std::size_t before = recorded(dir / "killed").size();
-  ASSERT_LT(before, 400u);
-  ASSERT_EQ(command("run " + sweep + " --quiet --out " + killed).status, 0);
+  ASSERT_LT(before, size);
+  ASSERT_EQ(command("run " + study + " --quiet --out " + killed).status, 0);
   EXPECT_EQ(content(dir / "killed" / "points.csv"), content(dir / "whole" / "points.csv"));
   EXPECT_EQ(content(dir / "killed" / "summary.json"), content(dir / "whole" / "summary.json"));
   std::vector<int> done = recorded(dir / "killed");
-  ASSERT_EQ(done.size(), 400u);  // none lost, none computed again once it was on disk
+  ASSERT_EQ(done.size(), size);  // none lost, none computed again once it was on disk
   std::ranges::sort(done);
-  for (int i = 0; i < 400; ++i) EXPECT_EQ(done[std::size_t(i)], i);
+  for (std::size_t i = 0; i < size; ++i) EXPECT_EQ(done[i], int(i));
+}
+
+TEST(Study, KilledTenTimesGivesTheSameTable) {
+  const fs::path dir = sweep_case("sweep_killed", kSample);
+  expect_killed_is_whole(dir, (dir / "sweep").string(), 400, 10, 25);
+}
+
+TEST(Study, FiniteElementBlowsThatAreKilledGiveTheSameTable) {
+  const fs::path dir = fresh_directory("study_killed_fe");
+  write(dir / "case/case.toml", R"(kind = "study"
+models = ["fe-free-body", "rigid-eccentric"]
+outputs = ["ball_speed_mps", "spin_rate_rpm", "contact_time_ms"]
+[[variant]]
+name = "one ball"
+[[variant]]
+name = "a lighter head"
+set = ["head.mass_kg=0.19"]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+values = [10.0, 14.0, 18.0, 22.0]
+[delivery]
+club_speed_mps = 45.0
+[head]
+name = "driver-2024"
+[ball]
+model = "tour"
+[mesh]
+harmonics = 1
+sector = 1
+rings = 1
+[time]
+steps_per_contact = 20
+)");
+  expect_killed_is_whole(dir, (dir / "case").string(), 16, 3, 3);
 }
 
 TEST(Study, ALineCutShortIsComputedAgain) {
@@ -395,8 +429,28 @@ TEST(Study, RowsBringKeysAndMeasuredValues) {
   EXPECT_NE(bad.text.find("did you mean"), std::string::npos) << bad.text;
 }
 
+TEST(Study, DifferencesApartByAColumn) {
+  const nlohmann::json s = studied("study_by", R"(models = ["stick-slip", "rigid-eccentric"]
+outputs = ["ball_speed_mps"]
+[[variant]]
+name = "as measured"
+measured.ball_speed_mps = [1.0, 100.0]
+[[variant]]
+name = "off"
+measured.ball_speed_mps = 10.0
+[compare]
+with = "measured"
+by = "variant"
+)" + kCentredBlow);
+  const auto& all = s["compare"]["differences"];
+  ASSERT_EQ(all.size(), 4U);
+  for (const auto& d : all)
+    if (d["of"] == "as measured") EXPECT_EQ(d["rms"], 0.0) << "inside the range";
+    else EXPECT_NEAR(d["rms"].get<double>(), s["range"]["stick-slip.ball_speed_mps"][0].get<double>() - 10, 1e-9);
+}
+
 TEST(Study, AFormerKindSaysWhatItIsNow) {
-  for (const char* kind : {"sweep", "variants", "cross-check"}) {
+  for (const char* kind : {"sweep", "variants", "cross-check", "curves", "clubs", "bounce", "restitution-face"}) {
     const fs::path dir = fresh_directory("study_former");
     write(dir / "case.toml", std::string("kind = \"") + kind + "\"\n");
     const Outcome o = command("check " + dir.string());
