@@ -1,16 +1,14 @@
 #include "app/job.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "app/kinds/ball_rule.hpp"
-#include "app/kinds/bounce.hpp"
 #include "app/kinds/calibrate_ball.hpp"
 #include "app/kinds/calibrate_face.hpp"
 #include "app/kinds/calibrate_reduced.hpp"
 #include "app/kinds/characteristic_time.hpp"
-#include "app/kinds/clubs.hpp"
-#include "app/kinds/cross_check.hpp"
-#include "app/kinds/curves.hpp"
 #include "app/kinds/face_map.hpp"
 #include "app/kinds/flight.hpp"
 #include "app/kinds/flight_law.hpp"
@@ -23,13 +21,11 @@
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
 #include "app/kinds/plate_face.hpp"
-#include "app/kinds/restitution_face.hpp"
 #include "app/kinds/shaft_modes.hpp"
 #include "app/kinds/slopes.hpp"
-#include "app/kinds/sweep.hpp"
+#include "app/kinds/study.hpp"
 #include "app/kinds/swing.hpp"
 #include "app/kinds/tune.hpp"
-#include "app/kinds/variants.hpp"
 
 namespace hosel::app {
 namespace {
@@ -53,16 +49,10 @@ constexpr std::array kKinds = {
          "What must a ball at the limit give up, and who loses how much?", read_ball_rule},
     Kind{"face-map", "the launch over the face for several clubs, and what they differ by",
          "How does the launch change over the face, and what does the club change in it?", read_face_map},
-    Kind{"curves", "launch against a parameter, or force histories, for a family of another",
-         "How does the launch depend on this parameter?", read_curves},
-    Kind{"cross-check", "several models over a grid of blows, each against a reference",
-         "Where do the models agree, and where do they part company?", read_cross_check},
-    Kind{"clubs", "a rolling model against the means of several clubs, with straight-line fits",
-         "Does the model predict what several clubs do?", read_clubs},
     Kind{"tune", "parameters of a model against measured shots",
          "Which parameters make the model agree with the shots, and on shots it has not seen?", read_tune},
-    Kind{"sweep", "any case over a grid or a Latin hypercube of its keys",
-         "How does the answer change with these inputs?", read_sweep},
+    Kind{"study", "a design of blows (axes, sample, variants, rows, places) through models or another case",
+         "How does the answer change with these inputs, and what matters most?", read_study},
     Kind{"loop", "measured shots against a model: which effect does the model lack?",
          "Which effect does the model lack?", read_loop},
     Kind{"modes", "free vibrations of a ball, harmonic by harmonic, or of a shaft with its head",
@@ -83,18 +73,26 @@ constexpr std::array kKinds = {
          "What do the models without a deformable ball need of this ball?", read_calibrate_reduced},
     Kind{"characteristic-time", "the rules' pendulum test of a face that yields: contact time against speed",
          "How long does the rules' pendulum touch this face?", read_characteristic_time},
-    Kind{"restitution-face", "restitution and ball speed over a face that yields",
-         "How fast is this face away from its centre?", read_restitution_face},
     Kind{"plate-face", "a face with a thickness: modes, characteristic time and restitution over it, balls, stress",
          "What does a face of this thickness do?", read_plate_face},
     Kind{"calibrate-face", "a face that yields from characteristic times, restitution and mass",
          "Which face behaves as measured?", read_calibrate_face},
-    Kind{"bounce", "balls thrown obliquely at a rigid plate, measured bounces beside",
-         "How does the ball leave a plate that it meets obliquely?", read_bounce},
     Kind{"slopes", "slopes of the launch over the face: measured by robust regression, and of models",
          "How does the launch change with the place of impact, measured and computed?", read_slopes},
-    Kind{"variants", "one blow in several variants of its case, at one launch angle and one bounce if asked",
-         "What does each change of the case change in the launch?", read_variants},
+};
+
+/// Kinds that were: what their cases say now.
+struct FormerKind {
+  std::string_view name, now;
+};
+constexpr std::array kFormerKinds = {
+    FormerKind{"sweep", "[[parameters]] is [[axis]], record is outputs, sweep.csv is points.csv"},
+    FormerKind{"variants", "[[variants]] is [[variant]], outputs names the quantities, variants.csv is points.csv"},
+    FormerKind{"clubs", "each club is a row of [rows] or a [[variant]], beside and model are models"},
+    FormerKind{"restitution-face", "[grid] is two [[axis]], face_restitution is one of the outputs"},
+    FormerKind{"bounce", "the plate is a head of mass inf, the angle its club_path, balls are variants"},
+    FormerKind{"curves", "[family] and [x] are an [[axis]] each, channels is outputs, history is histories"},
+    FormerKind{"cross-check", "[[grid]] is [[axis]], reference is [compare], outputs names the quantities"},
 };
 
 }  // namespace
@@ -106,6 +104,10 @@ std::unique_ptr<Job> read_job(CaseFile& file) {
   std::vector<std::string> names;
   for (const Kind& k : kKinds) names.emplace_back(k.name);
   root.text({"title", "of tables, pages and figures"}, "");
+  if (root.has("kind"))
+    for (const FormerKind& f : kFormerKinds)
+      if (root.text({"kind", "what the case does (`hosel list`)"}, "impact") == f.name)
+        root.fail("kind", fmt::format("'{}' is now 'study': {} (docs/how-to.md)", f.name, f.now));
   const std::string wanted = root.choice({"kind", "what the case does (`hosel list`)"}, names, "impact");
   for (const Kind& k : kKinds)
     if (k.name == wanted) {

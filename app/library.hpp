@@ -117,20 +117,6 @@ std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf
 /// of several). Nothing where neither is there.
 std::optional<NamedContact> named_contact(Table root);
 
-/// What the blows along some axes ask, along each by itself from `middle`.
-template <class Axes>
-Use use_of_axes(const models::Options& options, const Blow& middle, const Axes& axes) {
-  Use use = use_of(middle);
-  for (const auto& axis : axes)
-    for (const double value : axis.values) {
-      models::Options changed = options;
-      Blow blow = middle;
-      axis.parameter->set(changed, blow, value);
-      use = both(use, use_of(blow));
-    }
-  return use;
-}
-
 /// Refuses, with a sentence, what uses an entry that the case names beyond what it saw, unless `extrapolate = true`
 /// stands beside its name. `models` are those that are asked.
 void check_use(Table root, const Use& use, const std::vector<std::string>& models);

@@ -438,6 +438,16 @@ std::vector<double> Table::numbers(Key key, std::size_t size, Range range,
   return out;
 }
 
+std::pair<double, double> Table::number_or_range(Key key) {
+  const toml::node* node = as_table(node_).get(key.name);
+  if (!node || !node->is_array()) {
+    const double x = number(key);
+    return {x, x};
+  }
+  const std::vector<double> x = numbers(key, 2);
+  return {std::min(x[0], x[1]), std::max(x[0], x[1])};
+}
+
 long Table::integer(Key key, long min, long max, std::optional<long> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
@@ -674,6 +684,10 @@ std::vector<Table> Table::tables(std::string_view key) {
         Table(document_, child, fmt::format("{}[{}]", dotted(path_, key), i + 1), dotted(shown_, key) + "[]"));
   }
   return out;
+}
+
+void Table::leave(std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) document_->known[&as_table(node_)].emplace(key);
 }
 
 std::vector<std::string> Table::keys() const {

@@ -4,12 +4,14 @@
 
 #include <concepts>
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/inputs.hpp"
@@ -99,6 +101,8 @@ class Table {
   double number(Key key, Range range = Range::finite(), std::optional<double> standard = {});
   std::vector<double> numbers(Key key, std::size_t size, Range range = Range::finite(),
                               std::optional<std::vector<double>> standard = {});
+  /// A number, or a list of two: lowest and highest. Any finite number.
+  std::pair<double, double> number_or_range(Key key);
   long integer(Key key, long min, long max, std::optional<long> standard = {});
   bool flag(Key key, std::optional<bool> standard = {});
   /// One line: control characters and line breaks in it are blanks.
@@ -130,6 +134,8 @@ class Table {
   void note_file(const std::filesystem::path& file);
   /// A list of tables `[[key]]`; empty where absent.
   std::vector<Table> tables(std::string_view key);
+  /// Keys and tables of this case that another reader declares: nothing is said of what they hold.
+  void leave(std::initializer_list<std::string_view> keys);
   /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.
   std::vector<std::string> keys() const;
 

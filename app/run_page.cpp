@@ -27,6 +27,10 @@ void RunPage::answer(std::string_view what, std::string_view value, std::string_
                           escape_html(std::string(note)));
 }
 
+void RunPage::sentence(std::string_view text) {
+  sentences_ += "<p class='lead'><b>" + escape_html(std::string(text)) + "</b></p>";
+}
+
 void RunPage::answer(const post::TextTable& table) { tables_ += table.html(); }
 
 void RunPage::close_figures() {
@@ -158,6 +162,7 @@ std::string RunPage::html(const std::string& resolved, const std::string& comman
   const auto known = std::ranges::find(kinds(), kind, &Kind::name);
   const std::string question(known == kinds().end() ? "" : known->question);
   std::string s = fmt::format("<h1>{}</h1>", escape_html(title.empty() ? question : title));
+  s += sentences_;
   if (!title.empty()) s += "<p class='lead'>" + escape_html(question) + "</p>";
   if (!answers_.empty()) s += "<div class='answers'>" + answers_ + "</div>";
   s += tables_;

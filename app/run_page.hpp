@@ -14,6 +14,8 @@ namespace hosel::app {
 /// Filled while a job runs, written with its summary. Sections stand in the order in which they come.
 class RunPage {
  public:
+  /// What was found, in words: the page's first text.
+  void sentence(std::string_view text);
   /// A number that the question asks for, large at the top; `note` in small type beneath.
   void answer(std::string_view what, std::string_view value, std::string_view note = {});
   /// A table beneath those numbers.
@@ -42,7 +44,7 @@ class RunPage {
  private:
   void close_figures();
 
-  std::string answers_, tables_, body_, figures_, printed_, doubts_, links_, script_, checksum_;
+  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_, script_, checksum_;
   int moving_ = 0;
   bool sections_ = false;
   std::vector<std::pair<std::string, std::string>> next_;

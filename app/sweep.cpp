@@ -119,7 +119,7 @@ Planned read_planned(const fs::path& where, const std::vector<std::string>& over
   p.job = read_job(*p.file);
   p.points = dynamic_cast<const PointJob*>(p.job.get());
   if (!p.points)
-    throw InputError(fmt::format("{}: a case of this kind is one piece of work; sweeps and face maps have points",
+    throw InputError(fmt::format("{}: a case of this kind is one piece of work; studies and face maps have points",
                                  p.file->file().string()));
   p.plan = plan_of(*p.points, p.file->inputs()->fingerprint());
   return p;

@@ -1,5 +1,5 @@
-// A clamped, tapered tube by CalculiX (`ccx`, package calculix-ccx) and by the beam, in one run: natural frequencies, and
-// the tip's motion after a blow on it. The peer has no beam theory: half the tube in quadratic bricks (C3D20R).
+// A clamped, tapered tube by CalculiX (`ccx`, package calculix-ccx) and by the beam, in one run: natural frequencies,
+// and the tip's motion after a blow on it. The peer has no beam theory: half the tube in quadratic bricks (C3D20R).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <fmt/os.h>
@@ -43,7 +43,8 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
   const auto id = [&](int i, int j, int k) {  // half elements along, around, across the wall
     const auto [it, fresh] = ids.try_emplace({i, j, k}, int(ids.size()) + 1);
     if (fresh) {
-      const double x = kLength * i / (2 * along), angle = kPi * j / (2 * around), r = outer_radius(x) - kWall * (1 - k / 2.0);
+      const double x = kLength * i / (2 * along), angle = kPi * j / (2 * around),
+                   r = outer_radius(x) - kWall * (1 - k / 2.0);
       nodes += fmt::format("{}, {:.12g}, {:.12g}, {:.12g}\n", it->second, x, r * std::sin(angle), r * std::cos(angle));
       if (i == 0) clamped += fmt::format("{},\n", it->second);
       else if (j == 0 || j == 2 * around) middle += fmt::format("{},\n", it->second);
@@ -54,15 +55,16 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
     for (int b = 0; b < around; ++b) {
       const int i = 2 * a, j = 2 * b;
       // Local axes: along, around (clockwise seen from the butt), outwards: a left-handed triad is turned by order.
-      const std::array<std::array<int, 3>, 20> list{{{i, j, 0},         {i, j, 2},         {i, j + 2, 2},     {i, j + 2, 0},
-                                                     {i + 2, j, 0},     {i + 2, j, 2},     {i + 2, j + 2, 2}, {i + 2, j + 2, 0},
-                                                     {i, j, 1},         {i, j + 1, 2},     {i, j + 2, 1},     {i, j + 1, 0},
-                                                     {i + 2, j, 1},     {i + 2, j + 1, 2}, {i + 2, j + 2, 1}, {i + 2, j + 1, 0},
-                                                     {i + 1, j, 0},     {i + 1, j, 2},     {i + 1, j + 2, 2}, {i + 1, j + 2, 0}}};
+      const std::array<std::array<int, 3>, 20> list{
+          {{i, j, 0},         {i, j, 2},         {i, j + 2, 2},     {i, j + 2, 0},     {i + 2, j, 0},
+           {i + 2, j, 2},     {i + 2, j + 2, 2}, {i + 2, j + 2, 0}, {i, j, 1},         {i, j + 1, 2},
+           {i, j + 2, 1},     {i, j + 1, 0},     {i + 2, j, 1},     {i + 2, j + 1, 2}, {i + 2, j + 2, 1},
+           {i + 2, j + 1, 0}, {i + 1, j, 0},     {i + 1, j, 2},     {i + 1, j + 2, 2}, {i + 1, j + 2, 0}}};
       elements += fmt::format("{}", a * around + b + 1);
       for (std::size_t n = 0; n < list.size(); ++n) {
         // CalculiX wants the first face anticlockwise seen against its outward normal.
-        static constexpr std::array<std::size_t, 20> order{0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17};
+        static constexpr std::array<std::size_t, 20> order{0, 3, 2,  1,  4,  7,  6,  5,  11, 10,
+                                                           9, 8, 15, 14, 13, 12, 16, 19, 18, 17};
         const auto& c = list[order[n]];
         elements += fmt::format("{}{}", n == 9 ? ",\n" : ", ", id(c[0], c[1], c[2]));
       }
@@ -83,7 +85,8 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
   out.print("*NODE, NSET=ALL\n{}*ELEMENT, TYPE=C3D20R, ELSET=TUBE\n{}", nodes, elements);
   out.print("*NSET, NSET=BUTT\n{}*NSET, NSET=MIDDLE\n{}*NSET, NSET=TIP\n{}", clamped, middle, ends);
   out.print("*BOUNDARY\nBUTT, 1, 3\nMIDDLE, 2\n");
-  out.print("*MATERIAL, NAME=STEEL\n*ELASTIC\n{}, {:.12g}\n*DENSITY\n{:.12g}\n", kYoung, kYoung / (2 * kShear) - 1, kDensity);
+  out.print("*MATERIAL, NAME=STEEL\n*ELASTIC\n{}, {:.12g}\n*DENSITY\n{:.12g}\n", kYoung, kYoung / (2 * kShear) - 1,
+            kDensity);
   out.print("*SOLID SECTION, ELSET=TUBE, MATERIAL=STEEL\n");
   if (step == "modes") {
     out.print("*STEP\n*FREQUENCY\n4\n*END STEP\n");
@@ -106,7 +109,8 @@ Peer calculix(int along, int around, const std::string& step) {
   const fs::path dir = fs::temp_directory_path() / fmt::format("hosel_shaft_calculix_{}", getpid());
   fs::create_directories(dir);
   Peer out{write_deck(dir / "tube.inp", along, around, step), {}};
-  const int status = std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx tube > log.txt 2>&1", dir.string()).c_str());
+  const int status =
+      std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx tube > log.txt 2>&1", dir.string()).c_str());
   std::ifstream in(dir / "tube.dat");
   std::stringstream text;
   text << in.rdbuf();
@@ -122,7 +126,8 @@ bool without_peer(benchmark::State& state) {
 }
 
 test::BeamSystem tube(int elements) {
-  test::BeamSystem b(mesh::straight(mesh::graded(1, elements), Vec3::Zero(), Mat3::Identity()), test::b2(test::Theory::timoshenko));
+  test::BeamSystem b(mesh::straight(mesh::graded(1, elements), Vec3::Zero(), Mat3::Identity()),
+                     test::b2(test::Theory::timoshenko));
   b.clamp_first();
   return b;
 }

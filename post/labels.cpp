@@ -45,6 +45,7 @@ std::string label(std::string_view key) {
     if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");
     key = key.substr(0, open);
   }
+  if (key.ends_with("_N_s")) return spoken(key.substr(0, key.size() - 4)) + which + " [N s]";  // no unit of a key
   const SplitName split = split_unit(key);
   return spoken(split.stem) + which + (split.unit ? " [" + symbol(split.unit->suffix) + "]" : "");
 }

@@ -112,16 +112,19 @@ void write_corrected(Output& out, const loop::LoopResult& result, const models::
   const loop::Shot& first = corrected.shots.front().shot;
   toml::table root = toml::parse(out.resolved_case());
   for (const char* key : {"model", "data", "split"}) root.erase(key);
-  root.insert_or_assign("kind", "variants");
+  root.insert_or_assign("kind", "study");
   root.insert_or_assign("title", result.title + ", corrected");
   root.insert_or_assign("models", toml::array{base.share(first.change) == 0 ? "fe-free-body" : "fe-full-club"});
+  toml::array outputs{"ball_speed_mps", "launch_angle_deg", "spin_rate_rpm"};
+  if (loft_unknown) outputs.push_back("dynamic_loft_deg");
+  root.insert_or_assign("outputs", std::move(outputs));
   if (loft_unknown) root.insert_or_assign("matched_launch", true);
   put_common(root, first, base);
   put(table(root, "head"), "mass", "kg", rounded(first.blow.club.head.mass));
   put(table(root, "delivery"), "club_speed", "mps", rounded(first.blow.delivery.club_speed));
   toml::array variants;
   for (const loop::Corrected::Asked& asked : corrected.shots) variants.push_back(variant(asked));
-  root.insert_or_assign("variants", std::move(variants));
+  root.insert_or_assign("variant", std::move(variants));
   std::ostringstream text;
   text << fmt::format("# {} with {} in it, as the loop found it; each variant is a measured shot.\n", result.base,
                       result.adopted.empty() && result.ties.empty() ? "nothing" : "the effects of the report");

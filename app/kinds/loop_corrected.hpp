@@ -7,7 +7,7 @@
 
 namespace hosel::app {
 
-/// Writes OUT/corrected/case.toml: `kind = "variants"`, one variant for each of the result's corrected shots, with what
+/// Writes OUT/corrected/case.toml: `kind = "study"`, one variant for each of the result's corrected shots, with what
 /// was measured beside it; everything else as the loop's own case has it. Writes nothing where there are no shots.
 void write_corrected(Output& out, const loop::LoopResult& result, const models::ChangeableFe& base, bool loft_unknown);
 

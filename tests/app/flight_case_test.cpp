@@ -59,16 +59,16 @@ TEST(FlightCase, WeatherWindAndHeightActAsTheyDo) {
 
 TEST(FlightCase, FollowsEveryVariant) {
   std::string text = kEccentricBlow + "[flight]\n";
-  text.replace(text.find("impact"), 6, "variants");
+  text.replace(text.find("\"impact\""), 8, "\"study\"\noutputs = [\"carry_yd\"]");
   Outcome o;
-  const auto s = run("flight_variants", text + R"([[variants]]
+  const auto s = run("flight_variants", text + R"([[variant]]
 name = "as it is"
-[[variants]]
+[[variant]]
 name = "faster"
 set = ["delivery.club_speed_mps=47.0"]
 )",
-                     &o)["variants"];
-  EXPECT_GT(s["faster"]["flight"]["carry_yd"], s["as it is"]["flight"]["carry_yd"].get<double>() + 3);
+                     &o)["range"]["carry_yd"];
+  EXPECT_GT(s[1], s[0].get<double>() + 3);
   EXPECT_NE(o.text.find("carry [yd]"), std::string::npos);
 }
 

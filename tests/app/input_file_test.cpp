@@ -86,7 +86,7 @@ TEST(InputFile, ANewCaseFindsWhatItsModelNamed) {
   const fs::path dir = fresh_directory("new_case");
   write(dir / "here/base/case.toml", kEccentricBlow);
   write(dir / "here/sweep/case.toml",
-        "kind = \"sweep\"\ncase = \"../base\"\n[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
+        "kind = \"study\"\ncase = \"../base\"\n[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
   write(dir / "here/sweep/README.md", "of the other case");
   write(dir / "here/sweep/data.csv", "a\n1\n");
   ASSERT_EQ(command("new " + (dir / "far/away/mine").string() + " --from " + (dir / "here/sweep").string()).status, 0);

@@ -23,8 +23,8 @@ std::map<std::string, std::string> declared_in_sources() {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(HOSEL_SOURCE_DIR) / "app")) {
     const std::string name = entry.path().filename().string();
-    const bool reads = entry.path().parent_path().filename() == "kinds" || name.starts_with("read_") ||
-                       name == "job.cpp";
+    const fs::path folder = entry.path().parent_path().filename();
+    const bool reads = folder == "kinds" || folder == "study" || name.starts_with("read_") || name == "job.cpp";
     if (!reads || entry.path().extension() != ".cpp") continue;
     const std::string text = test::content(entry.path());
     for (std::sregex_iterator it(text.begin(), text.end(), declaration), end; it != end; ++it)

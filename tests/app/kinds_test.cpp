@@ -20,11 +20,16 @@ namespace fs = std::filesystem;
 TEST(Bounce, AThrowThatSlidesIsCoulombs) {
   const fs::path dir = fresh_directory("bounce");
   constexpr double mu = 0.092, speed = 3.9, radius = 2.5e-3;
-  write(dir / "case.toml", R"(kind = "bounce"
+  write(dir / "case.toml", R"(kind = "study"
 models = ["hertz-maw"]
-[throws]
-speeds_mps = [3.9]
-angles_deg = [30.0, 45.0, 60.0]
+outputs = ["normal_restitution", "tangential_ratio", "spin_rate_rad_per_s", "rebound_angle_deg"]
+[[axis]]
+key = "delivery.club_path_deg"
+values = [30.0, 45.0, 60.0]
+[delivery]
+club_speed_mps = 3.9
+[head]
+mass_kg = inf
 [ball]
 mass_kg   = 0.2618e-3
 radius_mm = 2.5
@@ -36,17 +41,18 @@ damping_s_per_m = 0.0
 )");
   const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
   ASSERT_EQ(o.status, 0) << o.text;
-  const post::Sheet s = post::read_csv(dir / "out/bounces.csv");
+  const post::Sheet s = post::read_csv(dir / "out/points.csv");
   ASSERT_EQ(s.rows(), 3u);
   const auto at = [&](const char* column, std::size_t row) {
     return std::stod(s.columns[std::size_t(std::ranges::find(s.names, column) - s.names.begin())][row]);
   };
   for (std::size_t i = 0; i < s.rows(); ++i) {
-    const double angle = radians(at("angle_deg", i)), normal = speed * std::cos(angle), along = speed * std::sin(angle);
+    const double angle = radians(at("delivery.club_path_deg", i)), normal = speed * std::cos(angle),
+                 along = speed * std::sin(angle);
     // Six digits are written; the steps of the contact leave some 3e-4 of the impulse.
     EXPECT_NEAR(at("normal_restitution", i), 1, 1e-5);
     EXPECT_NEAR(at("tangential_ratio", i), 1 - 2 * mu * normal / along, 3e-4);
-    EXPECT_NEAR(at("spin_rad_per_s", i), 2.5 * 2 * mu * normal / radius, 5e-4 * 2.5 * 2 * mu * normal / radius);
+    EXPECT_NEAR(at("spin_rate_rad_per_s", i), 2.5 * 2 * mu * normal / radius, 5e-4 * 2.5 * 2 * mu * normal / radius);
     EXPECT_NEAR(at("rebound_angle_deg", i), degrees(std::atan2(along - 2 * mu * normal, normal)), 0.02);
   }
 }

@@ -57,7 +57,7 @@ TEST(LoopCorrected, IsACaseWithTheEffectsInIt) {
   EXPECT_DOUBLE_EQ(options.fe.friction, 0.27);
   ASSERT_TRUE(options.fe.face);
   EXPECT_NEAR(options.fe.face->stiffness, 12.5e6, 1e-2);
-  CaseFile second(corrected, corrected.root().tables("variants")[1].texts("set"));
+  CaseFile second(corrected, corrected.root().tables("variant")[1].texts("set"));
   const Blow blow = read_blow(second.root(), {"fe-free-body"});
   EXPECT_NEAR(blow.delivery.dynamic_loft, radians(15), 1e-9);
   EXPECT_DOUBLE_EQ(blow.club.head.mass, 0.21);

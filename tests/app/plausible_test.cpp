@@ -228,23 +228,24 @@ TEST(Plausible, ExtremeLawsEndInALaunchOrASentence) {
   EXPECT_GE(refused, 1);
 }
 
-/// The clubs table of the irons with one cell replaced.
-class ClubsTable : public testing::TestWithParam<const char*> {};
+/// The rows of a study with one cell replaced.
+class StudyRows : public testing::TestWithParam<const char*> {};
 
-TEST_P(ClubsTable, TakesNoCellThatIsNoNumber) {
+TEST_P(StudyRows, TakeNoCellThatIsNoNumber) {
   const fs::path source = fs::path(HOSEL_SOURCE_DIR) / "cases/rolling-irons";
   const fs::path dir = fresh_directory("clubs_cell");
-  fs::copy(source, dir / "case");
-  std::string table = content(dir / "case/club_means.csv");
+  fs::copy(source, dir / "case", fs::copy_options::recursive);
+  std::string table = content(dir / "case/clubs.csv");
   const auto from = table.find(',', table.find('\n')) + 1;  // the first club's mass
   table.replace(from, table.find(',', from) - from, GetParam());
-  write(dir / "case/club_means.csv", table);
+  write(dir / "case/clubs.csv", table);
   const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "out").string());
   EXPECT_EQ(o.status, 2) << o.text;
-  EXPECT_NE(o.text.find("club_means.csv:2: head_mass_kg: "), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("clubs.csv:2: "), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("head.mass_kg"), std::string::npos) << o.text;
   EXPECT_FALSE(fs::exists(dir / "out/summary.json"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Cell, ClubsTable, testing::Values("", "nan", "inf", "-0.25", "0x1p-2", "0.25kg", "25"));
+INSTANTIATE_TEST_SUITE_P(Cell, StudyRows, testing::Values("", "nan", "-0.25", "0x1p-2", "0.25kg", "25"));
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST(Stranger, LinksInOutLeadNowhere) {
   EXPECT_EQ(command(run).status, 0);
 
   write(dir / "sweep/case.toml",
-        "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
+        "kind = \"study\"\ncase = \"../blow\"\n[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n");
   const std::string swept = (dir / "swept").string();
   ASSERT_EQ(command("sweep plan " + (dir / "sweep").string() + " --out " + swept).status, 0);
   refused(dir / "swept/shards/1-of-1/points.jsonl", victim / "thesis.tex", "sweep run " + swept + " --quiet");

@@ -149,8 +149,8 @@ TEST(Inputs, ShardsOfASweepAreOfOneTable) {
             "[volumetric]\npublished = \"driver\"\n[shaft.table]\nfile = \"shaft.csv\"\n[hosel]\n"
             "position_mm = [-15.0, 55.0, 10.0]\nlie_deg = 58.0\n");
   write(dir / "sweep/case.toml",
-        "kind = \"sweep\"\ncase = \"../club\"\nset = ['models=[\"shaft-coupled\"]']\n"
-        "[[parameters]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0, 41.0, 42.0]\n");
+        "kind = \"study\"\ncase = \"../club\"\nset = ['models=[\"shaft-coupled\"]']\n"
+        "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0, 41.0, 42.0]\n");
   const std::string out = (dir / "out").string();
   const Outcome planned = command("sweep plan " + (dir / "sweep").string() + " --out " + out);
   ASSERT_EQ(planned.status, 0) << planned.text;
@@ -366,29 +366,31 @@ TEST(Tables, NamesAreCellsWhateverStandsInThem) {
                                           std::string(200, 'n'),
                                           "\xC3\xA9t\xC3\xA9"};
   std::string flight = "kind = \"flight\"\n", variants = kEccentricBlow;
-  variants.replace(variants.find("\"impact\""), 8, "\"variants\"");
+  variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   for (const std::string& n : names) {
     const std::string quoted = "'''" + n + "'''";
     flight += "[[launch]]\nname = " + quoted +
               "\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
-    variants += "[[variants]]\nname = " + quoted + "\nset = [\"delivery.club_speed_mps=44.0\"]\n";
+    variants += "[[variant]]\nname = " + quoted + "\nset = [\"delivery.club_speed_mps=44.0\"]\n";
   }
   write(dir / "flight/case.toml", flight);
   write(dir / "variants/case.toml", variants);
-  for (const auto& [kind, table] : {std::pair{"flight", "flights.csv"}, {"variants", "variants.csv"}}) {
+  for (const auto& [kind, table] : {std::pair{"flight", "flights.csv"}, {"variants", "points.csv"}}) {
     const fs::path out = dir / kind / "../out" / kind;
     const Outcome o = command("run " + (dir / kind).string() + " --quiet --out " + out.string());
     ASSERT_EQ(o.status, 0) << kind << ": " << o.text;
     const post::Sheet sheet = post::read_csv(out / table);
-    std::set<std::string> seen(sheet.columns[0].begin(), sheet.columns[0].end());
+    const auto named = std::ranges::find(sheet.names, std::string(kind) == "flight" ? sheet.names[0] : "variant");
+    ASSERT_NE(named, sheet.names.end());
+    const std::vector<std::string>& cells = sheet.columns[std::size_t(named - sheet.names.begin())];
+    std::set<std::string> seen(cells.begin(), cells.end());
     EXPECT_EQ(seen.size(), names.size()) << kind;
-    for (const std::string& cell : sheet.columns[0])
+    for (const std::string& cell : cells)
       EXPECT_EQ(std::string_view("=@+-").find(cell.front()), std::string_view::npos) << cell;
     for (std::size_t i = 0; i < names.size(); ++i)
-      EXPECT_TRUE(sheet.columns[0][i] == names[i] || sheet.columns[0][i] == "'" + names[i]) << names[i];
-    const json said = summary(out).at(std::string(kind) == "flight" ? "launches" : "variants");
-    EXPECT_EQ(said.size(), names.size()) << kind;
+      EXPECT_TRUE(cells[i] == names[i] || cells[i] == "'" + names[i]) << names[i];
     if (std::string(kind) != "flight") continue;
+    EXPECT_EQ(summary(out).at("launches").size(), names.size()) << kind;
     std::size_t series = 0, pictures = 0;
     for (const auto& entry : fs::directory_iterator(out / "vtk")) series += entry.path().extension() == ".pvd";
     for (const auto& entry : fs::recursive_directory_iterator(out / "figures")) {
@@ -416,8 +418,8 @@ TEST(Tables, TwoOfOneNameAreRefused) {
     EXPECT_NE(o.text.find("is there twice"), std::string::npos) << kind << ": " << o.text;
   };
   std::string variants = kEccentricBlow;
-  variants.replace(variants.find("\"impact\""), 8, "\"variants\"");
-  for (int k = 0; k < 2; ++k) variants += "[[variants]]\nname = \"soft\"\n";
+  variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  for (int k = 0; k < 2; ++k) variants += "[[variant]]\nname = \"soft\"\n";
   refused("variants", variants);
   std::string flight = "kind = \"flight\"\n[flight]\n";
   for (int k = 0; k < 2; ++k) flight += "[[flight.launch_error]]\nsource = \"monitor\"\nball_speed_mps = 0.1\n";

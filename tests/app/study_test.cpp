@@ -1,4 +1,4 @@
-// Sweeps: the table has the same bytes whatever was killed, resumed or divided; nothing is computed
+// Studies: the table has the same bytes whatever was killed, resumed or divided; nothing is computed
 // twice, nothing mixed, nothing unconverged passed off as a result.
 #include <gtest/gtest.h>
 
@@ -26,15 +26,15 @@ namespace fs = std::filesystem;
 using namespace hosel::test;
 namespace post = hosel::post;
 
-const std::string kSample = R"(kind = "sweep"
+const std::string kSample = R"(kind = "study"
 case = "../blow"
 [sample]
 points = 400
 seed = 7
-[[parameters]]
+[[axis]]
 key = "delivery.club_speed_mps"
 range = [30.0, 50.0]
-[[parameters]]
+[[axis]]
 key = "delivery.impact_toe_mm"
 range = [-20.0, 20.0]
 )";
@@ -67,18 +67,18 @@ std::size_t lines(const fs::path& file) {
   return std::size_t(std::ranges::count(text, '\n'));
 }
 
-TEST(Sweep, KilledTenTimesGivesTheSameTable) {
-  const fs::path dir = sweep_case("sweep_killed", kSample);
-  const std::string sweep = (dir / "sweep").string(), whole = (dir / "whole").string(),
-                    killed = (dir / "killed").string();
-  ASSERT_EQ(command("run " + sweep + " --quiet --out " + whole).status, 0);
+/// A study that is killed `kills` times, each time after at most `few` further points, ends with the bytes of one that
+/// was left alone, and computes nothing twice.
+void expect_killed_is_whole(const fs::path& dir, const std::string& study, std::size_t size, int kills, unsigned few) {
+  const std::string whole = (dir / "whole").string(), killed = (dir / "killed").string();
+  ASSERT_EQ(command("run " + study + " --quiet --out " + whole).status, 0);
 
   std::mt19937 random(20181);
   const fs::path points = dir / "killed" / "shards" / "1-of-1" / "points.jsonl";
-  for (int kill_number = 0; kill_number < 10; ++kill_number) {
-    const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % 25;
+  for (int kill_number = 0; kill_number < kills; ++kill_number) {
+    const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % few;
     std::string program = HOSEL_COMMAND, run = "run", quiet = "--quiet", option = "--out";
-    std::string where = sweep, out = killed;
+    std::string where = study, out = killed;
     char* argv[] = {program.data(), run.data(), where.data(), quiet.data(), option.data(), out.data(), nullptr};
     pid_t child = 0;
     ASSERT_EQ(posix_spawn(&child, program.c_str(), nullptr, nullptr, argv, environ), 0);
@@ -91,35 +91,69 @@ TEST(Sweep, KilledTenTimesGivesTheSameTable) {
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     ASSERT_TRUE(WIFSIGNALED(status));  // the kill came while it was at work
-    ASSERT_FALSE(fs::exists(dir / "killed" / "sweep.csv"));
+    ASSERT_FALSE(fs::exists(dir / "killed" / "points.csv"));
   }
   const std::size_t before = recorded(dir / "killed").size();
-  ASSERT_LT(before, 400u);
-  ASSERT_EQ(command("run " + sweep + " --quiet --out " + killed).status, 0);
-  EXPECT_EQ(content(dir / "killed" / "sweep.csv"), content(dir / "whole" / "sweep.csv"));
+  ASSERT_LT(before, size);
+  ASSERT_EQ(command("run " + study + " --quiet --out " + killed).status, 0);
+  EXPECT_EQ(content(dir / "killed" / "points.csv"), content(dir / "whole" / "points.csv"));
   EXPECT_EQ(content(dir / "killed" / "summary.json"), content(dir / "whole" / "summary.json"));
   std::vector<int> done = recorded(dir / "killed");
-  ASSERT_EQ(done.size(), 400u);  // none lost, none computed again once it was on disk
+  ASSERT_EQ(done.size(), size);  // none lost, none computed again once it was on disk
   std::ranges::sort(done);
-  for (int i = 0; i < 400; ++i) EXPECT_EQ(done[std::size_t(i)], i);
+  for (std::size_t i = 0; i < size; ++i) EXPECT_EQ(done[i], int(i));
 }
 
-TEST(Sweep, ALineCutShortIsComputedAgain) {
+TEST(Study, KilledTenTimesGivesTheSameTable) {
+  const fs::path dir = sweep_case("sweep_killed", kSample);
+  expect_killed_is_whole(dir, (dir / "sweep").string(), 400, 10, 25);
+}
+
+TEST(Study, FiniteElementBlowsThatAreKilledGiveTheSameTable) {
+  const fs::path dir = fresh_directory("study_killed_fe");
+  write(dir / "case/case.toml", R"(kind = "study"
+models = ["fe-free-body", "rigid-eccentric"]
+outputs = ["ball_speed_mps", "spin_rate_rpm", "contact_time_ms"]
+[[variant]]
+name = "one ball"
+[[variant]]
+name = "a lighter head"
+set = ["head.mass_kg=0.19"]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+values = [10.0, 14.0, 18.0, 22.0]
+[delivery]
+club_speed_mps = 45.0
+[head]
+name = "driver-2024"
+[ball]
+model = "tour"
+[mesh]
+harmonics = 1
+sector = 1
+rings = 1
+[time]
+steps_per_contact = 20
+)");
+  expect_killed_is_whole(dir, (dir / "case").string(), 16, 3, 3);
+}
+
+TEST(Study, ALineCutShortIsComputedAgain) {
   const fs::path dir = sweep_case("sweep_torn", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + out).status, 0);
-  const std::string table = content(dir / "out" / "sweep.csv");
+  const std::string table = content(dir / "out" / "points.csv");
   const fs::path points = dir / "out" / "shards" / "1-of-1" / "points.jsonl";
   fs::resize_file(points, fs::file_size(points) - 30);
   fs::remove(dir / "out" / "summary.json");
-  fs::remove(dir / "out" / "sweep.csv");
+  fs::remove(dir / "out" / "points.csv");
   ASSERT_EQ(recorded(dir / "out").size(), 399u);
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + out).status, 0);
-  EXPECT_EQ(content(dir / "out" / "sweep.csv"), table);
+  EXPECT_EQ(content(dir / "out" / "points.csv"), table);
   EXPECT_EQ(recorded(dir / "out").size(), 400u);
 }
 
-TEST(Sweep, AnAnswerThatLiesAboutUnsealedIsNotBelieved) {
+TEST(Study, AnAnswerThatLiesAboutUnsealedIsNotBelieved) {
   const fs::path dir = sweep_case("sweep_unsealed", kSample);
   const std::string sweep = (dir / "sweep").string(), set = " --set sample.points=4 --quiet --out ";
   ASSERT_EQ(command("run " + sweep + set + (dir / "whole").string()).status, 0);
@@ -127,10 +161,10 @@ TEST(Sweep, AnAnswerThatLiesAboutUnsealedIsNotBelieved) {
   write(dir / "out/shards/1-of-1/point-000002/summary.json",
         R"({"models": {"rigid-eccentric": {"ball_speed_mps": 99.0}}})");
   ASSERT_EQ(command("run " + sweep + set + (dir / "out").string()).status, 0);
-  EXPECT_EQ(content(dir / "out/sweep.csv"), content(dir / "whole/sweep.csv"));
+  EXPECT_EQ(content(dir / "out/points.csv"), content(dir / "whole/points.csv"));
 }
 
-TEST(Sweep, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
+TEST(Study, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
   const fs::path dir = sweep_case("sweep_shards", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "one").string()).status, 0);
@@ -147,14 +181,14 @@ TEST(Sweep, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
   EXPECT_EQ(recorded(dir / "out").size(), 400u);
   EXPECT_NE(command("sweep status " + out).text.find("400 of 400 points finished"), std::string::npos);
   ASSERT_EQ(command("sweep merge " + out).status, 0);
-  EXPECT_EQ(content(dir / "out" / "sweep.csv"), content(dir / "one" / "sweep.csv"));
+  EXPECT_EQ(content(dir / "out" / "points.csv"), content(dir / "one" / "points.csv"));
   EXPECT_EQ(content(dir / "out" / "summary.json"), content(dir / "one" / "summary.json"));
   // Another division of the work finds everything done.
   ASSERT_EQ(command("sweep run " + out + " --quiet --shard 3/5").status, 0);
   EXPECT_EQ(recorded(dir / "out").size(), 400u);
 }
 
-TEST(Sweep, MixedCasesAndVersionsAreRefused) {
+TEST(Study, MixedCasesAndVersionsAreRefused) {
   const fs::path dir = sweep_case("sweep_mixed", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
   ASSERT_EQ(command("sweep plan " + sweep + " --out " + out).status, 0);
@@ -181,15 +215,15 @@ TEST(Sweep, MixedCasesAndVersionsAreRefused) {
   EXPECT_NE(o.text.find("has changed"), std::string::npos) << o.text;
   o = command("run " + sweep + " --quiet --out " + out);
   EXPECT_EQ(o.status, 2);
-  EXPECT_FALSE(fs::exists(dir / "out" / "sweep.csv"));
+  EXPECT_FALSE(fs::exists(dir / "out" / "points.csv"));
   write(dir / "blow" / "case.toml", kEccentricBlow);
   EXPECT_EQ(command("sweep merge " + out).status, 0);
 }
 
-TEST(Sweep, LatinHypercubeFillsEveryStratumOnce) {
+TEST(Study, LatinHypercubeFillsEveryStratumOnce) {
   const fs::path dir = sweep_case("sweep_latin", kSample);
   ASSERT_EQ(command("run " + (dir / "sweep").string() + " --quiet --out " + (dir / "out").string()).status, 0);
-  std::ifstream in(dir / "out" / "sweep.csv");
+  std::ifstream in(dir / "out" / "points.csv");
   std::string line;
   std::getline(in, line);
   ASSERT_TRUE(line.starts_with("point,delivery.club_speed_mps,delivery.impact_toe_mm,")) << line;
@@ -215,7 +249,7 @@ TEST(Sweep, LatinHypercubeFillsEveryStratumOnce) {
   EXPECT_LT(std::abs(sum / 400 / (20 / std::sqrt(12.0) * 40 / std::sqrt(12.0))), 0.2);
 }
 
-TEST(Sweep, AStatementHoldsInAShareOfTheRange) {
+TEST(Study, AStatementHoldsInAShareOfTheRange) {
   // The ball is fastest where the centre of gravity stands behind it: towards the toe for three quarters of the range.
   const fs::path dir = fresh_directory("sweep_share");
   write(dir / "blow" / "case.toml", R"(kind = "face-map"
@@ -238,16 +272,16 @@ set = ["head.mass_kg=0.21"]
 text = "fastest towards the toe"
 where = ["fastest_club_toe_mm > 0"]
 )");
-  write(dir / "sweep" / "case.toml", R"(kind = "sweep"
+  write(dir / "sweep" / "case.toml", R"(kind = "study"
 case = "../blow"
-record = ["effect.heavier.statements.0.holds", "effect.heavier.figures.fastest_club_toe_mm.value"]
+outputs = ["effect.heavier.statements.0.holds", "effect.heavier.figures.fastest_club_toe_mm.value"]
 [sample]
 points = 20
 seed = 3
-[[parameters]]
+[[axis]]
 key = "head.cg_mm[2]"
 range = [-3.0, 1.0]
-[[parameters]]
+[[axis]]
 key = "delivery.club_speed_mps"
 range = [44.0, 46.0]
 )");
@@ -255,9 +289,14 @@ range = [44.0, 46.0]
   ASSERT_EQ(run.status, 0) << run.text;
   const auto summary = nlohmann::json::parse(content(dir / "out" / "summary.json"));
   EXPECT_DOUBLE_EQ(summary["mean"]["effect.heavier.statements.0.holds"], 0.75);  // one point in each stratum
-  EXPECT_LT(summary["correlation"]["effect.heavier.figures.fastest_club_toe_mm.value"]["head.cg_mm[2]"], -0.999);
-  EXPECT_NE(run.text.find("fastest_club_toe_mm.value; head.cg_mm[2] (-1.00)"), std::string::npos) << run.text;
-  const std::string page = content(dir / "out" / "report.html"), drawn = content(dir / "out" / "figures" / "sweep.gp");
+  // The place follows the centre of gravity in a straight line; the speed does nothing to it.
+  const auto& effect = summary["main_effects"]["effect.heavier.figures.fastest_club_toe_mm.value"];
+  EXPECT_GT(effect["head.cg_mm[2]"]["share"], 0.99);
+  EXPECT_LT(effect["delivery.club_speed_mps"]["share"], 0.01);
+  EXPECT_GT(effect["head.cg_mm[2]"]["at_low"], effect["head.cg_mm[2]"]["at_high"]);
+  EXPECT_NE(run.text.find("Fastest club toe [mm] goes most with cg 2 [mm]: 100 % of its variance"), std::string::npos)
+      << run.text;
+  const std::string page = content(dir / "out" / "report.html"), drawn = content(dir / "out" / "figures" / "line.gp");
   EXPECT_NE(page.find("<td>statement 1 holds<td>0<td>0.75<td>1<td class='l'>cg 2 [mm]"), std::string::npos);
   EXPECT_NE(drawn.find("set xlabel 'cg 2 [mm]'"), std::string::npos) << "against what it goes with";
   EXPECT_EQ(drawn.find("set xlabel 'club speed"), std::string::npos);
@@ -267,18 +306,185 @@ range = [44.0, 46.0]
   EXPECT_NE(bad.text.find("there is no 'cg_mm[4]'"), std::string::npos) << bad.text;
 }
 
-TEST(Sweep, GridTakesNumbersAndWords) {
-  const fs::path dir = sweep_case("sweep_grid", R"(kind = "sweep"
+/// A study of blows: head on the centre line, so that the rigid models have closed forms.
+const std::string kCentredBlow = R"([delivery]
+club_speed_mps = 40.0
+[head]
+mass_kg = 0.26
+cg_mm = [0.0, 0.0, 0.0]
+inertia_kg_m2 = [[2.752e-4, 0, 0], [0, 0.577e-4, 0], [0, 0, 2.889e-4]]
+)";
+
+nlohmann::json studied(const std::string& name, const std::string& text, Outcome* said = nullptr) {
+  const fs::path dir = fresh_directory(name);
+  write(dir / "case.toml", "kind = \"study\"\n" + text);
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(o.status, 0) << o.text;
+  if (said) *said = o;
+  return nlohmann::json::parse(content(dir / "out" / "summary.json"));
+}
+
+TEST(Study, ModelsAreComparedByPlaceAndCause) {
+  const nlohmann::json s = studied("study_compare", R"(models = ["rigid-eccentric", "stick-slip", "volumetric"]
+outputs = ["ball_speed_mps", "backspin_rpm", "tangential_impulse_N_s", "contact_time_ms"]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+values = [10.0, 50.0]
+[[axis]]
+name = "friction"
+keys = ["contact.friction", "volumetric.friction", "volumetric.static_friction"]
+values = [0.1, 0.4]
+[compare]
+with = "model"
+model = "rigid-eccentric"
+[[statement]]
+text = "one closed form on the centre line"
+holds = "abs(difference.backspin_rpm) < 1e-6"
+[volumetric]
+published = "driver"
+)" + kCentredBlow);
+  EXPECT_EQ(s["points"], 12);
+  bool saw = false;
+  for (const auto& e : s["compare"]["differences"]) {
+    if (e["output"] != "backspin_rpm") continue;
+    if (e["model"] == "stick-slip") {
+      EXPECT_LT(std::abs(e["largest"].get<double>()), 1e-6);  // one and the same on the centre line
+    }
+    if (e["model"] == "volumetric") {
+      saw = true;
+      EXPECT_GT(std::abs(e["largest"].get<double>()), 50);
+      EXPECT_FALSE(e["where"].get<std::string>().empty());
+      EXPECT_NE(e["differs_most"], "-");
+    }
+  }
+  EXPECT_TRUE(saw);
+  ASSERT_EQ(s["statements"].size(), 2U);  // of each model but the reference
+  EXPECT_EQ(s["statements"][0]["verdict"], "holds");
+  EXPECT_EQ(s["statements"][1]["verdict"], "fails");
+}
+
+/// Rolling on the centre line: spin is 5 v sin(loft) / (2 r (1 + m/M + 5/2)), one factor a parameter.
+TEST(Study, MainEffectsAreThoseOfTheClosedForm) {
+  Outcome o;
+  const nlohmann::json s = studied("study_effects", R"(models = ["stick-slip"]
+outputs = ["backspin_rpm"]
+[contact]
+friction = inf
+tangential_restitution = 0.0
+restitution = 0.8
+[[axis]]
+key = "delivery.club_speed_mps"
+values = [36.0, 40.0, 44.0]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+values = [20.0, 24.0, 28.0]
+[[axis]]
+key = "head.mass_kg"
+values = [0.25, 0.26, 0.27]
+)" + kCentredBlow,
+                                   &o);
+  // Variance of a product of independent factors: of one factor alone that of its own values over that of the product.
+  std::vector<double> speeds = {36, 40, 44}, sines, masses;
+  for (const double loft : {20.0, 24.0, 28.0}) sines.push_back(std::sin(loft * std::acos(-1.0) / 180));
+  for (const double m : {0.25, 0.26, 0.27}) masses.push_back(1 / (3.5 + 0.04593 / m));
+  const auto mean = [](const std::vector<double>& x) { return (x[0] + x[1] + x[2]) / 3; };
+  const auto mean_square = [](const std::vector<double>& x) { return (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / 3; };
+  const double means = mean(speeds) * mean(sines) * mean(masses);
+  const double whole = mean_square(speeds) * mean_square(sines) * mean_square(masses) - means * means;
+  const auto share = [&](const std::vector<double>& x) {
+    return (mean_square(x) / (mean(x) * mean(x)) - 1) * means * means / whole;
+  };
+  const auto& e = s["main_effects"]["backspin_rpm"];
+  EXPECT_NEAR(e["delivery.club_speed_mps"]["share"], share(speeds), 1e-6);
+  EXPECT_NEAR(e["delivery.dynamic_loft_deg"]["share"], share(sines), 1e-6);
+  EXPECT_NEAR(e["head.mass_kg"]["share"], share(masses), 1e-6);
+  EXPECT_LT(e["delivery.dynamic_loft_deg"]["low"], share(sines));
+  EXPECT_GT(e["delivery.dynamic_loft_deg"]["high"], share(sines));
+  EXPECT_NE(o.text.find("Backspin [rpm] goes most with dynamic loft [deg]: "), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("Second is club speed [m/s]"), std::string::npos) << o.text;
+}
+
+TEST(Study, RowsBringKeysAndMeasuredValues) {
+  const fs::path dir = fresh_directory("study_rows");
+  write(dir / "blows.csv",
+        "name,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mph\nslow,30,20,90\nfast,45,12,\n");
+  write(dir / "case.toml",
+        "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
+        "rows.file = \"blows.csv\"\n" +
+            kCentredBlow);
+  const std::string out = (dir / "out").string();
+  ASSERT_EQ(command("run " + dir.string() + " --quiet --out " + out).status, 0);
+  const auto s = nlohmann::json::parse(content(dir / "out/summary.json"));
+  ASSERT_EQ(s["compare"]["differences"].size(), 1U);
+  EXPECT_EQ(s["compare"]["differences"][0]["points"], 1) << "the fast one was not measured";
+  EXPECT_NEAR(s["compare"]["differences"][0]["largest"].get<double>(),
+              s["range"]["ball_speed_mps"][0].get<double>() - 90 * 0.44704, 1e-9);
+  EXPECT_NE(content(dir / "out/points.csv")
+                .find("point,model,row,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mps,error\n"
+                      "0,stick-slip,slow,30,20,"),
+            std::string::npos);
+  write(dir / "blows.csv", "name,delivery.club_sped_mps\na,30\n");
+  const Outcome bad = command("run " + dir.string() + " --quiet --out " + out + "-bad");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.text.find("did you mean"), std::string::npos) << bad.text;
+}
+
+TEST(Study, DifferencesApartByAColumn) {
+  const nlohmann::json s = studied("study_by", R"(models = ["stick-slip", "rigid-eccentric"]
+outputs = ["ball_speed_mps"]
+[[variant]]
+name = "as measured"
+measured.ball_speed_mps = [1.0, 100.0]
+[[variant]]
+name = "off"
+measured.ball_speed_mps = 10.0
+[compare]
+with = "measured"
+by = "variant"
+)" + kCentredBlow);
+  const auto& all = s["compare"]["differences"];
+  ASSERT_EQ(all.size(), 4U);
+  for (const auto& d : all)
+    if (d["of"] == "as measured") EXPECT_EQ(d["rms"], 0.0) << "inside the range";
+    else EXPECT_NEAR(d["rms"].get<double>(), s["range"]["stick-slip.ball_speed_mps"][0].get<double>() - 10, 1e-9);
+}
+
+TEST(Study, AFormerKindSaysWhatItIsNow) {
+  for (const char* kind : {"sweep", "variants", "cross-check", "curves", "clubs", "bounce", "restitution-face"}) {
+    const fs::path dir = fresh_directory("study_former");
+    write(dir / "case.toml", std::string("kind = \"") + kind + "\"\n");
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2);
+    EXPECT_NE(o.text.find(std::string("'") + kind + "' is now 'study': "), std::string::npos) << o.text;
+  }
+}
+
+TEST(Study, AStatementThatCannotBeReadIsRefused) {
+  const fs::path dir = fresh_directory("study_statement");
+  for (const char* formula : {"ball_sped_mps > 1", "ball_speed_mps >", "difference.ball_speed_mps > 1"}) {
+    write(dir / "case.toml",
+          std::string("kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
+                      "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n[[statement]]\ntext = \"it is\"\n"
+                      "holds = \"") +
+              formula + "\"\n" + kCentredBlow);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2) << formula;
+    EXPECT_NE(o.text.find("statement[1].holds"), std::string::npos) << o.text;
+  }
+}
+
+TEST(Study, GridTakesNumbersAndWords) {
+  const fs::path dir = sweep_case("sweep_grid", R"(kind = "study"
 case = "../blow"
-record = ["models.rigid-planar.ball_speed_mps"]
+outputs = ["models.rigid-planar.ball_speed_mps"]
 keep_outputs = true
-[[parameters]]
+[[axis]]
 key = "models"
 values = ["rigid-planar"]
-[[parameters]]
+[[axis]]
 key = "delivery.club_speed_mph"
 values = [90, 100.5]
-[[parameters]]
+[[axis]]
 key = "delivery.dynamic_loft_deg"
 values = [0.0, 20.0, 40.0]
 )");
@@ -295,24 +501,24 @@ values = [0.0, 20.0, 40.0]
   write(dir / "sweep" / "case.toml", text);
   const Outcome done = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
   ASSERT_EQ(done.status, 0) << done.text;
-  EXPECT_EQ(lines(dir / "out" / "sweep.csv"), 7u);
-  EXPECT_NE(content(dir / "out" / "sweep.csv").find("\n3,rigid-planar,100.5,0,"), std::string::npos)
-      << content(dir / "out" / "sweep.csv");
+  EXPECT_EQ(lines(dir / "out" / "points.csv"), 7u);
+  EXPECT_NE(content(dir / "out" / "points.csv").find("\n3,rigid-planar,100.5,0,"), std::string::npos)
+      << content(dir / "out" / "points.csv");
   EXPECT_TRUE(fs::exists(dir / "out" / "shards" / "1-of-1" / "point-000003" / "summary.json"));
-  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "sweep.png"));
-  const std::string drawn = content(dir / "out" / "figures" / "sweep.gp");
+  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "line.png"));
+  const std::string drawn = content(dir / "out" / "figures" / "line.gp");
   EXPECT_NE(drawn.find("set xlabel 'dynamic loft [deg]'"), std::string::npos) << "across: what has most values";
   for (const char* line : {"title 'club speed 90 mph'", "title 'club speed 100.5 mph'"})
     EXPECT_NE(drawn.find(line), std::string::npos) << "a line for each value of the other";
 }
 
-TEST(Sweep, APointWithoutAnAnswerIsSaid) {
-  const fs::path dir = sweep_case("sweep_failed", R"(kind = "sweep"
+TEST(Study, APointWithoutAnAnswerIsSaid) {
+  const fs::path dir = sweep_case("sweep_failed", R"(kind = "study"
 case = "../blow"
-[[parameters]]
+[[axis]]
 key = "delivery.club_path_deg"
 values = [0.0, 89.0]
-[[parameters]]
+[[axis]]
 key = "delivery.face_angle_deg"
 values = [0.0, -60.0]
 )");
@@ -320,10 +526,10 @@ values = [0.0, -60.0]
   EXPECT_EQ(o.status, 3);
   EXPECT_NE(o.text.find("1 of 4 points have no answer; the first is point 3"), std::string::npos) << o.text;
   EXPECT_EQ(nlohmann::json::parse(content(dir / "out" / "summary.json")).at("failed"), 1);
-  EXPECT_NE(content(dir / "out" / "sweep.csv").find("the head moves away from the ball"), std::string::npos);
+  EXPECT_NE(content(dir / "out" / "points.csv").find("the head moves away from the ball"), std::string::npos);
 }
 
-TEST(Sweep, OverMeasuredDataThatAreNotHereIsSkipped) {
+TEST(Study, OverMeasuredDataThatAreNotHereIsSkipped) {
   const fs::path dir = fresh_directory("sweep_not_here");
   setenv("HOSEL_DATA", (dir / "nowhere").c_str(), 1);
   const Outcome o = command("run swing-speed --out " + (dir / "out").string());
@@ -332,7 +538,7 @@ TEST(Sweep, OverMeasuredDataThatAreNotHereIsSkipped) {
   EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
 }
 
-TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
+TEST(Study, BadInputIsRefusedBeforeAnythingIsWritten) {
   const std::map<std::string, std::string> wrong = {
       {"key = \"delivery.club_sped_mps\"\nvalues = [1.0]", "did you mean 'club_speed_mps'"},
       {"key = \"delivery.club_speed_mps\"\nvalues = [45.0, -1.0]", "out of range"},
@@ -341,7 +547,7 @@ TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
   };
   for (const auto& [parameter, hint] : wrong) {
     const fs::path dir =
-        sweep_case("sweep_wrong", "kind = \"sweep\"\ncase = \"../blow\"\n[[parameters]]\n" + parameter + "\n");
+        sweep_case("sweep_wrong", "kind = \"study\"\ncase = \"../blow\"\n[[axis]]\n" + parameter + "\n");
     const Outcome o = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
     EXPECT_EQ(o.status, 2) << parameter;
     EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << o.text;
@@ -356,13 +562,13 @@ TEST(Sweep, BadInputIsRefusedBeforeAnythingIsWritten) {
     EXPECT_EQ(command("sweep run " + (dir / "out").string() + " --shard " + shard).status, 2) << shard;
 }
 
-TEST(Sweep, AChangedBitOfAStoreIsNotTakenForAResult) {
+TEST(Study, AChangedBitOfAStoreIsNotTakenForAResult) {
   const fs::path dir = sweep_case("sweep_bits", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();
   ASSERT_EQ(command("sweep plan " + sweep + " --set sample.points=12 --out " + out).status, 0);
   ASSERT_EQ(command("sweep run " + out + " --quiet").status, 0);
   ASSERT_EQ(command("sweep merge " + out + " --quiet").status, 0);
-  const std::string table = content(dir / "out/sweep.csv");
+  const std::string table = content(dir / "out/points.csv");
   const fs::path points = dir / "out/shards/1-of-1/points.jsonl";
   const std::string good = content(points);
   std::mt19937 random(9);
@@ -372,7 +578,7 @@ TEST(Sweep, AChangedBitOfAStoreIsNotTakenForAResult) {
     bad[random() % bad.size()] ^= char(1 << random() % 8);
     write(points, bad);
     const Outcome o = command("sweep merge " + out + " --quiet --force");
-    ASSERT_TRUE(o.status == 2 || content(dir / "out/sweep.csv") == table) << "flip " << k;
+    ASSERT_TRUE(o.status == 2 || content(dir / "out/points.csv") == table) << "flip " << k;
     refused += o.status == 2;
   }
   EXPECT_GT(refused, 20);
@@ -388,7 +594,7 @@ TEST(Sweep, AChangedBitOfAStoreIsNotTakenForAResult) {
   }
 }
 
-TEST(Sweep, PointsMadeByHandAreNoResults) {
+TEST(Study, PointsMadeByHandAreNoResults) {
   const fs::path dir = sweep_case("sweep_hand", kSample);
   std::string map = kEccentricBlow;
   map.replace(map.find("\"impact\""), 8, "\"face-map\"");
@@ -442,7 +648,7 @@ TEST(Sweep, PointsMadeByHandAreNoResults) {
         << number;
 }
 
-TEST(Sweep, ASweepThatNamesItselfIsRefused) {
+TEST(Study, ASweepThatNamesItselfIsRefused) {
   const fs::path dir = sweep_case("sweep_self", kSample);
   std::string self = kSample;
   self.replace(self.find("../blow"), 7, "../sweep");
@@ -460,12 +666,12 @@ TEST(Sweep, ASweepThatNamesItselfIsRefused) {
   EXPECT_NE(o.text.find("names itself"), std::string::npos) << o.text;
 }
 
-TEST(Sweep, AGridTooLargeToCountIsRefused) {
-  std::string text = "kind = \"sweep\"\ncase = \"../blow\"\n";
+TEST(Study, AGridTooLargeToCountIsRefused) {
+  std::string text = "kind = \"study\"\ncase = \"../blow\"\n";
   const char* keys[] = {"club_speed_mps", "attack_angle_deg", "club_path_deg", "dynamic_loft_deg",
                         "face_angle_deg", "impact_toe_mm",    "impact_high_mm"};
   for (const char* key : keys) {
-    text += std::string("[[parameters]]\nkey = \"delivery.") + key + "\"\nvalues = [1.0";
+    text += std::string("[[axis]]\nkey = \"delivery.") + key + "\"\nvalues = [1.0";
     for (int i = 1; i < 1024; ++i) text += ",1.0";  // 1024^7 is 2^70, zero in 64 bits
     text += "]\n";
   }
@@ -475,17 +681,17 @@ TEST(Sweep, AGridTooLargeToCountIsRefused) {
   EXPECT_NE(o.text.find("more than 100000 points"), std::string::npos) << o.text;
 }
 
-TEST(Sweep, AKeySweptTwiceIsRefused) {
+TEST(Study, AKeySweptTwiceIsRefused) {
   for (const char* again : {"club_speed_mps", "club_speed_mph"}) {
     const fs::path dir =
-        sweep_case("sweep_twice", kSample + "[[parameters]]\nkey = \"delivery." + again + "\"\nrange = [40.0, 45.0]\n");
+        sweep_case("sweep_twice", kSample + "[[axis]]\nkey = \"delivery." + again + "\"\nrange = [40.0, 45.0]\n");
     const Outcome o = command("check " + (dir / "sweep").string());
     EXPECT_EQ(o.status, 2);
-    EXPECT_NE(o.text.find("'delivery.club_speed_mps' is swept already"), std::string::npos) << o.text;
+    EXPECT_NE(o.text.find("'delivery.club_speed_mps' is an axis already"), std::string::npos) << o.text;
   }
 }
 
-TEST(Sweep, AnEditHalfWayMixesNothing) {
+TEST(Study, AnEditHalfWayMixesNothing) {
   const fs::path dir = sweep_case("sweep_edit", kSample);
   const std::string sweep = (dir / "sweep").string();
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "whole").string()).status, 0);
@@ -496,11 +702,11 @@ TEST(Sweep, AnEditHalfWayMixesNothing) {
   std::string blow = kEccentricBlow;
   blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
   write(dir / "blow/case.toml", blow);
-  const bool in_time = !fs::exists(dir / "out/sweep.csv");
+  const bool in_time = !fs::exists(dir / "out/points.csv");
   run.join();
   ASSERT_TRUE(in_time) << "the sweep had ended before the edit";
   EXPECT_EQ(o.status, 0) << o.text;
-  EXPECT_EQ(content(dir / "out/sweep.csv"), content(dir / "whole/sweep.csv"));
+  EXPECT_EQ(content(dir / "out/points.csv"), content(dir / "whole/points.csv"));
 }
 
 }  // namespace

@@ -1,0 +1,263 @@
+#include "app/kinds/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "app/cases.hpp"
+#include "app/check_memory.hpp"
+#include "app/study/answer.hpp"
+#include "app/study/compare.hpp"
+#include "app/study/design.hpp"
+#include "app/study/draw.hpp"
+#include "app/study/effects.hpp"
+#include "app/study/history.hpp"
+#include "app/study/statement.hpp"
+#include "app/study/table.hpp"
+#include "app/sweep.hpp"
+#include "post/file.hpp"
+
+namespace hosel::app {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+/// Every number of a summary by its dotted name; what holds or not is 1 or 0.
+void flatten(const json& j, const std::string& name, json& out) {
+  if (j.is_object()) {
+    for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
+  } else if (j.is_array()) {
+    for (std::size_t i = 0; i < j.size(); ++i) flatten(j[i], fmt::format("{}.{}", name, i), out);
+  } else if (j.is_number()) {
+    out[name] = j;
+  } else if (j.is_boolean()) {
+    out[name] = j.get<bool>() ? 1 : 0;
+  }
+}
+
+/// The studies that are being read, outermost first, and their points: one that studies itself would never end.
+thread_local std::vector<fs::path> open_studies;
+thread_local std::size_t points_read = 0;
+
+struct Nesting {
+  Nesting(Table& root, const fs::path& own) {
+    const fs::path here = fs::weakly_canonical(own);
+    if (std::ranges::find(open_studies, here) != open_studies.end())
+      root.fail("case", "this study names itself, directly or by way of another: it would never end");
+    if (open_studies.empty()) points_read = 0;
+    open_studies.push_back(here);
+  }
+  ~Nesting() { open_studies.pop_back(); }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+};
+
+class StudyJob final : public PointJob {
+ public:
+  explicit StudyJob(CaseFile& file) {
+    const BlowsBeside beside;
+    Table root = file.root();
+    const Nesting nesting(root, file.file());
+    title_ = root.text({"title", "of tables, pages and figures"}, "");
+    table_.models = {""};
+    if (root.has("case")) read_case(file, root);
+    else read_blows(file, root);
+    table_.design = read_design(root);
+    const auto columns = table_.design.columns();
+    for (const std::string& c : columns)
+      if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
+    if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
+    reference_ = read_compare(root, table_);
+    statements_ = read_study_statements(root, columns, table_.outputs, reference_.has_value());
+    figures_ = read_study_figures(root, table_, reference_.has_value());
+    // What a case refuses is an error before anything is computed.
+    for (std::size_t d = 0; d < table_.design.size(); ++d) {
+      if (++points_read > kMostPoints)
+        root.fail("case", fmt::format("with the studies inside it, this one has more than {} points", kMostPoints));
+      try {
+        read_point(root, d);
+      } catch (const InputError& e) {
+        const std::string from = table_.design.from(d);
+        if (from.empty()) throw;
+        throw InputError(fmt::format("{}: {}", from, e.what()));
+      }
+    }
+  }
+
+  std::size_t size() const override { return table_.design.size() * table_.models.size(); }
+
+  json compute(std::size_t point, const fs::path& scratch) const override {
+    const std::size_t d = point / table_.models.size();
+    return studied_ ? compute_case(d, scratch) : compute_blow(d, point % table_.models.size());
+  }
+
+  void report(Output& out, const std::vector<json>& points) const override {
+    for (const json& p : points)
+      if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
+    StudyTable table = table_;
+    const bool named = !table.outputs.empty();
+    table.fill(points);
+    out.write("points.csv", table.csv(points));
+    json summary = {{"points", points.size()}};
+    summary["failed"] = std::ranges::count_if(points, [](const json& p) { return p.contains("error"); });
+    StudyEffects effects = named ? effects_of(table) : StudyEffects{};
+    effects.of.resize(table.series.size());
+    if (named) {
+      tell_effects(out, table, effects, summary);
+      if (const post::TextTable rows = table.rows(); rows.rows.size() > 1) out.show(rows, "Points");
+    }
+    std::vector<StudySeries> against;
+    if (reference_) {
+      against = references(table, *reference_);
+      std::vector<bool> causes(table.outputs.size());
+      for (std::size_t o = 0; o < outputs_.size(); ++o) causes[o] = outputs_[o].cause;
+      summary["compare"] = compare(out, table, *reference_, against, causes);
+    }
+    if (!statements_.empty())
+      summary["statements"] = judge(out, table, statements_, against, reference_ ? reference_->model : std::nullopt);
+    if (named) draw_study(out, table, title_, figures_, effects, reference_, against);
+    if (conditions_.histories) report_histories(out, table, points);
+    out.page().answer("points", fmt::format("{}", points.size()),
+                      fmt::format("{} without an answer", summary["failed"].get<int>()));
+    out.write_summary(summary);
+    out.tell(fmt::format("{} points, {} without an answer; the table is {}", points.size(),
+                         summary["failed"].get<int>(), (out.directory() / "points.csv").string()));
+  }
+
+ private:
+  /// Another case answers: its keys are what the design sets, entries of its summary what is recorded.
+  void read_case(CaseFile& file, Table root) {
+    const std::string named = root.text({"case",
+                                         "the case whose keys are varied: beside this one, or a shipped one; "
+                                         "without it the study's own tables are the blow"});
+    const fs::path own = file.case_beside(named);
+    const fs::path found = own.empty() ? find_case(named) : own;
+    set_ = root.texts({"set", "keys changed in every point, table.key=value"}, std::vector<std::string>{});
+    table_.outputs = root.texts({"outputs", "entries of the points' summaries that the table holds; empty: all"},
+                                std::vector<std::string>{});
+    keep_outputs_ = root.flag({"keep_outputs", "keep the directory of every point"}, false);
+    studied_ = std::make_unique<CaseFile>(found, file, own.empty() ? std::string() : named);
+  }
+
+  /// The study's own tables are the blow.
+  void read_blows(CaseFile& file, Table root) {
+    const StudyBlow base = read_study_blow(root);
+    table_.models = base.models;
+    table_.outputs = root.texts({"outputs", "quantities of blow, launch and flight, each with its unit"});
+    if (table_.outputs.empty()) root.fail("outputs", "name at least one quantity, ball_speed_mps for example");
+    for (const std::string& name : table_.outputs) {
+      if (std::ranges::count(table_.outputs, name) > 1) root.fail("outputs", fmt::format("'{}' is there twice", name));
+      outputs_.push_back(find_study_output(root, "outputs", name, base.flight.has_value()));
+    }
+    conditions_.matched_launch =
+        root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
+    if (root.has_quantity("keep_bounce"))
+      conditions_.bounce_speed = root.quantity(
+          {"keep_bounce", "scale the ball's moduli until it bounces at this speed as the first point's does"}, "mps",
+          {1, 100});
+    conditions_.histories = root.flag({"histories", "keep the forces over time (volumetric, hertz-maw)"}, false);
+    for (const std::string& m : table_.models)
+      if (conditions_.histories && m != "volumetric" && m != "hertz-maw")
+        root.fail("histories", "forces over time come from volumetric and hertz-maw");
+    if (conditions_.histories && conditions_.matched_launch)
+      root.fail("histories", "with matched_launch there is a blow at every loft of the search");
+    blow_ = std::make_unique<CaseFile>(file, file.overrides());
+  }
+
+  /// Every key that a study of blows has beside the blow itself.
+  static void leave_study_keys(Table root) {
+    for (const std::string& key : root.keys())
+      if (key.starts_with("keep_bounce_")) root.leave({key});
+    root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
+                "measured", "compare", "statement", "figure"});
+  }
+
+  void read_point(Table& root, std::size_t d) const {
+    if (studied_) {
+      CaseFile one(*studied_, overrides(d));
+      read_job(one);
+      return;
+    }
+    CaseFile one(*blow_, overrides(d));
+    const StudyBlow asked = read_study_blow(one.root());
+    if (asked.models.size() != table_.models.size())
+      root.fail("models", "a point may not change how many models answer");
+    if (conditions_.matched_launch && !launch_angle(d))
+      root.fail("matched_launch",
+                fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
+    leave_study_keys(one.root());
+    one.finish();
+  }
+
+  std::vector<std::string> overrides(std::size_t d) const {
+    return table_.design.set(d, studied_ ? set_ : blow_->overrides());
+  }
+
+  std::optional<double> launch_angle(std::size_t d) const {
+    std::vector<MeasuredRange> all = table_.design.measured(d);
+    all.insert(all.end(), table_.measured.begin(), table_.measured.end());
+    for (const MeasuredRange& m : all)
+      if (const SplitName s = split_unit(m.name); s.stem == "launch_angle" && s.unit) return m.low * s.unit->si;
+    return {};
+  }
+
+  json compute_case(std::size_t d, const fs::path& scratch) const {
+    // A killed process may have finished the point, but only what is in the store is sealed: computed again.
+    fs::remove(scratch / "summary.json");
+    CaseFile file(*studied_, overrides(d));
+    const auto job = read_job(file);
+    {
+      Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file);
+      job->run(out);
+    }
+    json result = json::object();
+    const json said = json::parse(post::read_file(scratch / "summary.json"));
+    flatten(said, "", result);
+    if (said.contains("skipped")) result["skipped"] = said["skipped"];
+    if (!keep_outputs_) fs::remove_all(scratch);
+    return result;
+  }
+
+  StudyBlow blow(std::size_t d) const {
+    CaseFile file(*blow_, overrides(d));
+    return read_study_blow(file.root());
+  }
+
+  json compute_blow(std::size_t d, std::size_t model) const {
+    const StudyBlow asked = blow(d);
+    const models::NormalImpactPoint* bounce = nullptr;
+    if (conditions_.bounce_speed && d > 0) {
+      std::call_once(first_bounce_, [&] { bounce_ = wall_bounce(blow(0), *conditions_.bounce_speed); });
+      bounce = &bounce_;
+    }
+    const StudyAnswer a = answer(asked.models[model], asked, conditions_, launch_angle(d), bounce);
+    json result = json::object();
+    for (const StudyOutput& o : outputs_)
+      if (const auto x = o.value(a); x && std::isfinite(*x)) result[o.name] = *x / o.si;
+    if (!a.history.empty()) result["history"] = stored(a.history);
+    return result;
+  }
+
+  std::string title_;
+  std::unique_ptr<CaseFile> studied_, blow_;  ///< as they were when the study was read; one of them
+  std::vector<std::string> set_;
+  bool keep_outputs_ = false;
+  StudyConditions conditions_;
+  StudyTable table_;
+  std::vector<StudyOutput> outputs_;  ///< of a study of blows
+  std::optional<StudyReference> reference_;
+  std::vector<StudyStatement> statements_;
+  std::vector<StudyFigure> figures_;
+  mutable std::once_flag first_bounce_;
+  mutable models::NormalImpactPoint bounce_;
+};
+
+}  // namespace
+
+std::unique_ptr<Job> read_study(CaseFile& file) { return std::make_unique<StudyJob>(file); }
+
+}  // namespace hosel::app

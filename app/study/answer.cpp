@@ -1,0 +1,264 @@
+#include "app/study/answer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/read_blow.hpp"
+#include "app/read_options.hpp"
+#include "golf/first_contact.hpp"
+#include "golf/quantities.hpp"
+#include "models/checked_launch.hpp"
+#include "models/fe/plate_strike.hpp"
+#include "models/matched_launch.hpp"
+#include "models/oblique.hpp"
+#include "models/reduced/face_strike.hpp"
+#include "models/registry.hpp"
+#include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/stick_slip.hpp"
+
+namespace hosel::app {
+namespace {
+
+using MaybeNumber = std::optional<double>;
+
+/// The ball's momentum along the normal of first contact, and the rest of it [N s].
+std::pair<double, double> impulse(const StudyAnswer& a) {
+  const Vec3 n = first_contact(a.blow).normal, J = a.blow.ball.mass * a.launch.velocity;
+  return {J.dot(n), (J - J.dot(n) * n).norm()};
+}
+
+double head_turn(const StudyAnswer& a) { return (a.launch.head_spin - a.blow.delivery.head_angular_velocity).norm(); }
+
+/// Along the slip at first contact, zero before and after the contact; nothing where no forces were kept.
+MaybeNumber extreme_force(const StudyAnswer& a, double sign) {
+  if (a.history.empty()) return {};
+  double out = 0;
+  for (const ForceSample& s : a.history) out = std::max(out, sign * s.tangential);
+  return sign * out;
+}
+
+/// A blow by a wall as a bounce: velocities along the wall's normal, and along the wall after over before.
+struct WallBounce {
+  MaybeNumber restitution, ratio, angle;
+};
+WallBounce off_wall(const StudyAnswer& a) {
+  if (!std::isinf(a.blow.club.head.mass)) return {};
+  const Vec3 n = first_contact(a.blow).normal, before = -a.blow.delivery.velocity(), after = a.launch.velocity + before;
+  const double v_n = -before.dot(n), u_n = after.dot(n);
+  const Vec3 across = before + v_n * n;
+  if (!(across.norm() > 0)) return {u_n / v_n, {}, {}};
+  const double u_t = after.dot(across.normalized());
+  return {u_n / v_n, u_t / across.norm(), std::atan2(u_t, u_n)};
+}
+
+/// A normal blow of ball, face and head in series, at the club's speed and the place of the impact.
+struct SeriesStrike {
+  double mass, restitution, speed_ratio;  ///< of the head at that place [kg]; of the ball's speed over the head's
+};
+SeriesStrike in_series(const StudyAnswer& a, bool yields) {
+  const double yc = -a.blow.delivery.impact_toe, zc = a.blow.delivery.impact_high;
+  const double mass = models::mass_at(a.blow.club.head, yc, zc), ball = a.blow.ball.mass;
+  const auto face = yields ? a.face : std::nullopt;
+  const models::Striker striker = models::golf_ball(a.blow.ball);
+  const double speed = a.blow.delivery.club_speed;
+  double e = 0;
+  if (yields && a.face_plate) {
+    const models::PlateStrike plate(a.face_plate->on(a.blow.club.head.face), a.blow.club.head);
+    e = plate.strike(striker, plate.at({yc, zc}, models::kBallPatch), speed).restitution;
+  } else {
+    e = models::strike(striker, mass, face, face ? face->shape(yc, zc).value : 0, speed).restitution;
+  }
+  return {mass, e, (1 + e) * mass / (mass + ball)};
+}
+
+MaybeNumber spin_over_rolling(const StudyAnswer& a) {
+  Blow rolling = a.blow;
+  rolling.contact = {};
+  const double spin = models::StickSlip().launch(rolling).spin_rate();
+  return spin > 0 ? MaybeNumber(a.launch.spin_rate() / spin) : MaybeNumber();
+}
+
+MaybeNumber kept(const StudyAnswer& a, double KeptBounce::*value) {
+  return a.bounce ? MaybeNumber((*a.bounce).*value) : MaybeNumber();
+}
+
+/// Beyond the launch's and the flight's own.
+struct BlowQuantity {
+  std::string_view name;               ///< whole, where the table of units knows none for it
+  std::optional<Dimension> dimension;  ///< of the unit behind the name
+  MaybeNumber (*value)(const StudyAnswer&);
+  bool cause = false;
+};
+using Given = const StudyAnswer&;
+const std::array kBlowQuantities = {
+    BlowQuantity{"contact_time", Dimension::time, [](Given a) { return a.launch.contact_time; }, true},
+    BlowQuantity{"peak_force", Dimension::force, [](Given a) { return a.launch.peak_force; }, true},
+    BlowQuantity{"normal_impulse_N_s", {}, [](Given a) { return MaybeNumber(impulse(a).first); }, true},
+    BlowQuantity{"tangential_impulse_N_s", {}, [](Given a) { return MaybeNumber(impulse(a).second); }, true},
+    BlowQuantity{"head_rotation", Dimension::angular_velocity, [](Given a) { return MaybeNumber(head_turn(a)); }, true},
+    BlowQuantity{
+        "tangential_restitution", {}, [](Given a) { return models::tangential_restitution(a.blow, a.launch); }},
+    BlowQuantity{"launch_ratio", {}, [](Given a) { return models::launch_ratio(a.blow, a.launch); }},
+    BlowQuantity{"tangential_ratio", {}, [](Given a) { return off_wall(a).ratio; }},
+    BlowQuantity{"normal_restitution", {}, [](Given a) { return off_wall(a).restitution; }},
+    BlowQuantity{"rebound_angle", Dimension::angle, [](Given a) { return off_wall(a).angle; }},
+    BlowQuantity{
+        "smash_factor", {}, [](Given a) { return MaybeNumber(a.launch.ball_speed() / a.blow.delivery.club_speed); }},
+    BlowQuantity{"spin_over_rolling", {}, spin_over_rolling},
+    BlowQuantity{"striking_mass_kg", {}, [](Given a) { return MaybeNumber(in_series(a, false).mass); }},
+    BlowQuantity{"face_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, true).restitution); }},
+    BlowQuantity{"rigid_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, false).restitution); }},
+    BlowQuantity{"face_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); }},
+    BlowQuantity{"rigid_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, false).speed_ratio); }},
+    BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
+    BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
+    BlowQuantity{"dynamic_loft", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.dynamic_loft); }},
+    BlowQuantity{"wall_restitution", {}, [](Given a) { return kept(a, &KeptBounce::restitution); }},
+    BlowQuantity{"wall_contact_time", Dimension::time, [](Given a) { return kept(a, &KeptBounce::contact_time); }},
+    BlowQuantity{"elastic_factor", {}, [](Given a) { return kept(a, &KeptBounce::elastic); }},
+    BlowQuantity{"viscous_factor", {}, [](Given a) { return kept(a, &KeptBounce::viscous); }},
+};
+
+/// Moduli and branches are scaled until restitution and contact time on a wall are the reference's again: a change of
+/// the ball is else judged by its bounce.
+KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double speed,
+                       const models::NormalImpactPoint& own, const models::NormalImpactPoint& reference) {
+  KeptBounce out{own.restitution, own.contact_time};
+  if (std::abs(own.restitution - reference.restitution) < 5e-4 &&
+      std::abs(own.contact_time / reference.contact_time - 1) < 2e-3)
+    return out;
+  models::FeImpactOptions axial = fe;
+  axial.harmonics = 0;
+  axial.face.reset();
+  axial.plate.reset();
+  const models::NormalImpactTarget target{.speeds = {speed},
+                                          .restitution = reference.restitution,
+                                          .restitution_slope = 0,
+                                          .restitution_sigma = 5e-4,
+                                          .contact_speed = speed,
+                                          .contact_time = reference.contact_time,
+                                          .contact_time_sigma = 2e-3 * reference.contact_time};
+  using What = models::FreeParameter::What;
+  const models::BallCalibration fit = models::calibrate_ball(
+      {.options = axial, .ball = ball, .wall = target, .free = {{What::long_term}, {What::branches}}});
+  fe.ball = fit.ball;
+  const models::NormalImpactPoint& then = fit.points.front();
+  return {then.restitution, then.contact_time, fit.values[0] / fit.start[0], fit.values[1] / fit.start[1]};
+}
+
+/// The launch of a model that tells its forces as it goes.
+Launch launch_with_history(const std::string& model, const models::Options& options, const Blow& blow,
+                           std::vector<ForceSample>& history) {
+  const Vec3 along = models::impulse_problem(blow).contact.slip().normalized();
+  const auto add = [&](const auto& s) { history.push_back({s.time, s.normal_force, s.tangential_force.dot(along)}); };
+  if (model == "hertz-maw")
+    return models::hertz_maw_impact(blow, options.hertz_maw, options.hertz_maw_solution, add).launch;
+  models::VolumetricOptions fine = options.volumetric_solution;
+  fine.tolerance = std::min(fine.tolerance, 1e-6);  // the steps are those of the integration
+  return models::volumetric_impact(blow, options.volumetric, fine, nullptr, add).launch;
+}
+
+}  // namespace
+
+StudyBlow read_study_blow(Table root) {
+  StudyBlow out{.models = read_models(root)};
+  out.blow = read_blow(root, out.models);
+  out.options = read_options(root, out.models);
+  out.flight = read_optional_flight(root);
+  if (auto t = root.optional_table("plate")) {
+    out.plate = {
+        t->quantity({"young", "Young's modulus of a thick elastic plate; absent: rigid"}, "GPa", Range::positive()),
+        t->number({"poisson", "Poisson's ratio of the plate"}, {0, 0.49})};
+    if (!std::isinf(out.blow.club.head.mass)) t->fail("", "a plate is a wall: head.mass_kg = inf");
+    try {
+      models::ElasticPlate(out.options.fe, *out.plate, out.blow.ball);
+    } catch (const std::invalid_argument& e) { t->fail("", e.what()); }
+  }
+  return out;
+}
+
+StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies) {
+  const SplitName split = split_unit(name);
+  std::vector<std::string> known;
+  const auto unit_of = [&](std::string_view stem, Dimension dimension) -> std::optional<Unit> {
+    for (const Unit& u : units())
+      if (u.dimension == dimension) {
+        known.push_back(fmt::format("{}_{}", stem, u.suffix));
+        break;
+      }
+    if (split.stem != stem || !split.unit || split.unit->dimension != dimension) return {};
+    return split.unit;
+  };
+  for (int o = 0; o < kOutputs; ++o) {
+    const OutputQuantity& q = quantity(hosel::Output(o));
+    const auto unit = of_flight(hosel::Output(o)) ? std::nullopt : unit_of(q.name, q.dimension);
+    if (!unit) continue;
+    return {name, unit->si, [of = q.of](const StudyAnswer& a) -> MaybeNumber { return (a.launch.*of)(); }};
+  }
+  for (const post::FlightChannel& c : post::flight_channels(post::DistanceUnit::metres)) {
+    const auto all = units();
+    const auto unit = unit_of(c.name, std::ranges::find(all, c.unit, &Unit::suffix)->dimension);
+    if (!unit) continue;
+    if (!flies) table.fail(key, fmt::format("'{}' is of the flight, and there is no [flight]", name));
+    return {name, unit->si,
+            [value = c.value](const StudyAnswer& a) { return a.flight ? value(*a.flight) : MaybeNumber(); }};
+  }
+  for (const BlowQuantity& q : kBlowQuantities) {
+    if (q.dimension) {
+      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause};
+    } else {
+      known.emplace_back(q.name);
+      if (name == q.name) return {name, 1, q.value, q.cause};
+    }
+  }
+  const std::string near = nearest(name, known);
+  std::string all;
+  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+  table.fail(key, fmt::format(
+                      "nothing of a blow is called '{}'; {}", name,
+                      near.empty() ? "known, with any unit of the dimension: " + all : "did you mean '" + near + "'?"));
+}
+
+models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
+  models::FeImpactOptions axial = blow.options.fe;
+  axial.harmonics = 0;
+  axial.face.reset();  // of the club: the wall is rigid
+  axial.plate.reset();
+  return models::normal_impact(axial, blow.blow.ball, speed);
+}
+
+StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
+                   const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference) {
+  StudyAnswer out{.blow = asked.blow, .face = asked.options.volumetric.face, .face_plate = asked.options.fe.plate};
+  models::Options options = asked.options;
+  if (conditions.bounce_speed) {
+    const models::NormalImpactPoint own = wall_bounce(asked, *conditions.bounce_speed);
+    out.bounce = reference ? keep_bounce(options.fe, asked.blow.ball, *conditions.bounce_speed, own, *reference)
+                           : KeptBounce{own.restitution, own.contact_time};
+  }
+  const std::unique_ptr<models::ImpactModel> made =
+      asked.plate && model.starts_with("fe-")
+          ? std::make_unique<models::ElasticPlate>(options.fe, *asked.plate, asked.blow.ball)
+          : models::find(model)->make(options);
+  if (conditions.matched_launch) {
+    constexpr double tolerance = radians(0.03);
+    auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
+    out.blow = std::move(found.blow);
+    out.launch = found.launch;
+  } else if (conditions.histories) {
+    out.launch = launch_with_history(model, options, out.blow, out.history);
+    models::check_launch(*made, out.blow, out.launch);
+  } else {
+    out.launch = models::checked_launch(*made, out.blow);
+  }
+  if (asked.flight) try {
+      out.flight = asked.flight->follow(out.launch, asked.blow.ball);
+    } catch (const std::invalid_argument&) {
+    }  // the ball does not reach the landing: the launch is an answer all the same
+  return out;
+}
+
+}  // namespace hosel::app

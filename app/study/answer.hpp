@@ -1,0 +1,75 @@
+/// What one model says of one blow of a study, and the one table of quantities that are read of it.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/read_flight.hpp"
+#include "app/reader.hpp"
+#include "golf/blow.hpp"
+#include "golf/face_compliance.hpp"
+#include "models/calibration/ball_calibration.hpp"
+#include "models/fe/elastic_plate.hpp"
+#include "models/options.hpp"
+
+namespace hosel::app {
+
+/// A blow as the tables of a study say it.
+struct StudyBlow {
+  std::vector<std::string> models;
+  Blow blow;
+  models::Options options;
+  std::optional<FlightSetup> flight;
+  std::optional<models::ElasticSolid> plate;  ///< the wall, where it is not rigid
+};
+StudyBlow read_study_blow(Table root);
+
+/// Conditions under which variants of a club or ball are compared.
+struct StudyConditions {
+  bool matched_launch = false;         ///< the loft is an unknown: the launch angle is the measured one
+  std::optional<double> bounce_speed;  ///< moduli are scaled until the ball bounces as the first blow's does [m/s]
+  bool histories = false;              ///< forces over time are kept (volumetric, hertz-maw)
+};
+
+/// At one instant of a blow.
+struct ForceSample {
+  double time, normal, tangential;  ///< [s], [N], [N] along the slip of ball on face at first contact
+};
+
+struct KeptBounce {
+  double restitution, contact_time;  ///< on a rigid wall, before the moduli were scaled
+  double elastic = 1, viscous = 1;   ///< factors on the moduli
+};
+
+struct StudyAnswer {
+  Blow blow;
+  std::optional<FaceCompliance> face;
+  std::shared_ptr<const models::PlateOnDemand> face_plate;  ///< a face with a thickness
+  Launch launch;
+  std::optional<post::ShotFlight> flight;
+  std::optional<KeptBounce> bounce;
+  std::vector<ForceSample> history;
+};
+
+/// A quantity by its name and unit, as a study asks for it: "ball_speed_mph", "launch_ratio".
+struct StudyOutput {
+  std::string name;
+  double si = 1;
+  std::function<std::optional<double>(const StudyAnswer&)> value;  ///< SI; nothing where the answer does not have it
+  bool cause = false;  ///< of the contact itself: may explain why a launch differs
+};
+/// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so.
+StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies);
+
+/// The axial bounce on a rigid wall, of the ball and numerics of a blow.
+models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed);
+
+/// What the model answers. `launch_angle`: the measured one, where it has to be met [rad]. `reference`: the bounce that
+/// is to be kept. Throws what the model throws.
+StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
+                   const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference);
+
+}  // namespace hosel::app

@@ -1,0 +1,284 @@
+#include "app/study/design.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "app/read_face_map.hpp"
+#include "app/read_sheet.hpp"
+#include "post/labels.hpp"
+#include "solvers/random.hpp"
+
+namespace hosel::app {
+namespace {
+
+using FactorKind = DesignFactor::Kind;
+
+std::optional<double> cell_number(const std::string& cell) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+  return error == std::errc() && end == cell.data() + cell.size() ? std::optional(x) : std::nullopt;
+}
+
+/// A TOML text without its quotes.
+std::string without_quotes(const std::string& toml) {
+  const bool quoted = toml.size() > 1 && toml.front() == toml.back() && (toml.front() == '"' || toml.front() == '\'');
+  return quoted ? toml.substr(1, toml.size() - 2) : toml;
+}
+
+/// The same key, or the same quantity in another unit.
+bool same_quantity(const std::string& a, const std::string& b) {
+  const SplitName x = split_unit(a), y = split_unit(b);
+  return a == b || (x.unit && y.unit && x.stem == y.stem);
+}
+
+DesignFactor read_variants(Table root) {
+  DesignFactor out{.kind = FactorKind::variants, .columns = {"variant"}};
+  std::vector<std::string> taken;
+  for (Table t : root.tables("variant")) {
+    constexpr std::size_t most = 1000;  // each is read with the case of every one
+    if (out.levels.size() == most) root.fail("variant", fmt::format("more than {}: name an [[axis]] or [rows]", most));
+    DesignLevel level;
+    level.cells = {t.name({"name", "of the variant"}, taken)};
+    level.set = t.texts({"set", "keys that the variant changes, table.key=value"}, std::vector<std::string>{});
+    t.text({"range", "where its figures come from"}, "");
+    if (auto m = t.optional_table("measured")) level.measured = read_measured(*m);
+    out.levels.push_back(std::move(level));
+  }
+  return out;
+}
+
+DesignFactor read_rows(Table t) {
+  DesignFactor out{.kind = FactorKind::rows, .columns = {}};
+  const auto file = t.file({"file",
+                            "CSV of blows: a head with a dot is a key of the case, `name` a row's name, any "
+                            "other head a measured quantity"});
+  const post::Sheet sheet = read_sheet(file);
+  out.levels.resize(sheet.rows());
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    const std::string& head = sheet.names[c];
+    const bool key = head.find('.') != std::string::npos, column = key || head == "name";
+    if (column) out.columns.push_back(key ? head : "row");
+    const auto measured = column ? std::vector<double>() : column_with_gaps(sheet, head);
+    for (std::size_t r = 0; r < sheet.rows(); ++r) {
+      DesignLevel& level = out.levels[r];
+      level.from = fmt::format("{}:{}", sheet.file, sheet.lines[r]);
+      if (column) level.cells.push_back(sheet.columns[c][r]);
+      if (key) level.set.push_back(fmt::format("{}={}", head, sheet.columns[c][r]));
+      if (!column && std::isfinite(measured[r])) level.measured.push_back({head, measured[r], measured[r]});
+    }
+  }
+  if (out.levels.empty()) t.fail("file", "holds no row");
+  if (out.columns.empty()) t.fail("file", "no head is a key of the case, as delivery.club_speed_mps is");
+  return out;
+}
+
+DesignFactor read_places(Table root) {
+  DesignFactor out{.kind = FactorKind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
+  const post::FaceGrid grid = read_face_grid(root);
+  for (std::size_t p = 0; p < grid.size(); ++p) {
+    DesignLevel level;
+    for (std::size_t c = 0; c < 2; ++c) {
+      level.cells.push_back(fmt::format("{:.10g}", 1e3 * (c == 0 ? grid.toe_at(p) : grid.high_at(p))));
+      level.set.push_back(fmt::format("{}={}", out.columns[c], level.cells.back()));
+    }
+    out.levels.push_back(std::move(level));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<MeasuredRange> read_measured(Table t) {
+  std::vector<MeasuredRange> out;
+  for (const std::string& key : t.keys()) {
+    const Key declared{key, "measured: a number, or the lowest and the highest", "a quantity with its unit"};
+    const auto [low, high] = t.number_or_range(declared);
+    out.push_back({key, low, high});
+  }
+  return out;
+}
+
+std::size_t Design::size() const {
+  std::size_t n = 1;
+  for (const DesignFactor& f : factors_) n *= f.levels.size();
+  return n;
+}
+
+void Design::add(DesignFactor factor, const Table& at, std::string_view key) {
+  if (factor.levels.empty()) return;
+  if (size() > kMostPoints / factor.levels.size())
+    at.fail(key, fmt::format("with these values the design has more than {} points", kMostPoints));
+  factors_.push_back(std::move(factor));
+}
+
+const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
+  std::size_t block = 1;
+  for (std::size_t f = factor + 1; f < factors_.size(); ++f) block *= factors_[f].levels.size();
+  return factors_[factor].levels[point / block % factors_[factor].levels.size()];
+}
+
+bool Design::has(FactorKind kind) const {
+  return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end();
+}
+
+std::vector<std::string> Design::columns() const {
+  std::vector<std::string> out;
+  for (const DesignFactor& f : factors_) out.insert(out.end(), f.columns.begin(), f.columns.end());
+  return out;
+}
+
+std::vector<std::string> Design::cells(std::size_t point) const {
+  std::vector<std::string> out;
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    const auto& cells = level(f, point).cells;
+    out.insert(out.end(), cells.begin(), cells.end());
+  }
+  return out;
+}
+
+std::pair<std::size_t, std::size_t> Design::place(std::size_t column) const {
+  std::size_t f = 0;
+  while (column >= factors_[f].columns.size()) column -= factors_[f++].columns.size();
+  return {f, column};
+}
+
+std::vector<double> Design::numbers(std::size_t column) const {
+  const auto [f, c] = place(column);
+  std::vector<double> out;
+  for (std::size_t p = 0; p < size(); ++p) {
+    const auto x = cell_number(level(f, p).cells[c]);
+    if (!x) return {};
+    out.push_back(*x);
+  }
+  return out;
+}
+
+std::vector<std::string> Design::levels(std::size_t column) const {
+  const auto [f, c] = place(column);
+  std::vector<std::string> out;
+  std::set<std::string_view> taken;
+  for (const DesignLevel& l : factors_[f].levels)
+    if (taken.insert(l.cells[c]).second) out.push_back(l.cells[c]);
+  return out;
+}
+
+std::vector<std::string> Design::set(std::size_t point, const std::vector<std::string>& between) const {
+  std::vector<std::string> first, last;
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    auto& to = factors_[f].kind == FactorKind::variants || factors_[f].kind == FactorKind::rows ? first : last;
+    const auto& set = level(f, point).set;
+    to.insert(to.end(), set.begin(), set.end());
+  }
+  first.insert(first.end(), between.begin(), between.end());
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
+std::vector<MeasuredRange> Design::measured(std::size_t point) const {
+  std::vector<MeasuredRange> out;
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    const auto& own = level(f, point).measured;
+    out.insert(out.end(), own.begin(), own.end());
+  }
+  return out;
+}
+
+std::string said_cell(const std::string& column, const std::string& cell) {
+  if (column == "variant" || column == "row") return cell;
+  const SplitName split = split_unit(column);
+  const std::string name = post::label(column);
+  return fmt::format("{} {}{}", name.substr(0, name.find(" [")), cell,
+                     split.unit ? " " + post::symbol(split.unit->suffix) : "");
+}
+
+std::string Design::said(std::size_t point) const {
+  std::string text;
+  const auto heads = columns(), own = cells(point);
+  const auto row = std::size_t(std::ranges::find(heads, "row") - heads.begin());
+  const bool named = row < heads.size() && levels(row).size() == factors_[place(row).first].levels.size();
+  for (std::size_t c = 0; c < heads.size(); ++c) {
+    if (levels(c).size() < 2 || (named && c != row && tied(c, row))) continue;  // a row's own name says all of it
+    text += (text.empty() ? "" : ", ") + said_cell(heads[c], own[c]);
+  }
+  return text;
+}
+
+Design read_design(Table root) {
+  Design out;
+  out.add(read_variants(root), root, "variant");
+  if (auto rows = root.optional_table("rows")) out.add(read_rows(*rows), root, "rows");
+  if (root.has("grid")) out.add(read_places(root), root, "grid");
+
+  auto sample = root.optional_table("sample");
+  const auto points = sample ? std::size_t(sample->integer({"points", "of the sample"}, 1, long(kMostPoints))) : 0;
+  std::mt19937_64 random(sample ? std::uint64_t(sample->integer({"seed", "of the sample"}, 0, 1L << 62)) : 0);
+  const bool latin = !sample || sample->choice({"method",
+                                                "a value in each of as many strata as there are points, or "
+                                                "values drawn without regard to one another"},
+                                               {"latin-hypercube", "random"}, "latin-hypercube") == "latin-hypercube";
+  DesignFactor sampled{.kind = FactorKind::sample};
+  sampled.levels.resize(points);
+  std::vector<DesignFactor> axes;
+  std::vector<std::pair<std::string, Table>> swept;
+  for (Table t : root.tables("axis")) {
+    std::vector<std::string> keys;
+    if (t.has("keys")) keys = t.texts({"keys", "of the case, all set to the axis' value"});
+    else keys = {t.text({"key", "of the case, with its unit"})};
+    if (keys.empty()) t.fail("keys", "name at least one key");
+    const std::string name = t.text({"name", "of the axis in tables and figures"}, keys.front());
+    for (const std::string& key : keys) {
+      for (const auto& [other, table] : swept)
+        if (same_quantity(key, other))
+          t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
+      swept.emplace_back(key, t);
+    }
+    const auto level = [&](const std::string& toml) {
+      DesignLevel l{.cells = {without_quotes(toml)}};
+      for (const std::string& key : keys) l.set.push_back(key + "=" + toml);
+      return l;
+    };
+    DesignFactor axis{.kind = FactorKind::axis, .columns = {name}};
+    if (!t.has("range")) {
+      for (const std::string& x : t.scalars({"values", "of the key, each crossed with all other axes"}))
+        axis.levels.push_back(level(x));
+      axes.push_back(std::move(axis));
+      continue;
+    }
+    const auto range = t.numbers({"range", "lowest and highest value"}, 2);
+    if (!sample || t.has("count")) {
+      const long count = t.integer({"count",
+                                    "of values from one end of the range to the other, crossed with all other axes; "
+                                    "without it the [sample] draws them"},
+                                   2, long(kMostPoints));
+      for (long i = 0; i < count; ++i)
+        axis.levels.push_back(
+            level(fmt::format("{:.12g}", range[0] + (range[1] - range[0]) * double(i) / double(count - 1))));
+      axes.push_back(std::move(axis));
+      continue;
+    }
+    std::vector<double> drawn;
+    if (latin) drawn = solvers::latin_column(range[0], range[1], points, random);
+    else
+      for (std::size_t i = 0; i < points; ++i)
+        drawn.push_back(range[0] + (range[1] - range[0]) * solvers::uniform(random));
+    sampled.columns.push_back(name);
+    for (std::size_t i = 0; i < points; ++i) {
+      DesignLevel l = level(fmt::format("{}", drawn[i]));
+      sampled.levels[i].cells.push_back(l.cells.front());
+      sampled.levels[i].set.insert(sampled.levels[i].set.end(), l.set.begin(), l.set.end());
+    }
+  }
+  if (sample && sampled.columns.empty()) sample->fail("", "no [[axis]] has a range to draw from");
+  if (sample) out.add(std::move(sampled), root, "sample");
+  for (std::size_t a = 0; a < axes.size(); ++a) out.add(std::move(axes[a]), root, "axis");
+  if (out.factors().empty())
+    root.fail("axis", "a study varies something: name an [[axis]], a [[variant]], [rows], [grid] or [sample]");
+  return out;
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,88 @@
+/// The design of a study: factors whose levels set keys of a case, crossed with one another.
+///
+///     [[variant]]  name, set = ["key=value", ...]          named changes
+///     [rows]       file = "blows.csv"                      a blow a row: heads with a dot are keys of the case
+///     [grid]       columns, rows, width_mm, height_mm      places on the face
+///     [sample]     points, seed, method                    of every [[axis]] with a range and no count
+///     [[axis]]     key, values = [...] | range, count      one level a value
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/reader.hpp"
+
+namespace hosel::app {
+
+/// Lowest and highest measured value of a quantity (one number: twice), as it was named.
+struct MeasuredRange {
+  std::string name;
+  double low = 0, high = 0;
+};
+
+struct DesignLevel {
+  std::vector<std::string> cells;  ///< one a column of its factor
+  std::vector<std::string> set;    ///< overrides, key=value
+  std::vector<MeasuredRange> measured;
+  std::string from;  ///< file and line, of a row
+};
+
+struct DesignFactor {
+  enum class Kind { variants, rows, grid, sample, axis };
+  Kind kind = Kind::axis;
+  std::vector<std::string> columns;
+  std::vector<DesignLevel> levels;
+};
+
+/// The first factor changes slowest.
+class Design {
+ public:
+  std::size_t size() const;
+  const std::vector<DesignFactor>& factors() const { return factors_; }
+  const DesignLevel& level(std::size_t factor, std::size_t point) const;
+  bool has(DesignFactor::Kind kind) const;
+
+  std::vector<std::string> columns() const;
+  std::vector<std::string> cells(std::size_t point) const;
+  /// A column's number at every point; empty where one is not a number.
+  std::vector<double> numbers(std::size_t column) const;
+  /// Whether two columns change together, those of [rows] or of a sample.
+  bool tied(std::size_t column, std::size_t other) const {
+    return place(column).first == place(other).first && factors_[place(column).first].kind != DesignFactor::Kind::grid;
+  }
+  /// A column's distinct cells, in the order of the design.
+  std::vector<std::string> levels(std::size_t column) const;
+  /// What a point changes: variants and rows first, then `between`, then sample, grid and axes.
+  std::vector<std::string> set(std::size_t point, const std::vector<std::string>& between) const;
+  std::vector<MeasuredRange> measured(std::size_t point) const;
+  /// File and line of a point's row; empty without [rows].
+  std::string from(std::size_t point) const {
+    std::string out;
+    for (std::size_t f = 0; f < factors_.size(); ++f) out += level(f, point).from;
+    return out;
+  }
+  /// "dynamic loft 30 deg, friction 0.2": where a point lies, in words; columns of one value are left out.
+  std::string said(std::size_t point) const;
+
+  void add(DesignFactor factor, const Table& at, std::string_view key);
+
+ private:
+  std::pair<std::size_t, std::size_t> place(std::size_t column) const;  ///< factor, column in it
+  std::vector<DesignFactor> factors_;
+};
+
+/// More points than this are a slip of the keys: each is read before anything is computed.
+inline constexpr std::size_t kMostPoints = 100'000;
+
+/// Reads the tables above from a study.
+Design read_design(Table root);
+/// `[measured]` of a study or a variant: names as they stand, a number or [lowest, highest] each.
+std::vector<MeasuredRange> read_measured(Table table);
+
+/// A cell in words: the value with its column's name and unit, "club speed 45 m/s".
+std::string said_cell(const std::string& column, const std::string& cell);
+
+}  // namespace hosel::app

@@ -1,0 +1,164 @@
+#include "app/study/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "post/labels.hpp"
+
+namespace hosel::app {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.0f}", 100 * share); }
+
+/// What changes where a column says which variant or row is meant.
+std::string spoken_column(const std::string& column) {
+  return column == "variant" || column == "row" ? "the " + column : post::label(column);
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) text.front() = char(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+}  // namespace
+
+StudyEffects effects_of(const StudyTable& table) {
+  StudyEffects out;
+  std::vector<solvers::EffectFactor> factors;
+  const auto columns = table.design.columns();
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const auto levels = table.design.levels(c);
+    if (levels.size() < 2 || columns[c] == "row") continue;  // a row's name stands for its other columns
+    out.columns.push_back(c);
+    solvers::EffectFactor f{.x = table.design.numbers(c), .ordered = true};
+    if (f.x.empty()) {
+      f.ordered = false;
+      std::map<std::string, double> number;
+      for (std::size_t l = 0; l < levels.size(); ++l) number[levels[l]] = double(l);
+      for (std::size_t d = 0; d < table.design.size(); ++d) f.x.push_back(number.at(table.design.cells(d)[c]));
+    }
+    factors.push_back(std::move(f));
+  }
+  for (const StudySeries& s : table.series) {
+    out.of.emplace_back();
+    if (factors.size() < 2) continue;
+    std::vector<solvers::EffectFactor> there = factors;
+    std::vector<double> y;
+    for (auto& f : there) f.x.clear();
+    for (std::size_t d = 0; d < s.y.size(); ++d) {
+      if (!std::isfinite(s.y[d])) continue;
+      y.push_back(s.y[d]);
+      for (std::size_t f = 0; f < factors.size(); ++f) there[f].x.push_back(factors[f].x[d]);
+    }
+    const auto varies = [](const solvers::EffectFactor& f) {
+      return !f.x.empty() && std::ranges::min(f.x) < std::ranges::max(f.x);
+    };
+    if (std::ranges::all_of(there, varies)) out.of.back() = solvers::main_effects(there, y);
+  }
+  return out;
+}
+
+std::string sentence(const StudyTable& table, const StudyEffects& effects, std::size_t series) {
+  const auto& e = effects.of[series];
+  if (!e) return {};
+  const auto columns = table.design.columns();
+  const auto name = [&](std::size_t rank) { return spoken_column(columns[effects.columns[e->order[rank]]]); };
+  const auto share = [&](std::size_t rank) {
+    const solvers::MainEffect& f = e->factors[e->order[rank]];
+    return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(f.share), percent(f.low),
+                       percent(f.high));
+  };
+  const solvers::MainEffect& first = e->factors[e->order[0]];
+  std::string text = fmt::format("{} goes most with {}: {}, from {:.4g} to {:.4g} over its range.",
+                                 capital(table.series[series].spoken), name(0), share(0), first.at_low, first.at_high);
+  text += e->first_is_certain
+              ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[e->order[1]].share))
+              : fmt::format(" Whether {} with {} moves it as much, these points do not decide.", name(1), share(1));
+  if (e->predicted < 0.8)
+    text += fmt::format(
+        " One parameter at a time explains {} % of it at points left out: the rest are interactions and "
+        "curvature.",
+        percent(std::max(0.0, e->predicted)));
+  return text;
+}
+
+void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effects, nlohmann::json& summary) {
+  const bool several = effects.columns.size() > 1;
+  const auto columns = table.design.columns();
+  post::TextTable shown{
+      .rows = {{"answer", "lowest", "mean", "highest"}}, .first_width = 10, .least_width = 10, .even = false};
+  if (several) shown.rows[0].insert(shown.rows[0].end(), {"goes most with", "share of variance [%]"});
+  bool begun = false;
+  for (std::size_t s = 0; s < table.series.size(); ++s) {
+    const StudySeries& series = table.series[s];
+    const auto [low, mean, high] = series.spread();
+    if (std::isnan(mean)) continue;
+    summary["range"][series.name] = {low, high};
+    summary["mean"][series.name] = mean;
+    auto& row = shown.rows.emplace_back();
+    row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", mean), fmt::format("{:.4g}", high)};
+    shown.first_width = std::max(shown.first_width, series.spoken.size() + 1);
+    if (!several) continue;
+    if (!effects.of[s]) {
+      row.insert(row.end(), {"-", "-"});
+      continue;
+    }
+    const solvers::MainEffects& e = *effects.of[s];
+    for (std::size_t f = 0; f < e.factors.size(); ++f)
+      summary["main_effects"][series.name][columns[effects.columns[f]]] = {{"share", e.factors[f].share},
+                                                                           {"low", e.factors[f].low},
+                                                                           {"high", e.factors[f].high},
+                                                                           {"at_low", e.factors[f].at_low},
+                                                                           {"at_high", e.factors[f].at_high}};
+    const solvers::MainEffect& first = e.factors[e.order[0]];
+    row.insert(row.end(),
+               {spoken_column(columns[effects.columns[e.order[0]]]),
+                fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
+    const std::string said = sentence(table, effects, s);
+    constexpr std::size_t most = 8;  // a page begins with what somebody reads
+    if (s < most) {
+      out.say(said);
+      if (!begun) out.page().sentence(said);
+      begun = true;
+    }
+  }
+  out.show(shown);
+}
+
+post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const std::vector<std::size_t>& which) {
+  const auto columns = table.design.columns();
+  constexpr std::size_t most = 12;
+  const int bars = int(std::min(most, effects.columns.size()));
+  post::Figure figure{.title = "from a parameter's lowest value to its highest, the others at their means",
+                      .columns = 2,
+                      .panel_width = 760,
+                      .panel_height = 130 + 26 * bars};
+  for (const std::size_t s : which) {
+    if (!effects.of[s]) continue;
+    const solvers::MainEffects& e = *effects.of[s];
+    const double centre = table.series[s].spread().mean;
+    post::Panel panel{.x_label = table.series[s].spoken};
+    post::Series low{.label = "lowest value", .style = "filledcurves closed"},
+        high{.label = "highest value", .style = "filledcurves closed"};
+    for (int k = 0; k < bars; ++k) {
+      const std::size_t f = e.order[std::size_t(k)];
+      panel.y_names.push_back(spoken_column(columns[effects.columns[f]]));
+      // The bar of the highest value is narrower: both are seen where both ends lie on one side.
+      for (const auto& [side, value, half] :
+           {std::tuple{&low, e.factors[f].at_low, 0.32}, {&high, e.factors[f].at_high, 0.2}}) {
+        side->x.insert(side->x.end(), {centre, value, value, centre, NAN});
+        side->y.insert(side->y.end(), {half - k, half - k, -half - k, -half - k, NAN});
+      }
+    }
+    panel.series = {std::move(low), std::move(high)};
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace hosel::app

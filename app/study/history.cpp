@@ -1,0 +1,49 @@
+#include "app/study/history.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "post/csv.hpp"
+
+namespace hosel::app {
+
+nlohmann::json stored(const std::vector<ForceSample>& history) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const ForceSample& s : history) out.push_back({s.time, s.normal, s.tangential});
+  return out;
+}
+
+void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
+  std::string csv = "point,model";
+  for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);
+  csv += ",time_ms,normal_force_N,tangential_force_N\n";
+  post::Figure figure{.columns = 2};
+  for (std::size_t m = 0; m < table.models.size(); ++m) {
+    post::Panel tangential{.title = table.models[m], .x_label = "time [ms]", .y_label = "tangential force [kN]"},
+        ratio{.title = table.models[m], .x_label = "time [ms]", .y_label = "tangential over normal force [-]"};
+    for (std::size_t d = 0; d < table.design.size(); ++d) {
+      const std::size_t point = d * table.models.size() + m;
+      if (!points[point].contains("history")) continue;
+      std::string place = fmt::format("{},{}", point, post::csv_cell(table.models[m]));
+      for (const std::string& cell : table.design.cells(d)) place += "," + post::csv_cell(cell);
+      post::Series line{.label = table.design.said(d)}, share = line;
+      for (const nlohmann::json& s : points[point]["history"]) {
+        const double time = 1e3 * s.at(0).get<double>(), normal = s.at(1).get<double>(), along = s.at(2).get<double>();
+        csv += fmt::format("{},{:.8g},{:.8g},{:.8g}\n", place, time, normal, along);
+        line.x.push_back(time);
+        line.y.push_back(1e-3 * along);
+        if (normal <= 1) continue;  // [N]: nothing over nothing
+        share.x.push_back(time);
+        share.y.push_back(along / normal);
+      }
+      tangential.series.push_back(std::move(line));
+      ratio.series.push_back(std::move(share));
+    }
+    figure.panels.insert(figure.panels.end(), {tangential, ratio});
+  }
+  out.write("histories.csv", csv);
+  out.draw(figure, "figures/histories");
+}
+
+}  // namespace hosel::app

@@ -1,0 +1,154 @@
+#include "app/study/statement.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <list>
+#include <nlohmann/json.hpp>
+
+namespace hosel::app {
+namespace {
+
+/// A formula with its variables; unset ones are NaN.
+class Formula {
+ public:
+  Formula(const std::string& text, const std::vector<std::string>& names) {
+    parser_.DefineNameChars("0123456789_.abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    for (const std::string& name : names) parser_.DefineVar(name, &values_.emplace_back(name, 1.0).second);
+    parser_.SetExpr(text);
+    for (const auto& [name, value] : parser_.GetUsedVar()) used_.push_back(name);
+    parser_.Eval();
+  }
+  void set(const std::string& name, double value) {
+    for (auto& [own, x] : values_)
+      if (own == name) x = value;
+  }
+  /// Nothing where a number that it needs is missing.
+  std::optional<bool> operator()() {
+    for (const auto& [name, x] : values_)
+      if (std::ranges::find(used_, name) != used_.end() && !std::isfinite(x)) return {};
+    return parser_.Eval() != 0;
+  }
+
+ private:
+  mu::Parser parser_;
+  std::list<std::pair<std::string, double>> values_;  // the parser holds pointers into it
+  std::vector<std::string> used_;
+};
+
+std::vector<std::string> formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs,
+                                       bool compared) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::find(out, name) == out.end()) out.push_back(name);
+  };
+  for (const std::string& c : columns) add(formula_name(c));
+  for (const std::string& o : outputs) {
+    const std::string name = formula_name(o);
+    add(name);
+    for (const char* of : {"mean", "least", "largest"}) add(fmt::format("{}.{}", of, name));
+    if (compared)
+      for (const char* of : {"reference", "difference"}) add(fmt::format("{}.{}", of, name));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string formula_name(const std::string& name) {
+  std::string entry = name.ends_with(".value") ? name.substr(0, name.size() - 6) : name;
+  std::string out = entry.substr(entry.rfind('.') + 1);
+  for (char& c : out)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  if (!out.empty() && std::isdigit(static_cast<unsigned char>(out.front()))) out = "_" + out;
+  return out;
+}
+
+std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
+                                                  const std::vector<std::string>& outputs, bool compared) {
+  std::vector<StudyStatement> out;
+  const auto names = formula_names(columns, outputs, compared);
+  for (Table t : root.tables("statement")) {
+    StudyStatement s{.text = t.text({"text", "the statement, a sentence"}),
+                     .holds = t.text({"holds", "a formula of outputs and axes that is true where the statement holds"}),
+                     .where = t.text({"where", "a formula that is true at the points of which it speaks"}, "")};
+    for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
+      if (formula->empty() && key == std::string_view("where")) continue;
+      try {
+        Formula(*formula, names);
+      } catch (const mu::Parser::exception_type& e) {
+        std::string known;
+        for (const std::string& n : names)
+          if (n.find('.') == std::string::npos) known += (known.empty() ? "" : ", ") + n;
+        t.fail(key, fmt::format("{} (known: {})", e.GetMsg(), known));
+      }
+    }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
+                     const std::vector<StudySeries>& references, std::optional<std::size_t> reference) {
+  nlohmann::json json = nlohmann::json::array();
+  const auto columns = table.design.columns();
+  const auto names = formula_names(columns, table.outputs, !references.empty());
+  std::vector<std::vector<double>> numbers;
+  for (std::size_t c = 0; c < columns.size(); ++c) numbers.push_back(table.design.numbers(c));
+  post::TextTable shown{.rows = {{"statement"}}, .least_width = 10, .even = false};
+  if (table.models.size() > 1) shown.rows[0].push_back("model");
+  shown.rows[0].insert(shown.rows[0].end(), {"verdict", "holds in", "points"});
+  for (const StudyStatement& s : statements)
+    for (std::size_t m = 0; m < table.models.size(); ++m) {
+      if (reference == m) continue;
+      Formula holds(s.holds, names), where(s.where.empty() ? "1" : s.where, names);
+      const auto set = [&](const std::string& name, double x) {
+        holds.set(name, x);
+        where.set(name, x);
+      };
+      for (std::size_t o = 0; o < table.outputs.size(); ++o) {
+        const std::string name = formula_name(table.outputs[o]);
+        const StudySeries::Spread all = table.at(m, o).spread();
+        set("mean." + name, all.mean);
+        set("least." + name, all.low);
+        set("largest." + name, all.high);
+      }
+      std::size_t judged = 0, held = 0;
+      for (std::size_t d = 0; d < table.design.size(); ++d) {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+          set(formula_name(columns[c]), numbers[c].empty() ? NAN : numbers[c][d]);
+        for (std::size_t o = 0; o < table.outputs.size(); ++o) {
+          const std::string name = formula_name(table.outputs[o]);
+          const double y = table.at(m, o).y[d];
+          set(name, y);
+          if (references.empty()) continue;
+          const double r = references[m * table.outputs.size() + o].y[d];
+          set("reference." + name, r);
+          set("difference." + name, y - r);
+        }
+        const auto spoken_of = where(), true_here = holds();
+        if (!spoken_of || !*spoken_of || !true_here) continue;
+        ++judged;
+        held += *true_here;
+      }
+      const double share = judged ? double(held) / double(judged) : 0;
+      const char* verdict = judged == 0     ? "not judged"
+                            : share >= 0.95 ? "holds"
+                            : share <= 0.05 ? "fails"
+                                            : "undecided";
+      nlohmann::json j = {{"text", s.text}, {"verdict", verdict}, {"share", share}, {"points", judged}};
+      if (table.models.size() > 1) j["model"] = table.models[m];
+      json.push_back(std::move(j));
+      auto& row = shown.rows.emplace_back(std::vector{s.text});
+      shown.first_width = std::max(shown.first_width, s.text.size() + 2);
+      if (table.models.size() > 1) row.push_back(table.models[m]);
+      row.insert(row.end(), {verdict, fmt::format("{:.1f} %", 100 * share), fmt::format("{}", judged)});
+    }
+  out.show(shown, "Statements");
+  return json;
+}
+
+}  // namespace hosel::app

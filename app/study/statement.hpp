@@ -1,0 +1,31 @@
+/// Sentences about a study's answers, judged at every point of its design.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/study/table.hpp"
+
+namespace hosel::app {
+
+/// A sentence and the formula that bears it out: arithmetic, comparisons, && and || (muParser) of the design's columns,
+/// the outputs, with a [compare] also reference.NAME and difference.NAME, and mean.NAME, least.NAME and largest.NAME of
+/// an output over the design.
+struct StudyStatement {
+  std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
+};
+
+/// What a formula calls a column or an output: the last part of a dotted key, with _ for what is no letter or digit.
+std::string formula_name(const std::string& name);
+
+/// `[[statement]]`; formulas that cannot be read, or that name something else than `names`, are errors.
+std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
+                                                  const std::vector<std::string>& outputs, bool compared);
+
+/// Judges every statement for every model but `reference`: holds in at least 95 % of the points, fails in at most 5 %,
+/// else undecided. Said, shown on the page, returned for the summary.
+nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
+                     const std::vector<StudySeries>& references, std::optional<std::size_t> reference);
+
+}  // namespace hosel::app

@@ -1,0 +1,136 @@
+#include "app/study/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "post/csv.hpp"
+#include "post/labels.hpp"
+
+namespace hosel::app {
+using nlohmann::json;
+
+StudySeries::Spread StudySeries::spread() const {
+  Spread s{NAN, 0, NAN};
+  int count = 0;
+  for (const double v : y) {
+    if (!std::isfinite(v)) continue;
+    s.low = std::fmin(s.low, v);
+    s.high = std::fmax(s.high, v);
+    s.mean += v;
+    ++count;
+  }
+  s.mean /= count;  // NaN of nothing
+  return s;
+}
+
+/// An entry in words. Which of several of one name is meant stands in the tables before it: "holds" of what?
+std::string StudyTable::spoken_entry(std::size_t output) const {
+  const auto own = [](std::string entry) {
+    if (entry.ends_with(".value")) entry.resize(entry.size() - 6);
+    if (const auto at = entry.rfind("statements."); at != entry.npos && entry.ends_with(".holds"))
+      return fmt::format("statement {} holds", 1 + std::atoi(entry.c_str() + at + 11));
+    return post::label(entry);
+  };
+  const std::string& entry = outputs[output];
+  std::string name = own(entry);
+  if (std::ranges::count(outputs, name, own) == 1) return name;
+  std::string tables = entry.substr(0, std::min(entry.find(".figures."), entry.find(".statements.")));
+  if (tables == entry) tables = entry.substr(0, entry.rfind('.'));
+  return fmt::format("{}: {}", post::spoken(tables), name);
+}
+
+void StudyTable::fill(const std::vector<json>& points) {
+  if (outputs.empty()) {
+    json all = json::object();
+    for (const json& p : points)
+      if (!p.contains("error")) all.update(p);
+    for (const auto& [name, value] : all.items()) outputs.push_back(name);
+  }
+  series.clear();
+  for (std::size_t m = 0; m < models.size(); ++m)
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+      StudySeries s{.name = outputs[o], .spoken = spoken_entry(o), .model = m, .output = o};
+      if (models.size() > 1) {
+        s.name = fmt::format("{}.{}", models[m], outputs[o]);
+        s.spoken += ", " + models[m];
+      }
+      for (std::size_t d = 0; d < design.size(); ++d) {
+        const json& p = points[d * models.size() + m];
+        s.y.push_back(!p.contains("error") && p.contains(outputs[o]) ? p[outputs[o]].get<double>() : std::nan(""));
+      }
+      series.push_back(std::move(s));
+    }
+}
+
+std::string StudyTable::csv(const std::vector<json>& points) const {
+  const bool other = models.front().empty();
+  std::string csv = other ? "point" : "point,model";
+  for (const std::string& c : design.columns()) csv += "," + post::csv_cell(c);
+  for (const std::string& o : outputs) csv += "," + post::csv_cell(o);
+  csv += ",error\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    csv += std::to_string(i);
+    if (!other) csv += "," + post::csv_cell(models[i % models.size()]);
+    for (const std::string& cell : design.cells(i / models.size())) csv += "," + post::csv_cell(cell);
+    const bool failed = points[i].contains("error");
+    for (const std::string& o : outputs) {
+      csv += ",";
+      if (failed) continue;
+      if (points[i].contains(o)) csv += points[i][o].dump();
+      else if (other) throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary", i, o));
+    }
+    csv += "," + (failed ? post::csv_cell(points[i]["error"].get<std::string>()) : "") + "\n";
+  }
+  return csv;
+}
+
+std::optional<MeasuredRange> StudyTable::seen(std::size_t point, std::size_t output) const {
+  const SplitName wanted = split_unit(outputs[output]);
+  std::vector<MeasuredRange> all = design.measured(point);
+  all.insert(all.end(), measured.begin(), measured.end());
+  for (MeasuredRange m : all) {
+    if (m.name == outputs[output]) return m;
+    const SplitName own = split_unit(m.name);
+    if (!own.unit || !wanted.unit || own.stem != wanted.stem || own.unit->dimension != wanted.unit->dimension) continue;
+    const double factor = own.unit->si / wanted.unit->si;
+    return MeasuredRange{outputs[output], m.low * factor, m.high * factor};
+  }
+  return {};
+}
+
+post::TextTable StudyTable::rows() const {
+  constexpr std::size_t most = 60;
+  if (design.size() * models.size() > most) return {};
+  post::TextTable table{.rows = {{"point"}}, .least_width = 9, .even = false};
+  if (models.size() > 1) table.rows[0].push_back("model");
+  std::vector<bool> measured_too(outputs.size());
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    table.rows[0].push_back(spoken_entry(o));
+    for (std::size_t d = 0; d < design.size(); ++d) measured_too[o] = measured_too[o] || seen(d, o);
+    if (measured_too[o]) table.rows[0].insert(table.rows[0].end(), {"measured", "off [%]"});
+  }
+  for (std::size_t d = 0; d < design.size(); ++d)
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      auto& row = table.rows.emplace_back(std::vector{design.said(d)});
+      if (row.front().empty()) row.front() = fmt::format("{}", d);
+      table.first_width = std::max(table.first_width, row.front().size() + 1);
+      if (models.size() > 1) row.push_back(models[m]);
+      for (std::size_t o = 0; o < outputs.size(); ++o) {
+        const double y = at(m, o).y[d];
+        row.push_back(std::isfinite(y) ? fmt::format("{:.5g}", y) : "-");
+        if (!measured_too[o]) continue;
+        const auto range = seen(d, o);
+        const bool one = range && range->low == range->high;
+        row.push_back(!range ? "-"
+                      : one  ? fmt::format("{:.5g}", range->low)
+                             : fmt::format("{:.4g} to {:.4g}", range->low, range->high));
+        row.push_back(one && std::isfinite(y) ? fmt::format("{:+.2f}", 100 * (y / range->low - 1)) : "-");
+      }
+    }
+  return table;
+}
+
+}  // namespace hosel::app

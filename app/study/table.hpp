@@ -1,0 +1,48 @@
+/// The answers of a study as columns of numbers.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/output.hpp"
+#include "app/study/answer.hpp"
+#include "app/study/design.hpp"
+
+namespace hosel::app {
+
+/// One output of one model, at every point of the design.
+struct StudySeries {
+  std::string name;    ///< as the summary has it: the output, behind its model where there are several
+  std::string spoken;  ///< in words, with its unit
+  std::size_t model = 0, output = 0;
+  std::vector<double> y;  ///< NaN where there is no answer
+
+  struct Spread {
+    double low, mean, high;  ///< NaN where there is no answer at all
+  };
+  Spread spread() const;
+};
+
+/// A design, what was asked at each of its points, and the answers: point = design point * models + model.
+struct StudyTable {
+  Design design;
+  std::vector<std::string> models;      ///< one empty name where another case answers
+  std::vector<std::string> outputs;     ///< names with their units, or entries of a summary
+  std::vector<MeasuredRange> measured;  ///< of every point; those of a variant or row come before
+  std::vector<StudySeries> series;      ///< models x outputs
+
+  /// Fills `series`, and `outputs` where none is named: all numbers that the points hold.
+  void fill(const std::vector<nlohmann::json>& points);
+  std::string csv(const std::vector<nlohmann::json>& points) const;
+  /// Every point in a row, for a design small enough to be read; empty else.
+  post::TextTable rows() const;
+  /// Measured values of an output at a point, in the output's unit; nothing where it was not measured.
+  std::optional<MeasuredRange> seen(std::size_t point, std::size_t output) const;
+  const StudySeries& at(std::size_t model, std::size_t output) const { return series[model * outputs.size() + output]; }
+
+ private:
+  std::string spoken_entry(std::size_t output) const;
+};
+
+}  // namespace hosel::app

@@ -1,0 +1,160 @@
+#include "solvers/main_effects.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "solvers/random.hpp"
+
+namespace hosel::solvers {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Columns of one factor, and what they are at its two ends.
+struct Block {
+  MatrixXd columns;
+  MatrixXd ends;  ///< ordered: rows at the lowest and the highest value; else one a level
+};
+
+Block block_of(const EffectFactor& factor, bool quadratic) {
+  const auto n = Eigen::Index(factor.x.size());
+  const std::set<double> levels(factor.x.begin(), factor.x.end());
+  Block b;
+  if (factor.ordered) {
+    const Eigen::Index degree = quadratic && levels.size() > 2 ? 2 : 1;
+    const double low = *levels.begin(), high = *levels.rbegin();
+    b.columns.resize(n, degree);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double t = 2 * (factor.x[std::size_t(i)] - low) / (high - low) - 1;
+      b.columns(i, 0) = t;
+      if (degree == 2) b.columns(i, 1) = (3 * t * t - 1) / 2;
+    }
+    b.ends = MatrixXd::Ones(2, degree);
+    b.ends(0, 0) = -1;
+  } else {
+    const auto count = Eigen::Index(levels.size());
+    b.columns = MatrixXd::Zero(n, count - 1);
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (const auto level = std::distance(levels.begin(), levels.find(factor.x[std::size_t(i)])); level > 0)
+        b.columns(i, level - 1) = 1;
+    b.ends = MatrixXd::Zero(count, count - 1);
+    b.ends.bottomRows(count - 1).setIdentity();
+  }
+  const Eigen::RowVectorXd mean = b.columns.colwise().mean();
+  b.columns.rowwise() -= mean;
+  b.ends.rowwise() -= mean;
+  return b;
+}
+
+double variance(const VectorXd& v) { return v.size() ? (v.array() - v.mean()).square().mean() : 0; }
+
+/// Shares of the variance over the rows `kept`, by the coefficients fitted to them.
+VectorXd shares(const std::vector<Block>& blocks, const MatrixXd& all, const VectorXd& y,
+                const std::vector<Eigen::Index>& kept, VectorXd& coefficients) {
+  const MatrixXd x = all(kept, Eigen::all);
+  const VectorXd response = y(kept);
+  coefficients = x.completeOrthogonalDecomposition().solve(response);
+  VectorXd out(Eigen::Index(blocks.size()));
+  const double whole = variance(response);
+  Eigen::Index at = 1;
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    const Eigen::Index width = blocks[f].columns.cols();
+    out[Eigen::Index(f)] = whole > 0 ? variance(x.middleCols(at, width) * coefficients.segment(at, width)) / whole : 0;
+    at += width;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors, const std::vector<double>& response) {
+  const auto n = Eigen::Index(response.size());
+  if (factors.empty() || n < 4) return {};
+  const VectorXd y = Eigen::Map<const VectorXd>(response.data(), n);
+  if (!(y.maxCoeff() - y.minCoeff() > 1e-12 * y.cwiseAbs().maxCoeff())) return {};
+
+  // Columns of all factors; straight lines alone where the points are few.
+  bool quadratic = true;
+  const auto unknowns = [&] {
+    Eigen::Index width = 1;
+    for (const EffectFactor& f : factors) {
+      const auto levels = Eigen::Index(std::set<double>(f.x.begin(), f.x.end()).size());
+      width += f.ordered ? Eigen::Index(quadratic && levels > 2 ? 2 : 1) : levels - 1;
+    }
+    return width;
+  };
+  if (n < 3 * unknowns()) quadratic = false;
+  const Eigen::Index width = unknowns();
+  if (n < width + 2) return {};
+  std::vector<Block> blocks;
+  for (const EffectFactor& f : factors) blocks.push_back(block_of(f, quadratic));
+  MatrixXd all(n, width);
+  all.col(0).setOnes();
+  Eigen::Index at = 1;
+  for (const Block& b : blocks) {
+    all.middleCols(at, b.columns.cols()) = b.columns;
+    at += b.columns.cols();
+  }
+
+  std::vector<Eigen::Index> every(static_cast<std::size_t>(n));
+  std::iota(every.begin(), every.end(), Eigen::Index(0));
+  VectorXd coefficients;
+  const VectorXd whole = shares(blocks, all, y, every, coefficients);
+
+  MainEffects out;
+  at = 1;
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    const Eigen::Index columns = blocks[f].columns.cols();
+    const VectorXd ends = (blocks[f].ends * coefficients.segment(at, columns)).array() + y.mean();
+    const bool ordered = factors[f].ordered;
+    out.factors.push_back({.share = whole[Eigen::Index(f)],
+                           .at_low = ordered ? ends[0] : ends.minCoeff(),
+                           .at_high = ordered ? ends[1] : ends.maxCoeff()});
+    at += columns;
+  }
+  out.order.resize(factors.size());
+  std::iota(out.order.begin(), out.order.end(), std::size_t(0));
+  std::ranges::stable_sort(out.order, std::greater(), [&](std::size_t f) { return out.factors[f].share; });
+
+  // Groups of points left out, drawn with a seed of their own: the same design gives the same intervals.
+  constexpr Eigen::Index most = 40;
+  const Eigen::Index groups = std::min(n, most);
+  std::mt19937_64 random(1981);
+  const std::vector<std::size_t> turn = shuffled(std::size_t(n), random);
+  MatrixXd left_out(groups, Eigen::Index(factors.size()));
+  double error = 0;
+  for (Eigen::Index g = 0; g < groups; ++g) {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (Eigen::Index(turn[std::size_t(i)]) % groups != g) kept.push_back(i);
+    VectorXd own;
+    left_out.row(g) = shares(blocks, all, y, kept, own).transpose();
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (Eigen::Index(turn[std::size_t(i)]) % groups == g) error += std::pow(y[i] - all.row(i).dot(own), 2);
+  }
+  out.predicted = 1 - error / double(n) / variance(y);
+  const double t = boost::math::quantile(boost::math::students_t(double(groups - 1)), 0.975);
+  const auto half_width = [&](const VectorXd& values) {
+    return t * std::sqrt(double(groups - 1) * variance(values));  // (G - 1) / G times the sum of squares
+  };
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    MainEffect& e = out.factors[f];
+    const double half = half_width(left_out.col(Eigen::Index(f)));
+    e.low = std::max(0.0, e.share - half);
+    e.high = std::min(1.0, e.share + half);
+  }
+  if (factors.size() > 1) {
+    const auto first = Eigen::Index(out.order[0]), second = Eigen::Index(out.order[1]);
+    const double half = half_width(left_out.col(first) - left_out.col(second));
+    out.first_is_certain = whole[first] - whole[second] > half;
+  }
+  return out;
+}
+
+}  // namespace hosel::solvers
