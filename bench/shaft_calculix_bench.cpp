@@ -148,9 +148,13 @@ void Frequencies(benchmark::State& state) {
     if (theirs.size() < 3) return state.SkipWithError("ccx has found no modes");
     const test::BeamSystem b = tube(40);
     const std::vector<double> omega = solvers::modes(b.system, b.rest, 6).omega;  // each twice: the tube is round
+    const test::BeamSystem fine = tube(80);
+    const std::vector<double> finer = solvers::modes(fine.system, fine.rest, 6).omega;
     for (int i = 0; i < 3; ++i) {
       const double ours = omega[std::size_t(2 * i)] / (2 * kPi);
       state.counters[fmt::format("f{}_Hz", i + 1)] = ours;
+      state.counters[fmt::format("f{}_finer_percent", i + 1)] =
+          100 * (finer[std::size_t(2 * i)] / omega[std::size_t(2 * i)] - 1);
       state.counters[fmt::format("ccx_f{}_Hz", i + 1)] = theirs[std::size_t(i)];
       state.counters[fmt::format("off{}_percent", i + 1)] = 100 * (ours / theirs[std::size_t(i)] - 1);
     }

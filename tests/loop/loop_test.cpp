@@ -217,7 +217,8 @@ TEST_F(Loop, ManyRowsFarOffAreNeverErasedInSilence) {
       text += fmt::format("{}\n", fmt::join(cell, ","));
     }
     const LoopResult r = run(case_of(text));
-    // Of a channel so many are no exceptions: its scatter contradicts what was declared. An input's are told as its own.
+    // Of a channel so many are no exceptions: its scatter contradicts what was declared. An input's are told as its
+    // own.
     EXPECT_EQ(r.verdict, column == 12U ? Verdict::noise_contradicted : Verdict::unexplained) << sentence(r);
     EXPECT_TRUE(r.adopted.empty());
   }
