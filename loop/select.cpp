@@ -70,7 +70,8 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     };
     search.fit_pairs();
     step(search.pairs);
-    if (s.level == 2 && !s.clean && deep) {
+    // Two effects may stand for three that are as likely: these are looked at, clean or not.
+    if (s.level == 2 && deep) {
       search.fit_triples();
       step(search.triples);
     }
@@ -98,9 +99,16 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
       }
       return value;
     };
+    const Candidate& best = level->front();
     std::vector<const Candidate*> tied;
-    for (const Candidate& c : *level)
-      if (likelihood(c) <= likelihood(level->front()) + rules.tie) tied.push_back(&c);
+    const auto add = [&](const Candidate& c) {
+      if (likelihood(c) <= likelihood(best) + rules.tie) tied.push_back(&c);
+    };
+    std::ranges::for_each(*level, add);
+    // A larger set is another explanation where it does without one of these names.
+    for (const Candidate& c : search.triples)
+      if (c.effects.size() > best.effects.size() && !std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); }))
+        add(c);
     tell_ties(tied, s);
     // Many sets without a name in common: the data do not name anything.
     s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;

@@ -203,6 +203,16 @@ def three_ordinary(s):
     s.seen.append(lambda t: turn(t, 0, a * DEG, 0))
 
 
+@kind(2, "library", kin=("face-compliance", "session-drift"))
+def another_ball(s):
+    """The ball gives tangential energy back and is less lively, and the recorded loft is too small."""
+    s.names += ["ball-tangential-compliance", "restitution-law", "loft-bias"]
+    s.law["et"] = lambda b: 0.18
+    also_e(s, lambda b: -0.02)
+    s.delivered["dynamic_loft"] = s.x["dynamic_loft"] + 1.5 * DEG
+    s.declare = s.number // 2 % 2 == 0
+
+
 # 3. Instruments.
 
 
