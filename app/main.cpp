@@ -148,6 +148,7 @@ int main(int argc, char** argv) {
       ->take_all();
   import_command->add_option("--keep", import.keep, "keep this unknown column as a possible explanation (repeatable)")
       ->take_all();
+  import_command->add_flag("--left-handed", import.left_handed, "the player is left-handed: mirror every shot");
   import_command->add_flag("--modelled", import.modelled, "take spin that the instrument modelled as measured");
   import_command->add_option("--dictionary", import.dictionary, "header names of your own, beside the shipped ones");
   import_command->callback([&] { app::import_shots(import); });

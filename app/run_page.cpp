@@ -124,9 +124,9 @@ void add_inputs(std::string& html, const std::string& name, const toml::table& t
   std::string rows;
   for (const auto& [key, node] : table) {
     if (node.is_table() || (node.is_array() && node.as_array()->is_homogeneous(toml::node_type::table))) continue;
-    const SplitName split = split_unit(key.str());
-    rows += fmt::format("<tr><td>{}<td>{}{}</tr>", escape_html(post::spoken(split.stem)), escape_html(value_text(node)),
-                        split.unit ? " " + escape_html(post::symbol(split.unit->suffix)) : "");
+    const post::SpokenKey said = post::spoken_key(key.str());
+    rows += fmt::format("<tr><td>{}<td>{}{}</tr>", escape_html(said.words), escape_html(value_text(node)),
+                        said.unit.empty() ? "" : " " + escape_html(said.unit));
   }
   if (!rows.empty())
     html += fmt::format("<table><tr><th colspan='2'>{}</tr>{}</table>",

@@ -107,7 +107,8 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     std::ranges::for_each(*level, add);
     // A larger set is another explanation where it does without one of these names.
     for (const Candidate& c : search.triples)
-      if (c.effects.size() > best.effects.size() && !std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); }))
+      if (c.effects.size() > best.effects.size() &&
+          !std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); }))
         add(c);
     tell_ties(tied, s);
     // Many sets without a name in common: the data do not name anything.

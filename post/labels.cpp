@@ -36,6 +36,18 @@ std::string symbol(std::string_view unit) {
   return out;
 }
 
+SpokenKey spoken_key(std::string_view key) {
+  constexpr std::string_view celsius = "_degC";
+  if (key.ends_with(celsius)) return {spoken(key.substr(0, key.size() - celsius.size())), "°C"};
+  const SplitName split = split_unit(key);
+  if (!split.unit) return {spoken(key), ""};
+  const std::string unit = symbol(split.unit->suffix);
+  std::string_view words = split.stem;
+  if (!words.ends_with("_per")) return {spoken(words), unit};
+  words.remove_suffix(4);
+  return {spoken(words), "1/" + unit};
+}
+
 std::string label(std::string_view key) {
   if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
   // One number of a list: "cg_mm[2]".
@@ -46,8 +58,8 @@ std::string label(std::string_view key) {
     key = key.substr(0, open);
   }
   if (key.ends_with("_N_s")) return spoken(key.substr(0, key.size() - 4)) + which + " [N s]";  // no unit of a key
-  const SplitName split = split_unit(key);
-  return spoken(split.stem) + which + (split.unit ? " [" + symbol(split.unit->suffix) + "]" : "");
+  const SpokenKey said = spoken_key(key);
+  return said.words + which + (said.unit.empty() ? "" : " [" + said.unit + "]");
 }
 
 }  // namespace hosel::post

@@ -10,6 +10,11 @@ namespace hosel::post {
 std::string spoken(std::string_view name);
 /// A unit's suffix as it is printed: "mps" -> "m/s", "kg_m2" -> "kg m²".
 std::string symbol(std::string_view unit);
+/// A key's words and its unit as it is printed: "falloff_per_m2" -> "falloff", "1/m²". No unit: empty.
+struct SpokenKey {
+  std::string words, unit;
+};
+SpokenKey spoken_key(std::string_view key);
 /// Name and unit of a key, dotted or not; the tables before a dotted one are left out.
 std::string label(std::string_view key);
 

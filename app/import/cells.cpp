@@ -95,8 +95,9 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   std::ranges::replace(digits, ',', '.');
   if (!tail.empty()) {
     const std::string word = plain(tail);
-    static const std::map<std::string, double> phrases = {{"in out", 1},  {"in to out", 1},  {"inside out", 1},
-                                                          {"out in", -1}, {"out to in", -1}, {"outside in", -1}};
+    static const std::map<std::string, double> phrases = {{"in out", 1},     {"in to out", 1},  {"inside out", 1},
+                                                          {"i o", 1},        {"o i", -1},       {"out in", -1},
+                                                          {"out to in", -1}, {"outside in", -1}};
     const std::string last = word.substr(word.find_last_of(' ') == std::string::npos ? 0 : word.find_last_of(' ') + 1);
     static const std::map<std::string, double> sides = {
         {"r", 1},     {"right", 1}, {"l", -1},      {"left", -1}, {"t", 1},    {"toe", 1},   {"h", -1},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <sstream>
 
 #include "app/import/cells.hpp"
 #include "app/reader.hpp"
@@ -29,6 +30,14 @@ std::string plain(std::string_view text) {
   return out;
 }
 
+bool names_a_hand(const std::string& words) {
+  std::istringstream parts(words);
+  std::string part;
+  while (parts >> part)
+    if (part == "handed" || part == "handedness" || part == "dexterity") return true;
+  return part == "hand";
+}
+
 void Dictionary::read(const fs::path& file) {
   CaseFile text(file);
   Table root = text.root();
@@ -45,6 +54,7 @@ void Dictionary::read(const fs::path& file) {
     const auto range = t.numbers("plausible", 2);
     q.low = range[0], q.high = range[1];
     q.side = t.flag("side", false);
+    q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
     q.headers = plains(t.texts("headers"));
     quantities_.push_back(std::move(q));
   }
@@ -90,13 +100,16 @@ const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const 
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
+  const std::string word = plain(header);
   for (const auto& [name, words] : bookkeeping_)
-    if (std::ranges::count(words, plain(header))) return name;
-  return "";
+    if (std::ranges::count(words, word)) return name;
+  return names_a_hand(word) ? "hand" : "";
 }
 
 void Dictionary::learn(const std::string& header, std::string_view quantity) {
   if (quantity.empty()) bookkeeping_["ignored"].push_back(plain(header));
+  if (const auto role = bookkeeping_.find(std::string(quantity)); role != bookkeeping_.end())
+    role->second.push_back(plain(header));
   for (MonitorQuantity& q : quantities_)
     if (q.name == quantity) q.headers.push_back(plain(header));
 }
@@ -109,6 +122,12 @@ const MonitorQuantity* Dictionary::quantity(std::string_view name) const {
 std::vector<std::string> Dictionary::quantity_names() const {
   std::vector<std::string> out;
   for (const MonitorQuantity& q : quantities_) out.push_back(q.name);
+  return out;
+}
+
+std::vector<std::string> Dictionary::roles() const {
+  std::vector<std::string> out;
+  for (const auto& [name, words] : bookkeeping_) out.push_back(name);
   return out;
 }
 

@@ -13,6 +13,7 @@ struct MonitorQuantity {
   std::string name, imperial, metric;
   double low = 0, high = 0;  ///< of a column's median [SI]
   bool side = false;         ///< cells may end in L or R, toe or heel
+  bool zero = true;          ///< 0 may be measured, else it stands for no reading
   std::vector<std::string> headers;
 };
 struct NominalClub {
@@ -38,13 +39,14 @@ class Dictionary {
   /// Entries of `file` count before those read later.
   void read(const std::filesystem::path& file);
 
-  /// A header that a person names: of this quantity, or, with none, of no interest.
+  /// A header that a person names: of this quantity or role, or, with none, of no interest.
   void learn(const std::string& header, std::string_view quantity);
 
   const MonitorQuantity* quantity_of(const std::string& header) const;
   const MonitorQuantity* quantity(std::string_view name) const;
   std::vector<std::string> quantity_names() const;
-  std::string bookkeeping_of(const std::string& header) const;  ///< "" where it is none
+  std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
+  std::vector<std::string> roles() const;                       ///< club, shot, hand, ...
   /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7` are one club.
   const NominalClub* club(const std::string& name) const;
   const std::vector<MonitorLayout>& layouts() const { return layouts_; }
@@ -63,6 +65,9 @@ std::filesystem::path shipped_dictionary();
 
 /// A club's name in one spelling: number and kind (`7i`, `3w`, `4h`), else as `plain` has it.
 std::string club_key(const std::string& name);
+
+/// Whether a header, as `plain` has it, is about the player's hand: `player hand`, `left handed`; not `hand speed`.
+bool names_a_hand(const std::string& words);
 
 /// Lower case, without what stands in brackets, single blanks for punctuation.
 std::string plain(std::string_view text);

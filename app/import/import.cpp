@@ -110,7 +110,7 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
   const std::string given = unit;
   const bool lengths = dimension_of(unit) == Dimension::length;
   if (lengths) unit = "mm";
-  std::size_t others = 0, empty = 0;
+  std::size_t others = 0, empty = 0, zeros = 0;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     if (raw[i].empty()) {
       out.cells.emplace_back();
@@ -120,9 +120,10 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
     if (!cell)
       throw InputError(
           fmt::format("{}: column '{}', shot {}: '{}' is not a number", file.string(), header, i + 1, raw[i]));
-    if (no_reading(cell->value)) {
+    const bool zero = cell->value == 0 && !q.zero;
+    if (zero || no_reading(cell->value)) {
       out.cells.emplace_back();
-      ++empty;
+      ++(zero ? zeros : empty);
       continue;
     }
     const std::string own = cell->unit.empty() ? given : cell->unit;
@@ -143,6 +144,7 @@ Understood make_quantity(const MonitorQuantity& q, const std::string& header, st
   if (comma) note("decimal comma");
   if (sign < 0) note("sign turned");
   if (others > 0) note(fmt::format("cells in a unit of their own: {}", others));
+  if (zeros > 0) note(fmt::format("0 taken as not measured: {}", zeros));
   if (empty > 0) note(fmt::format("cells without a reading: {}", empty));
   out.name = q.name + "_" + unit;
   out.median = loop::median(values);
@@ -182,6 +184,17 @@ std::size_t blank(Understood& u, const std::vector<bool>& which) {
 bool says_any(const std::string& cell, std::initializer_list<const char*> words) {
   const std::string text = plain(cell);
   return std::ranges::any_of(words, [&](const char* w) { return text.find(w) != std::string::npos; });
+}
+
+/// Whether a cell names the left hand (1), the right one (0), or says nothing of a hand.
+std::optional<bool> left_hand(const std::string& cell, bool asked) {
+  const std::string word = plain(cell);
+  static const std::set<std::string> left = {"l", "lh", "left", "left hand", "left handed", "lefty", "links"},
+                                     right = {"r", "rh", "right", "right hand", "right handed", "righty", "rechts"},
+                                     yes = {"yes", "y", "true", "1"}, no = {"no", "n", "false", "0"};
+  if (left.contains(word) || (asked && yes.contains(word))) return true;
+  if (right.contains(word) || missing(cell) || (asked && no.contains(word))) return false;
+  return {};
 }
 
 /// A left-handed player's shots as a right-handed one's: what is signed towards the right turns round. The place on the
@@ -251,11 +264,17 @@ void import_shots(const ImportOptions& o) {
       d.learn(c.substr(0, at), "");
       continue;
     }
+    const std::vector<std::string> roles = d.roles();
+    if (std::ranges::count(roles, name)) {
+      d.learn(c.substr(0, at), name);
+      by_hand.erase(plain(c.substr(0, at)));
+      continue;
+    }
     const SplitName part = split_unit(name);
     const std::vector<std::string> known = d.quantity_names();
     if (!part.unit || !std::ranges::count(known, part.stem))
-      throw InputError(
-          fmt::format("--column '{}': no such quantity with a unit; quantities: {}", c, fmt::join(known, ", ")));
+      throw InputError(fmt::format("--column '{}': no such quantity with a unit, nor {}; quantities: {}", c,
+                                   fmt::join(roles, ", "), fmt::join(known, ", ")));
     d.learn(c.substr(0, at), part.stem);
   }
 
@@ -299,7 +318,7 @@ void import_shots(const ImportOptions& o) {
   }
 
   std::vector<Understood> columns;
-  columns.reserve(sheet.names.size() + 2);  // pointers into it stay good
+  columns.reserve(sheet.names.size() + 3);  // pointers into it stay good
   std::set<std::string> quantities;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const std::string& header = sheet.names[c];
@@ -351,6 +370,7 @@ void import_shots(const ImportOptions& o) {
       }();
     columns.push_back(std::move(u));
   }
+  const std::size_t shots = sheet.rows.size();
   const auto find = [&](std::string_view stem) -> Understood* {
     for (Understood& u : columns)
       if (!u.name.empty() && split_unit(u.name).stem == stem) return &u;
@@ -372,21 +392,76 @@ void import_shots(const ImportOptions& o) {
       if (Understood* u = find(q)) modelled = std::max(modelled, blank(*u, rate));
     if (Understood* u = find("spin_axis")) blank(*u, axis);
   }
+  std::vector<bool> left(sheet.rows.size(), o.left_handed);
+  for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
+    const std::string words = plain(fmt::format("{}", fmt::join(row, " ")));
+    const bool says_left = names_a_hand(words.substr(0, words.find(" left"))) || words.ends_with(" left handed");
+    if (says_left && words.find("left") != std::string::npos) left.assign(left.size(), true);
+  }
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (role[c] != "hand") continue;
-    std::vector<bool> left;
-    for (const Row& row : sheet.rows) left.push_back(says_any(row[c], {"left", "lh"}) || plain(row[c]) == "l");
-    left_handed = mirror(columns, left);
+    for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+      const auto hand = left_hand(sheet.rows[i][c], plain(sheet.names[c]).find("left handed") != std::string::npos);
+      if (!hand)
+        throw InputError(
+            fmt::format("{}: column '{}', shot {}: '{}' is neither left nor right; --column '{}=' leaves "
+                        "it out, --left-handed mirrors every shot",
+                        o.file.string(), sheet.names[c], i + 1, sheet.rows[i][c], sheet.names[c]));
+      left[i] = left[i] || *hand;
+    }
   }
+  left_handed = mirror(columns, left);
+  // Zeros of the club beside no speed of it, of the axis beside no spin, and through a whole column are no readings.
+  const auto silent = [&](const char* of, std::initializer_list<const char*> others) {
+    const Understood* measured = find(of);
+    for (const char* other : others) {
+      Understood* u = find(other);
+      if (!u || !u->filled) continue;
+      std::vector<bool> zero, silent_zero;
+      for (std::size_t i = 0; i < shots; ++i) {
+        const auto x = number(u->cells[i], false, false);
+        zero.push_back(x && x->value == 0);
+        silent_zero.push_back(zero.back() && measured && measured->cells[i].empty());
+      }
+      const bool all = std::size_t(std::ranges::count(zero, true)) == u->filled && shots > 1;
+      if (const std::size_t n = blank(*u, all ? zero : silent_zero); n > 0)
+        u->note += fmt::format("{}0 taken as not measured: {}", u->note.empty() ? "" : ", ", n);
+    }
+  };
+  silent("club_speed", {"attack_angle", "club_path", "face_angle", "face_to_path", "impact_toe", "impact_high"});
+  silent("spin_rate", {"spin_axis", "sidespin"});
+
   if (Understood* u = find("impact_toe"); u && is_face_to_path(*u, find("face_angle"), find("club_path")))
     u->name.clear(), u->note = "holds face angle minus path";
+
+  // The face is path and face-to-path together, where it is not recorded by itself.
+  if (Understood* across = find("face_to_path")) {
+    const Understood* path = find("club_path");
+    if (path && across->filled && path->filled && !find("face_angle")) {
+      Understood face;
+      face.header = across->header + " + " + path->header;
+      face.name = "face_angle_deg";
+      const double a = split_unit(across->name).unit->si, p = split_unit(path->name).unit->si;
+      for (std::size_t i = 0; i < shots; ++i) {
+        const auto x = number(across->cells[i], false, false), y = number(path->cells[i], false, false);
+        face.cells.push_back(x && y ? fmt::format("{:.6g}", (a * x->value + p * y->value) / si_of("deg")) : "");
+      }
+      count_again(face);
+      columns.push_back(std::move(face));
+    }
+    across = find("face_to_path");
+    across->name.clear(), across->note = "face minus path";
+  }
 
   // Spin stands twice in most exports: rate and tilt are what is measured, back and side follow from them.
   if (const auto* rate = find("spin_rate"), *axis = find("spin_axis"); rate && rate->filled && axis && axis->filled)
     for (const char* copy : {"backspin", "sidespin"})
       if (Understood* u = find(copy)) u->name.clear(), u->note = "follows from rate and axis";
   for (Understood& u : columns)
-    if (!u.name.empty() && u.filled == 0) u.name.clear(), u.note = "empty";
+    if (!u.name.empty() && u.filled == 0) {
+      u.name.clear();
+      if (u.note.empty()) u.note = "empty";
+    }
 
   // Two speeds check each other.
   Understood *club = find("club_speed"), *ball = find("ball_speed");
@@ -405,7 +480,6 @@ void import_shots(const ImportOptions& o) {
   // What the loop needs and the file lacks comes from the clubs' nominal figures, said as such.
   std::vector<std::string> notes;
   const Understood* clubs = find("club");
-  const std::size_t shots = sheet.rows.size();
   std::vector<std::string> unknown;
   const auto nominal = [&](double NominalClub::*what, std::string_view option) {
     Understood u;
@@ -442,14 +516,28 @@ void import_shots(const ImportOptions& o) {
   if (one_mass) mass.note += ", in case.toml";
   columns.push_back(std::move(mass));
 
+  std::set<std::string> different;
+  if (clubs) different.insert(clubs->cells.begin(), clubs->cells.end());
+  // Sideways quantities want a head that turns; one head for all, so one kind of club.
+  std::set<std::string> heads;
+  for (const std::string& name : different)
+    if (const NominalClub* entry = d.club(name)) heads.insert(entry->head);
+  if (different.empty())
+    if (const NominalClub* entry = d.club(o.club)) heads.insert(entry->head);
+  const bool turns = find("azimuth") && heads.size() == 1 && d.heads().contains(*heads.begin());
+  bool sideways = false;
+  if (!turns && heads.size() > 1)  // the planar model says nothing of these
+    for (const char* q : {"azimuth", "spin_axis", "sidespin"})
+      if (Understood* u = find(q)) sideways = true, u->name.clear(), u->note = "the planar model has no direction";
+
   // The table of what was understood.
   fmt::print("{}: {} shots, cells separated by {}{}\n", o.file.string(), shots,
              sheet.delimiter == "JSON"  ? "JSON's own signs"
              : sheet.delimiter == "tab" ? "tabs"
                                         : "'" + sheet.delimiter + "'",
              sheet.layout.empty() ? "" : ", " + sheet.layout);
-  if (sheet.preamble)
-    fmt::print("  passed over: {} line{} before the header\n", sheet.preamble, sheet.preamble > 1 ? "s" : "");
+  if (!sheet.before.empty())
+    fmt::print("  passed over: {} line{} before the header\n", sheet.before.size(), sheet.before.size() > 1 ? "s" : "");
   if (sheet.summaries) fmt::print("  passed over: {} summary row{}\n", sheet.summaries, sheet.summaries > 1 ? "s" : "");
   if (sheet.headers_again)
     fmt::print("  passed over: {} repeated header{}\n", sheet.headers_again, sheet.headers_again > 1 ? "s" : "");
@@ -484,6 +572,13 @@ void import_shots(const ImportOptions& o) {
   if (!unknown.empty())
     fmt::print("  no nominal figures for: {}; these shots will be left out\n", fmt::join(unknown, ", "));
 
+  if (sideways)
+    fmt::print(
+        "  woods and irons in one file: the case judges speed, launch angle and spin rate; --club '{}' takes one "
+        "club, and its direction as well\n",
+        *different.rbegin());
+  if (!find("launch_angle")) fmt::print("  no column of launch angle: nothing will be judged by it\n");
+
   // The case.
   fs::create_directories(o.out);
   std::vector<const Understood*> good, rest;
@@ -495,15 +590,6 @@ void import_shots(const ImportOptions& o) {
   }
   write_csv(o.out / "shots.csv", good, good_names);
   if (!rest.empty()) write_csv(o.out / "kept.csv", rest, rest_names);
-  std::set<std::string> different;
-  if (clubs) different.insert(clubs->cells.begin(), clubs->cells.end());
-  // Sideways quantities want a head that turns; one head for all, so one kind of club.
-  std::set<std::string> heads;
-  for (const std::string& name : different)
-    if (const NominalClub* entry = d.club(name)) heads.insert(entry->head);
-  if (different.empty())
-    if (const NominalClub* entry = d.club(o.club)) heads.insert(entry->head);
-  const bool turns = find("azimuth") && heads.size() == 1 && d.heads().contains(*heads.begin());
   std::string toml = fmt::format(
       "# Made by `hosel import` from {}. shots.csv holds what the loop uses, kept.csv the rest.\n"
       "kind  = \"loop\"\ntitle = {}\n\n[model]\nbase = \"{}\"\n\n"
@@ -519,8 +605,6 @@ void import_shots(const ImportOptions& o) {
   } else if (one_mass) {
     toml += "\n[head]\n" + own_mass;
   }
-  if (!turns && find("azimuth"))
-    fmt::print("  clubs of several kinds: the model is planar and says nothing of direction; --club NAME takes one\n");
   toml += "\n[data]\nshots = \"shots.csv\"\n";
   if (!notes.empty())
     toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";

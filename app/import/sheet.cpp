@@ -214,12 +214,11 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
       most = known;
       best = {};
       best.names = rows[h];
-      best.preamble = h;
+      best.before.assign(rows.begin(), rows.begin() + long(h));
       best.delimiter = delimiter == '\t' ? "tab" : std::string(1, delimiter);
-      for (std::size_t r = 0; r < h; ++r)
+      for (const Row& row : best.before)
         for (const MonitorLayout& l : d.layouts())
-          if (!l.preamble.empty() && rows[r].front().starts_with(l.preamble))
-            best.layout = l.name, best.family = l.units;
+          if (!l.preamble.empty() && row.front().starts_with(l.preamble)) best.layout = l.name, best.family = l.units;
       best.rows.assign(rows.begin() + long(h) + 1, rows.end());
     }
   }

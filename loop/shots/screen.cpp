@@ -110,7 +110,9 @@ std::vector<Slip> slips_of(const Row& row, const std::vector<const ColumnUse*>& 
     };
     for (const Factor& f : factors(*u->column))
       for (const double x : {native * f.value, native / f.value})
-        attempt(x, fmt::format("{:g} fits as {:.5g}: {} confused", native, x, f.what), f.cost);
+        // Below the column's resolution it would be nothing: any value fits so whose row wants none.
+        if (std::abs(x) >= u->column->resolution / si)
+          attempt(x, fmt::format("{:g} fits as {:.5g}: {} confused", native, x, f.what), f.cost);
     if (native != 0) attempt(-native, fmt::format("{:g} fits with the other sign", native), 3);
     for (const double x : transpositions(native, u->column->resolution / si))
       attempt(x, fmt::format("{:g} fits as {:g}: digits transposed", native, x), 3);

@@ -50,21 +50,23 @@ TEST_P(Monitors, ImportWithoutEditingAndRun) {
 
 INSTANTIATE_TEST_SUITE_P(
     Layouts, Monitors,
-    testing::Values(
-        Expected{"trackman.csv",
-                 40,
-                 {"club_speed_mph", "dynamic_loft_deg", "impact_toe_mm", "spin_rate_rpm"},
-                 "decimal comma"},
-        Expected{"flightscope.csv",
-                 24,
-                 {"club_speed_kmh", "spin_axis_deg", "face_angle_deg", "azimuth_deg"},
-                 "2 summary rows"},
-        Expected{"foresight.csv", 24, {"spin_rate_rpm", "impact_high_mm", "attack_angle_deg"}, "in made mm"},
-        Expected{
-            "garmin.csv", 30, {"ball_speed_kmh", "dynamic_loft_deg", "player", "session"}, "clubs of several kinds"},
-        Expected{"rapsodo.csv", 32, {"ball_speed_mph", "club", "head_mass_kg"}, "1 repeated header"},
-        Expected{"connector.json", 20, {"launch_angle_deg", "shot"}, "GSPro Open Connect"},
-        Expected{"spreadsheet.txt", 20, {"ball_speed_mph", "dynamic_loft_deg"}, "tabs"}),
+    testing::Values(Expected{"trackman.csv",
+                             40,
+                             {"club_speed_mph", "dynamic_loft_deg", "impact_toe_mm", "spin_rate_rpm"},
+                             "decimal comma"},
+                    Expected{"flightscope.csv",
+                             24,
+                             {"club_speed_kmh", "spin_axis_deg", "face_angle_deg", "azimuth_deg"},
+                             "2 summary rows"},
+                    Expected{
+                        "foresight.csv", 24, {"spin_rate_rpm", "impact_high_mm", "attack_angle_deg"}, "in made mm"},
+                    Expected{"garmin.csv",
+                             30,
+                             {"ball_speed_kmh", "dynamic_loft_deg", "player", "session"},
+                             "woods and irons in one file"},
+                    Expected{"rapsodo.csv", 32, {"ball_speed_mph", "club", "head_mass_kg"}, "1 repeated header"},
+                    Expected{"connector.json", 20, {"launch_angle_deg", "shot"}, "GSPro Open Connect"},
+                    Expected{"spreadsheet.txt", 20, {"ball_speed_mph", "dynamic_loft_deg"}, "tabs"}),
     [](const auto& info) { return info.param.file.substr(0, info.param.file.find('.')); });
 
 TEST(Import, LeftAndRightBecomeSigns) {
@@ -243,6 +245,43 @@ INSTANTIATE_TEST_SUITE_P(
                "",
                {{"ball_speed_mph", {115, 116}}},
                {}},
+        Layout{"ZerosAreNoReadings",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Total Spin,Spin Axis,Loft,Path,AoA\n"
+               "7i,115,82,16,6400,2,22,2.0,0\n7i,116,0,16,0,0,0,0,0\n7i,117,83,0,6300,0,21,0,0\n",
+               "",
+               {{"club_speed_mph", {82, kNone, 83}},
+                {"spin_rate_rpm", {6400, kNone, 6300}},
+                {"dynamic_loft_deg", {22, kNone, 21}},
+                {"club_path_deg", {2, kNone, 0}},
+                {"launch_angle_deg", {16, 16, 0}}},
+               {"0 taken as not measured: 1", "AoA (0 taken as not measured: 3"}},
+        Layout{
+            "LeftHandedYes",
+            "Club,Left Handed,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Dynamic Loft\n"
+            "7i,Yes,115,82,16,1.5,6400,22\n7i,No,116,82,16,1.5,6400,22\n",
+            "",
+            {{"azimuth_deg", {-1.5, 1.5}}},
+            {"mirrored to a right-handed player's: 1 of 2"}},
+        Layout{
+            "TheHandStandsAboveTheHeader",
+            "Session,Player: Jo,Handedness: Left\n"
+            "Club,Hand Speed,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Dynamic Loft\n"
+            "7i,22,115,82,16,1.5,6400,22\n7i,23,116,82,16,-1.5,6400,22\n",
+            "",
+            {{"azimuth_deg", {-1.5, 1.5}}},
+            {"2 of 2"}},
+        Layout{"FaceByPathAndFaceToPath",
+               "Club,Ball Speed (mph),Club Speed (mph),VLA,HLA,Total Spin,Loft,Club Path,Face to Path\n"
+               "7i,115,82,16,1.5,6400,22,2.0 I-O,1.5 Closed\n7i,116,82,16,1.5,6400,22,1.0 O-I,0.5 Open\n",
+               "",
+               {{"club_path_deg", {2, -1}}, {"face_angle_deg", {0.5, -0.5}}},
+               {"Face to Path + Club Path"}},
+        Layout{"ClubNamedByHand",
+               "Schlaeger,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin "
+               "Rate\n7i,115,82,16,6400\n8i,116,82,16,6400\n",
+               "--column Schlaeger=club",
+               {{"dynamic_loft_deg", {23.5, 26.5}}},
+               {"clubs: 7i 1, 8i 1"}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
@@ -267,6 +306,7 @@ TEST(Import, WhatWouldBeReadWrongIsRefused) {
          "shot 2: '1,3' among 2");
   refuse(commas + "7i,115.1,82.1,16.1,6400,22.1,9\n", "shot 1 has 7 cells under 6 names");
   refuse(commas + "7i,115.1,82.1,16.1 mph,6400,22.1\n", "is in another kind of unit");
+  refuse("Player Hand," + commas + "Middle,7i,115.1,82.1,16.1,6400,22.1\n", "'Middle' is neither left nor right");
   refuse("Velo,Kopf,Abflug\n185.1,132.0,16.4\n", "--column 'Velo=?'    185.1, ...");
 }
 

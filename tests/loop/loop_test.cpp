@@ -30,6 +30,7 @@ struct World {
   double tangential = 0;  ///< hidden tangential restitution
   double humidity = 0;    ///< hidden: ball speed per per cent [m/s]
   double level = 0;       ///< hidden: of the normal restitution
+  double loft = 0;        ///< hidden: loft beyond the recorded one [deg]
   bool face = false;      ///< hidden: a driver's face at the rules' limit
   int swapped = -1;       ///< row whose ball speed is written in mph
   double second = 0;      ///< of a second ball: its ball speed beyond the first's [m/s]
@@ -74,6 +75,8 @@ std::string csv(const World& w) {
       b.contact.restitution_slope *= kept;
     }
     const double humidity = 55 + 12 * gauss(random);
+    const double recorded_loft = degrees(d.dynamic_loft);
+    b.delivery.dynamic_loft += radians(w.loft);
     const Launch l = model->launch(b);
     double speed = l.ball_speed() + 0.25 * gauss(random) + w.humidity * (humidity - 55);
     if (i == w.swapped) speed /= kMpsPerMph;
@@ -83,8 +86,8 @@ std::string csv(const World& w) {
                  side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
     char line[512];
     std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1,
-                  d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle),
-                  degrees(d.dynamic_loft), 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
+                  d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle), recorded_loft,
+                  1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
                   degrees(l.launch_angle()) + 0.2 * gauss(random), degrees(l.azimuth()) + 0.25 * gauss(random), back,
                   side);
     text += line;
@@ -178,6 +181,18 @@ TEST_F(Loop, WhatIsBeyondDoubtIsKeptBesideWhatIsUnexplained) {
   const LoopResult alone = run(case_of(csv({.shots = 240, .humidity = 0.05})));
   EXPECT_EQ(alone.verdict, Verdict::unexplained);
   EXPECT_TRUE(alone.adopted.empty() && alone.ties.empty()) << sentence(alone);
+}
+
+TEST_F(Loop, TwoEffectsThatStandForThreeAreToldWithThem) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const LoopResult r =
+        run(case_of(csv({.shots = 60, .tangential = 0.18, .level = -0.02, .loft = 1.5, .seed = seed})));
+    std::set<std::string> told(r.adopted.begin(), r.adopted.end());
+    for (const auto& tie : r.ties) told.insert(tie.begin(), tie.end());
+    ASSERT_FALSE(told.empty()) << sentence(r);
+    for (const char* name : {"ball-tangential-compliance", "loft-bias", "restitution-law"})
+      EXPECT_TRUE(told.contains(name)) << "seed " << seed << ", " << name << ": " << sentence(r);
+  }
 }
 
 TEST_F(Loop, AUnitSlipIsFlaggedWithItsReason) {
