@@ -46,6 +46,10 @@ list(GET version 1 minor)
 list(GET version 2 next)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "python3 (>= ${major}.${minor}), python3 (<< ${major}.${next}), python3-numpy, gnuplot-nox | gnuplot-qt | gnuplot-x11")
+# Python compiles what root imports; the package takes it away again (py3clean of python3-minimal).
+file(WRITE ${PROJECT_BINARY_DIR}/prerm "#!/bin/sh\nset -e\nif command -v py3clean >/dev/null; then\n  py3clean -p hosel\nfi\n")
+file(CHMOD ${PROJECT_BINARY_DIR}/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/prerm)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, bash-completion")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
     "paraview, g++, cmake, libeigen3-dev, libsuitesparse-dev, libsundials-dev, libceres-dev, libtbb-dev, libboost-dev, libvtk9-dev, libfmt-dev, libspdlog-dev, libcli11-dev, libtomlplusplus-dev, nlohmann-json3-dev")
