@@ -68,12 +68,13 @@ ShapeSpline::Cell ShapeSpline::cell(const Eigen::Vector2d& place) const {
 double ShapeSpline::sum(const Eigen::Vector2d& place, const SurfaceUnknowns& weights) const {
   if (!inside(place)) return 0;
   const Cell c = cell(place);
-  SurfaceUnknowns at = SurfaceUnknowns::Zero(count());
-  for (int b = 0; b < 4; ++b)
-    for (int a = 0; a < 4; ++a)
-      at += c.y.value[std::size_t(a)] * c.z.value[std::size_t(b)] *
-            coefficients_.col(Eigen::Index(c.j + b) * (columns_ + 2) + c.i + a);
-  return at.dot(weights);
+  double sum = 0;
+  for (int b = 0; b < 4; ++b) {
+    const Eigen::RowVector4d row = weights.transpose() *
+                                   coefficients_.middleCols<4>(Eigen::Index(c.j + b) * (columns_ + 2) + c.i);
+    sum += c.z.value[std::size_t(b)] * row.dot(Eigen::RowVector4d::Map(c.y.value.data()));
+  }
+  return sum;
 }
 
 Travel ShapeSpline::at(const Eigen::Vector2d& place, const SurfaceUnknowns& weights) const {
@@ -82,18 +83,25 @@ Travel ShapeSpline::at(const Eigen::Vector2d& place, const SurfaceUnknowns& weig
   out.shape_slope.setZero(2, count());
   if (!inside(place)) return out;
   const Cell c = cell(place);
-  for (int b = 0; b < 4; ++b)
-    for (int a = 0; a < 4; ++a) {
-      const auto i = std::size_t(a), j = std::size_t(b);
-      const auto own = coefficients_.col(Eigen::Index(c.j + b) * (columns_ + 2) + c.i + a);
-      out.shape += c.y.value[i] * c.z.value[j] * own;
-      out.shape_slope.row(0) += c.y.slope[i] * c.z.value[j] * own.transpose();
-      out.shape_slope.row(1) += c.y.value[i] * c.z.slope[j] * own.transpose();
-      const double all = own.dot(weights);
-      out.second(0, 0) += c.y.second[i] * c.z.value[j] * all;
-      out.second(0, 1) += c.y.slope[i] * c.z.slope[j] * all;
-      out.second(1, 1) += c.y.value[i] * c.z.second[j] * all;
-    }
+  Eigen::Matrix<double, 4, 3> across;  // value, slope, second
+  for (int a = 0; a < 4; ++a) {
+    const auto i = std::size_t(a);
+    across.row(a) << c.y.value[i], c.y.slope[i], c.y.second[i];
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kSurfaceUnknowns, 3> row(count(), 3);
+  SurfaceUnknowns slope_y = SurfaceUnknowns::Zero(count()), slope_z = slope_y;
+  for (int b = 0; b < 4; ++b) {
+    const auto j = std::size_t(b);
+    row = coefficients_.middleCols<4>(Eigen::Index(c.j + b) * (columns_ + 2) + c.i).lazyProduct(across);
+    out.shape += c.z.value[j] * row.col(0);
+    slope_y += c.z.value[j] * row.col(1);
+    slope_z += c.z.slope[j] * row.col(0);
+    out.second(0, 0) += c.z.value[j] * row.col(2).dot(weights);
+    out.second(0, 1) += c.z.slope[j] * row.col(1).dot(weights);
+    out.second(1, 1) += c.z.second[j] * row.col(0).dot(weights);
+  }
+  out.shape_slope.row(0) = slope_y;
+  out.shape_slope.row(1) = slope_z;
   out.second(1, 0) = out.second(0, 1);
   out.value = out.shape.dot(weights);
   out.slope = out.shape_slope * weights;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -243,9 +244,9 @@ class PlateFaceJob final : public PointJob {
     summary["restitution"] = e;
     summary["largest_restitution"] = fastest;
     summary["restitution_less_rules_line"] = e - models::rules_line(centre.time);
-    post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 400};
+    post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 330};
     figure.panels = {
-        post::face_panel(grid_, time, "characteristic time [us]; crosses: 257 us, limit and tolerance", "[us]", false),
+        post::face_panel(grid_, time, "characteristic time [us]; line: 257 us, limit and tolerance", "[us]", false),
         post::face_panel(grid_, restitution, fmt::format("restitution at {:g} m/s", restitution_speed_), "[-]", false),
         post::face_panel(grid_, ratio, "ball speed over head speed, normal blow", "[-]", false),
         post::face_panel(grid_, thickness, "thickness [mm]", "[mm]", false)};
@@ -254,20 +255,29 @@ class PlateFaceJob final : public PointJob {
     out.draw(figure, "map");
   }
 
-  /// The level line of a map as points where it crosses the grid's lines.
+  /// The level line of a map, straight through each cell of its grid.
   void limit_line(post::Panel& panel, const std::vector<double>& values, double level) const {
-    post::Series line{.style = "points"};
-    const auto cross = [&](std::size_t a, std::size_t b) {
-      const double u = values[a] - level, v = values[b] - level;
-      if (!(u * v < 0)) return;
-      const double s = u / (u - v);
-      line.x.push_back(1e3 * ((1 - s) * grid_.toe_at(a) + s * grid_.toe_at(b)));
-      line.y.push_back(1e3 * ((1 - s) * grid_.high_at(a) + s * grid_.high_at(b)));
-    };
+    post::Series line{.style = "lines lw 2"};
     const auto columns = std::size_t(grid_.columns);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (i % columns + 1 < columns) cross(i, i + 1);
-      if (i + columns < values.size()) cross(i, i + columns);
+    for (std::size_t i = 0; i + columns < values.size(); ++i) {
+      if (i % columns + 1 == columns) continue;
+      const std::array corners{i, i + 1, i + 1 + columns, i + columns};
+      std::vector<Vector2d> crossed;
+      for (std::size_t side = 0; side < 4; ++side) {
+        const std::size_t a = corners[side], b = corners[(side + 1) % 4];
+        const double u = values[a] - level, v = values[b] - level, s = u / (u - v);
+        if (!(u * v < 0)) continue;
+        crossed.emplace_back((1 - s) * grid_.toe_at(a) + s * grid_.toe_at(b),
+                             (1 - s) * grid_.high_at(a) + s * grid_.high_at(b));
+      }
+      for (std::size_t k = 0; k + 1 < crossed.size(); k += 2) {
+        for (const Vector2d& at : {crossed[k], crossed[k + 1]}) {
+          line.x.push_back(1e3 * at.x());
+          line.y.push_back(1e3 * at.y());
+        }
+        line.x.push_back(std::nan(""));  // the pen is lifted
+        line.y.push_back(std::nan(""));
+      }
     }
     if (!line.x.empty()) panel.series.push_back(line);
   }

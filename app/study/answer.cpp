@@ -54,6 +54,10 @@ WallBounce off_wall(const StudyAnswer& a) {
   return {u_n / v_n, u_t / across.norm(), std::atan2(u_t, u_n)};
 }
 
+models::PlateStrike plate_strike(const StudyAnswer& a) {
+  return {a.face_plate->on(a.blow.club.head.face), a.blow.club.head};
+}
+
 /// A normal blow of ball, face and head in series, at the club's speed and the place of the impact.
 struct SeriesStrike {
   double mass, restitution, speed_ratio;  ///< of the head at that place [kg]; of the ball's speed over the head's
@@ -66,12 +70,29 @@ SeriesStrike in_series(const StudyAnswer& a, bool yields) {
   const double speed = a.blow.delivery.club_speed;
   double e = 0;
   if (yields && a.face_plate) {
-    const models::PlateStrike plate(a.face_plate->on(a.blow.club.head.face), a.blow.club.head);
+    const models::PlateStrike plate = plate_strike(a);
     e = plate.strike(striker, plate.at({yc, zc}, models::kBallPatch), speed).restitution;
   } else {
     e = models::strike(striker, mass, face, face ? face->shape(yc, zc).value : 0, speed).restitution;
   }
   return {mass, e, (1 + e) * mass / (mass + ball)};
+}
+
+/// The rules' pendulum at the place of the impact, by the sphere and the speeds of cases/characteristic-time.
+models::CharacteristicTime pendulum(const StudyAnswer& a) {
+  const double yc = -a.blow.delivery.impact_toe, zc = a.blow.delivery.impact_high;
+  const models::Striker sphere = models::steel_sphere(0.011);
+  if (a.face_plate) return plate_strike(a).characteristic_time(sphere, {yc, zc}, models::pendulum_speeds());
+  return models::characteristic_time(sphere, models::mass_at(a.blow.club.head, yc, zc), a.face,
+                                     a.face ? a.face->shape(yc, zc).value : 0, models::pendulum_speeds());
+}
+
+/// Static, of a plate at the place of the impact [m/N]; nothing without a plate.
+MaybeNumber give(const StudyAnswer& a, bool under_pendulum) {
+  if (!a.face_plate) return {};
+  const auto plate = a.face_plate->on(a.blow.club.head.face);
+  const Eigen::Vector2d at(-a.blow.delivery.impact_toe, a.blow.delivery.impact_high);
+  return plate->compliance(at, under_pendulum ? models::pendulum_patch(*plate, at) : models::kBallPatch);
 }
 
 MaybeNumber spin_over_rolling(const StudyAnswer& a) {
@@ -113,6 +134,9 @@ const std::array kBlowQuantities = {
     BlowQuantity{"rigid_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, false).restitution); }},
     BlowQuantity{"face_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); }},
     BlowQuantity{"rigid_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, false).speed_ratio); }},
+    BlowQuantity{"characteristic_time", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).time); }},
+    BlowQuantity{"give_to_ball_m_per_N", {}, [](Given a) { return give(a, false); }},
+    BlowQuantity{"give_to_pendulum_m_per_N", {}, [](Given a) { return give(a, true); }},
     BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
     BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
     BlowQuantity{"dynamic_loft", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.dynamic_loft); }},

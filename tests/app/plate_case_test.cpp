@@ -1,6 +1,8 @@
 // [face.plate]: faults of a case and of its CSV are refused with file and line; kinds that take a plate.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "command.hpp"
 
 namespace {
@@ -76,7 +78,7 @@ TEST(PlateCase, CharacteristicTimeAndStudiesTakeAPlate) {
   EXPECT_NE(content(dir / "out" / "line.csv").find("0.85000,"), std::string::npos);
   write(dir / "face" / "case.toml",
         "kind = 'study'\naccuracy = 'look'\nmodels = ['fe-free-body']\noutputs = ['face_restitution', "
-        "'rigid_restitution']\n"
+        "'rigid_restitution', 'characteristic_time_us', 'give_to_ball_m_per_N', 'give_to_pendulum_m_per_N']\n"
         "[[axis]]\nkey = 'delivery.impact_toe_mm'\nvalues = [0, 20]\n"
         "[delivery]\nclub_speed_mps = 48.77\n[ball]\nmodel = 'tour'\n[head]\nname = 'driver-200'\n"
         "[face.plate]\nthickness = {value_mm = 2.8}\n");
@@ -94,6 +96,9 @@ TEST(PlateCase, CharacteristicTimeAndStudiesTakeAPlate) {
     return 0.0;
   };
   EXPECT_GT(column("face_restitution"), column("rigid_restitution") + 0.02) << head << "\n" << centre;
+  const auto tapped = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  EXPECT_NEAR(column("characteristic_time_us"), tapped["characteristic_time_us"].get<double>(), 1e-6);
+  EXPECT_GT(column("give_to_pendulum_m_per_N"), column("give_to_ball_m_per_N")) << "the smaller patch sinks deeper";
 }
 
 }  // namespace
