@@ -5,6 +5,7 @@
 
 namespace {
 
+using hosel::post::label;
 using hosel::post::symbol;
 
 TEST(Labels, UnitsAreRaisedOnce) {
