@@ -1,6 +1,7 @@
 #include "app/kinds/study.hpp"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
@@ -227,8 +228,17 @@ class StudyJob final : public PointJob {
     return read_study_blow(file.root());
   }
 
+  /// The same, read once for the models that a thread asks one after another.
+  std::shared_ptr<const StudyBlow> latest_blow(std::size_t d) const {
+    auto& [point, latest] = latest_.local();
+    if (!latest || point != d) latest = std::make_shared<const StudyBlow>(blow(d));
+    point = d;
+    return latest;
+  }
+
   json compute_blow(std::size_t d, std::size_t model) const {
-    const StudyBlow asked = blow(d);
+    const auto read = latest_blow(d);
+    const StudyBlow& asked = *read;
     const models::NormalImpactPoint* bounce = nullptr;
     if (conditions_.bounce_speed && d > 0) {
       std::call_once(first_bounce_, [&] { bounce_ = wall_bounce(blow(0), *conditions_.bounce_speed); });
@@ -252,6 +262,7 @@ class StudyJob final : public PointJob {
   std::optional<StudyReference> reference_;
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
+  mutable tbb::enumerable_thread_specific<std::pair<std::size_t, std::shared_ptr<const StudyBlow>>> latest_;
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };
