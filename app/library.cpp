@@ -156,8 +156,8 @@ HeadEntry read_head_entry(Table root) {
 
 NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
 
-/// A file of the library, read whole: what is left over is an error. The same content is parsed once: a study asks for it
-/// at every point.
+/// A file of the library, read whole: what is left over is an error. The same content is parsed once: a study asks for
+/// it at every point.
 template <class Entry>
 Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
   static std::mutex mutex;
