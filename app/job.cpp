@@ -9,7 +9,6 @@
 #include "app/kinds/calibrate_face.hpp"
 #include "app/kinds/calibrate_reduced.hpp"
 #include "app/kinds/characteristic_time.hpp"
-#include "app/kinds/face_map.hpp"
 #include "app/kinds/flight.hpp"
 #include "app/kinds/flight_law.hpp"
 #include "app/kinds/identify_shaft.hpp"
@@ -47,8 +46,6 @@ constexpr std::array kKinds = {
          "Does the air's density carry what the sites differ by?", read_landing_times},
     Kind{"ball-rule", "a ball at a distance limit under old and new test conditions, and what players lose",
          "What must a ball at the limit give up, and who loses how much?", read_ball_rule},
-    Kind{"face-map", "the launch over the face for several clubs, and what they differ by",
-         "How does the launch change over the face, and what does the club change in it?", read_face_map},
     Kind{"tune", "parameters of a model against measured shots",
          "Which parameters make the model agree with the shots, and on shots it has not seen?", read_tune},
     Kind{"study", "a design of blows (axes, sample, variants, rows, places) through models or another case",
@@ -86,6 +83,9 @@ struct FormerKind {
   std::string_view name, now;
 };
 constexpr std::array kFormerKinds = {
+    FormerKind{"face-map",
+               "[[variants]] is [[variant]], reference is [compare], [[statements]] is [[statement]] with one formula, "
+               "[refinement] is a study of this one with finer numerics as a [[variant]]"},
     FormerKind{"sweep", "[[parameters]] is [[axis]], record is outputs, sweep.csv is points.csv"},
     FormerKind{"variants", "[[variants]] is [[variant]], outputs names the quantities, variants.csv is points.csv"},
     FormerKind{"clubs", "each club is a row of [rows] or a [[variant]], beside and model are models"},

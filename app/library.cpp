@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
@@ -154,9 +156,15 @@ HeadEntry read_head_entry(Table root) {
 
 NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
 
-/// A file of the library, read whole: what is left over is an error.
+/// A file of the library, read whole: what is left over is an error. The same content is parsed once: a study asks for
+/// it at every point.
 template <class Entry>
 Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
+  static std::mutex mutex;
+  static std::map<fs::path, std::pair<std::string, Entry>> parsed;
+  const std::string content = post::read_file(file);
+  const std::lock_guard lock(mutex);
+  if (const auto it = parsed.find(file); it != parsed.end() && it->second.first == content) return it->second.second;
   CaseFile text(file);
   Table root = text.root();
   read_origin(root);
@@ -164,6 +172,7 @@ Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
   if constexpr (requires { entry.seen; }) entry.seen = read_saw(root);
   else read_saw(root);  // of a head: for the reader
   text.finish();
+  parsed.insert_or_assign(file, std::pair{content, entry});
   return entry;
 }
 
@@ -177,7 +186,7 @@ std::vector<LibraryEntry> on_shelf(Shelf shelf) {
     std::vector<LibraryEntry> here;
     if (!home.empty())
       for (const auto& file : fs::directory_iterator(home / name(shelf), none))
-        if (file.path().extension() == ".toml" && fs::is_regular_file(file.path()))
+        if (file.path().extension() == ".toml" && file.is_regular_file())
           here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
     std::ranges::sort(here, {}, &LibraryEntry::name);
     all.insert(all.end(), here.begin(), here.end());

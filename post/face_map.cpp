@@ -61,18 +61,21 @@ bool nowhere(const std::vector<double>& v) {
   return std::ranges::none_of(v, [](double x) { return std::isfinite(x); });
 }
 
-using Column = std::function<std::vector<double>(const FaceMap&, const MapQuantity&)>;
+using Column = std::function<std::vector<double>(std::size_t map, const MapQuantity&)>;
 
-std::string csv(const FaceGrid& grid, const std::vector<const FaceMap*>& maps, const Column& column) {
+/// Of those maps that are not left out.
+std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const Column& column,
+                const std::function<bool(std::size_t)>& left_out) {
   std::string out = "model,impact_toe_mm,impact_high_mm";
   if (!maps.empty())
-    for (const MapQuantity& q : map_quantities(*maps.front())) out += fmt::format(",{}_{}", q.name, q.unit);
+    for (const MapQuantity& q : map_quantities(maps.front())) out += fmt::format(",{}_{}", q.name, q.unit);
   out += '\n';
-  for (const FaceMap* map : maps) {
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    if (left_out(m)) continue;
     std::vector<std::vector<double>> columns;
-    for (const MapQuantity& q : map_quantities(*map)) columns.push_back(column(*map, q));
+    for (const MapQuantity& q : map_quantities(maps[m])) columns.push_back(column(m, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
-      out += fmt::format("{},{:.6g},{:.6g}", csv_cell(map->title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
+      out += fmt::format("{},{:.6g},{:.6g}", csv_cell(maps[m].title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
       for (const auto& c : columns)
         out += c.empty() || !std::isfinite(c[p]) ? std::string(",") : fmt::format(",{:.9g}", c[p]);
       out += '\n';
@@ -110,41 +113,44 @@ std::vector<double> differences(const FaceMap& map, const FaceMap& reference, co
 }
 
 std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps) {
-  std::vector<const FaceMap*> all;
-  for (const FaceMap& m : maps) all.push_back(&m);
-  return csv(grid, all, [](const FaceMap& m, const MapQuantity& q) { return values(m, q); });
+  return csv(
+      grid, maps, [&](std::size_t m, const MapQuantity& q) { return values(maps[m], q); },
+      [](std::size_t) { return false; });
 }
 
-std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference) {
-  std::vector<const FaceMap*> others;
-  for (const FaceMap& m : maps)
-    if (m.title != reference.title) others.push_back(&m);
-  return csv(grid, others, [&](const FaceMap& m, const MapQuantity& q) { return differences(m, reference, q); });
+std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const References& references) {
+  return csv(
+      grid, maps, [&](std::size_t m, const MapQuantity& q) { return differences(maps[m], maps[*references[m]], q); },
+      [&](std::size_t m) { return !references[m]; });
 }
 
-Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string title, std::string label,
-                 bool symmetric) {
-  Panel p;
-  p.title = std::move(title);
+void frame_face(Panel& p) {
   p.x_label = "heel  <-  impact toe [mm]  ->  toe";
   p.y_label = "impact high [mm]";
-  p.map_label = std::move(label);
-  p.map_symmetric = symmetric;
   p.map_equal_axes = true;
-  for (int i = 0; i < grid.columns; ++i) p.map_x.push_back(1e3 * grid.toe(i));
-  for (int j = 0; j < grid.rows; ++j) p.map_y.push_back(1e3 * grid.high(j));
-  p.map = v;
   Series circle{.style = "lines dt 2"};
   for (int k = 0; k <= 72; ++k) {
     circle.x.push_back(12 * std::cos(k * kPi / 36));
     circle.y.push_back(12 * std::sin(k * kPi / 36));
   }
   p.series.push_back(std::move(circle));
+}
+
+Panel face_panel(const FaceGrid& grid, const std::vector<double>& v, std::string title, std::string label,
+                 bool symmetric) {
+  Panel p;
+  p.title = std::move(title);
+  p.map_label = std::move(label);
+  p.map_symmetric = symmetric;
+  for (int i = 0; i < grid.columns; ++i) p.map_x.push_back(1e3 * grid.toe(i));
+  for (int j = 0; j < grid.rows; ++j) p.map_y.push_back(1e3 * grid.high(j));
+  p.map = v;
+  frame_face(p);
   return p;
 }
 
 VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps,
-                      const FaceMap& reference) {
+                      const References& references) {
   VtkMesh mesh;
   for (std::size_t p = 0; p < grid.size(); ++p) mesh.points.push_back(face.point(-grid.toe_at(p), grid.high_at(p)));
   for (int j = 0; j + 1 < grid.rows; ++j)
@@ -152,11 +158,13 @@ VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<
       const std::int64_t a = std::int64_t(j) * grid.columns + i, b = a + grid.columns;
       mesh.cells.push_back({CellShape::quad, {a, b, b + 1, a + 1}});  // normal out of the face
     }
-  for (const FaceMap& m : maps)
-    for (const MapQuantity& q : map_quantities(m)) {
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    for (const MapQuantity& q : map_quantities(maps[k])) {
+      const FaceMap& m = maps[k];
       if (auto v = values(m, q); !v.empty())
         mesh.point_fields.push_back({fmt::format("{}.{}", m.title, q.name), symbol(q.unit), 1, std::move(v)});
-      if (m.title == reference.title) continue;
+      if (!references[k]) continue;
+      const FaceMap& reference = maps[*references[k]];
       if (auto v = differences(m, reference, q); !v.empty())
         mesh.point_fields.push_back(
             {fmt::format("{}-minus-{}.{}", m.title, reference.title, q.name), symbol(q.unit), 1, std::move(v)});

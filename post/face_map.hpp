@@ -54,9 +54,13 @@ std::vector<double> differences(const FaceMap& map, const FaceMap& reference, co
 
 /// One row a point and model: model, impact_toe_mm, impact_high_mm, then a column a quantity.
 std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps);
-/// The same for each map minus `reference`.
-std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const FaceMap& reference);
+/// Number of the map that each of several is compared with; nothing: with none.
+using References = std::vector<std::optional<std::size_t>>;
+/// The same for each map minus its reference.
+std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const References& references);
 
+/// Labels of a panel over the face in millimetres, as long up as across, with the 12 mm circle.
+void frame_face(Panel& panel);
 /// A contour map as a panel: millimetres from the face centre, toe on the right, the 12 mm circle.
 /// `symmetric` centres the colours on zero.
 Panel face_panel(const FaceGrid& grid, const std::vector<double>& values, std::string title, std::string label,
@@ -66,8 +70,8 @@ inline constexpr const char* kFaceView =
     "seen from behind (right-handed): heel left, toe right; dashed: 12 mm from the face centre";
 
 /// The face's surface through the grid points (face frame) with every quantity of every map, and its
-/// differences to the reference, as point arrays `MODEL.QUANTITY` and `MODEL-minus-REFERENCE.QUANTITY`.
+/// differences to its reference, as point arrays `MODEL.QUANTITY` and `MODEL-minus-REFERENCE.QUANTITY`.
 VtkMesh face_map_mesh(const Face& face, const FaceGrid& grid, const std::vector<FaceMap>& maps,
-                      const FaceMap& reference);
+                      const References& references);
 
 }  // namespace hosel::post

@@ -291,10 +291,14 @@ class LoadedFaceMapJob final : public PointJob {
     std::vector<post::FaceMap> all;
     for (std::size_t k = 0; k < swings_.size(); ++k) {
       std::vector<post::FaceMap> own;
+      post::References against;
       for (const post::FaceMap& m : maps[k])
-        if (m.launches.size() == grid_.size()) own.push_back(m);
+        if (m.launches.size() == grid_.size()) {
+          against.push_back(own.empty() ? std::nullopt : std::optional(std::size_t(0)));
+          own.push_back(m);
+        }
       post::VtkSeries(out.directory() / "vtk", fmt::format("face-{}", k + 1), post::VtkSeries::Form::surface)
-          .write(0, post::face_map_mesh(setups_[k].club.head.face, grid_, own, own.front()));
+          .write(0, post::face_map_mesh(setups_[k].club.head.face, grid_, own, against));
       all.insert(all.end(), own.begin(), own.end());
     }
     out.write("face_maps.csv", post::face_map_csv(grid_, all));

@@ -1,19 +1,23 @@
 #include "app/kinds/study.hpp"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
+#include "app/stored_launch.hpp"
 #include "app/study/answer.hpp"
 #include "app/study/compare.hpp"
 #include "app/study/design.hpp"
 #include "app/study/draw.hpp"
 #include "app/study/effects.hpp"
+#include "app/study/face.hpp"
 #include "app/study/history.hpp"
 #include "app/study/statement.hpp"
 #include "app/study/table.hpp"
@@ -72,8 +76,23 @@ class StudyJob final : public PointJob {
       if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
     if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
     reference_ = read_compare(root, table_);
-    statements_ = read_study_statements(root, columns, table_.outputs, reference_.has_value());
+    const bool referred = reference_ && (reference_->model || reference_->variant);
+    if (auto t = root.optional_table("equivalent_mass")) {
+      if (!maps_face() || !referred)
+        t->fail("", "compares maps: it needs a [grid] and a [compare] with model or variant");
+      extra_mass_ = t->quantity({"extra",
+                                 "head mass added to the reference: its ball speed tells what extra mass each map is "
+                                 "worth"},
+                                "g", {1e-5, 0.1});
+    }
+    std::vector<std::string> figures;
+    if (maps_face() && referred) figures = face_figure_names(extra_mass_ > 0);
+    statements_ = read_study_statements(root, columns, table_.outputs, figures, reference_.has_value());
     figures_ = read_study_figures(root, table_, reference_.has_value());
+    draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
+    if (conditions_.histories && !maps_face() &&
+        std::ranges::any_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))
+      root.fail("histories", "the loads at the hosel of finite-element clubs are kept over a [grid]");
     // What a case refuses is an error before anything is computed.
     for (std::size_t d = 0; d < table_.design.size(); ++d) {
       if (++points_read > kMostPoints)
@@ -104,6 +123,11 @@ class StudyJob final : public PointJob {
     out.write("points.csv", table.csv(points));
     json summary = {{"points", points.size()}};
     summary["failed"] = std::ranges::count_if(points, [](const json& p) { return p.contains("error"); });
+    std::vector<FaceLayer> layers;
+    if (maps_face()) {
+      layers = face_layers(table, points, reference_, [&](std::size_t d) { return blow(d); });
+      report_face(out, table, points, layers, extra_mass_, draw_, summary);
+    }
     StudyEffects effects = named ? effects_of(table) : StudyEffects{};
     effects.of.resize(table.series.size());
     if (named) {
@@ -117,9 +141,8 @@ class StudyJob final : public PointJob {
       for (std::size_t o = 0; o < outputs_.size(); ++o) causes[o] = outputs_[o].cause;
       summary["compare"] = compare(out, table, *reference_, against, causes);
     }
-    if (!statements_.empty())
-      summary["statements"] = judge(out, table, statements_, against, reference_ ? reference_->model : std::nullopt);
-    if (named) draw_study(out, table, title_, figures_, effects, reference_, against);
+    if (!statements_.empty()) summary["statements"] = judge(out, table, statements_, against, groups(table, layers));
+    if (named && draw_) draw_study(out, table, title_, figures_, effects, reference_, against);
     if (conditions_.histories) report_histories(out, table, points);
     out.page().answer("points", fmt::format("{}", points.size()),
                       fmt::format("{} without an answer", summary["failed"].get<int>()));
@@ -129,6 +152,23 @@ class StudyJob final : public PointJob {
   }
 
  private:
+  /// Whether the blows of a grid make maps.
+  bool maps_face() const { return table_.design.grid() && !studied_; }
+
+  /// Whose answers are judged together: a map's where its figures are known, else all of a model's.
+  std::vector<StudyGroup> groups(const StudyTable& table, const std::vector<FaceLayer>& layers) const {
+    std::vector<StudyGroup> out;
+    for (const FaceLayer& l : layers)
+      if (!l.figures.empty()) out.push_back({l.map.title, l.model, l.points, l.figures});
+    if (!out.empty()) return out;
+    std::vector<std::size_t> all(table.design.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    for (std::size_t m = 0; m < table.models.size(); ++m)
+      if (!reference_ || reference_->model != m)
+        out.push_back({table.models.size() > 1 ? table.models[m] : "", m, all});
+    return out;
+  }
+
   /// Another case answers: its keys are what the design sets, entries of its summary what is recorded.
   void read_case(CaseFile& file, Table root) {
     const std::string named = root.text({"case",
@@ -159,10 +199,13 @@ class StudyJob final : public PointJob {
       conditions_.bounce_speed = root.quantity(
           {"keep_bounce", "scale the ball's moduli until it bounces at this speed as the first point's does"}, "mps",
           {1, 100});
-    conditions_.histories = root.flag({"histories", "keep the forces over time (volumetric, hertz-maw)"}, false);
+    conditions_.histories = root.flag(
+        {"histories",
+         "keep the forces over time: of the contact by volumetric and hertz-maw, at the hosel by finite elements"},
+        false);
     for (const std::string& m : table_.models)
-      if (conditions_.histories && m != "volumetric" && m != "hertz-maw")
-        root.fail("histories", "forces over time come from volumetric and hertz-maw");
+      if (conditions_.histories && m != "volumetric" && m != "hertz-maw" && !m.starts_with("fe-"))
+        root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
     if (conditions_.histories && conditions_.matched_launch)
       root.fail("histories", "with matched_launch there is a blow at every loft of the search");
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
@@ -173,7 +216,7 @@ class StudyJob final : public PointJob {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
     root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "statement", "figure"});
+                "measured", "compare", "equivalent_mass", "statement", "figure", "figures"});
   }
 
   void read_point(Table& root, std::size_t d) const {
@@ -227,8 +270,17 @@ class StudyJob final : public PointJob {
     return read_study_blow(file.root());
   }
 
+  /// The same, read once for the models that a thread asks one after another.
+  std::shared_ptr<const StudyBlow> latest_blow(std::size_t d) const {
+    auto& [point, latest] = latest_.local();
+    if (!latest || point != d) latest = std::make_shared<const StudyBlow>(blow(d));
+    point = d;
+    return latest;
+  }
+
   json compute_blow(std::size_t d, std::size_t model) const {
-    const StudyBlow asked = blow(d);
+    const auto read = latest_blow(d);
+    const StudyBlow& asked = *read;
     const models::NormalImpactPoint* bounce = nullptr;
     if (conditions_.bounce_speed && d > 0) {
       std::call_once(first_bounce_, [&] { bounce_ = wall_bounce(blow(0), *conditions_.bounce_speed); });
@@ -239,6 +291,18 @@ class StudyJob final : public PointJob {
     for (const StudyOutput& o : outputs_)
       if (const auto x = o.value(a); x && std::isfinite(*x)) result[o.name] = *x / o.si;
     if (!a.history.empty()) result["history"] = stored(a.history);
+    if (!a.hosel.times.empty()) result["hosel"] = stored(a.hosel);
+    if (!maps_face()) return result;
+    result["launch"] = stored(a.launch);
+    const bool refers = reference_ && reference_->model.value_or(model) == model &&
+                        counterpart(table_, *reference_, d) == d;
+    if (extra_mass_ > 0 && refers) {
+      StudyBlow heavier = asked;
+      heavier.blow.club.head.mass += extra_mass_;
+      StudyConditions plain = conditions_;
+      plain.histories = false;
+      result["heavier"] = stored(answer(asked.models[model], heavier, plain, launch_angle(d), bounce).launch);
+    }
     return result;
   }
 
@@ -252,6 +316,9 @@ class StudyJob final : public PointJob {
   std::optional<StudyReference> reference_;
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
+  double extra_mass_ = 0;  ///< of the reference's heavier head [kg]; 0: not asked
+  bool draw_ = true;
+  mutable tbb::enumerable_thread_specific<std::pair<std::size_t, std::shared_ptr<const StudyBlow>>> latest_;
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };

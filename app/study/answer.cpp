@@ -11,6 +11,7 @@
 #include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "models/checked_launch.hpp"
+#include "models/fe/fe_impact.hpp"
 #include "models/fe/plate_strike.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
@@ -272,6 +273,11 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
+  } else if (const auto* fe = dynamic_cast<const models::FeModel*>(made.get()); fe && conditions.histories) {
+    out.launch = fe->solve(out.blow, [&](const models::ImpactView& v) {
+                     if (v.shaft) out.hosel.add(*v.shaft, v.state);
+                   }).launch;
+    models::check_launch(*made, out.blow, out.launch);
   } else if (conditions.histories) {
     out.launch = launch_with_history(model, options, out.blow, out.history);
     models::check_launch(*made, out.blow, out.launch);

@@ -12,6 +12,7 @@
 #include "golf/blow.hpp"
 #include "golf/face_compliance.hpp"
 #include "models/calibration/ball_calibration.hpp"
+#include "models/club/hosel_load.hpp"
 #include "models/fe/elastic_plate.hpp"
 #include "models/options.hpp"
 
@@ -31,7 +32,7 @@ StudyBlow read_study_blow(Table root);
 struct StudyConditions {
   bool matched_launch = false;         ///< the loft is an unknown: the launch angle is the measured one
   std::optional<double> bounce_speed;  ///< moduli are scaled until the ball bounces as the first blow's does [m/s]
-  bool histories = false;              ///< forces over time are kept (volumetric, hertz-maw)
+  bool histories = false;              ///< forces over time are kept: of the contact, of finite elements at the hosel
 };
 
 /// At one instant of a blow.
@@ -52,6 +53,7 @@ struct StudyAnswer {
   std::optional<post::ShotFlight> flight;
   std::optional<KeptBounce> bounce;
   std::vector<ForceSample> history;
+  models::HoselHistory hosel;  ///< of a finite-element club
 };
 
 /// A quantity by its name and unit, as a study asks for it: "ball_speed_mph", "launch_ratio".

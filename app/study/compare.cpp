@@ -51,21 +51,22 @@ std::optional<StudyReference> read_compare(Table root, const StudyTable& table) 
   return StudyReference{.name = "measured", .by = by};
 }
 
+std::size_t counterpart(const StudyTable& table, const StudyReference& reference, std::size_t point) {
+  if (!reference.variant) return point;
+  const std::size_t block = table.design.size() / table.design.factors().front().levels.size();  // of one variant
+  return point % block + *reference.variant * block;
+}
+
 std::vector<StudySeries> references(const StudyTable& table, const StudyReference& reference) {
   std::vector<StudySeries> out = table.series;
-  std::size_t levels = 1;
-  for (const DesignFactor& f : table.design.factors())
-    if (f.kind == DesignFactor::Kind::variants) levels = f.levels.size();
-  const std::size_t block = table.design.size() / levels;  // of one variant: they are the first factor
   for (StudySeries& s : out)
     for (std::size_t d = 0; d < s.y.size(); ++d) {
       const double own = s.y[d];
       if (reference.model) {
         s.y[d] = s.model == *reference.model ? NAN : table.at(*reference.model, s.output).y[d];
       } else if (reference.variant) {
-        const std::size_t level = d / block;
-        s.y[d] = level == *reference.variant ? NAN
-                                             : table.at(s.model, s.output).y[d % block + *reference.variant * block];
+        const std::size_t other = counterpart(table, reference, d);
+        s.y[d] = other == d ? NAN : table.at(s.model, s.output).y[other];
       } else {
         const auto seen = table.seen(d, s.output);
         s.y[d] = seen && std::isfinite(own) ? std::clamp(own, seen->low, seen->high) : NAN;

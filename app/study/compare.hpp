@@ -20,6 +20,9 @@ struct StudyReference {
 /// `[compare]`; without one what was measured, if anything was; else nothing.
 std::optional<StudyReference> read_compare(Table root, const StudyTable& table);
 
+/// The point of the design with which one is compared: itself, or the same at the variant of reference.
+std::size_t counterpart(const StudyTable& table, const StudyReference& reference, std::size_t point);
+
 /// What each series is compared with, as the table's series: NaN where there is nothing. A measured range counts as its
 /// end nearest to the answer, and as the answer itself inside.
 std::vector<StudySeries> references(const StudyTable& table, const StudyReference& reference);

@@ -77,14 +77,14 @@ DesignFactor read_rows(Table t) {
   return out;
 }
 
-DesignFactor read_places(Table root) {
+DesignFactor grid_factor(const post::FaceGrid& grid) {
   DesignFactor out{.kind = FactorKind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
-  const post::FaceGrid grid = read_face_grid(root);
   for (std::size_t p = 0; p < grid.size(); ++p) {
     DesignLevel level;
     for (std::size_t c = 0; c < 2; ++c) {
-      level.cells.push_back(fmt::format("{:.10g}", 1e3 * (c == 0 ? grid.toe_at(p) : grid.high_at(p))));
-      level.set.push_back(fmt::format("{}={}", out.columns[c], level.cells.back()));
+      const double mm = 1e3 * (c == 0 ? grid.toe_at(p) : grid.high_at(p));
+      level.cells.push_back(fmt::format("{:.6g}", mm));
+      level.set.push_back(fmt::format("{}={}", out.columns[c], mm));
     }
     out.levels.push_back(std::move(level));
   }
@@ -114,6 +114,11 @@ void Design::add(DesignFactor factor, const Table& at, std::string_view key) {
   if (size() > kMostPoints / factor.levels.size())
     at.fail(key, fmt::format("with these values the design has more than {} points", kMostPoints));
   factors_.push_back(std::move(factor));
+}
+
+void Design::add(const post::FaceGrid& grid, const Table& at) {
+  grid_ = grid;
+  add(grid_factor(grid), at, "grid");
 }
 
 const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
@@ -196,13 +201,14 @@ std::string said_cell(const std::string& column, const std::string& cell) {
                      split.unit ? " " + post::symbol(split.unit->suffix) : "");
 }
 
-std::string Design::said(std::size_t point) const {
+std::string Design::said(std::size_t point, std::optional<FactorKind> but) const {
   std::string text;
   const auto heads = columns(), own = cells(point);
   const auto row = std::size_t(std::ranges::find(heads, "row") - heads.begin());
   const bool named = row < heads.size() && levels(row).size() == factors_[place(row).first].levels.size();
   for (std::size_t c = 0; c < heads.size(); ++c) {
-    if (levels(c).size() < 2 || (named && c != row && tied(c, row))) continue;  // a row's own name says all of it
+    if (factors_[place(c).first].kind == but || levels(c).size() < 2 || (named && c != row && tied(c, row)))
+      continue;  // a row's own name says all of it
     text += (text.empty() ? "" : ", ") + said_cell(heads[c], own[c]);
   }
   return text;
@@ -212,7 +218,7 @@ Design read_design(Table root) {
   Design out;
   out.add(read_variants(root), root, "variant");
   if (auto rows = root.optional_table("rows")) out.add(read_rows(*rows), root, "rows");
-  if (root.has("grid")) out.add(read_places(root), root, "grid");
+  if (root.has("grid")) out.add(read_face_grid(root), root);
 
   auto sample = root.optional_table("sample");
   const auto points = sample ? std::size_t(sample->integer({"points", "of the sample"}, 1, long(kMostPoints))) : 0;

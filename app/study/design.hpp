@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/reader.hpp"
+#include "post/face_map.hpp"
 
 namespace hosel::app {
 
@@ -64,14 +65,18 @@ class Design {
     for (std::size_t f = 0; f < factors_.size(); ++f) out += level(f, point).from;
     return out;
   }
-  /// "dynamic loft 30 deg, friction 0.2": where a point lies, in words; columns of one value are left out.
-  std::string said(std::size_t point) const;
+  /// "dynamic loft 30 deg, friction 0.2": where a point lies, in words; columns of one value are left out, and those of
+  /// `but`.
+  std::string said(std::size_t point, std::optional<DesignFactor::Kind> but = {}) const;
+  const std::optional<post::FaceGrid>& grid() const { return grid_; }
 
   void add(DesignFactor factor, const Table& at, std::string_view key);
+  void add(const post::FaceGrid& grid, const Table& at);
 
  private:
   std::pair<std::size_t, std::size_t> place(std::size_t column) const;  ///< factor, column in it
   std::vector<DesignFactor> factors_;
+  std::optional<post::FaceGrid> grid_;
 };
 
 /// More points than this are a slip of the keys: each is read before anything is computed.

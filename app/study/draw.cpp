@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "post/face_map.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -55,6 +56,26 @@ class StudyView {
     for (std::size_t c = 0; c < columns(); ++c)
       if (!free.contains(c) && levels(c) > 1)
         text += (text.empty() ? "" : ", ") + said_cell(names_[c], levels_[c][levels(c) / 2]);
+    return text;
+  }
+  /// The columns of words: they have no middle.
+  std::set<std::size_t> words() const {
+    std::set<std::size_t> out;
+    for (std::size_t c = 0; c < columns(); ++c)
+      if (numbers_[c].empty()) out.insert(c);
+    return out;
+  }
+  /// Every combination of the words, as they come; at most as many as pictures are looked at.
+  std::vector<std::string> wordings() const {
+    std::vector<std::string> out;
+    for (std::size_t d = 0; d < cells_.size() && out.size() < kMostLines; ++d)
+      if (const std::string w = wording(d); std::ranges::find(out, w) == out.end()) out.push_back(w);
+    return out;
+  }
+  std::string wording(std::size_t d) const {
+    std::string text;
+    for (const std::size_t c : words())
+      if (levels(c) > 1) text += (text.empty() ? "" : ", ") + cells_[d][c];
     return text;
   }
   /// What tells a line from the others.
@@ -150,9 +171,17 @@ post::Figure lines(const StudyTable& table, const StudyView& view, const std::st
 }
 
 post::Figure maps(const StudyTable& table, const StudyView& view, const std::string& title, const StudyFigure& wanted,
-                  const std::vector<std::size_t>& outputs, std::size_t model, std::size_t x, std::size_t y) {
-  const std::set<std::size_t> free = {x, y};
+                  const std::vector<std::size_t>& outputs, std::size_t model, std::size_t x, std::size_t y,
+                  const std::string& wording) {
+  std::set<std::size_t> free = view.words();
+  free.insert({x, y});
+  const bool face = view.name(x) == "delivery.impact_toe_mm" && view.name(y) == "delivery.impact_high_mm";
   post::Figure figure{.title = behind(title, view.middle(free)), .columns = 3, .panel_width = 520, .panel_height = 400};
+  if (face) {
+    figure.title = behind(figure.title, post::kFaceView);
+    figure.panel_width = 640;
+    figure.panel_height = 330;
+  }
   const std::vector<double> xs = view.rising(x), ys = view.rising(y);
   for (const std::size_t o : outputs) {
     const StudySeries& s = table.at(model, o);
@@ -167,10 +196,9 @@ post::Figure maps(const StudyTable& table, const StudyView& view, const std::str
                       .map = std::vector<double>(xs.size() * ys.size(), NAN),
                       .map_label = wanted.difference ? "difference " + unit : unit,
                       .map_symmetric = wanted.difference};
-    panel.map_equal_axes = view.name(x).find("impact_") != std::string::npos &&
-                           view.name(y).find("impact_") != std::string::npos;
+    if (face) post::frame_face(panel);
     for (std::size_t d = 0; d < s.y.size(); ++d) {
-      if (!view.in_middle(d, free)) continue;
+      if (!view.in_middle(d, free) || view.wording(d) != wording) continue;
       const auto at = [](const std::vector<double>& all, double v) {
         return std::size_t(std::ranges::lower_bound(all, v) - all.begin());
       };
@@ -217,14 +245,19 @@ std::vector<StudyFigure> suggested(const StudyTable& table, const StudyView& vie
   const bool models = reference && reference->model;
   const bool effect = std::ranges::any_of(effects.of, [](const auto& e) { return e.has_value(); });
   const auto x = view.longest(), y = view.longest(x);
+  if (table.design.grid() && table.design.columns().size() <= 3) {
+    if (reference && (models || reference->variant)) out.push_back({.kind = Kind::map, .difference = true});
+    out.push_back({.kind = Kind::map});
+    return out;
+  }
   if (table.design.has(DesignFactor::Kind::variants) || table.design.has(DesignFactor::Kind::rows)) {
     if (table.design.size() <= 60) out.push_back({.kind = Kind::bars});
   } else if (table.design.has(DesignFactor::Kind::sample)) {
     if (effect) out.push_back({.kind = Kind::tornado});
     out.push_back({.kind = Kind::line});
     return out;
-  } else if (models || table.design.has(DesignFactor::Kind::grid)) {
-    out.push_back({.kind = y ? Kind::map : Kind::line, .difference = models});
+  } else if (models) {
+    out.push_back({.kind = y ? Kind::map : Kind::line, .difference = true});
   } else if (x) {
     const bool wide = y && view.columns() == 2 && std::min(view.levels(*x), view.levels(*y)) > 8;
     out.push_back({.kind = wide ? Kind::map : Kind::line});
@@ -272,11 +305,12 @@ void draw_study(Output& out, const StudyTable& table, const std::string& title, 
   if (figures.empty()) figures = suggested(table, view, effects, reference);
   const bool sampled = table.design.has(DesignFactor::Kind::sample);
   std::set<std::string> taken;
-  const auto draw = [&](const post::Figure& figure, std::string stem) {
+  const auto draw = [&](const post::Figure& figure, std::string stem, bool on_page = true) {
     for (int k = 2; taken.contains(stem); ++k)
       stem = fmt::format("{}-{}", stem.substr(0, stem.find_last_not_of("-0123456789") + 1), k);
     taken.insert(stem);
-    if (post::shows(figure)) out.draw(figure, "figures/" + stem);
+    if (post::shows(figure)) out.draw(figure, "figures/" + stem, on_page);
+    return post::shows(figure);
   };
   for (const StudyFigure& f : figures) {
     std::vector<std::size_t> outputs;
@@ -299,14 +333,20 @@ void draw_study(Output& out, const StudyTable& table, const std::string& title, 
         const auto x = f.x.empty() ? view.longest(view.column(f.y)) : view.column(f.x);
         const auto y = f.y.empty() ? view.longest(x) : view.column(f.y);
         if (!x || !y) break;
-        for (std::size_t m = 0; m < table.models.size(); ++m) {
-          if (f.difference && reference && reference->model == m) continue;
-          const bool named = !table.models[m].empty();
-          const std::string what = f.difference ? fmt::format("{} {}", named ? table.models[m] : "", of)
-                                   : named      ? behind(table.models[m], title)
-                                                : title;
-          draw(maps(table, view, what, f, outputs, m, *x, *y), named ? "map-" + out.file_name(table.models[m]) : "map");
-        }
+        bool on_page = true;  // of a face the first map alone; the others are links
+        for (const std::string& wording : view.wordings())
+          for (std::size_t m = 0; m < table.models.size(); ++m) {
+            if (f.difference && reference && reference->model == m) continue;
+            std::string name = wording;
+            if (name.empty() || table.models.size() > 1) name += (name.empty() ? "" : ", ") + table.models[m];
+            const std::string what = f.difference   ? fmt::format("{} {}", name, of)
+                                     : name.empty() ? title
+                                                    : behind(name, title);
+            const bool drawn = draw(
+                maps(table, view, what, f, outputs, m, *x, *y, wording),
+                (f.difference ? "difference" : "map") + (name.empty() ? name : "-" + out.file_name(name)), on_page);
+            if (drawn && table.design.grid()) on_page = false;
+          }
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "post/csv.hpp"
@@ -15,6 +16,7 @@ nlohmann::json stored(const std::vector<ForceSample>& history) {
 }
 
 void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
+  if (std::ranges::none_of(points, [](const nlohmann::json& p) { return p.contains("history"); })) return;
   std::string csv = "point,model";
   for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);
   csv += ",time_ms,normal_force_N,tangential_force_N\n";

@@ -40,8 +40,8 @@ class Formula {
 };
 
 std::vector<std::string> formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs,
-                                       bool compared) {
-  std::vector<std::string> out;
+                                       const std::vector<std::string>& figures, bool compared) {
+  std::vector<std::string> out = figures;
   const auto add = [&](const std::string& name) {
     if (std::ranges::find(out, name) == out.end()) out.push_back(name);
   };
@@ -68,9 +68,10 @@ std::string formula_name(const std::string& name) {
 }
 
 std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
-                                                  const std::vector<std::string>& outputs, bool compared) {
+                                                  const std::vector<std::string>& outputs,
+                                                  const std::vector<std::string>& figures, bool compared) {
   std::vector<StudyStatement> out;
-  const auto names = formula_names(columns, outputs, compared);
+  const auto names = formula_names(columns, outputs, figures, compared);
   for (Table t : root.tables("statement")) {
     StudyStatement s{.text = t.text({"text", "the statement, a sentence"}),
                      .holds = t.text({"holds", "a formula of outputs and axes that is true where the statement holds"}),
@@ -92,32 +93,39 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
 }
 
 nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
-                     const std::vector<StudySeries>& references, std::optional<std::size_t> reference) {
+                     const std::vector<StudySeries>& references, const std::vector<StudyGroup>& groups) {
   nlohmann::json json = nlohmann::json::array();
   const auto columns = table.design.columns();
-  const auto names = formula_names(columns, table.outputs, !references.empty());
+  std::vector<std::string> figures;
+  if (!groups.empty())
+    for (const post::NamedFigure& f : groups.front().figures) figures.push_back(f.name);
+  const auto names = formula_names(columns, table.outputs, figures, !references.empty());
   std::vector<std::vector<double>> numbers;
   for (std::size_t c = 0; c < columns.size(); ++c) numbers.push_back(table.design.numbers(c));
   post::TextTable shown{.rows = {{"statement"}}, .least_width = 10, .even = false};
-  if (table.models.size() > 1) shown.rows[0].push_back("model");
+  const bool named = std::ranges::any_of(groups, [](const StudyGroup& g) { return !g.name.empty(); });
+  if (named) shown.rows[0].push_back("model");
   shown.rows[0].insert(shown.rows[0].end(), {"verdict", "holds in", "points"});
   for (const StudyStatement& s : statements)
-    for (std::size_t m = 0; m < table.models.size(); ++m) {
-      if (reference == m) continue;
+    for (const StudyGroup& group : groups) {
+      const std::size_t m = group.model;
       Formula holds(s.holds, names), where(s.where.empty() ? "1" : s.where, names);
       const auto set = [&](const std::string& name, double x) {
         holds.set(name, x);
         where.set(name, x);
       };
+      for (const auto& [name, value] : group.figures) set(name, value);
       for (std::size_t o = 0; o < table.outputs.size(); ++o) {
         const std::string name = formula_name(table.outputs[o]);
-        const StudySeries::Spread all = table.at(m, o).spread();
+        StudySeries there;
+        for (const std::size_t d : group.points) there.y.push_back(table.at(m, o).y[d]);
+        const StudySeries::Spread all = there.spread();
         set("mean." + name, all.mean);
         set("least." + name, all.low);
         set("largest." + name, all.high);
       }
       std::size_t judged = 0, held = 0;
-      for (std::size_t d = 0; d < table.design.size(); ++d) {
+      for (const std::size_t d : group.points) {
         for (std::size_t c = 0; c < columns.size(); ++c)
           set(formula_name(columns[c]), numbers[c].empty() ? NAN : numbers[c][d]);
         for (std::size_t o = 0; o < table.outputs.size(); ++o) {
@@ -140,11 +148,11 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
                             : share <= 0.05 ? "fails"
                                             : "undecided";
       nlohmann::json j = {{"text", s.text}, {"verdict", verdict}, {"share", share}, {"points", judged}};
-      if (table.models.size() > 1) j["model"] = table.models[m];
+      if (named) j["model"] = group.name;
       json.push_back(std::move(j));
       auto& row = shown.rows.emplace_back(std::vector{s.text});
       shown.first_width = std::max(shown.first_width, s.text.size() + 2);
-      if (table.models.size() > 1) row.push_back(table.models[m]);
+      if (named) row.push_back(group.name);
       row.insert(row.end(), {verdict, fmt::format("{:.1f} %", 100 * share), fmt::format("{}", judged)});
     }
   out.show(shown, "Statements");

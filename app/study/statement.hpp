@@ -6,14 +6,23 @@
 #include <vector>
 
 #include "app/study/table.hpp"
+#include "post/claim.hpp"
 
 namespace hosel::app {
 
 /// A sentence and the formula that bears it out: arithmetic, comparisons, && and || (muParser) of the design's columns,
 /// the outputs, with a [compare] also reference.NAME and difference.NAME, and mean.NAME, least.NAME and largest.NAME of
-/// an output over the design.
+/// an output over the points that are judged together, and the figures of a face that is compared.
 struct StudyStatement {
   std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
+};
+
+/// Points that are judged together, of one model.
+struct StudyGroup {
+  std::string name;  ///< of the model, or of the map; empty: there is one model
+  std::size_t model = 0;
+  std::vector<std::size_t> points;
+  std::vector<post::NamedFigure> figures = {};  ///< of all of them
 };
 
 /// What a formula calls a column or an output: the last part of a dotted key, with _ for what is no letter or digit.
@@ -21,11 +30,12 @@ std::string formula_name(const std::string& name);
 
 /// `[[statement]]`; formulas that cannot be read, or that name something else than `names`, are errors.
 std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
-                                                  const std::vector<std::string>& outputs, bool compared);
+                                                  const std::vector<std::string>& outputs,
+                                                  const std::vector<std::string>& figures, bool compared);
 
-/// Judges every statement for every model but `reference`: holds in at least 95 % of the points, fails in at most 5 %,
+/// Judges every statement for every group: holds in at least 95 % of the points, fails in at most 5 %,
 /// else undecided. Said, shown on the page, returned for the summary.
 nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
-                     const std::vector<StudySeries>& references, std::optional<std::size_t> reference);
+                     const std::vector<StudySeries>& references, const std::vector<StudyGroup>& groups);
 
 }  // namespace hosel::app

@@ -30,7 +30,7 @@ StudySeries::Spread StudySeries::spread() const {
 std::string StudyTable::spoken_entry(std::size_t output) const {
   const auto own = [](std::string entry) {
     if (entry.ends_with(".value")) entry.resize(entry.size() - 6);
-    if (const auto at = entry.rfind("statements."); at != entry.npos && entry.ends_with(".holds"))
+    if (const auto at = entry.rfind("statements."); at != entry.npos && entry.ends_with(".share"))
       return fmt::format("statement {} holds", 1 + std::atoi(entry.c_str() + at + 11));
     return post::label(entry);
   };

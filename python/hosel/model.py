@@ -8,8 +8,8 @@ from . import _hosel
 class Model:
     """A model of `hosel list` and the blow of a case: club, ball, contact, and a delivery that the inputs below replace.
 
-    case: a case directory, or the name of a shipped case, of a kind that has one blow (impact, face-map,
-        study of blows).
+    case: a case directory, or the name of a shipped case, of a kind that has one blow (impact, study of
+        blows).
     name: the model; default: the first that the case names.
     set: overrides, "table.key=value".
     """

@@ -110,11 +110,7 @@ TEST(Bounds, NumbersOfPointsAndVariants) {
     grid += std::string("[[axis]]\nkey = \"delivery.") + key + "\"\nrange = [1.0, 2.0]\ncount = 65536\n";
   expect_one_line(check("grid", grid), "the design has more than 100000 points");
 
-  std::string maps = kEccentricBlow, variants = kEccentricBlow;
-  maps.replace(maps.find("\"impact\""), 8, "\"face-map\"");
-  for (int i = 0; i < 3000; ++i)
-    maps += "[[variants]]\nname = \"" + std::to_string(i) + "\"\nmodel = \"rigid-eccentric\"\nset = []\n";
-  expect_one_line(check("maps", maps), "variants: more than 1000");
+  std::string variants = kEccentricBlow;
   variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   std::string many = variants;
   for (int i = 0; i < 3000; ++i) many += "[[variant]]\nname = \"" + std::to_string(i) + "\"\n";
@@ -122,9 +118,9 @@ TEST(Bounds, NumbersOfPointsAndVariants) {
 
   // The names that come near a name are looked for among names, not among texts of any length.
   std::string named = kEccentricBlow;
-  named.replace(named.find("\"impact\""), 8, "\"face-map\"");
-  named.insert(0, "reference = \"" + std::string(300'000, 'a') + "\"\n");
-  named += "[[variants]]\nname = \"" + std::string(300'000, 'b') + "\"\nmodel = \"rigid-eccentric\"\nset = []\n";
+  named.replace(named.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  named += "[compare]\nwith = \"variant\"\nvariant = \"" + std::string(300'000, 'a') + "\"\n";
+  named += "[[variant]]\nname = \"" + std::string(300'000, 'b') + "\"\n";
   EXPECT_EQ(check("names", named).status, 2);
 
   // A sweep of a sweep: each counts, and all together.

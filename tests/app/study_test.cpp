@@ -252,9 +252,13 @@ TEST(Study, LatinHypercubeFillsEveryStratumOnce) {
 TEST(Study, AStatementHoldsInAShareOfTheRange) {
   // The ball is fastest where the centre of gravity stands behind it: towards the toe for three quarters of the range.
   const fs::path dir = fresh_directory("sweep_share");
-  write(dir / "blow" / "case.toml", R"(kind = "face-map"
+  write(dir / "blow" / "case.toml", R"(kind = "study"
 models = ["rigid-eccentric"]
+outputs = ["ball_speed_mps"]
 figures = false
+[compare]
+with = "variant"
+variant = "own"
 [delivery]
 club_speed_mps = 45.0
 [head]
@@ -264,17 +268,18 @@ inertia_kg_m2 = [[2.0e-4, 0, 0], [0, 3.0e-4, 0], [0, 0, 4.5e-4]]
 [grid]
 columns = 5
 rows = 3
-[[variants]]
+[[variant]]
+name = "own"
+[[variant]]
 name = "heavier"
-model = "rigid-eccentric"
 set = ["head.mass_kg=0.21"]
-[[statements]]
+[[statement]]
 text = "fastest towards the toe"
-where = ["fastest_club_toe_mm > 0"]
+holds = "fastest_club_toe_mm > 0"
 )");
   write(dir / "sweep" / "case.toml", R"(kind = "study"
 case = "../blow"
-outputs = ["effect.heavier.statements.0.holds", "effect.heavier.figures.fastest_club_toe_mm.value"]
+outputs = ["statements.0.share", "effect.heavier.figures.fastest_club_toe_mm"]
 [sample]
 points = 20
 seed = 3
@@ -288,9 +293,9 @@ range = [44.0, 46.0]
   const Outcome run = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
   ASSERT_EQ(run.status, 0) << run.text;
   const auto summary = nlohmann::json::parse(content(dir / "out" / "summary.json"));
-  EXPECT_DOUBLE_EQ(summary["mean"]["effect.heavier.statements.0.holds"], 0.75);  // one point in each stratum
+  EXPECT_DOUBLE_EQ(summary["mean"]["statements.0.share"], 0.75);  // one point in each stratum
   // The place follows the centre of gravity in a straight line; the speed does nothing to it.
-  const auto& effect = summary["main_effects"]["effect.heavier.figures.fastest_club_toe_mm.value"];
+  const auto& effect = summary["main_effects"]["effect.heavier.figures.fastest_club_toe_mm"];
   EXPECT_GT(effect["head.cg_mm[2]"]["share"], 0.99);
   EXPECT_LT(effect["delivery.club_speed_mps"]["share"], 0.01);
   EXPECT_GT(effect["head.cg_mm[2]"]["at_low"], effect["head.cg_mm[2]"]["at_high"]);
@@ -597,7 +602,7 @@ TEST(Study, AChangedBitOfAStoreIsNotTakenForAResult) {
 TEST(Study, PointsMadeByHandAreNoResults) {
   const fs::path dir = sweep_case("sweep_hand", kSample);
   std::string map = kEccentricBlow;
-  map.replace(map.find("\"impact\""), 8, "\"face-map\"");
+  map.replace(map.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   write(dir / "map/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
   const auto merged = [&](const char* of, const std::string& more, std::size_t size,
                           const std::function<nlohmann::json(std::size_t)>& made) {
@@ -623,7 +628,8 @@ TEST(Study, PointsMadeByHandAreNoResults) {
   };
   const auto launch = [](std::size_t) -> nlohmann::json {
     const auto still = {0, 0, 0};
-    return {{"velocity", {60, 0, 10}}, {"spin", {0, -300, 0}}, {"head_velocity", {40, 0, 0}}, {"head_spin", still}};
+    return {{"launch",
+             {{"velocity", {60, 0, 10}}, {"spin", {0, -300, 0}}, {"head_velocity", {40, 0, 0}}, {"head_spin", still}}}};
   };
   ASSERT_EQ(merged("map", "", 9, launch), 0) << "the seals are right";
   for (const char* hosel : {R"({"impulse":[],"history":[]})", R"({"impulse":[[],[]]})", "{}", "5"})

@@ -106,7 +106,8 @@ TEST(Inputs, ABlowDoesNotGoOnWithAnotherShaftsCheckpoint) {
 void write_map_case(const fs::path& dir, double butt) {
   write(dir / "shaft.csv", shaft_csv(butt));
   std::string text = kEccentricBlow;
-  text.replace(text.find("\"impact\""), 8, "\"face-map\"");
+  text.replace(text.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  text.replace(text.find("[\"rigid-eccentric\"]"), 19, "[\"shaft-coupled\"]");
   write(dir / "case.toml", text + R"([volumetric]
 published = "driver"
 [grid]
@@ -117,9 +118,8 @@ name = "composite-driver"
 [hosel]
 position_mm = [-15.0, 55.0, 10.0]
 lie_deg = 58.0
-[[variants]]
+[[variant]]
 name = "own shaft"
-model = "shaft-coupled"
 set = ["shaft={table={file=\"shaft.csv\"}}"]
 )");
 }
@@ -193,7 +193,8 @@ TEST(Inputs, AreNotOverwritten) {
 TEST(OwnFiles, WhatIsLinkedToAFileOfOutIsUntouched) {
   const fs::path dir = fresh_directory("hard_links"), out = dir / "out";
   std::string map = kEccentricBlow;
-  map.replace(map.find("\"impact\""), 8, "\"face-map\"");
+  map.replace(map.find("\"impact\""), 8,
+              "\"study\"\noutputs = [\"ball_speed_mps\", \"launch_angle_deg\", \"azimuth_deg\", \"backspin_rpm\"]");
   write(dir / "case/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
   const std::string run = "run " + (dir / "case").string() + " --quiet --force --out " + out.string();
   ASSERT_EQ(command(run).status, 0);
@@ -337,7 +338,7 @@ TEST(OwnFiles, AGnuplotThatFailsIsSaid) {
   const fs::path dir = fresh_directory("bad_gnuplot"), out = dir / "out";
   write(dir / "case/case.toml", kEccentricBlow);
   std::string map = kEccentricBlow;
-  map.replace(map.find("\"impact\""), 8, "\"face-map\"");
+  map.replace(map.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   write(dir / "case/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
   for (const char* fails : {"exit 1", "exit 0", "kill -9 $$"}) {
     write(dir / "bin/gnuplot", std::string("#!/bin/sh\n") + fails + "\n");
