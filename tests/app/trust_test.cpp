@@ -194,7 +194,8 @@ TEST(OwnFiles, WhatIsLinkedToAFileOfOutIsUntouched) {
   const fs::path dir = fresh_directory("hard_links"), out = dir / "out";
   std::string map = kEccentricBlow;
   map.replace(map.find("\"impact\""), 8,
-              "\"study\"\noutputs = [\"ball_speed_mps\", \"launch_angle_deg\", \"azimuth_deg\", \"backspin_rpm\"]");
+              "\"study\"\noutputs = [\"ball_speed_mps\", \"azimuth_deg\", \"backspin_rpm\", \"sidespin_rpm\", "
+              "\"spin_axis_deg\"]");
   write(dir / "case/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
   const std::string run = "run " + (dir / "case").string() + " --quiet --force --out " + out.string();
   ASSERT_EQ(command(run).status, 0);
