@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "app/import/cells.hpp"
 #include "app/import/sheet.hpp"
@@ -394,9 +395,10 @@ void import_shots(const ImportOptions& o) {
   }
   std::vector<bool> left(sheet.rows.size(), o.left_handed);
   for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
-    const std::string words = plain(fmt::format("{}", fmt::join(row, " ")));
-    const bool says_left = names_a_hand(words.substr(0, words.find(" left"))) || words.ends_with(" left handed");
-    if (says_left && words.find("left") != std::string::npos) left.assign(left.size(), true);
+    std::istringstream words(plain(fmt::format("{}", fmt::join(row, " "))));
+    std::string before;
+    for (std::string word; words >> word; before = word)  // the word beside the hand's name, not one further on
+      if (names_a_hand(before) && left_hand(word, false) == true) left.assign(left.size(), true);
   }
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (role[c] != "hand") continue;

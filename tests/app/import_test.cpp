@@ -270,6 +270,13 @@ INSTANTIATE_TEST_SUITE_P(
             "",
             {{"azimuth_deg", {-1.5, 1.5}}},
             {"2 of 2"}},
+        Layout{"ARightHandAboveTheHeaderStaysOne",
+               "Handedness: Right,Bay: left\n"
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Dynamic Loft\n"
+               "7i,115,82,16,1.5,6400,22\n7i,116,82,16,-1.5,6400,22\n",
+               "",
+               {{"azimuth_deg", {1.5, -1.5}}},
+               {}},
         Layout{"FaceByPathAndFaceToPath",
                "Club,Ball Speed (mph),Club Speed (mph),VLA,HLA,Total Spin,Loft,Club Path,Face to Path\n"
                "7i,115,82,16,1.5,6400,22,2.0 I-O,1.5 Closed\n7i,116,82,16,1.5,6400,22,1.0 O-I,0.5 Open\n",
