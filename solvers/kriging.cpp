@@ -12,7 +12,6 @@ constexpr double kStart = 3;  // length of an input of which nothing is known: s
 constexpr double kShortest = 0.1, kLongest = 200, kLeastNugget = 1e-8, kLargestNugget = 100;
 constexpr double kLengthStep = 2.5, kNuggetStep = 10;  // factors of the search
 constexpr double kNuggetGain = 0.1;                    // of log likelihood: less is not worth a step of the nugget
-constexpr int kSweeps = 3;
 
 double matern(double distance) {
   const double d = std::sqrt(5.0) * distance;
@@ -101,7 +100,7 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
       correlation_ = std::move(tried);
     }
   };
-  for (int sweep = 0, moved = 1; sweep < kSweeps && moved; ++sweep) {
+  for (int sweep = 0, moved = 1; sweep < search.sweeps && moved; ++sweep) {
     moved = 0;
     for (Eigen::Index k = 0; k <= d; ++k) {
       const double factor = k < d ? kLengthStep : kNuggetStep;

@@ -24,6 +24,7 @@ class Kriging {
     /// First one length for all inputs and the nugget, over a grid: from points that are mostly noise no step along one
     /// of them alone leads away.
     bool together = false;
+    int sweeps = 3;  ///< over all of them; 0: the correlation stays as it is
   };
   /// Of points that are mostly noise: a length of its own must be worth one unit.
   static Search noisy() { return {.plane = false, .gain = 1, .together = true}; }
@@ -34,6 +35,7 @@ class Kriging {
   /// `from`: where the search begins, e.g. that of fewer points.
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from);
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Search& search);
+  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from, const Search& search);
 
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   /// Mean square of the error to be expected there, outputs x outputs.
@@ -46,7 +48,6 @@ class Kriging {
   const Correlation& correlation() const { return correlation_; }
 
  private:
-  Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from, const Search& search);
   Eigen::VectorXd covariances(const Eigen::VectorXd& x) const;
   Eigen::VectorXd trend(const Eigen::VectorXd& x) const;
 

@@ -19,6 +19,8 @@
 #include "app/study/effects.hpp"
 #include "app/study/face.hpp"
 #include "app/study/history.hpp"
+#include "app/study/landing.hpp"
+#include "app/study/optimum.hpp"
 #include "app/study/statement.hpp"
 #include "app/study/table.hpp"
 #include "app/sweep.hpp"
@@ -89,6 +91,11 @@ class StudyJob final : public PointJob {
     if (maps_face() && referred) figures = face_figure_names(extra_mass_ > 0);
     statements_ = read_study_statements(root, columns, table_.outputs, figures, reference_.has_value());
     figures_ = read_study_figures(root, table_, reference_.has_value());
+    landing_ = read_landing(root, table_);
+    optimum_ = read_optimum(root, table_);
+    if (optimum_ && (studied_ || conditions_.matched_launch || conditions_.bounce_speed))
+      root.fail("optimum",
+                "is confirmed by a blow: of a study whose own tables are the blow, without matched_launch and keep_bounce");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
     if (conditions_.histories && !maps_face() &&
         std::ranges::any_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))
@@ -130,10 +137,16 @@ class StudyJob final : public PointJob {
     }
     StudyEffects effects = named ? effects_of(table) : StudyEffects{};
     effects.of.resize(table.series.size());
+    effects.emulators.resize(table.series.size());
     if (named) {
       tell_effects(out, table, effects, summary);
       if (const post::TextTable rows = table.rows(); rows.rows.size() > 1) out.show(rows, "Points");
     }
+    if (landing_) summary["landing"] = report_landing(out, table, effects, *landing_, title_);
+    if (optimum_)
+      summary["optimum"] =
+          report_optimum(out, table, effects, *optimum_,
+                         [&](const std::vector<std::string>& set, std::size_t m) { return answers_at(set, m); });
     std::vector<StudySeries> against;
     if (reference_) {
       against = references(table, *reference_);
@@ -216,7 +229,7 @@ class StudyJob final : public PointJob {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
     root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "equivalent_mass", "statement", "figure", "figures"});
+                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "optimum"});
   }
 
   void read_point(Table& root, std::size_t d) const {
@@ -278,6 +291,21 @@ class StudyJob final : public PointJob {
     return latest;
   }
 
+  /// What a model answers to a blow beside those of the design.
+  std::vector<std::optional<double>> answers_at(std::vector<std::string> set, std::size_t model) const {
+    const auto& own = blow_->overrides();
+    set.insert(set.begin(), own.begin(), own.end());
+    CaseFile file(*blow_, set);
+    const StudyBlow asked = read_study_blow(file.root());
+    std::vector<std::optional<double>> out;
+    const StudyAnswer a = answer(asked.models[model], asked, conditions_, {}, nullptr);
+    for (const StudyOutput& o : outputs_) {
+      const auto x = o.value(a);
+      out.push_back(x && std::isfinite(*x) ? std::optional(*x / o.si) : std::nullopt);
+    }
+    return out;
+  }
+
   json compute_blow(std::size_t d, std::size_t model) const {
     const auto read = latest_blow(d);
     const StudyBlow& asked = *read;
@@ -316,6 +344,8 @@ class StudyJob final : public PointJob {
   std::optional<StudyReference> reference_;
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
+  std::optional<StudyLanding> landing_;
+  std::optional<StudyOptimum> optimum_;
   double extra_mass_ = 0;  ///< of the reference's heavier head [kg]; 0: not asked
   bool draw_ = true;
   mutable tbb::enumerable_thread_specific<std::pair<std::size_t, std::shared_ptr<const StudyBlow>>> latest_;

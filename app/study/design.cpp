@@ -77,6 +77,13 @@ DesignFactor read_rows(Table t) {
   return out;
 }
 
+/// A value of an axis, as it stands in TOML.
+DesignLevel axis_level(const std::vector<std::string>& keys, const std::string& toml) {
+  DesignLevel l{.cells = {without_quotes(toml)}};
+  for (const std::string& key : keys) l.set.push_back(key + "=" + toml);
+  return l;
+}
+
 DesignFactor grid_factor(const post::FaceGrid& grid) {
   DesignFactor out{.kind = FactorKind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
   for (std::size_t p = 0; p < grid.size(); ++p) {
@@ -229,6 +236,17 @@ Design read_design(Table root) {
                                                {"latin-hypercube", "random"}, "latin-hypercube") == "latin-hypercube";
   DesignFactor sampled{.kind = FactorKind::sample};
   sampled.levels.resize(points);
+  const auto draw = [&](const std::string& name, const std::vector<std::string>& keys,
+                        const solvers::Distribution& spread) {
+    const std::vector<double> drawn = solvers::drawn(spread, points, latin, random);
+    sampled.columns.push_back(name);
+    sampled.drawn.push_back({keys, spread});
+    for (std::size_t i = 0; i < points; ++i) {
+      DesignLevel l = axis_level(keys, fmt::format("{}", drawn[i]));
+      sampled.levels[i].cells.push_back(l.cells.front());
+      sampled.levels[i].set.insert(sampled.levels[i].set.end(), l.set.begin(), l.set.end());
+    }
+  };
   std::vector<DesignFactor> axes;
   std::vector<std::pair<std::string, Table>> swept;
   for (Table t : root.tables("axis")) {
@@ -243,12 +261,15 @@ Design read_design(Table root) {
           t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
       swept.emplace_back(key, t);
     }
-    const auto level = [&](const std::string& toml) {
-      DesignLevel l{.cells = {without_quotes(toml)}};
-      for (const std::string& key : keys) l.set.push_back(key + "=" + toml);
-      return l;
-    };
+    const auto level = [&](const std::string& toml) { return axis_level(keys, toml); };
     DesignFactor axis{.kind = FactorKind::axis, .columns = {name}};
+    if (t.has("mean")) {
+      if (!sample) t.fail("mean", "a [sample] draws from a normal distribution");
+      const double mean = t.number({"mean", "of a normal distribution from which the [sample] draws"});
+      const double sd = t.number({"sd", "standard deviation of that distribution"}, Range::positive());
+      draw(name, keys, {.kind = solvers::Distribution::Kind::normal, .mean = mean, .sd = sd});
+      continue;
+    }
     if (!t.has("range")) {
       for (const std::string& x : t.scalars({"values", "of the key, each crossed with all other axes"}))
         axis.levels.push_back(level(x));
@@ -267,19 +288,9 @@ Design read_design(Table root) {
       axes.push_back(std::move(axis));
       continue;
     }
-    std::vector<double> drawn;
-    if (latin) drawn = solvers::latin_column(range[0], range[1], points, random);
-    else
-      for (std::size_t i = 0; i < points; ++i)
-        drawn.push_back(range[0] + (range[1] - range[0]) * solvers::uniform(random));
-    sampled.columns.push_back(name);
-    for (std::size_t i = 0; i < points; ++i) {
-      DesignLevel l = level(fmt::format("{}", drawn[i]));
-      sampled.levels[i].cells.push_back(l.cells.front());
-      sampled.levels[i].set.insert(sampled.levels[i].set.end(), l.set.begin(), l.set.end());
-    }
+    draw(name, keys, {.low = range[0], .high = range[1]});
   }
-  if (sample && sampled.columns.empty()) sample->fail("", "no [[axis]] has a range to draw from");
+  if (sample && sampled.columns.empty()) sample->fail("", "no [[axis]] has a range, or a mean and sd, to draw from");
   if (sample) out.add(std::move(sampled), root, "sample");
   for (std::size_t a = 0; a < axes.size(); ++a) out.add(std::move(axes[a]), root, "axis");
   if (out.factors().empty())

@@ -5,6 +5,7 @@
 ///     [grid]       columns, rows, width_mm, height_mm      places on the face
 ///     [sample]     points, seed, method                    of every [[axis]] with a range and no count
 ///     [[axis]]     key, values = [...] | range, count      one level a value
+///                  key, range | mean and sd                drawn by the [sample]
 #pragma once
 
 #include <cstddef>
@@ -15,6 +16,7 @@
 
 #include "app/reader.hpp"
 #include "post/face_map.hpp"
+#include "solvers/distribution.hpp"
 
 namespace hosel::app {
 
@@ -31,11 +33,18 @@ struct DesignLevel {
   std::string from;  ///< file and line, of a row
 };
 
+/// How the values of one column of a sample were drawn, and the keys of the case that they set.
+struct DrawnColumn {
+  std::vector<std::string> keys;
+  solvers::Distribution spread;
+};
+
 struct DesignFactor {
   enum class Kind { variants, rows, grid, sample, axis };
   Kind kind = Kind::axis;
   std::vector<std::string> columns;
   std::vector<DesignLevel> levels;
+  std::vector<DrawnColumn> drawn = {};  ///< one a column, of a sample
 };
 
 /// The first factor changes slowest.
@@ -69,6 +78,10 @@ class Design {
   /// `but`.
   std::string said(std::size_t point, std::optional<DesignFactor::Kind> but = {}) const;
   const std::optional<post::FaceGrid>& grid() const { return grid_; }
+  /// How each column was drawn, of a design that is one sample and nothing else; nothing of another.
+  std::vector<DrawnColumn> only_drawn() const {
+    return factors_.size() == 1 ? factors_.front().drawn : std::vector<DrawnColumn>();
+  }
 
   void add(DesignFactor factor, const Table& at, std::string_view key);
   void add(const post::FaceGrid& grid, const Table& at);

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "post/csv.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -23,6 +24,21 @@ std::string spoken_column(const std::string& column) {
 std::string capital(std::string text) {
   if (!text.empty()) text.front() = char(std::toupper(static_cast<unsigned char>(text.front())));
   return text;
+}
+
+/// An emulator that predicts well knows the shares better than a regression on one parameter at a time: those replace
+/// the effects' own. Returns the shares with all interactions.
+std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const StudyEffects& study) {
+  const StudyEmulator::Shares shares = study.emulators.back()->shares();
+  for (std::size_t f = 0; f < effects.factors.size(); ++f) {
+    const StudyEmulator::Share& own = shares.alone[study.columns[f]];
+    effects.factors[f].share = own.value;
+    effects.factors[f].low = own.low;
+    effects.factors[f].high = own.high;
+  }
+  std::ranges::stable_sort(effects.order, std::greater(), [&](std::size_t f) { return effects.factors[f].share; });
+  effects.first_is_certain = effects.factors[effects.order[0]].low > effects.factors[effects.order[1]].high;
+  return shares.together;
 }
 
 }  // namespace
@@ -44,8 +60,11 @@ StudyEffects effects_of(const StudyTable& table) {
     }
     factors.push_back(std::move(f));
   }
-  for (const StudySeries& s : table.series) {
+  for (std::size_t k = 0; k < table.series.size(); ++k) {
+    const StudySeries& s = table.series[k];
     out.of.emplace_back();
+    out.emulators.push_back(StudyEmulator::of(table, k));
+    out.together.emplace_back();
     if (factors.size() < 2) continue;
     std::vector<solvers::EffectFactor> there = factors;
     std::vector<double> y;
@@ -59,6 +78,7 @@ StudyEffects effects_of(const StudyTable& table) {
       return !f.x.empty() && std::ranges::min(f.x) < std::ranges::max(f.x);
     };
     if (std::ranges::all_of(there, varies)) out.of.back() = solvers::main_effects(there, y);
+    if (out.of.back() && out.emulators.back()) out.together.back() = emulated(*out.of.back(), out);
   }
   return out;
 }
@@ -79,7 +99,12 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   text += e->first_is_certain
               ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[e->order[1]].share))
               : fmt::format(" Whether {} with {} moves it as much, these points do not decide.", name(1), share(1));
-  if (e->predicted < 0.8)
+  if (const auto& together = effects.together[series]; !together.empty()) {
+    const StudyEmulator::Share& all = together[effects.columns[e->order[0]]];
+    if (all.value > first.share + 0.02)
+      text += fmt::format(" With its interactions the first takes part in {} % ({} to {} %).", percent(all.value),
+                          percent(all.low), percent(all.high));
+  } else if (e->predicted < 0.8)
     text += fmt::format(
         " One parameter at a time explains {} % of it at points left out: the rest are interactions and "
         "curvature.",
@@ -93,6 +118,9 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
   post::TextTable shown{
       .rows = {{"answer", "lowest", "mean", "highest"}}, .first_width = 10, .least_width = 10, .even = false};
   if (several) shown.rows[0].insert(shown.rows[0].end(), {"goes most with", "share of variance [%]"});
+  const bool emulated = std::ranges::any_of(effects.emulators, [](const auto& e) { return e.has_value(); });
+  if (emulated) shown.rows[0].push_back("emulator off by");
+  std::string csv = "output,parameter,share,share_low,share_high,together,together_low,together_high\n";
   bool begun = false;
   for (std::size_t s = 0; s < table.series.size(); ++s) {
     const StudySeries& series = table.series[s];
@@ -103,22 +131,40 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     auto& row = shown.rows.emplace_back();
     row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", mean), fmt::format("{:.4g}", high)};
     shown.first_width = std::max(shown.first_width, series.spoken.size() + 1);
-    if (!several) continue;
-    if (!effects.of[s]) {
-      row.insert(row.end(), {"-", "-"});
+    const std::string off = effects.emulators[s] ? fmt::format("{:.2g}", effects.emulators[s]->error()) : "-";
+    if (const auto& e = effects.emulators[s])
+      summary["emulator"][series.name] = {
+          {"points", e->points()}, {"rms_error", e->error()}, {"predicted", e->predicted()}};
+    if (!several || !effects.of[s]) {
+      if (several) row.insert(row.end(), {"-", "-"});
+      if (emulated) row.push_back(off);
       continue;
     }
     const solvers::MainEffects& e = *effects.of[s];
-    for (std::size_t f = 0; f < e.factors.size(); ++f)
-      summary["main_effects"][series.name][columns[effects.columns[f]]] = {{"share", e.factors[f].share},
-                                                                           {"low", e.factors[f].low},
-                                                                           {"high", e.factors[f].high},
-                                                                           {"at_low", e.factors[f].at_low},
-                                                                           {"at_high", e.factors[f].at_high}};
+    for (std::size_t f = 0; f < e.factors.size(); ++f) {
+      const std::string& column = columns[effects.columns[f]];
+      const solvers::MainEffect& own = e.factors[f];
+      auto& entry = summary["main_effects"][series.name][column];
+      entry = {{"share", own.share},
+               {"low", own.low},
+               {"high", own.high},
+               {"at_low", own.at_low},
+               {"at_high", own.at_high}};
+      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(series.name), post::csv_cell(column), own.share,
+                         own.low, own.high);
+      if (effects.together[s].empty()) {
+        csv += ",,,\n";
+        continue;
+      }
+      const StudyEmulator::Share& all = effects.together[s][effects.columns[f]];
+      entry["together"] = {{"share", all.value}, {"low", all.low}, {"high", all.high}};
+      csv += fmt::format(",{:.6g},{:.6g},{:.6g}\n", all.value, all.low, all.high);
+    }
     const solvers::MainEffect& first = e.factors[e.order[0]];
     row.insert(row.end(),
                {spoken_column(columns[effects.columns[e.order[0]]]),
                 fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
+    if (emulated) row.push_back(off);
     const std::string said = sentence(table, effects, s);
     constexpr std::size_t most = 8;  // a page begins with what somebody reads
     if (s < most) {
@@ -128,6 +174,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
+  if (std::ranges::count(csv, '\n') > 1) out.write("sensitivity.csv", csv);
 }
 
 post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const std::vector<std::size_t>& which) {

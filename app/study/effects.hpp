@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/study/emulator.hpp"
 #include "app/study/table.hpp"
 #include "solvers/main_effects.hpp"
 
@@ -14,7 +15,9 @@ namespace hosel::app {
 /// The columns of a design that take more than one value, and what they do to each series.
 struct StudyEffects {
   std::vector<std::size_t> columns;
-  std::vector<std::optional<solvers::MainEffects>> of;  ///< one a series
+  std::vector<std::optional<solvers::MainEffects>> of;      ///< one a series; shares by its emulator where there is one
+  std::vector<std::optional<StudyEmulator>> emulators;      ///< the same, of a sample
+  std::vector<std::vector<StudyEmulator::Share>> together;  ///< one a column, where there is an emulator
 };
 StudyEffects effects_of(const StudyTable& table);
 
@@ -22,7 +25,7 @@ StudyEffects effects_of(const StudyTable& table);
 std::string sentence(const StudyTable& table, const StudyEffects& effects, std::size_t series);
 
 /// Lowest, mean and highest of every series, and where there are several columns the one with which it goes most: said,
-/// the page's first sentence and table, and the summary's `range`, `mean` and `main_effects`.
+/// the page's first sentence and table, sensitivity.csv, and the summary's `range`, `mean`, `main_effects`, `emulator`.
 void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effects, nlohmann::json& summary);
 
 /// A panel for each series: from the answer at a column's lowest value to that at its highest, the others at their

@@ -1,43 +1,15 @@
 #include "app/study/statement.hpp"
 
 #include <fmt/format.h>
-#include <muParser.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <list>
 #include <nlohmann/json.hpp>
+
+#include "app/study/formula.hpp"
 
 namespace hosel::app {
 namespace {
-
-/// A formula with its variables; unset ones are NaN.
-class Formula {
- public:
-  Formula(const std::string& text, const std::vector<std::string>& names) {
-    parser_.DefineNameChars("0123456789_.abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-    for (const std::string& name : names) parser_.DefineVar(name, &values_.emplace_back(name, 1.0).second);
-    parser_.SetExpr(text);
-    for (const auto& [name, value] : parser_.GetUsedVar()) used_.push_back(name);
-    parser_.Eval();
-  }
-  void set(const std::string& name, double value) {
-    for (auto& [own, x] : values_)
-      if (own == name) x = value;
-  }
-  /// Nothing where a number that it needs is missing.
-  std::optional<bool> operator()() {
-    for (const auto& [name, x] : values_)
-      if (std::ranges::find(used_, name) != used_.end() && !std::isfinite(x)) return {};
-    return parser_.Eval() != 0;
-  }
-
- private:
-  mu::Parser parser_;
-  std::list<std::pair<std::string, double>> values_;  // the parser holds pointers into it
-  std::vector<std::string> used_;
-};
 
 std::vector<std::string> formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs,
                                        const std::vector<std::string>& figures, bool compared) {
@@ -58,15 +30,6 @@ std::vector<std::string> formula_names(const std::vector<std::string>& columns, 
 
 }  // namespace
 
-std::string formula_name(const std::string& name) {
-  std::string entry = name.ends_with(".value") ? name.substr(0, name.size() - 6) : name;
-  std::string out = entry.substr(entry.rfind('.') + 1);
-  for (char& c : out)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  if (!out.empty() && std::isdigit(static_cast<unsigned char>(out.front()))) out = "_" + out;
-  return out;
-}
-
 std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
                                                   const std::vector<std::string>& outputs,
                                                   const std::vector<std::string>& figures, bool compared) {
@@ -78,14 +41,7 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
                      .where = t.text({"where", "a formula that is true at the points of which it speaks"}, "")};
     for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
       if (formula->empty() && key == std::string_view("where")) continue;
-      try {
-        Formula(*formula, names);
-      } catch (const mu::Parser::exception_type& e) {
-        std::string known;
-        for (const std::string& n : names)
-          if (n.find('.') == std::string::npos) known += (known.empty() ? "" : ", ") + n;
-        t.fail(key, fmt::format("{} (known: {})", e.GetMsg(), known));
-      }
+      check_formula(t, key, *formula, names);
     }
     out.push_back(std::move(s));
   }

@@ -25,9 +25,6 @@ struct StudyGroup {
   std::vector<post::NamedFigure> figures = {};  ///< of all of them
 };
 
-/// What a formula calls a column or an output: the last part of a dotted key, with _ for what is no letter or digit.
-std::string formula_name(const std::string& name);
-
 /// `[[statement]]`; formulas that cannot be read, or that name something else than `names`, are errors.
 std::vector<StudyStatement> read_study_statements(Table root, const std::vector<std::string>& columns,
                                                   const std::vector<std::string>& outputs,

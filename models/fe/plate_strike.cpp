@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "golf/units.hpp"
@@ -16,6 +17,8 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
+
+constexpr double kFirstTouch = 0.8;  // of the change of speed: below, two touches are as one tap no more
 
 }  // namespace
 
@@ -90,7 +93,7 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
   double gap = 0, gap_rate = speed;  // head's rigid approach to the striker
   double force = 0, last_touch = 0, impulse = 0, indentation = 0;
   Strike out;
-  std::vector<double> impulses{0};
+  std::vector<double> impulses{0};  // of the first touch
   bool touching = false;
   const double quiet = 0.15e-3;
   constexpr double longest = 5e-3;
@@ -138,16 +141,18 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
     gap += gap_rate * step;
     q += rate * step;
     impulse += force * step;
-    impulses.push_back(impulse);
+    if (out.touches <= 1) impulses.push_back(impulse);
   }
   if (time >= longest) throw solvers::NonConvergence("striker and face are still in contact after 5 ms");
   out.contact_time = last_touch + step;
   out.restitution = (impulse * (per_striker + per_head) - speed) / speed;
+  const double first = impulses.back();
+  out.first_share = first / impulse;
   const auto reached = [&](double share) {
-    const auto found = std::ranges::lower_bound(impulses, share * impulse);
+    const auto found = std::ranges::lower_bound(impulses, share * first);
     const auto i = double(found - impulses.begin());
     const double high = *found, low = *(found - 1);
-    return step * (i - (high - share * impulse) / (high - low));
+    return step * (i - (high - share * first) / (high - low));
   };
   out.rise_time = (reached(0.95) - reached(0.05)) * kPi / (std::acos(-0.9) - std::acos(0.9));
   return out;
@@ -161,7 +166,13 @@ CharacteristicTime PlateStrike::characteristic_time(const Striker& sphere, const
   Eigen::VectorXd t(A.rows());
   for (Index i = 0; i < A.rows(); ++i) {
     A.row(i) << 1, std::pow(speeds[std::size_t(i)], -0.329);
-    t[i] = strike(sphere, place, speeds[std::size_t(i)]).rise_time;
+    const Strike tap = strike(sphere, place, speeds[std::size_t(i)]);
+    if (!(tap.first_share > kFirstTouch))
+      throw solvers::NonConvergence(
+          "the pendulum bounces on the vibrating face: its first touch makes " +
+          std::to_string(std::lround(100 * tap.first_share)) +
+          " % of the change of speed; such a face has no characteristic time");
+    t[i] = tap.rise_time;
   }
   const Eigen::Vector2d line = (A.transpose() * A).inverse() * (A.transpose() * t);
   out.time = line[0];

@@ -30,13 +30,15 @@ class PlateStrike {
   struct Strike {
     double restitution = 0;   ///< relative speed of striker and head's point after over before [-]
     double contact_time = 0;  ///< from first touch to last [s]
-    double rise_time = 0;     ///< from 5 to 95 % of the change of the striker's speed, over 0.713: a half sine of this
-                              ///< rise lasts so long [s]
+    double rise_time = 0;     ///< from 5 to 95 % of the change of the striker's speed by the first touch, over 0.713: a
+                              ///< half sine of this rise lasts so long [s]
+    double first_share = 0;   ///< of that change in all: a face that still vibrates may touch again [-]
     int touches = 0;          ///< 1: no bounce in between
   };
   Strike strike(const Striker& striker, const Place& place, double speed) const;
 
-  /// The pendulum at a place: see models::CharacteristicTime; times are rise times.
+  /// The pendulum at a place: see models::CharacteristicTime; times are rise times. Throws solvers::NonConvergence where
+  /// less than 0.8 of the sphere's change of speed comes from the first touch.
   CharacteristicTime characteristic_time(const Striker& sphere, const Eigen::Vector2d& place,
                                          std::span<const double> speeds) const;
   const PlateFace& plate() const { return *plate_; }

@@ -329,6 +329,97 @@ nlohmann::json studied(const std::string& name, const std::string& text, Outcome
   return nlohmann::json::parse(content(dir / "out" / "summary.json"));
 }
 
+/// A rigid head on the centre line: spin goes with speed times sin(loft), ball speed with speed and cos(loft). The
+/// largest spin below a ball speed is where that ball speed is reached at the largest loft.
+TEST(Study, EmulatorSharesAndOptimumAreThoseOfTheClosedForm) {
+  Outcome said;
+  const auto summary = studied("study_optimum", R"(models = ["rigid-eccentric"]
+outputs = ["spin_rate_rpm", "ball_speed_mps"]
+[sample]
+points = 60
+seed = 2
+[[axis]]
+key = "delivery.club_speed_mps"
+range = [30.0, 50.0]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+range = [20.0, 40.0]
+[optimum]
+output = "spin_rate_rpm"
+seek = "largest"
+where = "ball_speed_mps < 45"
+)" + std::string(kCentredBlow),
+                               &said);
+  ASSERT_TRUE(summary["emulator"].contains("spin_rate_rpm")) << said.text;
+  EXPECT_GT(summary["emulator"]["spin_rate_rpm"]["predicted"], 0.9999);
+  // f = v sin(a), both uniform: of the variance by v alone Var(v) E(sin)^2, by a alone E(v)^2 Var(sin), and the rest.
+  const double a = 20 * M_PI / 180, b = 40 * M_PI / 180;
+  const double mean = (std::cos(a) - std::cos(b)) / (b - a),
+               square = 0.5 - (std::sin(2 * b) - std::sin(2 * a)) / (4 * (b - a)), var = square - mean * mean;
+  const double var_v = 400.0 / 12, all = (var_v + 1600) * square - 1600 * mean * mean;
+  const auto& effects = summary["main_effects"]["spin_rate_rpm"];
+  EXPECT_NEAR(effects["delivery.club_speed_mps"]["share"], var_v * mean * mean / all, 0.005);
+  EXPECT_NEAR(effects["delivery.dynamic_loft_deg"]["together"]["share"], (1600 * var + var_v * var) / all, 0.005);
+  const auto& best = summary["optimum"]["rigid-eccentric"];
+  EXPECT_TRUE(best["condition_met"]);
+  EXPECT_NEAR(best["at"]["delivery.dynamic_loft_deg"], 40, 0.1);
+  EXPECT_NEAR(best["confirmed"], best["expected"], 1e-3 * double(best["confirmed"]));
+  EXPECT_NE(said.text.find("It lies at an end of the range of delivery.dynamic_loft_deg"), std::string::npos);
+}
+
+TEST(Study, NothingIsEmulatedOfWhatThePointsDoNotPredict) {
+  // Eight points of a face angle's side over six parameters are not enough.
+  const auto summary = studied("study_few", R"(models = ["rigid-eccentric"]
+outputs = ["spin_rate_rpm"]
+[sample]
+points = 5
+seed = 2
+[[axis]]
+key = "delivery.club_speed_mps"
+range = [30.0, 50.0]
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+range = [20.0, 40.0]
+[optimum]
+output = "spin_rate_rpm"
+seek = "largest"
+)" + std::string(kCentredBlow));
+  EXPECT_FALSE(summary.contains("emulator"));
+  EXPECT_FALSE(summary["optimum"]["rigid-eccentric"]["sought"]);
+}
+
+/// Balls whose direction alone scatters, by a normal distribution: the share in the fairway is its integral.
+TEST(Study, LandingShareIsThatOfTheNormalDistribution) {
+  Outcome said;
+  const auto summary = studied("study_landing", R"(models = ["rigid-eccentric"]
+outputs = ["carry_m", "side_m"]
+[sample]
+points = 200
+seed = 5
+[[axis]]
+key = "delivery.face_angle_deg"
+mean = 0.0
+sd = 2.0
+[[axis]]
+key = "delivery.club_path_deg"
+mean = 0.0
+sd = 1e-3
+[landing]
+fairway_m = 10.0
+[flight]
+units = "metres"
+)" + std::string(kCentredBlow).replace(0, 11, "[delivery]\ndynamic_loft_deg = 20.0\n"),
+                               &said);
+  const auto& all = summary["landing"]["rigid-eccentric"];
+  ASSERT_GT(double(all["side_sd_m"]), 1);
+  const double wanted = std::erf(5 / double(all["side_sd_m"]) / std::sqrt(2.0));
+  EXPECT_NEAR(all["fairway_share"], wanted, 0.01);  // a Latin hypercube: one ball in each of 200 strata
+  EXPECT_NEAR(all["fairway_share_emulated"], wanted, 0.015);  // 10,000 draws: 0.005 is one standard deviation
+  EXPECT_LT(double(all["fairway_share_low"]), wanted);
+  EXPECT_GT(double(all["fairway_share_high"]), wanted);
+  EXPECT_NE(said.text.find("land in the fairway, 10 m wide"), std::string::npos) << said.text;
+}
+
 TEST(Study, ModelsAreComparedByPlaceAndCause) {
   const nlohmann::json s = studied("study_compare", R"(models = ["rigid-eccentric", "stick-slip", "volumetric"]
 outputs = ["ball_speed_mps", "backspin_rpm", "tangential_impulse_N_s", "contact_time_ms"]
