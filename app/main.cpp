@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   app::ImportOptions import;
   CLI::App* import_command =
       cli.add_subcommand("import", "make a case of the loop from the export of a launch monitor");
-  import_command->add_option("FILE", import.file, "CSV or JSON as exported")->required();
+  import_command->add_option("FILE", import.files, "CSV or JSON as exported; several make one bag")->required();
   import_command->add_option("--out", import.out, "the new case directory")->required();
   import_command->add_option("--units", import.units, "imperial or metric, where the file states no units");
   import_command->add_option("--club", import.club,
