@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <sstream>
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
@@ -64,6 +65,11 @@ void check(const Arguments& a) {
   app::CaseFile file(app::find_case(a.case_dir), a.sets);
   app::read_job(file);
   fmt::print("{}", file.resolved());
+  // As comments, so that what is printed remains a case.
+  for (const std::string& told : file.inputs()->told()) {
+    std::istringstream lines(told);
+    for (std::string line; std::getline(lines, line);) fmt::print("# {}\n", line);
+  }
 }
 
 void keys(const Arguments& a) {
