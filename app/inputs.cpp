@@ -42,6 +42,16 @@ void Inputs::resolved(std::string_view text) {
   if (fingerprint_.empty()) all_ = post::digest(all_ + post::digest(text));
 }
 
+void Inputs::tell(std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  if (!std::ranges::count(told_, text)) told_.emplace_back(text);
+}
+
+std::vector<std::string> Inputs::told() const {
+  const std::lock_guard lock(mutex_);
+  return told_;
+}
+
 std::string Inputs::fingerprint() const {
   const std::lock_guard lock(mutex_);
   if (fingerprint_.empty()) {

@@ -23,6 +23,10 @@ class Inputs {
   /// A case, read to its end. Counts until the fingerprint is asked for.
   void resolved(std::string_view text);
 
+  /// What a table that was read comes to, in words: for `hosel check`. The same text counts once.
+  void tell(std::string_view text);
+  std::vector<std::string> told() const;
+
   /// Digest of the program, of every case and of every file: what was computed under another one is of another run.
   std::string fingerprint() const;
   /// Throws InputError where a file is no longer what was read.
@@ -36,6 +40,7 @@ class Inputs {
   std::map<std::filesystem::path, std::string> digests_;  // in the order of their names, whichever thread came first
   std::vector<std::filesystem::path> cases_;
   std::map<std::filesystem::path, std::filesystem::path> copies_;
+  std::vector<std::string> told_;
   std::string all_;
   mutable std::string fingerprint_;  // once asked for
 };

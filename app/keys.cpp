@@ -34,7 +34,8 @@ std::vector<Sample> samples() {
       {"driver-toe", {"ball.changes={}", "ball.temperature={now_C=5}"}},
       {"driver-toe",
        {"shaft={polynomial={length_m=1, bending_stiffness_N_m2=[40], torsional_stiffness_N_m2=[40], "
-        "mass_per_length_kg_per_m=[0.06], mean_radius_m=[0.005]}, offsets={arc_length_mm=[0]}}"}},
+        "mass_per_length_kg_per_m=[0.06], mean_radius_m=[0.005]}, offsets={arc_length_mm=[0]}, "
+        "tip={from_mm=500, bending_scale=1, torsion_scale=1}}"}},
       {"driver-toe",
        {"shaft={tube={arc_length_mm=[0,1000], outer_radius_mm=[7,4], wall_mm=[1,1], shear_factor=0.5, "
         "layer=[{E_GPa=100, G_GPa=20, density_kg_per_m3=1600}]}}"}},

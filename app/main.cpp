@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <sstream>
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
@@ -64,6 +65,11 @@ void check(const Arguments& a) {
   app::CaseFile file(app::find_case(a.case_dir), a.sets);
   app::read_job(file);
   fmt::print("{}", file.resolved());
+  // As comments, so that what is printed remains a case.
+  for (const std::string& told : file.inputs()->told()) {
+    std::istringstream lines(told);
+    for (std::string line; std::getline(lines, line);) fmt::print("# {}\n", line);
+  }
 }
 
 void keys(const Arguments& a) {
@@ -137,7 +143,7 @@ int main(int argc, char** argv) {
   app::ImportOptions import;
   CLI::App* import_command =
       cli.add_subcommand("import", "make a case of the loop from the export of a launch monitor");
-  import_command->add_option("FILE", import.file, "CSV or JSON as exported")->required();
+  import_command->add_option("FILE", import.files, "CSV or JSON as exported; several make one bag")->required();
   import_command->add_option("--out", import.out, "the new case directory")->required();
   import_command->add_option("--units", import.units, "imperial or metric, where the file states no units");
   import_command->add_option("--club", import.club,

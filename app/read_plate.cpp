@@ -74,7 +74,7 @@ PlateThickness::Grid read_grid(const post::Sheet& sheet) {
   std::ranges::sort(out.y);
   std::ranges::sort(out.z);
   if (out.y.size() < 2 || out.z.size() < 2)
-    throw InputError(fmt::format("{}: a thickness grid needs two places each way", sheet.file));
+    throw InputError(fmt::format("{}:1: a thickness grid needs two places each way", sheet.file));
   const auto number = [](const std::vector<double>& lines, double x) {
     return std::size_t(std::ranges::min_element(lines, {}, [&](double l) { return std::abs(l - x); }) - lines.begin());
   };
@@ -93,9 +93,15 @@ PlateThickness::Grid read_grid(const post::Sheet& sheet) {
     from[cell] = sheet.lines[i];
   }
   for (std::size_t cell = 0; cell < out.value.size(); ++cell)
-    if (!(out.value[cell] > 0))
-      throw InputError(fmt::format("{}: the grid has no row for toe {:g} mm, high {:g} mm", sheet.file,
-                                   -1e3 * out.y[cell % out.y.size()], 1e3 * out.z[cell / out.y.size()]));
+    if (!(out.value[cell] > 0)) {
+      // A row that names this column of the grid, else the mistake would have no line.
+      const std::size_t row = std::size_t(
+          std::ranges::find_if(at, [&](const auto& p) { return number(out.y, p.x()) == cell % out.y.size(); }) -
+          at.begin());
+      throw InputError(fmt::format("{}:{}: the grid has no row for toe {:g} mm, high {:g} mm; this line asks for one",
+                                   sheet.file, sheet.lines[row], -1e3 * out.y[cell % out.y.size()],
+                                   1e3 * out.z[cell / out.y.size()]));
+    }
   return out;
 }
 
@@ -175,6 +181,10 @@ fem::RimSupport read_rim(Table t, const fem::PlateMaterial& material) {
 models::PlateDesign read_plate(Table t) {
   models::PlateDesign d;
   d.material = read_material(t);
+  if (t.has_quantity("yield"))
+    d.yield =
+        t.quantity({"yield", "yield strength of the material: a stress beyond it is said to be so; none by default"},
+                   "MPa", {1e6, 5e9});
   d.outline = read_outline(t.default_table("outline"));
   std::string grid;
   d.thickness = read_thickness(t.table("thickness"), grid);

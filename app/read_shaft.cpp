@@ -1,6 +1,7 @@
 #include "app/read_shaft.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -108,10 +109,28 @@ void read_offsets(Table table, Shaft& shaft) {
   for (ShaftStation& s : shaft.stations) s.centres = offsets.at(s.arc_length).centres;
 }
 
+/// What a maker says of a shaft.
+std::string figures(const Shaft& shaft) {
+  const ShaftStation &butt = shaft.stations.front(), &tip = shaft.stations.back();
+  const double balance = balance_point(shaft);
+  std::string out = fmt::format("length {:.1f} mm, mass {:.2f} g, balance point {:.1f} mm from the butt ({:.1f} %)\n",
+                                1e3 * shaft.length(), 1e3 * mass(shaft), 1e3 * balance, 100 * balance / shaft.length());
+  out +=
+      fmt::format("EI at the butt {:.4g}, at the tip {:.4g} N m^2", butt.bending_stiffness_y, tip.bending_stiffness_y);
+  if (butt.bending_stiffness_y != butt.bending_stiffness_z || tip.bending_stiffness_y != tip.bending_stiffness_z)
+    out += fmt::format(" about y, {:.4g} and {:.4g} N m^2 about z", butt.bending_stiffness_z, tip.bending_stiffness_z);
+  return out + fmt::format("\nGJ at the butt {:.4g}, at the tip {:.4g} N m^2", butt.torsional_stiffness,
+                           tip.torsional_stiffness);
+}
+
 }  // namespace
 
 Shaft read_shaft(Table table) {
   Shaft shaft;
+  std::vector<std::string> given;
+  for (const char* how : {"name", "table", "polynomial", "tube"})
+    if (table.has(how)) given.emplace_back(how);
+  if (given.size() > 1) table.fail(given[1], fmt::format("give one of `{}`, not both", fmt::join(given, "` and `")));
   try {
     if (table.has("name")) shaft = by_name(table);
     else if (auto stations = table.optional_table("table")) shaft = by_stations(*stations);
@@ -122,6 +141,16 @@ Shaft read_shaft(Table table) {
   const double bending_scale = table.number({"bending_scale", "factor on EI everywhere"}, Range::positive(), 1.0);
   const double torsion_scale = table.number({"torsion_scale", "factor on GJ everywhere"}, Range::positive(), 1.0);
   shaft = scaled(std::move(shaft), bending_scale, torsion_scale);
+  if (auto tip = table.optional_table("tip")) {
+    const double from = tip->quantity({"from", "arc length from the butt where the factors begin to grow from 1"}, "mm",
+                                      Range::positive());
+    if (!(from < shaft.length())) tip->fail("from", fmt::format("the shaft ends at {:g} m", shaft.length()));
+    const double bending = tip->number(
+        {"bending_scale", "factor on EI at the tip; between `from` and the tip it is linear"}, Range::positive());
+    const double torsion = tip->number(
+        {"torsion_scale", "factor on GJ at the tip; between `from` and the tip it is linear"}, Range::positive());
+    shaft = scaled_tip(std::move(shaft), from, bending, torsion);
+  }
   const double mass_scale =
       table.number({"mass_scale", "factor on mass and rotary inertia everywhere"}, Range::positive(), 1.0);
   for (ShaftStation& s : shaft.stations) {
@@ -152,6 +181,7 @@ Shaft read_shaft(Table table) {
              {"damping_frequency", "where damping_ratio, if above 0, holds; it grows in proportion to frequency"}, "Hz",
              Range::positive()));
   if (const auto wrong = faults(shaft); !wrong.empty()) table.fail("", wrong.front());
+  table.tell(figures(shaft));
   return shaft;
 }
 

@@ -21,7 +21,8 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
     if (!unit_needed && sheet.names[c] == stem) split = {std::string(stem), {}};
     if (split.stem != stem) continue;
     if (unit_needed && (!split.unit || split.unit->dimension != dimension))
-      throw InputError(fmt::format("{}: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
+      throw InputError(
+          fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
     std::vector<double> out;
     for (std::size_t r = 0; r < sheet.rows(); ++r) {
       const std::string& cell = sheet.columns[c][r];
@@ -33,7 +34,7 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
     }
     return out;
   }
-  throw InputError(fmt::format("{}: no column '{}' (with a unit)", sheet.file, stem));
+  throw InputError(fmt::format("{}:1: no column '{}' (with a unit)", sheet.file, stem));
 }
 
 std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name) {
@@ -52,7 +53,7 @@ std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view 
     }
     return out;
   }
-  throw InputError(fmt::format("{}: no column '{}'", sheet.file, name));
+  throw InputError(fmt::format("{}:1: no column '{}'", sheet.file, name));
 }
 
 }  // namespace hosel::app

@@ -657,6 +657,12 @@ Table Table::default_table(std::string_view key) {
   return *optional_table(key);
 }
 
+void Table::tell(std::string_view text) {
+  std::string lines = fmt::format("[{}] ", path_);
+  for (const char c : text) lines += c == '\n' ? "\n  " : std::string(1, c);
+  document_->inputs->tell(lines);
+}
+
 void Table::note_file(const fs::path& file) { document_->inputs->file(file); }
 
 std::vector<Table> Table::tables(std::string_view key) {

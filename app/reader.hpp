@@ -139,6 +139,9 @@ class Table {
   /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.
   std::vector<std::string> keys() const;
 
+  /// What `hosel check` says of this table beside its keys, a line or several.
+  void tell(std::string_view text);
+
   /// An error at this key (or at the table where the key is empty or absent).
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -163,6 +164,35 @@ Shaft scaled(Shaft shaft, double bending, double torsion) {
     s.torsional_stiffness *= torsion;
   }
   return shaft;
+}
+
+Shaft scaled_tip(Shaft shaft, double from, double bending, double torsion) {
+  const auto after = std::ranges::upper_bound(shaft.stations, from, {}, &ShaftStation::arc_length);
+  if (after != shaft.stations.begin() && std::prev(after)->arc_length != from)
+    shaft.stations.insert(after, shaft.at(from));
+  const double length = shaft.length() - from;
+  for (ShaftStation& s : shaft.stations) {
+    const double share = std::max(0.0, (s.arc_length - from) / length), EI = 1 + share * (bending - 1),
+                 GJ = 1 + share * (torsion - 1);
+    s.bending_stiffness_y *= EI;
+    s.bending_stiffness_z *= EI;
+    s.axial_stiffness *= EI;
+    s.shear_stiffness *= GJ;
+    s.torsional_stiffness *= GJ;
+  }
+  return shaft;
+}
+
+double balance_point(const Shaft& shaft) {
+  double moment = 0;
+  for (std::size_t i = 1; i < shaft.stations.size(); ++i) {
+    const ShaftStation &a = shaft.stations[i - 1], &b = shaft.stations[i];
+    // Exact for a mass per length that is linear between stations.
+    moment +=
+        (b.arc_length - a.arc_length) / 6 *
+        (a.mass_per_length * (2 * a.arc_length + b.arc_length) + b.mass_per_length * (a.arc_length + 2 * b.arc_length));
+  }
+  return moment / mass(shaft);
 }
 
 double mass(const Shaft& shaft) {

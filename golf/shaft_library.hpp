@@ -53,7 +53,12 @@ std::vector<std::string> faults(const Shaft& shaft);
 /// Bending and axial stiffness multiplied by `bending`, torsional and shear stiffness by `torsion`.
 Shaft scaled(Shaft shaft, double bending, double torsion);
 
-double mass(const Shaft& shaft);  ///< [kg]
+/// Stiffness as `scaled` does, by factors that grow linearly from 1 at `from` [m from the butt] to these at the tip.
+/// `from` lies inside the shaft and becomes a station.
+Shaft scaled_tip(Shaft shaft, double from, double bending, double torsion);
+
+double mass(const Shaft& shaft);           ///< [kg]
+double balance_point(const Shaft& shaft);  ///< distance of the centre of mass from the butt, along the axis [m]
 
 struct NamedShaft {
   std::string_view name;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "golf/units.hpp"
+#include "loop/rules.hpp"
 #include "post/csv.hpp"
 
 namespace hosel::loop {
@@ -205,15 +207,40 @@ std::string residuals_csv(const LoopResult& r, const Shots& table) {
   return out;
 }
 
+namespace {
+
+/// The held-out error of the channel that is farthest above its noise, as numbers; in words only where none is farther
+/// than the data's own scatter may be from a declared noise.
+std::string beside_noise(const LoopResult& r) {
+  const ChannelResult* worst = nullptr;
+  const auto ratio = [](const ChannelResult& c) { return c.after.holdout_rmse / c.noise; };
+  for (const ChannelResult& c : r.channels)
+    if (c.noise > 0 && std::isfinite(c.after.holdout_rmse) && (!worst || ratio(c) > ratio(*worst))) worst = &c;
+  if (!worst) return "";
+  if (ratio(*worst) <= Rules{}.scatter_ratio) return "The held-out error is within the noise.";
+  const SplitName name = split_unit(worst->name);
+  const std::string unit = name.unit ? " " + std::string(name.unit->suffix) : "";
+  return fmt::format("Held out, {} is off by {:.3g}{} (RMS), its noise is {:.3g}{}: {:.1f} times.", name.stem,
+                     worst->after.holdout_rmse, unit, worst->noise, unit, ratio(*worst));
+}
+
+}  // namespace
+
 std::string sentence(const LoopResult& r) {
   const auto list = [](const std::vector<std::string>& v) { return fmt::format("{}", fmt::join(v, ", ")); };
   std::vector<std::string> alternatives;
   for (const auto& tie : r.ties) alternatives.push_back(fmt::format("{}", fmt::join(tie, " or ")));
   const std::string ties = fmt::format("{}", fmt::join(alternatives, "; and "));
   switch (r.verdict) {
-    case Verdict::no_residual: return "Nothing beyond the noise: the base model explains these shots.";
-    case Verdict::explained:
-      return fmt::format("The model lacked: {}. With it the residual is the noise again.", list(r.adopted));
+    case Verdict::no_residual: {
+      const std::string held_out = beside_noise(r);
+      return "No structure beyond the noise: the base model explains these shots." +
+             (held_out.empty() ? "" : " " + held_out);
+    }
+    case Verdict::explained: {
+      const std::string held_out = beside_noise(r);
+      return fmt::format("The model lacked: {}.{}", list(r.adopted), held_out.empty() ? "" : " " + held_out);
+    }
     case Verdict::ambiguous:
       return fmt::format("{}The data cannot separate {}.",
                          r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), ties);

@@ -14,7 +14,8 @@ constexpr const char* kStyle =
 @media screen and (prefers-color-scheme:dark){:root{--page:#14191f;--ink:#e4e9ee;--soft:#9aa7b4;--rule:#2b343e;--band:#2e2a1c;
 --gold:#d3ad4a;--blue:#56b4e9;--orange:#f08a3c;--green:#3cc39b;--pink:#dd8fbd;--sky:#8ccbf0;--grey:#77828d;
 --chosen:#1b2a38;--good:#14291d;--good-ink:#7fd0a0;--open:#2c2412;--open-ink:#e5bd62;--bad:#311b18;--bad-ink:#f0988b}
-img.curves,svg.curves{filter:invert(.92) hue-rotate(180deg)}}
+img.curves,svg.curves{filter:invert(.92) hue-rotate(180deg)}
+img.map{box-sizing:border-box;padding:.6rem;background:#fff;border:1px solid var(--rule);border-radius:8px}}
 body{font:15px/1.55 system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif;max-width:64rem;
 margin:0 auto;padding:2rem 1.25rem 4rem;color:var(--ink);background:var(--page)}
 h1{font-size:1.55rem;line-height:1.25;margin:0 0 .3rem}h1:first-letter{text-transform:uppercase}

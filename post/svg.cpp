@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "post/html.hpp"
 
@@ -46,6 +48,7 @@ std::string svg(const SvgPlot& p) {
         kLeft, kLeft + w, Y(y), Y(y), kLeft - 6, Y(y) + 4, round(y, dy));
   for (double x = std::ceil(p.x0 / dx) * dx; x <= p.x1; x += dx)
     s += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{:g}</text>", X(x), kTop + h + 16, round(x, dx));
+  std::vector<std::array<double, 3>> labels;  // centre, half the width
   for (const SvgSeries& one : p.series) {
     std::string points;
     for (std::size_t i = 0; i < one.x.size(); i += std::max<std::size_t>(1, one.x.size() / kMost)) {
@@ -68,6 +71,11 @@ std::string svg(const SvgPlot& p) {
       for (const double above : {14.0, -14.0, 24.0, -24.0}) {
         const double cx = X(one.x[i]), cy = Y(one.y[i]) - above;
         if (cx - half < kLeft || cx + half > kLeft + w || cy < kTop + 8 || cy > kTop + h - 8) continue;
+        // Words of an earlier label are no room.
+        if (std::ranges::any_of(labels, [&](const auto& l) {
+              return std::abs(l[0] - cx) < l[2] + half + 6 && std::abs(l[1] - cy) < 14;
+            }))
+          continue;
         double nearest = 20 - 0.2 * std::abs(above);  // room enough
         for (const SvgSeries& other : p.series)
           for (std::size_t k = 1; k < other.x.size(); ++k)
@@ -79,6 +87,7 @@ std::string svg(const SvgPlot& p) {
             }
         if (nearest > best) best = nearest, at_x = cx, at_y = cy;
       }
+    if (best >= 0) labels.push_back({at_x, at_y, half});
     if (best >= 0)
       s += fmt::format("<text class='{}' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", one.style, at_x,
                        at_y + 4, escape_html(one.label));

@@ -242,18 +242,15 @@ void write_csv(const fs::path& file, const std::vector<const Understood*>& colum
 /// A text as a TOML basic string.
 std::string toml_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
-}  // namespace
+/// What --column says.
+struct ByHand {
+  std::map<std::string, std::string> quantity;  ///< header -> quantity with unit
+  std::set<std::string> turned;                 ///< headers whose numbers grow the other way
+};
 
-void import_shots(const ImportOptions& o) {
-  Dictionary d;
-  if (!o.dictionary.empty()) d.read(o.dictionary);
-  d.read(shipped_dictionary());
-  if (fs::exists(o.out)) throw InputError(fmt::format("{}: exists already; choose another --out", o.out.string()));
-  if (!o.units.empty() && o.units != "imperial" && o.units != "metric") throw InputError("--units: imperial or metric");
-
-  // By hand: header -> quantity with unit.
-  std::map<std::string, std::string> by_hand;
-  std::set<std::string> turned;  // headers whose numbers grow the other way
+ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
+  ByHand out;
+  auto& [by_hand, turned] = out;
   for (const std::string& c : o.columns) {
     const auto at = c.rfind('=');
     if (at == std::string::npos || at == 0)
@@ -278,8 +275,35 @@ void import_shots(const ImportOptions& o) {
                                    fmt::join(roles, ", "), fmt::join(known, ", ")));
     d.learn(c.substr(0, at), part.stem);
   }
+  return out;
+}
 
-  Sheet sheet = read_sheet(o.file, d);
+/// What one file says, or several together.
+struct Session {
+  fs::path file;
+  Sheet sheet;
+  std::string club;  ///< of every shot, where no column names it; empty: unknown
+  std::vector<Understood> columns;
+  std::size_t shots = 0, other_clubs = 0, modelled = 0, left_handed = 0;
+  std::vector<std::string> no_nominal;  ///< clubs that the dictionary does not know
+  bool nominal_loft = false;
+  Understood carry;  ///< of the monitor's own flight model; its name is its unit; empty: none
+
+  Understood* find(std::string_view stem) {
+    for (Understood& u : columns)
+      if (!u.name.empty() && split_unit(u.name).stem == stem) return &u;
+    return nullptr;
+  }
+};
+
+/// `club`: of the shots, where the file names none.
+Session understand(const fs::path& from, const std::string& club_of_file, const ImportOptions& o, const Dictionary& d,
+                   const ByHand& hand_made) {
+  const auto& [by_hand, turned] = hand_made;
+  Session out;
+  out.file = from;
+  out.sheet = read_sheet(from, d);
+  Sheet& sheet = out.sheet;
   const std::string family = !o.units.empty() ? o.units : sheet.family;
 
   // The club's column first: the others may be cut down to one club.
@@ -305,7 +329,7 @@ void import_shots(const ImportOptions& o) {
     role[c] = r;
     taken[r] = c;
   }
-  std::size_t other_clubs = 0;
+  std::size_t& other_clubs = out.other_clubs;
   if (!o.club.empty() && taken.contains("club")) {
     std::vector<std::string> names;
     for (const Row& row : sheet.rows)
@@ -315,10 +339,10 @@ void import_shots(const ImportOptions& o) {
     other_clubs -= sheet.rows.size();
     if (sheet.rows.empty())
       throw InputError(
-          fmt::format("{}: no shot with club '{}'; there are: {}", o.file.string(), o.club, fmt::join(names, ", ")));
+          fmt::format("{}: no shot with club '{}'; there are: {}", from.string(), o.club, fmt::join(names, ", ")));
   }
 
-  std::vector<Understood> columns;
+  std::vector<Understood>& columns = out.columns;
   columns.reserve(sheet.names.size() + 3);  // pointers into it stay good
   std::set<std::string> quantities;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
@@ -346,9 +370,9 @@ void import_shots(const ImportOptions& o) {
       if (unit.empty())
         throw InputError(
             fmt::format("{}: column '{}' has no unit; say --units imperial, --units metric or --column '{}={}_{}'",
-                        o.file.string(), header, header, q->name, q->imperial));
+                        from.string(), header, header, q->name, q->imperial));
       const double sign = turned.contains(plain(header)) || sign_in(header) < 0 ? -1 : 1;
-      columns.push_back(make_quantity(*q, header, unit, sign, sheet, c, o.file));
+      columns.push_back(make_quantity(*q, header, unit, sign, sheet, c, from));
       if (!o.modelled && says_any(header, {"estimated", "calculated", "modelled"}))
         columns.back().name.clear(), columns.back().note = "modelled by the instrument; --modelled takes it";
       continue;
@@ -361,8 +385,21 @@ void import_shots(const ImportOptions& o) {
       if (role[c] == "session") u.cells.back() = u.cells.back().substr(0, u.cells.back().find_first_of(" T"));
       u.filled += !u.cells.back().empty();
     }
+    if (role[c] == "carry") {
+      std::string of_carry = unit_in(header);
+      if (of_carry.empty() && c < sheet.units.size()) of_carry = unit_of(sheet.units[c]);
+      if (of_carry.empty() && !family.empty()) of_carry = family == "imperial" ? "yd" : "m";
+      if (dimension_of(of_carry) == Dimension::length) {
+        out.carry = {.header = header, .name = of_carry};
+        const bool comma = decimal_comma(u.cells, sheet, header, from);
+        for (const std::string& cell : u.cells) {
+          const auto x = number(cell, comma, false);
+          out.carry.cells.push_back(x && x->unit.empty() && x->value > 0 ? x->digits : "");
+        }
+      }
+    }
     if (role[c] == "accuracy" || role[c] == "hand") u.note = "read";
-    else if (!role[c].empty() && u.filled > 0) u.name = role[c];
+    else if (!role[c].empty() && role[c] != "carry" && u.filled > 0) u.name = role[c];
     else if (std::ranges::any_of(o.keep, [&](const std::string& k) { return plain(k) == plain(header); }))
       u.name = "kept_" + [&] {
         std::string s = plain(header);
@@ -371,15 +408,11 @@ void import_shots(const ImportOptions& o) {
       }();
     columns.push_back(std::move(u));
   }
-  const std::size_t shots = sheet.rows.size();
-  const auto find = [&](std::string_view stem) -> Understood* {
-    for (Understood& u : columns)
-      if (!u.name.empty() && split_unit(u.name).stem == stem) return &u;
-    return nullptr;
-  };
+  const std::size_t shots = out.shots = sheet.rows.size();
+  const auto find = [&](std::string_view stem) { return out.find(stem); };
 
   // What the instrument modelled says nothing of the blow: its own model's answer would be explained.
-  std::size_t modelled = 0, left_handed = 0;
+  std::size_t& modelled = out.modelled;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (role[c] != "accuracy" || o.modelled) continue;
     std::vector<bool> rate, axis;
@@ -408,11 +441,11 @@ void import_shots(const ImportOptions& o) {
         throw InputError(
             fmt::format("{}: column '{}', shot {}: '{}' is neither left nor right; --column '{}=' leaves "
                         "it out, --left-handed mirrors every shot",
-                        o.file.string(), sheet.names[c], i + 1, sheet.rows[i][c], sheet.names[c]));
+                        from.string(), sheet.names[c], i + 1, sheet.rows[i][c], sheet.names[c]));
       left[i] = left[i] || *hand;
     }
   }
-  left_handed = mirror(columns, left);
+  out.left_handed = mirror(columns, left);
   // Zeros of the club beside no speed of it, of the axis beside no spin, and through a whole column are no readings.
   const auto silent = [&](const char* of, std::initializer_list<const char*> others) {
     const Understood* measured = find(of);
@@ -468,25 +501,25 @@ void import_shots(const ImportOptions& o) {
   // Two speeds check each other.
   Understood *club = find("club_speed"), *ball = find("ball_speed");
   if (!ball || !club)
-    throw InputError(fmt::format("{}: no column of {} speed; --column 'header={}_speed_mph' names one", o.file.string(),
+    throw InputError(fmt::format("{}: no column of {} speed; --column 'header={}_speed_mph' names one", from.string(),
                                  club ? "ball" : "club", club ? "ball" : "club"));
   const double smash = ball->median / club->median;
   if (!(smash > 0.8 && smash < 1.62))
     throw InputError(
         fmt::format("{}: ball over club speed is {:.2f} in the median, no blow's ({:.4g} {} over {:.4g} {}): one of "
                     "the two units is wrong; --column '{}=ball_speed_UNIT' or '{}=club_speed_UNIT' corrects it",
-                    o.file.string(), smash, ball->median / split_unit(ball->name).unit->si,
+                    from.string(), smash, ball->median / split_unit(ball->name).unit->si,
                     split_unit(ball->name).unit->suffix, club->median / split_unit(club->name).unit->si,
                     split_unit(club->name).unit->suffix, ball->header, club->header));
 
   // What the loop needs and the file lacks comes from the clubs' nominal figures, said as such.
-  std::vector<std::string> notes;
   const Understood* clubs = find("club");
-  std::vector<std::string> unknown;
+  if (!clubs) out.club = club_of_file;
+  std::vector<std::string>& unknown = out.no_nominal;
   const auto nominal = [&](double NominalClub::*what, std::string_view option) {
     Understood u;
     for (std::size_t i = 0; i < shots; ++i) {
-      const std::string name = clubs ? clubs->cells[i] : o.club;
+      const std::string name = clubs ? clubs->cells[i] : out.club;
       const NominalClub* entry = d.club(name);
       if (!entry && !std::ranges::count(unknown, name)) unknown.push_back(name);
       u.cells.push_back(entry ? fmt::format("{:g}", entry->*what) : "");
@@ -496,7 +529,7 @@ void import_shots(const ImportOptions& o) {
       throw InputError(
           fmt::format("{}: {} is not in the file, and no club is known to take it from ({}); add a column, --club NAME "
                       "where the file names none, or a [[club]] to --dictionary",
-                      o.file.string(), option, clubs ? "'" + clubs->cells.front() + "'" : "no column of clubs"));
+                      from.string(), option, clubs ? "'" + clubs->cells.front() + "'" : "no column of clubs"));
     return u;
   };
   if (!find("dynamic_loft")) {
@@ -505,18 +538,209 @@ void import_shots(const ImportOptions& o) {
     u.name = "dynamic_loft_deg";
     u.note = "not recorded: nominal of the club, +- 4 deg";
     columns.push_back(std::move(u));
-    notes.emplace_back("dynamic_loft_deg");
+    out.nominal_loft = true;
   }
   Understood mass = nominal(&NominalClub::head_mass, "head mass");
   mass.header = "(nominal)";
   mass.name = "head_mass_kg";
   mass.note = "not recorded: nominal of the club";
-  // One club's mass is the head's own, in the case, where its owner corrects it once.
-  const bool one_mass = mass.filled == shots &&
-                        std::ranges::count(mass.cells, mass.cells.front()) == std::ssize(mass.cells);
-  const std::string own_mass = one_mass ? fmt::format("mass_kg = {}  # nominal\n", mass.cells.front()) : "";
-  if (one_mass) mass.note += ", in case.toml";
   columns.push_back(std::move(mass));
+  return out;
+}
+
+/// The table of what was understood.
+void show(Session& x) {
+  fmt::print("{}: {} shots, cells separated by {}{}\n", x.file.string(), x.shots,
+             x.sheet.delimiter == "JSON"  ? "JSON's own signs"
+             : x.sheet.delimiter == "tab" ? "tabs"
+                                          : "'" + x.sheet.delimiter + "'",
+             x.sheet.layout.empty() ? "" : ", " + x.sheet.layout);
+  if (!x.sheet.before.empty())
+    fmt::print("  passed over: {} line{} before the header\n", x.sheet.before.size(),
+               x.sheet.before.size() > 1 ? "s" : "");
+  if (x.sheet.summaries)
+    fmt::print("  passed over: {} summary row{}\n", x.sheet.summaries, x.sheet.summaries > 1 ? "s" : "");
+  if (x.sheet.headers_again)
+    fmt::print("  passed over: {} repeated header{}\n", x.sheet.headers_again, x.sheet.headers_again > 1 ? "s" : "");
+  if (x.other_clubs) fmt::print("  left out: {} shots with other clubs\n", x.other_clubs);
+  if (x.modelled)
+    fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {} shots\n", x.modelled, x.shots);
+  if (x.left_handed)
+    fmt::print("  left-handed, mirrored to a right-handed player's: {} of {} shots\n", x.left_handed, x.shots);
+  if (const Understood* clubs = x.find("club")) {
+    std::map<std::string, std::size_t> count;
+    for (const std::string& name : clubs->cells) ++count[name.empty() ? "(no club)" : name];
+    std::string list;
+    for (const auto& [name, n] : count) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, n);
+    fmt::print("  clubs: {}\n", list);
+  }
+  std::size_t width = 6;
+  for (const Understood& u : x.columns) width = std::max(width, u.header.size());
+  fmt::print("\n  {:<{}}  {:<20} {:>6}  {:>10}\n", "column", width, "taken as", "filled", "median");
+  for (const Understood& u : x.columns) {
+    if (u.name.empty()) continue;
+    const auto unit = split_unit(u.name).unit;
+    fmt::print("  {:<{}}  {:<20} {:>6}  {:>10}{}\n", u.header, width, u.name, u.filled,
+               unit && u.name != "head_mass_kg" && u.header != "(nominal)"
+                   ? fmt::format("{:.4g}", u.median / unit->si + 0.0)
+                   : "",
+               u.note.empty() ? "" : "  " + u.note);
+  }
+  std::string aside;
+  for (const Understood& u : x.columns)
+    if (u.name.empty()) aside += (aside.empty() ? "" : ", ") + u.header + (u.note.empty() ? "" : " (" + u.note + ")");
+  if (!aside.empty()) fmt::print("\n  in kept.csv only: {}\n", aside);
+  if (!x.no_nominal.empty())
+    fmt::print("  no nominal figures for: {}; these shots will be left out\n", fmt::join(x.no_nominal, ", "));
+}
+
+/// Several files as one: quantities in the unit of the first file that has them, a club under one name.
+Session join(std::vector<Session>& sessions) {
+  Session out;
+  std::map<std::string, std::pair<std::string, std::string>> club_names;  // key -> name, file
+  std::map<std::string, std::size_t> known;
+  Understood file{.header = "file"};
+  std::vector<std::string> left, right;
+  for (Session& s : sessions) {
+    const std::string name = s.file.filename().string();
+    if (!s.find("club")) s.columns.push_back({.header = "(stated)", .name = "club", .cells = Row(s.shots, s.club)});
+    for (std::string& cell : s.find("club")->cells) {
+      const auto& [first, of] = club_names.try_emplace(club_key(cell), cell, name).first->second;
+      if (cell != first) {
+        if (club_names.try_emplace("said " + name + cell).second)
+          fmt::print("  {}: '{}' is '{}' of {}: taken as one club\n", name, cell, first, of);
+        cell = first;
+      }
+    }
+    // Every file begins to number anew.
+    if (Understood* shot = s.find("shot")) shot->name.clear(), shot->note = "numbers of one file";
+    for (Understood& u : s.columns) {
+      const std::string key = u.name.empty() ? "kept " + u.header : std::string(split_unit(u.name).stem);
+      const auto at = known.try_emplace(key, out.columns.size()).first->second;
+      if (at == out.columns.size())
+        out.columns.push_back({.header = u.header, .name = u.name, .note = u.note, .cells = Row(out.shots)});
+      Understood& all = out.columns[at];
+      const auto to = split_unit(all.name).unit, from = split_unit(u.name).unit;
+      const bool other_unit = !u.name.empty() && to && from && to->suffix != from->suffix;
+      for (const std::string& cell : u.cells) {
+        const auto x = other_unit ? number(cell, false, false) : std::nullopt;
+        all.cells.push_back(x ? fmt::format("{:.6g}", x->value * from->si / to->si) : cell);
+      }
+    }
+    if (!s.carry.cells.empty() && out.carry.name.empty()) out.carry = {.name = s.carry.name, .cells = Row(out.shots)};
+    for (const std::string& cell : s.carry.cells) {
+      const auto x = number(cell, false, false);
+      out.carry.cells.push_back(x ? fmt::format("{:.6g}", x->value * si_of(s.carry.name) / si_of(out.carry.name)) : "");
+    }
+    out.shots += s.shots;
+    if (!out.carry.name.empty()) out.carry.cells.resize(out.shots);
+    for (Understood& u : out.columns) u.cells.resize(out.shots);
+    file.cells.resize(out.shots, name);
+    out.nominal_loft |= s.nominal_loft;
+    (s.left_handed ? left : right).push_back(name);
+  }
+  for (Understood& u : out.columns)
+    if (!u.name.empty() && split_unit(u.name).unit) count_again(u);
+    else u.filled = std::size_t(std::ranges::count_if(u.cells, [](const std::string& c) { return !c.empty(); }));
+  file.filled = out.shots;
+  out.columns.push_back(std::move(file));
+  if (!left.empty() && !right.empty())
+    fmt::print("  the hands differ: left-handed shots in {}; none in {}. Is it one player?\n", fmt::join(left, ", "),
+               fmt::join(right, ", "));
+  const auto recorded = std::ranges::count(sessions, false, &Session::nominal_loft);
+  if (out.nominal_loft && recorded > 0)
+    fmt::print("  dynamic loft is recorded in {} of {} files: it counts as unknown by 4 deg in all of them\n", recorded,
+               sessions.size());
+  return out;
+}
+
+/// Mean and standard deviation of what is measured, a line for each club.
+void show_clubs(Session& all) {
+  struct Shown {
+    std::string_view title, unit;
+    std::vector<double> value;  ///< NaN: not measured
+    int digits;
+  };
+  std::vector<Shown> shown;
+  const auto add = [&](std::string_view title, const Understood* u, std::string_view unit, int digits) {
+    if (!u) return;
+    Shown column{title, unit, {}, digits};
+    for (const std::string& cell : u->cells) {
+      const auto x = number(cell, false, false);
+      column.value.push_back(x ? x->value : std::nan(""));
+    }
+    shown.push_back(std::move(column));
+  };
+  for (const auto& [stem, title, digits] :
+       {std::tuple{"ball_speed", "ball speed", 1}, {"launch_angle", "launch angle", 1}, {"spin_rate", "spin", 0}})
+    if (const Understood* u = all.find(stem)) add(title, u, split_unit(u->name).unit->suffix, digits);
+  add("carry", all.carry.cells.empty() ? nullptr : &all.carry, all.carry.name, 1);
+
+  const Row& clubs = all.find("club")->cells;
+  Row names;
+  std::size_t width = 4;
+  for (const std::string& name : clubs)
+    if (!std::ranges::count(names, name)) names.push_back(name), width = std::max(width, name.size());
+  fmt::print("\n  {:<{}}  {:>5}", "club", width, "shots");
+  for (const Shown& s : shown) fmt::print("  {:>18}", fmt::format("{} [{}]", s.title, s.unit));
+  fmt::print("\n");
+  for (const std::string& name : names) {
+    fmt::print("  {:<{}}  {:>5}", name.empty() ? "?" : name, width, std::ranges::count(clubs, name));
+    for (const Shown& s : shown) {
+      double n = 0, sum = 0, squares = 0;
+      for (std::size_t i = 0; i < clubs.size(); ++i)
+        if (clubs[i] == name && std::isfinite(s.value[i])) ++n, sum += s.value[i];
+      for (std::size_t i = 0; i < clubs.size(); ++i)
+        if (clubs[i] == name && std::isfinite(s.value[i])) squares += std::pow(s.value[i] - sum / n, 2);
+      fmt::print("  {:>18}", n == 0   ? "-"
+                             : n == 1 ? fmt::format("{:.{}f} (1 shot)", sum, s.digits)
+                                      : fmt::format("{:.{}f} +- {:.{}f}", sum / n, s.digits,
+                                                    std::sqrt(squares / (n - 1)), s.digits));
+    }
+    fmt::print("\n");
+  }
+  fmt::print("  mean +- standard deviation of the shots that have a reading\n");
+}
+
+}  // namespace
+
+void import_shots(const ImportOptions& o) {
+  Dictionary d;
+  if (!o.dictionary.empty()) d.read(o.dictionary);
+  d.read(shipped_dictionary());
+  if (fs::exists(o.out)) throw InputError(fmt::format("{}: exists already; choose another --out", o.out.string()));
+  if (!o.units.empty() && o.units != "imperial" && o.units != "metric") throw InputError("--units: imperial or metric");
+  const ByHand by_hand = read_by_hand(o, d);
+  const bool several = o.files.size() > 1;
+  std::vector<Session> sessions;
+  std::error_code none;
+  for (const fs::path& file : o.files) {
+    for (const Session& other : sessions)
+      if (fs::equivalent(file, other.file, none))
+        throw InputError(fmt::format("{}: given twice; its shots would count twice", file.string()));
+    // An export of one club is often called by its name.
+    const std::string stem = file.stem().string();
+    const bool named = several && o.club.empty() && d.club(stem);
+    sessions.push_back(understand(file, named ? stem : o.club, o, d, by_hand));
+  }
+  if (several)
+    for (Session& s : sessions) {
+      show(s);
+      if (!s.find("club") && o.club.empty()) fmt::print("  club, from the name of the file: {}\n", s.club);
+      fmt::print("\n");
+    }
+  if (several) fmt::print("{} files:\n", sessions.size());
+  Session all = several ? join(sessions) : std::move(sessions.front());
+
+  std::vector<Understood>& columns = all.columns;
+  const auto find = [&](std::string_view stem) { return all.find(stem); };
+  Understood* mass = find("head_mass");
+  const Understood* clubs = find("club");
+  // One club's mass is the head's own, in the case, where its owner corrects it once.
+  const bool one_mass = mass->filled == all.shots &&
+                        std::ranges::count(mass->cells, mass->cells.front()) == std::ssize(mass->cells);
+  const std::string own_mass = one_mass ? fmt::format("mass_kg = {}  # nominal\n", mass->cells.front()) : "";
+  if (one_mass) mass->note += ", in case.toml";
 
   std::set<std::string> different;
   if (clubs) different.insert(clubs->cells.begin(), clubs->cells.end());
@@ -532,48 +756,8 @@ void import_shots(const ImportOptions& o) {
     for (const char* q : {"azimuth", "spin_axis", "sidespin"})
       if (Understood* u = find(q)) sideways = true, u->name.clear(), u->note = "the planar model has no direction";
 
-  // The table of what was understood.
-  fmt::print("{}: {} shots, cells separated by {}{}\n", o.file.string(), shots,
-             sheet.delimiter == "JSON"  ? "JSON's own signs"
-             : sheet.delimiter == "tab" ? "tabs"
-                                        : "'" + sheet.delimiter + "'",
-             sheet.layout.empty() ? "" : ", " + sheet.layout);
-  if (!sheet.before.empty())
-    fmt::print("  passed over: {} line{} before the header\n", sheet.before.size(), sheet.before.size() > 1 ? "s" : "");
-  if (sheet.summaries) fmt::print("  passed over: {} summary row{}\n", sheet.summaries, sheet.summaries > 1 ? "s" : "");
-  if (sheet.headers_again)
-    fmt::print("  passed over: {} repeated header{}\n", sheet.headers_again, sheet.headers_again > 1 ? "s" : "");
-  if (other_clubs) fmt::print("  left out: {} shots with other clubs\n", other_clubs);
-  if (modelled)
-    fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {} shots\n", modelled, shots);
-  if (left_handed)
-    fmt::print("  left-handed, mirrored to a right-handed player's: {} of {} shots\n", left_handed, shots);
-  if (clubs) {
-    std::map<std::string, std::size_t> count;
-    for (const std::string& name : clubs->cells) ++count[name.empty() ? "(no club)" : name];
-    std::string list;
-    for (const auto& [name, n] : count) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, n);
-    fmt::print("  clubs: {}\n", list);
-  }
-  std::size_t width = 6;
-  for (const Understood& u : columns) width = std::max(width, u.header.size());
-  fmt::print("\n  {:<{}}  {:<20} {:>6}  {:>10}\n", "column", width, "taken as", "filled", "median");
-  for (const Understood& u : columns) {
-    if (u.name.empty()) continue;
-    const auto unit = split_unit(u.name).unit;
-    fmt::print("  {:<{}}  {:<20} {:>6}  {:>10}{}\n", u.header, width, u.name, u.filled,
-               unit && u.name != "head_mass_kg" && u.header != "(nominal)"
-                   ? fmt::format("{:.4g}", u.median / unit->si + 0.0)
-                   : "",
-               u.note.empty() ? "" : "  " + u.note);
-  }
-  std::string aside;
-  for (const Understood& u : columns)
-    if (u.name.empty()) aside += (aside.empty() ? "" : ", ") + u.header + (u.note.empty() ? "" : " (" + u.note + ")");
-  if (!aside.empty()) fmt::print("\n  in kept.csv only: {}\n", aside);
-  if (!unknown.empty())
-    fmt::print("  no nominal figures for: {}; these shots will be left out\n", fmt::join(unknown, ", "));
-
+  if (several) show_clubs(all);
+  else show(all);
   if (sideways)
     fmt::print(
         "  woods and irons in one file: the case judges speed, launch angle and spin rate; --club '{}' takes one "
@@ -592,11 +776,15 @@ void import_shots(const ImportOptions& o) {
   }
   write_csv(o.out / "shots.csv", good, good_names);
   if (!rest.empty()) write_csv(o.out / "kept.csv", rest, rest_names);
+  std::string names;
+  for (const fs::path& file : o.files) names += (names.empty() ? "" : ", ") + file.filename().string();
+  const std::string title =
+      (several ? fs::absolute(o.out / "").parent_path().filename() : o.files.front().stem()).string();
   std::string toml = fmt::format(
       "# Made by `hosel import` from {}. shots.csv holds what the loop uses, kept.csv the rest.\n"
       "kind  = \"loop\"\ntitle = {}\n\n[model]\nbase = \"{}\"\n\n"
       "[ball]\nmass_kg        = 0.04593\nradius_mm      = 21.335\ninertia_factor = 0.4\n",
-      toml_text(o.file.filename().string()), toml_text(o.file.stem().string() + (o.club.empty() ? "" : ", " + o.club)),
+      toml_text(names), toml_text(title + (o.club.empty() ? "" : ", " + o.club)),
       turns ? "rigid-eccentric" : "rigid-planar");
   if (turns) {
     const NominalHead& head = d.heads().at(*heads.begin());
@@ -608,7 +796,7 @@ void import_shots(const ImportOptions& o) {
     toml += "\n[head]\n" + own_mass;
   }
   toml += "\n[data]\nshots = \"shots.csv\"\n";
-  if (!notes.empty())
+  if (all.nominal_loft)
     toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";
   if (different.size() > 2) toml += "\n[split]  # whole clubs are held out\nby = \"club\"\n";
   post::write_file(o.out / "case.toml", toml);

@@ -92,6 +92,10 @@ class ImpactJob final : public Job {
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
+    const ImpactStory story{
+        blow,       columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(),
+        record_.vtk};
+    show_shaft(out, story);
     if (flight_)  // where the errors of the answer's carry come from; the other columns have theirs in the summary
       for (const post::LaunchColumn& c : columns) {
         nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
@@ -99,9 +103,6 @@ class ImpactJob final : public Job {
       }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
-    const ImpactStory story{
-        blow,       columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(),
-        record_.vtk};
     if (matched_) {
       std::string lofts;
       for (const auto& c : columns)

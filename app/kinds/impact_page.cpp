@@ -145,12 +145,15 @@ std::string shaft_sentence(const ImpactStory& s) {
                      s.matched ? " at the same launch angle" : "");
 }
 
+void show_shaft(Output& out, const ImpactStory& s) {
+  if (const std::string effect = shaft_sentence(s); !effect.empty())
+    out.page().section(
+        "", fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
+}
+
 void show_impact(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   answer(out, s);
-  if (const std::string effect = shaft_sentence(s); !effect.empty())
-    page.section("",
-                 fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
   page.section("The launch", fmt::format("<p class='soft'>The numbers above are those of {}.</p>",
                                          post::escape_html(s.columns.back().title)) +
                                  s.table.html());

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct PlateDesign {
   fem::RimSupport rim;
   double damping = 0.01;  ///< of each mode, over the critical [-]
   mesh::PlateMeshOptions mesh;
-  int modes = 8;  ///< of the rim at rest that a blow keeps; the pendulum keeps four times as many
+  std::optional<double> yield;  ///< stress at which the material yields [Pa]; used by no equation
+  int modes = 8;                ///< of the rim at rest that a blow keeps; the pendulum keeps four times as many
 
   std::vector<std::string> faults() const;
 };

@@ -71,6 +71,58 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
 }
 
+TEST(CommandLine, DiffSaysWhereItsErrorComesFrom) {
+  const fs::path home = fresh_directory("diff_band"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow + "[ball]\nmodel = \"tour\"\n[contact]\nface_friction = 0.3\n");
+  const auto run = [&](const std::string& name, const std::string& more) {
+    const Outcome o = command("run '" + blow.string() +
+                              "' --quiet --set 'models=[\"fe-free-body\"]' --set accuracy=look --out '" +
+                              (home / name).string() + "' " + more);
+    ASSERT_EQ(o.status, 0) << o.text;
+  };
+  run("a", "");
+  run("b", "--set delivery.club_speed_mps=45.001");
+  run("c", "--set delivery.club_speed_mps=45.001 --set time.steps_per_contact=40");
+  const auto diff = [&](const std::string& other) {
+    return command("diff '" + (home / "a").string() + "' '" + (home / other).string() + "'").text;
+  };
+  const std::string same = diff("b"), other = diff("c");
+  ASSERT_NE(same.find("  within\n"), std::string::npos) << same;
+  EXPECT_NE(same.find("numerical: the larger error of the two runs"), std::string::npos) << same;
+  EXPECT_NE(same.find("B - A is resolved better"), std::string::npos) << same;
+  ASSERT_NE(other.find("  within\n"), std::string::npos) << other;
+  EXPECT_EQ(other.find("B - A is resolved better"), std::string::npos) << other;
+}
+
+TEST(CommandLine, CheckTellsAShaftsFigures) {
+  const fs::path dir = fresh_directory("shaft_figures");
+  const std::string head = "kind = \"modes\"\nsupport = \"clamped\"\n";
+  const auto check = [&](const std::string& shaft) {
+    write(dir / "case.toml", head + shaft);
+    return command("check '" + dir.string() + "'");
+  };
+  const std::string even =
+      "[shaft.table]\narc_length_mm = [0, 500, 1000]\nbending_stiffness_N_m2 = [40, 40, 40]\n"
+      "torsional_stiffness_N_m2 = [30, 30, 30]\nmass_per_length_g_per_m = [60, 60, 60]\nmean_radius_mm = [6, 6, 6]\n";
+  const Outcome plain = check(even);
+  ASSERT_EQ(plain.status, 0) << plain.text;
+  EXPECT_NE(plain.text.find("length 1000.0 mm, mass 60.00 g, balance point 500.0 mm from the butt (50.0 %)"),
+            std::string::npos)
+      << plain.text;
+  EXPECT_NE(plain.text.find("EI at the butt 40, at the tip 40 N m^2"), std::string::npos) << plain.text;
+  write(dir / "again" / "case.toml", plain.text);
+  EXPECT_EQ(command("check '" + (dir / "again").string() + "'").text, plain.text) << "what is printed is a case";
+  const Outcome tip = check(even + "[shaft.tip]\nfrom_mm = 750\nbending_scale = 2\ntorsion_scale = 0.5\n");
+  EXPECT_NE(tip.text.find("EI at the butt 40, at the tip 80 N m^2"), std::string::npos) << tip.text;
+  EXPECT_NE(tip.text.find("GJ at the butt 30, at the tip 15 N m^2"), std::string::npos) << tip.text;
+  const Outcome beyond = check(even + "[shaft.tip]\nfrom_mm = 1000\nbending_scale = 2\ntorsion_scale = 1\n");
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.text.find("the shaft ends at 1 m"), std::string::npos) << beyond.text;
+  const Outcome both = check("[shaft]\nname = \"x\"\n" + even);
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.text.find("give one of `name` and `table`"), std::string::npos) << both.text;
+}
+
 TEST(CommandLine, AStrikeOffTheFaceWarns) {
   const fs::path home = fresh_directory("off_the_face"), blow = home / "blow";
   write(blow / "case.toml", kEccentricBlow);

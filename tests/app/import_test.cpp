@@ -317,6 +317,41 @@ TEST(Import, WhatWouldBeReadWrongIsRefused) {
   refuse("Velo,Kopf,Abflug\n185.1,132.0,16.4\n", "--column 'Velo=?'    185.1, ...");
 }
 
+/// Three files: one club in each, other units, spellings and hands.
+TEST(Import, SeveralFilesMakeOneBag) {
+  const fs::path dir = test::fresh_directory("import_bag");
+  const auto quoted = [&](const char* name) { return " '" + (dir / name).string() + "'"; };
+  test::write(dir / "a.csv",
+              "Club,Shot,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Carry (yd)\n"
+              "7 Iron,1,115,82,16,6400,22,160\n7 Iron,2,117,83,17,6500,23,164\n");
+  test::write(dir / "b.csv",
+              "Club,Handed,Shot,Ball Speed (km/h),Club Speed (km/h),Launch Angle,Spin Rate,Dynamic Loft,Carry (m)\n"
+              "7i,LH,1,186.683,133.575,18,6600,24,146.304\n");
+  test::write(dir / "pw.csv",
+              "Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n90,76,25,8500,36\n");
+  const auto o = command("import" + quoted("a.csv") + quoted("b.csv") + quoted("pw.csv") + " --out" + quoted("bag"));
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "bag" / "shots.csv"));
+  ASSERT_EQ(shots.rows(), 4u) << o.text;
+  EXPECT_EQ(shots.find("club")->text, (std::vector<std::string>{"7 Iron", "7 Iron", "7 Iron", "pw"}));
+  EXPECT_EQ(shots.find("shot"), nullptr) << "the numbers of several files are no order";
+  EXPECT_NEAR(shots.find("ball_speed_mph")->native(2), 116, 2e-3);
+  const std::string kept = test::content(dir / "bag" / "kept.csv");
+  EXPECT_NE(kept.find(",pw.csv\n"), std::string::npos) << kept;
+  for (const std::string said :
+       {"b.csv: '7i' is '7 Iron' of a.csv", "left-handed shots in b.csv; none in a.csv, pw.csv",
+        "club, from the name of the file: pw", "116.0 +- 1.0", "17.0 +- 1.0", "6500 +- 100", "161.3 +- 2.3",
+        "90.0 (1 shot)", "hosel run "})
+    EXPECT_NE(o.text.find(said), std::string::npos) << said << "\n" << o.text;
+  const auto run = command("run" + quoted("bag") + " --quiet --out" + quoted("out"));
+  ASSERT_EQ(run.status, 0) << run.text;
+  EXPECT_EQ(nlohmann::json::parse(test::content(dir / "out" / "report.json"))["rows"]["read"], 4);
+
+  const auto twice = command("import" + quoted("a.csv") + quoted("a.csv") + " --out" + quoted("twice"));
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_NE(twice.text.find("given twice"), std::string::npos) << twice.text;
+}
+
 TEST(Import, ByHand) {
   const fs::path dir = test::fresh_directory("import_by_hand");
   test::write(dir / "a.csv",

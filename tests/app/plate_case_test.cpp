@@ -35,11 +35,11 @@ const std::string kGrid = "thickness = {map = 'grid', file = 'data.csv'}\n";
 const std::string kCorners = "toe_mm,high_mm,thickness_mm\n-45,-25,2.8\n45,-25,2.8\n-45,25,2.6\n";
 
 TEST(PlateCase, ThicknessGridsAreRefusedWithTheirLine) {
-  refused(kGrid, kCorners, "data.csv: the grid has no row for toe 45 mm, high 25 mm");
+  refused(kGrid, kCorners, "data.csv:3: the grid has no row for toe 45 mm, high 25 mm");
   refused(kGrid, kCorners + "45,25,0\n", "data.csv:5: a thickness of 0 mm is out of range");
   refused(kGrid, kCorners + "45,25,thin\n", "data.csv:5: thickness_mm 'thin' is no number");
   refused(kGrid, kCorners + "45,25,2.8\n-45,25,2.8\n", "data.csv:6: this place stands in line 4 already");
-  refused(kGrid, "toe_mm,high_mm\n0,0\n", "data.csv: no column 'thickness'");
+  refused(kGrid, "toe_mm,high_mm\n0,0\n", "data.csv:1: no column 'thickness'");
   refused(kGrid, "toe_mm,high_mm,thickness_mm\n-20,-25,2.8\n45,-25,2.8\n-20,25,2.6\n45,25,3\n",
           "data.csv: the thickness grid does not cover the face");
   refused(kGrid, kCorners + "450,25,2.8\n", "data.csv:5: 450 mm is no place on a face");
@@ -66,6 +66,49 @@ TEST(PlateCase, ReducedModelsRefuseAPlate) {
   const Outcome o = command("check " + dir.string() + " --set 'models=[\"volumetric\"]'");
   EXPECT_EQ(o.status, 2) << o.text;
   EXPECT_NE(o.text.find("lumped face"), std::string::npos) << o.text;
+}
+
+const std::string kFace = R"(kind = "plate-face"
+accuracy = "look"
+vtk = false
+[head]
+name = "driver-200"
+[face.plate]
+yield_MPa = 828
+[face.plate.thickness]
+value_mm = 2.8
+[delivery]
+club_speed_mps = 50
+[ball]
+model = "tour"
+[places]
+toe_mm = [0]
+high_mm = [0]
+[grid]
+width_mm = 40
+height_mm = 20
+columns = 3
+rows = 3
+)";
+
+TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
+  const fs::path dir = fresh_directory("plate_judged");
+  write(dir / "case.toml", kFace);
+  const auto run = [&](const std::string& options) {
+    const Outcome o = command("run '" + dir.string() + "' --force --out '" + (dir / "out").string() + "' " + options);
+    EXPECT_EQ(o.status, 0) << o.text;
+    return std::pair(o.text, nlohmann::json::parse(content(dir / "out" / "summary.json")));
+  };
+  const auto [thin, told] = run("--set face.plate.thickness.value_mm=2.4");
+  ASSERT_GT(told["largest_characteristic_time_us"].get<double>(), 257) << thin;
+  ASSERT_GT(told["peak_stress_MPa"].get<double>(), 828) << thin;
+  EXPECT_GT(told["characteristic_time_error_us"].get<double>(), 0);
+  EXPECT_NE(thin.find("this face fails the rules' test"), std::string::npos) << thin;
+  EXPECT_NE(thin.find("exceeds the yield strength of 828 MPa"), std::string::npos) << thin;
+  const auto [thick, other] = run("--set face.plate.thickness.value_mm=4 --set face.plate.yield_MPa=5000");
+  ASSERT_LT(other["largest_characteristic_time_us"].get<double>(), 250) << thick;
+  EXPECT_NE(thick.find("this face passes the rules' test"), std::string::npos) << thick;
+  EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
 }
 
 /// A thicker plate is tapped for a shorter time, and gives less back.
