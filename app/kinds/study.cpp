@@ -94,8 +94,9 @@ class StudyJob final : public PointJob {
     landing_ = read_landing(root, table_);
     optimum_ = read_optimum(root, table_);
     if (optimum_ && (studied_ || conditions_.matched_launch || conditions_.bounce_speed))
-      root.fail("optimum",
-                "is confirmed by a blow: of a study whose own tables are the blow, without matched_launch and keep_bounce");
+      root.fail(
+          "optimum",
+          "is confirmed by a blow: of a study whose own tables are the blow, without matched_launch and keep_bounce");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
     if (conditions_.histories && !maps_face() &&
         std::ranges::any_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))

@@ -145,11 +145,8 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       const std::string& column = columns[effects.columns[f]];
       const solvers::MainEffect& own = e.factors[f];
       auto& entry = summary["main_effects"][series.name][column];
-      entry = {{"share", own.share},
-               {"low", own.low},
-               {"high", own.high},
-               {"at_low", own.at_low},
-               {"at_high", own.at_high}};
+      entry = {
+          {"share", own.share}, {"low", own.low}, {"high", own.high}, {"at_low", own.at_low}, {"at_high", own.at_high}};
       csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(series.name), post::csv_cell(column), own.share,
                          own.low, own.high);
       if (effects.together[s].empty()) {

@@ -21,7 +21,8 @@ Eigen::VectorXd StudyEmulator::scaled(const Eigen::VectorXd& x) const {
   Eigen::VectorXd out(x.size());
   for (Index i = 0; i < x.size(); ++i) {
     const solvers::Distribution& s = columns_[std::size_t(i)].spread;
-    out[i] = s.kind == solvers::Distribution::Kind::uniform ? 2 * (x[i] - s.low) / (s.high - s.low) - 1 : (x[i] - s.mean) / (2 * s.sd);
+    out[i] = s.kind == solvers::Distribution::Kind::uniform ? 2 * (x[i] - s.low) / (s.high - s.low) - 1
+                                                            : (x[i] - s.mean) / (2 * s.sd);
   }
   return out;
 }
@@ -68,8 +69,7 @@ std::optional<StudyEmulator> StudyEmulator::of(const StudyTable& table, std::siz
       if (k % kGroups != g) kept.push_back(k);
     out.without_.emplace_back(x(kept, Eigen::all), y(kept), out.whole_.correlation(),
                               solvers::Kriging::Search{.sweeps = 0});
-    for (Index k = g; k < n; k += kGroups)
-      square += std::pow(out.without_.back()(at[std::size_t(k)])[0] - y[k], 2);
+    for (Index k = g; k < n; k += kGroups) square += std::pow(out.without_.back()(at[std::size_t(k)])[0] - y[k], 2);
   }
   for (Index k = n; k < all; ++k) square += std::pow(out.whole_(at[std::size_t(k)])[0] - y[k], 2);
   out.error_ = std::sqrt(square / double(all));
@@ -83,8 +83,8 @@ StudyEmulator::Shares StudyEmulator::shares() const {
   const auto inputs = Index(columns_.size());
   /// First-order indices above the total ones.
   const auto indices = [&](const solvers::Kriging& of) {
-    const auto s = solvers::sobol_indices(
-        [&](const Eigen::VectorXd& u) { return of(scaled(at_shares(u)))[0]; }, inputs, draws);
+    const auto s =
+        solvers::sobol_indices([&](const Eigen::VectorXd& u) { return of(scaled(at_shares(u)))[0]; }, inputs, draws);
     Eigen::VectorXd both(2 * inputs);
     both << s.first, s.total;
     return both;

@@ -65,9 +65,9 @@ std::optional<StudyLanding> read_landing(Table root, const StudyTable& table) {
   if (!t) return {};
   StudyLanding out{.carry = output_of(*t, table, "carry"), .side = output_of(*t, table, "side")};
   out.fairway = t->quantity({"fairway", "width of the fairway, its middle at the target"}, "m", {1, 500});
-  out.draws = std::size_t(t->integer(
-      {"draws", "deliveries drawn through the emulator of a [sample], if it predicts well enough; 0: none"}, 0, 1000000,
-      10000));
+  out.draws = std::size_t(
+      t->integer({"draws", "deliveries drawn through the emulator of a [sample], if it predicts well enough; 0: none"},
+                 0, 1000000, 10000));
   return out;
 }
 
@@ -96,11 +96,13 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     const Scatter all(std::move(landed));
     using Binomial = boost::math::binomial_distribution<>;
     const double n = double(all.at.size()), hit = double(all.within(fairway));
-    const double low = Binomial::find_lower_bound_on_p(n, hit, 0.025), high = Binomial::find_upper_bound_on_p(n, hit, 0.025);
+    const double low = Binomial::find_lower_bound_on_p(n, hit, 0.025),
+                 high = Binomial::find_upper_bound_on_p(n, hit, 0.025);
     const Vector2d extent = all.extent(0.95), sd = all.covariance.diagonal().cwiseSqrt();
     const double carried = all.mean.y();
     std::string said = fmt::format(
-        "{}{:.0f} % of {} balls (95 % interval {:.0f} to {:.0f} %) land in the fairway, {:.4g} {} wide. Carry is {:.0f} "
+        "{}{:.0f} % of {} balls (95 % interval {:.0f} to {:.0f} %) land in the fairway, {:.4g} {} wide. Carry is "
+        "{:.0f} "
         "{} with a standard deviation of {:.1f} {}, side {:+.1f} {} with {:.1f} {}. The ellipse for 95 % is {:.0f} {} "
         "long and {:.0f} {} wide.",
         whose, 100 * hit / n, all.at.size(), 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m, all.mean.x(), m,
@@ -137,7 +139,8 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     post::Panel panel{.title = table.models.size() > 1 ? name : "",
                       .x_label = fmt::format("side, to the right [{}]", m),
                       .y_label = fmt::format("carry [{}]", m)};
-    panel.series = {std::move(balls), all.ellipse(0.5, "ellipse for half of them"), all.ellipse(0.95, "ellipse for 95 %")};
+    panel.series = {std::move(balls), all.ellipse(0.5, "ellipse for half of them"),
+                    all.ellipse(0.95, "ellipse for 95 %")};
     for (const double edge : {-fairway / 2, fairway / 2})
       panel.series.push_back({.label = edge < 0 ? "fairway" : "",
                               .x = {edge, edge},

@@ -29,7 +29,8 @@ constexpr double kSpare = 2;  // standard deviations of the emulator by which a 
 /// In shares of what may be drawn: a whole range, or two standard deviations to either side.
 std::pair<double, double> allowed(const DrawnColumn& column) {
   constexpr double two_sd = 0.02275;
-  return column.spread.kind == solvers::Distribution::Kind::normal ? std::pair{two_sd, 1 - two_sd} : std::pair{0.0, 1.0};
+  return column.spread.kind == solvers::Distribution::Kind::normal ? std::pair{two_sd, 1 - two_sd}
+                                                                   : std::pair{0.0, 1.0};
 }
 
 struct Found {
@@ -142,9 +143,9 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
     std::vector<std::optional<double>> confirmed(table.outputs.size());
     try {
       confirmed = answers(set, model);
-    } catch (const solvers::NonConvergence& e) {
+    } catch (const solvers::NonConvergence& e) { out.warn(e.what()); } catch (const std::invalid_argument& e) {
       out.warn(e.what());
-    } catch (const std::invalid_argument& e) { out.warn(e.what()); }
+    }
     const auto& answer = confirmed[optimum.output];
     const double error = of.expected_error(found->x);
     entry["expected"] = found->expected;
@@ -153,8 +154,9 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
                                    label.substr(0, cut), answer.value_or(found->expected), unit, place);
     if (answer) {
       entry["confirmed"] = *answer;
-      said += fmt::format("The model answers {:.5g} there; the emulator expected {:.5g} with a standard deviation of {:.2g}.",
-                          *answer, found->expected, error);
+      said += fmt::format(
+          "The model answers {:.5g} there; the emulator expected {:.5g} with a standard deviation of {:.2g}.", *answer,
+          found->expected, error);
       for (std::size_t c = 0; c < columns.size(); ++c) where.set(formula_name(columns[c]), found->x[Eigen::Index(c)]);
       for (std::size_t o = 0; o < table.outputs.size(); ++o)
         where.set(formula_name(table.outputs[o]), confirmed[o].value_or(NAN));

@@ -168,10 +168,9 @@ CharacteristicTime PlateStrike::characteristic_time(const Striker& sphere, const
     A.row(i) << 1, std::pow(speeds[std::size_t(i)], -0.329);
     const Strike tap = strike(sphere, place, speeds[std::size_t(i)]);
     if (!(tap.first_share > kFirstTouch))
-      throw solvers::NonConvergence(
-          "the pendulum bounces on the vibrating face: its first touch makes " +
-          std::to_string(std::lround(100 * tap.first_share)) +
-          " % of the change of speed; such a face has no characteristic time");
+      throw solvers::NonConvergence("the pendulum bounces on the vibrating face: its first touch makes " +
+                                    std::to_string(std::lround(100 * tap.first_share)) +
+                                    " % of the change of speed; such a face has no characteristic time");
     t[i] = tap.rise_time;
   }
   const Eigen::Vector2d line = (A.transpose() * A).inverse() * (A.transpose() * t);

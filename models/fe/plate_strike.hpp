@@ -37,8 +37,8 @@ class PlateStrike {
   };
   Strike strike(const Striker& striker, const Place& place, double speed) const;
 
-  /// The pendulum at a place: see models::CharacteristicTime; times are rise times. Throws solvers::NonConvergence where
-  /// less than 0.8 of the sphere's change of speed comes from the first touch.
+  /// The pendulum at a place: see models::CharacteristicTime; times are rise times. Throws solvers::NonConvergence
+  /// where less than 0.8 of the sphere's change of speed comes from the first touch.
   CharacteristicTime characteristic_time(const Striker& sphere, const Eigen::Vector2d& place,
                                          std::span<const double> speeds) const;
   const PlateFace& plate() const { return *plate_; }

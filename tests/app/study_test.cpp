@@ -413,7 +413,7 @@ units = "metres"
   const auto& all = summary["landing"]["rigid-eccentric"];
   ASSERT_GT(double(all["side_sd_m"]), 1);
   const double wanted = std::erf(5 / double(all["side_sd_m"]) / std::sqrt(2.0));
-  EXPECT_NEAR(all["fairway_share"], wanted, 0.01);  // a Latin hypercube: one ball in each of 200 strata
+  EXPECT_NEAR(all["fairway_share"], wanted, 0.01);            // a Latin hypercube: one ball in each of 200 strata
   EXPECT_NEAR(all["fairway_share_emulated"], wanted, 0.015);  // 10,000 draws: 0.005 is one standard deviation
   EXPECT_LT(double(all["fairway_share_low"]), wanted);
   EXPECT_GT(double(all["fairway_share_high"]), wanted);
