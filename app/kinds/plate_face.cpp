@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +24,7 @@
 #include "post/face_map.hpp"
 #include "post/launch_table.hpp"
 #include "post/vtk_series.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {
@@ -196,11 +198,18 @@ class PlateFaceJob final : public PointJob {
     std::vector<Point> points(grid_.size());
     const models::Striker ball = models::golf_ball(blow_.ball);
     const models::PlateFace& plate = strike.plate();
+    std::atomic<std::size_t> without = 0;
     for_all_alone(std::size_t{0}, points.size(), [&](std::size_t i) {
       const Vector2d at(-grid_.toe_at(i), grid_.high_at(i));
       if (!plate.covers(at)) return;
       Point& p = points[i];
-      const models::CharacteristicTime ct = strike.characteristic_time(sphere_, at, speeds_);
+      models::CharacteristicTime ct;
+      try {
+        ct = strike.characteristic_time(sphere_, at, speeds_);
+      } catch (const solvers::NonConvergence&) {
+        ++without;
+        return;
+      }
       const auto place = strike.at(at, models::kBallPatch);
       p = {ct.time, ct.departure, strike.strike(ball, place, restitution_speed_).restitution, place.mass,
            2 * models::pendulum_patch(plate, at)};
@@ -235,8 +244,15 @@ class PlateFaceJob final : public PointJob {
                         1e6 * centre.time, e, models::rules_line(centre.time)));
     out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us", 1e6 * longest,
                         fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
+    if (without > 0) {
+      summary["places_without_characteristic_time"] = without.load();
+      out.warn(fmt::format("{} places have no characteristic time: the pendulum bounces on the vibrating face there",
+                           without.load()));
+    }
     const double error = departure + time_error(slowest, longest);
-    const std::string verdict = rules_verdict(longest, error);
+    std::string verdict = rules_verdict(longest, error);
+    if (without > 0 && longest < kRulesTime + kRulesTolerance)
+      verdict = "this face has no verdict by the rules' test: not every place has a characteristic time";
     out.say(fmt::format(
         "{}: {:.1f} +- {:.1f} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
         verdict, 1e6 * longest, 1e6 * error, -1e3 * slowest.x(), 1e3 * slowest.y(), 1e6 * kRulesTime,
