@@ -69,6 +69,15 @@ constexpr std::array kLibrary = {
     NamedShaft{"steel-7-iron", "steel, 0.965 m, published radii and walls, EI 85 to 28 N m^2", steel_iron7},
 };
 
+/// Moduli of stretch go with those of bending, of shear with those of torsion.
+void scale(ShaftStation& s, double bending, double torsion) {
+  s.bending_stiffness_y *= bending;
+  s.bending_stiffness_z *= bending;
+  s.axial_stiffness *= bending;
+  s.shear_stiffness *= torsion;
+  s.torsional_stiffness *= torsion;
+}
+
 }  // namespace
 
 Shaft tube_shaft(const std::vector<TubeStation>& tube, const std::vector<ShaftLayer>& layers, double shear_factor) {
@@ -156,13 +165,7 @@ std::vector<std::string> faults(const Shaft& shaft) {
 }
 
 Shaft scaled(Shaft shaft, double bending, double torsion) {
-  for (ShaftStation& s : shaft.stations) {
-    s.bending_stiffness_y *= bending;
-    s.bending_stiffness_z *= bending;
-    s.axial_stiffness *= bending;
-    s.shear_stiffness *= torsion;
-    s.torsional_stiffness *= torsion;
-  }
+  for (ShaftStation& s : shaft.stations) scale(s, bending, torsion);
   return shaft;
 }
 
@@ -172,13 +175,8 @@ Shaft scaled_tip(Shaft shaft, double from, double bending, double torsion) {
     shaft.stations.insert(after, shaft.at(from));
   const double length = shaft.length() - from;
   for (ShaftStation& s : shaft.stations) {
-    const double share = std::max(0.0, (s.arc_length - from) / length), EI = 1 + share * (bending - 1),
-                 GJ = 1 + share * (torsion - 1);
-    s.bending_stiffness_y *= EI;
-    s.bending_stiffness_z *= EI;
-    s.axial_stiffness *= EI;
-    s.shear_stiffness *= GJ;
-    s.torsional_stiffness *= GJ;
+    const double share = std::max(0.0, (s.arc_length - from) / length);
+    scale(s, 1 + share * (bending - 1), 1 + share * (torsion - 1));
   }
   return shaft;
 }

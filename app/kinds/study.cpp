@@ -298,8 +298,12 @@ class StudyJob final : public PointJob {
     set.insert(set.begin(), own.begin(), own.end());
     CaseFile file(*blow_, set);
     const StudyBlow asked = read_study_blow(file.root());
+    return numbers(answer(asked.models[model], asked, conditions_, {}, nullptr));
+  }
+
+  /// In the outputs' units; nothing where the answer has none.
+  std::vector<std::optional<double>> numbers(const StudyAnswer& a) const {
     std::vector<std::optional<double>> out;
-    const StudyAnswer a = answer(asked.models[model], asked, conditions_, {}, nullptr);
     for (const StudyOutput& o : outputs_) {
       const auto x = o.value(a);
       out.push_back(x && std::isfinite(*x) ? std::optional(*x / o.si) : std::nullopt);
@@ -317,8 +321,9 @@ class StudyJob final : public PointJob {
     }
     const StudyAnswer a = answer(asked.models[model], asked, conditions_, launch_angle(d), bounce);
     json result = json::object();
-    for (const StudyOutput& o : outputs_)
-      if (const auto x = o.value(a); x && std::isfinite(*x)) result[o.name] = *x / o.si;
+    const auto said = numbers(a);
+    for (std::size_t o = 0; o < outputs_.size(); ++o)
+      if (said[o]) result[outputs_[o].name] = *said[o];
     if (!a.history.empty()) result["history"] = stored(a.history);
     if (!a.hosel.times.empty()) result["hosel"] = stored(a.hosel);
     if (!maps_face()) return result;

@@ -370,7 +370,7 @@ where = "ball_speed_mps < 45"
 }
 
 TEST(Study, NothingIsEmulatedOfWhatThePointsDoNotPredict) {
-  // Eight points of a face angle's side over six parameters are not enough.
+  // Five points are fewer than three for each of two parameters.
   const auto summary = studied("study_few", R"(models = ["rigid-eccentric"]
 outputs = ["spin_rate_rpm"]
 [sample]
