@@ -100,13 +100,18 @@ void copy_case(const std::string& from, const fs::path& to) {
         (entry.path().filename() == "README.md" || entry.path().extension() == ".png"))
       told.push_back(entry.path());
   for (const fs::path& file : told) fs::remove(file);
-  // What lies beside the old case is named from the new one.
+  // A file that lies beside the old case comes along; another case is named from the new one.
   for (const std::string& name : all) {
     const fs::path path = name;
     if (path.is_absolute() || name.find('/') == std::string::npos || !fs::exists(source / path)) continue;
     if (fs::exists(to / path) && fs::equivalent(to / path, source / path)) continue;
     if (*path.lexically_normal().begin() != "..") continue;  // copied with the case
-    const std::string moved = fs::proximate(fs::canonical(source / path), fs::canonical(to)).string();
+    std::string moved = fs::proximate(fs::canonical(source / path), fs::canonical(to)).string();
+    if (const fs::path own = path.filename();
+        fs::is_regular_file(source / path) && own != "case.toml" && !fs::exists(to / own)) {
+      fs::copy_file(source / path, to / own);
+      moved = own.string();
+    }
     for (std::size_t at = 0; (at = text.find('"' + name + '"', at)) != std::string::npos; at += moved.size())
       text.replace(at + 1, name.size(), moved);
   }

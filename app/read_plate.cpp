@@ -94,13 +94,8 @@ PlateThickness::Grid read_grid(const post::Sheet& sheet) {
   }
   for (std::size_t cell = 0; cell < out.value.size(); ++cell)
     if (!(out.value[cell] > 0)) {
-      // A row that names this column of the grid, else the mistake would have no line.
-      const std::size_t row = std::size_t(
-          std::ranges::find_if(at, [&](const auto& p) { return number(out.y, p.x()) == cell % out.y.size(); }) -
-          at.begin());
-      throw InputError(fmt::format("{}:{}: the grid has no row for toe {:g} mm, high {:g} mm; this line asks for one",
-                                   sheet.file, sheet.lines[row], -1e3 * out.y[cell % out.y.size()],
-                                   1e3 * out.z[cell / out.y.size()]));
+      throw InputError(fmt::format("{}:1: no row has toe {:g} mm, high {:g} mm, where other rows' places cross",
+                                   sheet.file, -1e3 * out.y[cell % out.y.size()], 1e3 * out.z[cell / out.y.size()]));
     }
   return out;
 }

@@ -34,7 +34,16 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
     }
     return out;
   }
-  throw InputError(fmt::format("{}:1: no column '{}' (with a unit)", sheet.file, stem));
+  std::string there, wanted;
+  for (const Unit& u : units())
+    if (unit_needed && u.dimension == dimension)
+      wanted += fmt::format("{}{}_{}", wanted.empty() ? " with a unit (" : ", ", stem, u.suffix);
+  if (!wanted.empty()) wanted += ")";
+  for (const std::string& n : sheet.names) there += (there.empty() ? "" : ", ") + n;
+  constexpr std::size_t most = 200;
+  if (there.size() > most) there = there.substr(0, most) + " ...";
+  throw InputError(fmt::format("{}:1: no column '{}'{}; there are: {}{}", sheet.file, stem, wanted, there,
+                               sheet.names.size() == 1 ? "; cells are separated by commas" : ""));
 }
 
 std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name) {

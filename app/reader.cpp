@@ -790,6 +790,16 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
         if (const SplitName split = split_unit(k); split.unit && key.str().starts_with(split.stem + "_"))
           throw InputError(fmt::format("{}: {}: {}", place(*d, node), name,
                                        unknown_unit(key.str(), split.stem, split.unit->dimension)));
+      // A quantity that may be left out is known by its stem alone.
+      const std::string_view word = key.str();
+      for (const std::string& asked : d->looked_for) {
+        const std::string stem = path.empty()                    ? asked
+                                 : asked.starts_with(path + ".") ? asked.substr(path.size() + 1)
+                                                                 : "";
+        if (!stem.empty() && word.starts_with(stem + "_") && !split_unit(word).unit)
+          throw InputError(fmt::format("{}: {}: no unit '{}' is known; `hosel keys` shows the unit of '{}'",
+                                       place(*d, node), name, word.substr(stem.size() + 1), stem));
+      }
       std::string all;
       for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
       throw InputError(fmt::format("{}: {}: unknown {}; {}", place(*d, node), name, node.is_table() ? "table" : "key",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/command_help.hpp"
@@ -49,16 +50,44 @@ void RunPage::figure(std::string_view caption, std::string svg) {
   figures_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>", svg, escape_html(std::string(caption)));
 }
 
+bool RunPage::add_script(const std::string& name, std::string_view missing) {
+  const fs::path folder = shipped("post/viewer", "viewer"), text = folder / (name + ".js");
+  if (!fs::exists(text)) {
+    doubt(fmt::format("{}: {} is not installed.", missing, text.string()));
+    return false;
+  }
+  std::string checksum = post::read_file(folder / (name + ".sha256"));
+  while (checksum.ends_with('\n')) checksum.pop_back();
+  const auto same = [&](const post::PageScript& s) { return s.checksum == checksum; };
+  if (std::ranges::none_of(scripts_, same)) scripts_.push_back({post::read_file(text), checksum});
+  return true;
+}
+
+namespace {
+
+/// Data between <script> tags, which no text in it can end.
+std::string json_in_page(const nlohmann::json& data) {
+  std::string text = data.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != text.npos;) text.replace(at, 1, "\\u003c");
+  return text;
+}
+
+}  // namespace
+
+void RunPage::sliders(std::string_view caption, const nlohmann::json& study) {
+  if (study.is_null() || !add_script("sliders", "The sliders are missing")) return;
+  close_figures();
+  body_ += fmt::format(
+      "<figure class='sliders' data-sliders='sliders-{0}' hidden><div "
+      "data-part='parameters'></div><table><tr><th>answer"
+      "<th>here<th class='l' data-part='along'></tr></table><figcaption>{1}</figcaption></figure><script "
+      "type='application/json' id='sliders-{0}'>{2}</script>",
+      ++moving_, escape_html(std::string(caption)), json_in_page(study));
+}
+
 void RunPage::moving(std::string_view caption, const std::string& blow) {
   if (blow.empty()) return;
-  const fs::path viewer = shipped("post/viewer", "viewer");
-  if (!fs::exists(viewer / "viewer.js")) {
-    doubt(fmt::format("The moving picture is not drawn: {} is not installed.", (viewer / "viewer.js").string()));
-    return;
-  }
-  script_ = post::read_file(viewer / "viewer.js");
-  checksum_ = post::read_file(viewer / "viewer.sha256");
-  while (checksum_.ends_with('\n')) checksum_.pop_back();
+  if (!add_script("viewer", "The moving picture is not drawn")) return;
   close_figures();
   const std::string said = escape_html(std::string(caption));
   body_ += fmt::format(
@@ -186,7 +215,7 @@ std::string RunPage::html(const std::string& resolved, const std::string& comman
            "page names every one; summary.json there has the numbers.</small></p>",
            escape_html(program_version()), now());
   if (own && !printed_.empty()) s += "<h2>Printed by the run</h2>" + printed;
-  return post::html_page(title.empty() ? question : title, s, script_, checksum_);
+  return post::html_page(title.empty() ? question : title, s, scripts_);
 }
 
 }  // namespace hosel::app

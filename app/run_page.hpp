@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "post/figure.hpp"
+#include "post/html.hpp"
 #include "post/text_table.hpp"
 
 namespace hosel::app {
@@ -27,6 +29,8 @@ class RunPage {
   /// A blow in three dimensions, by post::json_for_viewer; hidden where a browser cannot draw it. Says so where the
   /// script that draws it is not installed, and shows nothing.
   void moving(std::string_view caption, const std::string& blow);
+  /// Sliders over what app::sliders gives; nothing where that is null. Says so where the script is not installed.
+  void sliders(std::string_view caption, const nlohmann::json& study);
   /// What post::draw has made: lines as they are, maps as one picture of points.
   void figure(const post::Figure& figure, const std::filesystem::path& stem);
   /// A picture beside the page.
@@ -43,8 +47,11 @@ class RunPage {
 
  private:
   void close_figures();
+  /// NAME.js with NAME.sha256 of post/viewer. Where it is not there: `missing` among the doubts, and false.
+  bool add_script(const std::string& name, std::string_view missing);
 
-  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_, script_, checksum_;
+  std::string sentences_, answers_, tables_, body_, figures_, printed_, doubts_, links_;
+  std::vector<post::PageScript> scripts_;
   int moving_ = 0;
   bool sections_ = false;
   std::vector<std::pair<std::string, std::string>> next_;

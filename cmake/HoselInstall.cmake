@@ -26,8 +26,8 @@ foreach(make ${makes})  # scripts that made a case's data
   install(PROGRAMS ${make} DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/${folder})
 endforeach()
 install(DIRECTORY post/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel)
-# What draws the moving pictures of the pages, bundled by scripts/build-viewer.
-install(FILES post/viewer/viewer.js post/viewer/viewer.sha256 post/viewer/LICENSES
+# What moves in the pages: viewer.js is bundled by scripts/build-viewer.
+install(FILES post/viewer/viewer.js post/viewer/viewer.sha256 post/viewer/LICENSES post/viewer/sliders.js post/viewer/sliders.sha256
         DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/viewer)
 install(PROGRAMS scripts/pvbatch scripts/slurm-array DESTINATION ${CMAKE_INSTALL_DATADIR}/hosel/scripts)
 # What the command says of itself, where man and bash look for it.

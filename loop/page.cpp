@@ -178,9 +178,10 @@ std::string page(const LoopResult& r, const Shots& table) {
                      number(c.before.holdout_bias), number(c.after.holdout_bias));
   s += "</table></div>";
   s += gloss(
-      "Residual: model minus measured. Noise: standard deviation of one reading, as declared, as the readings' own "
-      "spread shows it, or (repeats) as the rows do of which a reading is the mean. Scatter / noise: what is left "
-      "about the fit over that noise, 1 where both are right. Held out: "
+      "Residual: model minus measured. Noise: standard deviation of one reading: as declared, measured from the "
+      "readings' "
+      "own spread, or (repeats) from the rows whose mean a reading is. Scatter / noise: the scatter about the fit, "
+      "divided by that noise; it is 1 where both are right. Held out: "
       "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers. "
       "Bias: their mean.");
   if (smooth) s += without_name(r);
@@ -201,21 +202,23 @@ std::string page(const LoopResult& r, const Shots& table) {
   }
   if (r.balance_before) {
     const Balance &b = *r.balance_before, &a = *r.balance_after;
-    s += "<h2>Contact, or kinematics and inertia?</h2><p>Whatever the contact, one impulse must give the ball both its "
-         "velocity and its spin. What some impulse mends is a matter of the "
-         "contact; what none mends contradicts the recorded kinematics or the ball's inertia.</p><div "
-         "class='scroll'><table><tr><th>sum of "
-         "squares over what noise alone gives<th>before<th>after</tr>";
+    s += "<h2>Contact, or kinematics and inertia?</h2><p>Whatever the contact, one impulse gives the ball both its "
+         "velocity and its spin. An error that another impulse would remove comes from the contact law. An error that "
+         "no "
+         "impulse removes comes from the recorded motion of the head or from the ball's inertia.</p><div "
+         "class='scroll'><table><tr><th>mean square of the errors, in noise units<th>before<th>after</tr>";
     const auto ratio = [](double x, int n) {
       return n ? fmt::format("{:.2f} <small>({} values)</small>", x / n, n) : std::string("–");
     };
     s += fmt::format(
-        "<tr><td>mended by an impulse: contact<td>{}<td>{}</tr><tr><td>mended by none: kinematics, "
-        "inertia<td>{}<td>{}</tr></table></div>",
+        "<tr><td>contact: an impulse removes it<td>{}<td>{}</tr><tr><td>motion of the head, inertia: none removes "
+        "it<td>{}<td>{}</tr></table></div>",
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
-    s += fmt::format("<p>Of the base's excess over the noise, {:.0f} % no contact law can mend.</p>",
-                     100 * b.inertia_share());
+    s += fmt::format(
+        "<p>The base model's error is larger than the noise; {:.0f} % of that excess cannot come from the contact "
+        "law.</p>",
+        100 * b.inertia_share());
   }
 
   if (records && !r.rows.empty()) {
@@ -274,22 +277,25 @@ std::string page(const LoopResult& r, const Shots& table) {
   if (!r.ties.empty()) {
     s += "<p><b>Tied:</b> ";
     for (const auto& t : r.ties) s += escape_html(fmt::format("{}. ", fmt::join(t, " or ")));
-    s += "</p>" + gloss("Tied: these data cannot tell which of them acts; what could is under What to measure next.");
+    s += "</p>" + gloss(
+                      "Tied: these data cannot tell which of them acts. Under What to measure next stands what "
+                      "would tell.");
   }
   if (!r.likeness.absorption.empty()) {
-    s += "<h2>What looks alike</h2><div class='scroll'><table><tr><th>effect<th class='l'>parameter<th>absorbed by "
-         "what is fitted<th class='l'>most like<th>correlation</tr>";
+    s += "<h2>What looks alike</h2><div class='scroll'><table><tr><th>effect<th class='l'>parameter<th>share that the "
+         "fitted "
+         "effects imitate<th class='l'>most like<th>correlation</tr>";
     for (const Absorption& a : r.likeness.absorption)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td>{:.1f} %<td class='l'>{}<td>{}</tr>", escape_html(a.effect),
                        escape_html(post::spoken(a.parameter)), 100 * a.absorbed, escape_html(a.nearest),
                        a.nearest.empty() ? std::string("–") : fmt::format("{:+.3f}", a.likeness));
     s += "</table></div>" + gloss(
-                                "Absorbed: the share of an effect's trace in these data that the fitted effects can "
-                                "imitate. Correlation: of its trace with the nearest other's, 1 where they look the "
-                                "same.");
+                                "An effect changes the predictions in a pattern. The share is how much of that "
+                                "pattern the fitted effects can make as well. Correlation: of the pattern with that of "
+                                "the nearest other effect; 1 where they are the same.");
     if (!r.likeness.null_vectors.empty()) {
-      s += "<p>Together these effects leave almost no trace (singular value of the whitened Jacobian, columns of unit "
-           "length):</p><ul>";
+      s += "<p>These sums of effects change the predictions by almost nothing. In brackets: the singular value of the "
+           "Jacobian, in noise units, its columns of unit length.</p><ul>";
       for (const NullVector& v : r.likeness.null_vectors) {
         std::string sum;
         for (const auto& [effect, weight] : v.weights)
@@ -335,14 +341,18 @@ std::string page(const LoopResult& r, const Shots& table) {
   }
   s += "<h2>What to measure next</h2><p>" + escape_html(r.next.text) + ".</p>";
   if (!r.next.shots.empty()) {
-    s += "<div class='scroll'><table><tr>";
+    s += "<div class='scroll'><table><tr><th>shots";
     for (const auto& [header, x] : r.next.shots[0]) s += "<th>" + escape_html(post::label(header));
     s += "</tr>";
+    std::vector<std::pair<std::string, int>> kinds;  // a kind of shot as its row, how many
     for (const DesignedShot& d : r.next.shots) {
-      s += "<tr>";
-      for (const auto& [header, x] : d) s += "<td>" + number(x);
-      s += "</tr>";
+      std::string row;
+      for (const auto& [header, x] : d) row += "<td>" + number(x);
+      const auto at = std::ranges::find(kinds, row, &std::pair<std::string, int>::first);
+      if (at == kinds.end()) kinds.emplace_back(row, 1);
+      else ++at->second;
     }
+    for (const auto& [row, times] : kinds) s += fmt::format("<tr><td>{} x{}</tr>", times, row);
     s += "</table></div>";
   }
   s += fmt::format(

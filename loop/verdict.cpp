@@ -220,7 +220,8 @@ void conclude(const Study& study, LoopResult& result) {
     c.holdout_score = score(problem, c.candidate.fit);
     result.candidates.push_back(std::move(c));
   }
-  for (const std::string& e : s.silent) result.notes.push_back(fmt::format("{}: these channels would not show it", e));
+  for (const std::string& e : s.silent)
+    result.notes.push_back(fmt::format("{}: has no influence on these channels", e));
   result.minimum_detectable = minimum_detectable(problem, s.base, study.candidates, study.rules);
   result.likeness = likeness(problem, after, study.candidates);
   result.next = problem.next_experiment(result);

@@ -58,6 +58,10 @@ td,th{padding:.25rem .5rem .25rem 0;font-size:.86rem}}
 .moving [data-part=view]{height:min(30rem,75vw);border:1px solid var(--rule);border-radius:6px;overflow:hidden;cursor:grab}
 .moving p{display:flex;flex-wrap:wrap;gap:.4rem .7rem;align-items:center}.moving input[type=range]{flex:1 1 10rem}
 .moving output{font-variant-numeric:tabular-nums;min-width:11rem}.moving b{font-weight:600}
+.sliders [data-part=parameters]{display:grid;gap:.3rem 2rem;grid-template-columns:repeat(auto-fill,minmax(min(24rem,100%),1fr))}
+.sliders label{display:grid;grid-template-columns:minmax(0,9rem) minmax(4rem,1fr) 7rem;gap:.6rem;align-items:center}
+.sliders input{min-width:0;width:100%}.sliders output{font-variant-numeric:tabular-nums}.sliders .spark{width:9rem}
+.sliders td{vertical-align:middle}
 .moving [data-part=legend]{flex-wrap:nowrap}.moving i{flex:1 1 6rem;max-width:16rem;height:.8rem;border-radius:2px}
 svg.curves text{font-size:13px;fill:#000}.told{position:relative}.told svg{position:absolute;inset:0;height:100%}
 .key i{display:inline-block;width:.75em;height:.75em;border-radius:50%;margin:0 .3em 0 .9em;vertical-align:baseline}
@@ -88,14 +92,17 @@ std::string data_uri(const std::filesystem::path& picture) {
   return (picture.extension() == ".svg" ? "data:image/svg+xml;base64," : "data:image/png;base64,") + text;
 }
 
-std::string html_page(const std::string& title, const std::string& body, const std::string& script,
-                      const std::string& checksum) {
-  const std::string allowed = script.empty() ? "'none'" : "'sha256-" + checksum + "'";
+std::string html_page(const std::string& title, const std::string& body, const std::vector<PageScript>& scripts) {
+  std::string allowed, run;
+  for (const PageScript& s : scripts) {
+    allowed += (allowed.empty() ? "'sha256-" : " 'sha256-") + s.checksum + "'";
+    run += "<script>" + s.text + "</script>";
+  }
+  if (allowed.empty()) allowed = "'none'";
   return "<!doctype html><html lang='en'><head><meta charset='utf-8'><meta http-equiv='Content-Security-Policy' "
          "content=\"default-src 'none';img-src data:;style-src 'unsafe-inline';script-src " +
          allowed + "\"><meta name='viewport' content='width=device-width'><title>" + escape_html(title) +
-         "</title><style>" + kStyle + "</style></head><body>" + body +
-         (script.empty() ? "" : "<script>" + script + "</script>") + "</body></html>\n";
+         "</title><style>" + kStyle + "</style></head><body>" + body + run + "</body></html>\n";
 }
 
 }  // namespace hosel::post

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace hosel::post {
 
@@ -14,10 +15,12 @@ std::string data_uri(const std::filesystem::path& picture);
 
 /// The whole document around a body, for a light and a dark screen and for paper. Classes: `verdict` with `good`,
 /// `open` or `bad`; `answers`, `figures`, `inputs`, `scroll`, `key`, `wide`; `l` sets a cell left; `command` of a
-/// `pre`; `moving` of a figure that a script draws; `curves` of a picture that may be inverted in the dark; those of
-/// the pictures in svg. `script`: the one that the page may run, at its end; `checksum`: base64 of its SHA-256. The
-/// page's policy lets nothing be fetched, and no other script run.
-std::string html_page(const std::string& title, const std::string& body, const std::string& script = {},
-                      const std::string& checksum = {});
+/// `pre`; `moving` and `sliders` of figures that a script draws; `curves` of a picture that may be inverted in the
+/// dark; those of the pictures in svg. The page's policy lets nothing be fetched, and no other script run than
+/// `scripts`, at its end.
+struct PageScript {
+  std::string text, checksum;  ///< checksum: base64 of the text's SHA-256
+};
+std::string html_page(const std::string& title, const std::string& body, const std::vector<PageScript>& scripts = {});
 
 }  // namespace hosel::post

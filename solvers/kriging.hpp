@@ -47,6 +47,17 @@ class Kriging {
   const Eigen::MatrixXd& process() const { return process_; }
   const Correlation& correlation() const { return correlation_; }
 
+  /// What a reader elsewhere needs: the mean is plane^T (1, x) + weight^T matern(|points - x / length|). The plane has
+  /// one row where it is a constant.
+  struct Parts {
+    Eigen::VectorXd length;
+    double nugget;
+    Eigen::MatrixXd points;         ///< over the lengths, inputs x points
+    Eigen::MatrixXd plane, weight;  ///< a column an output
+    Eigen::MatrixXd process;
+  };
+  Parts parts() const { return {correlation_.length, correlation_.nugget, points_, plane_, weight_, process_}; }
+
  private:
   Eigen::VectorXd covariances(const Eigen::VectorXd& x) const;
   Eigen::VectorXd trend(const Eigen::VectorXd& x) const;

@@ -55,15 +55,17 @@ void Dictionary::read(const fs::path& file) {
     q.low = range[0], q.high = range[1];
     q.side = t.flag("side", false);
     q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
-    q.headers = plains(t.texts("headers"));
+    for (const std::string& h : t.texts("headers"))
+      q.headers.push_back({plain(h), h.find('[') == h.npos ? "" : unit_in(h)});
     quantities_.push_back(std::move(q));
   }
-  if (auto t = root.optional_table("bookkeeping"))
-    for (const std::string& key : t->keys()) {
-      const auto words = plains(t->texts(key));
-      auto& known = bookkeeping_[key];
-      known.insert(known.end(), words.begin(), words.end());
-    }
+  for (const auto& [name, into] : {std::pair{"bookkeeping", &bookkeeping_}, {"words", &words_}})
+    if (auto t = root.optional_table(name))
+      for (const std::string& key : t->keys()) {
+        const auto words = plains(t->texts(key));
+        auto& known = (*into)[key];
+        known.insert(known.end(), words.begin(), words.end());
+      }
   for (Table& t : root.tables("club"))
     clubs_.push_back({plains(t.texts("names")), t.number("head_mass_kg", {0.1, 0.5}), t.number("loft_deg", {0, 70}),
                       t.text("head", "iron")});
@@ -92,10 +94,12 @@ const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const 
   const auto blank = header.find_last_of(" _");  // `Ball Speed mph`
   const bool tail = blank != std::string::npos && !unit_of(header.substr(blank + 1)).empty() && header.back() != ')';
   const std::string without = tail ? plain(std::string_view(header).substr(0, blank)) : word;
+  const std::string unit = unit_in(header);
   for (const MonitorQuantity& q : quantities_)
-    if (std::ranges::count(q.headers, word) || std::ranges::count(q.headers, without) || word == plain(q.name) ||
-        without == plain(q.name))
-      return &q;
+    for (const MonitorQuantity::Header& h : q.headers)
+      if ((h.words == word || h.words == without) && (h.unit.empty() || h.unit == unit)) return &q;
+  for (const MonitorQuantity& q : quantities_)
+    if (word == plain(q.name) || without == plain(q.name)) return &q;
   return nullptr;
 }
 
@@ -111,7 +115,7 @@ void Dictionary::learn(const std::string& header, std::string_view quantity) {
   if (const auto role = bookkeeping_.find(std::string(quantity)); role != bookkeeping_.end())
     role->second.push_back(plain(header));
   for (MonitorQuantity& q : quantities_)
-    if (q.name == quantity) q.headers.push_back(plain(header));
+    if (q.name == quantity) q.headers.push_back({plain(header), ""});
 }
 
 const MonitorQuantity* Dictionary::quantity(std::string_view name) const {
@@ -131,31 +135,53 @@ std::vector<std::string> Dictionary::roles() const {
   return out;
 }
 
-std::string club_key(const std::string& name) {
-  static const std::map<std::string, std::string> kinds = {
-      {"i", "i"},      {"ir", "i"},     {"iron", "i"}, {"irons", "i"},   {"w", "w"},
-      {"wood", "w"},   {"fw", "w"},     {"h", "h"},    {"hy", "h"},      {"hyb", "h"},
-      {"hybrid", "h"}, {"rescue", "h"}, {"ut", "h"},   {"utility", "h"}, {"", ""},
-      {"deg", ""},     {"degree", ""},  {"wedge", ""}, {"w wedge", ""},  {"fairway wood", "w"},
-      {"fairway", "w"}};
+bool Dictionary::says(std::string_view list, const std::string& cell) const {
+  const auto at = words_.find(list);
+  const std::string word = plain(cell);
+  return at != words_.end() && !word.empty() && std::ranges::count(at->second, word);
+}
+
+bool Dictionary::begins_or_ends(std::string_view list, const std::string& cell) const {
+  const std::string word = plain(cell);
+  return says(list, cell) || says(list, word.substr(0, word.find(' '))) ||
+         says(list, word.substr(std::min(word.size(), word.rfind(' ') + 1)));
+}
+
+namespace {
+
+/// Number and letters of a club's name: `Eisen 7` -> 7, "eisen".
+std::pair<std::string, std::string> number_and_kind(const std::string& name) {
   std::string digits, letters;
   for (const char c : plain(name)) {
-    if (std::isdigit(static_cast<unsigned char>(c))) {
-      digits += c;
-    } else if (c != ' ' || (!letters.empty() && letters.back() != ' ')) {
-      letters += c;
-    }
+    if (std::isdigit(static_cast<unsigned char>(c))) digits += c;
+    else if (c != ' ' || (!letters.empty() && letters.back() != ' ')) letters += c;
   }
   while (!letters.empty() && letters.back() == ' ') letters.pop_back();
-  const auto kind = kinds.find(letters);
-  return digits.empty() || digits.size() > 2 || kind == kinds.end() ? plain(name) : digits + kind->second;
+  return {digits, letters};
+}
+
+}  // namespace
+
+std::string Dictionary::club_key(const std::string& name) const {
+  const auto key = [&](const std::string& said) {
+    const auto [digits, letters] = number_and_kind(said);
+    if (digits.empty() || digits.size() > 2) return plain(said);
+    if (letters.empty()) return said.starts_with('#') && digits.size() == 1 ? digits + "i" : digits;
+    for (const auto& [kind, letter] : {std::pair{"iron", "i"}, {"wood", "w"}, {"hybrid", "h"}, {"wedge", ""}})
+      if (says(kind, letters)) return digits + letter;
+    return plain(said);
+  };
+  const std::string own = key(name);
+  for (const NominalClub& c : clubs_)
+    for (const std::string& n : c.names)
+      if (key(n) == own) return key(c.names.front());
+  return own;
 }
 
 const NominalClub* Dictionary::club(const std::string& name) const {
+  const std::string key = club_key(name);
   for (const NominalClub& c : clubs_)
-    if (std::ranges::count(c.names, plain(name)) ||
-        std::ranges::any_of(c.names, [&](const std::string& n) { return club_key(n) == club_key(name); }))
-      return &c;
+    if (club_key(c.names.front()) == key) return &c;
   return nullptr;
 }
 

@@ -14,7 +14,10 @@ struct MonitorQuantity {
   double low = 0, high = 0;  ///< of a column's median [SI]
   bool side = false;         ///< cells may end in L or R, toe or heel
   bool zero = true;          ///< 0 may be measured, else it stands for no reading
-  std::vector<std::string> headers;
+  struct Header {
+    std::string words, unit;  ///< unit: that a header must have to be meant; empty: any
+  };
+  std::vector<Header> headers;
 };
 struct NominalClub {
   std::vector<std::string> names;
@@ -47,14 +50,21 @@ class Dictionary {
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
   std::vector<std::string> roles() const;                       ///< club, shot, hand, ...
-  /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7` are one club.
+  /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another.
   const NominalClub* club(const std::string& name) const;
+  /// One spelling of a club's name: that of the nominal clubs where it is one, else number and kind (`7i`), else as
+  /// `plain` has it.
+  std::string club_key(const std::string& name) const;
+  /// Whether a cell is one of the words of a list in [words], as `plain` has it.
+  bool says(std::string_view list, const std::string& cell) const;
+  /// Whether its first or its last word is.
+  bool begins_or_ends(std::string_view list, const std::string& cell) const;
   const std::vector<MonitorLayout>& layouts() const { return layouts_; }
   const std::map<std::string, NominalHead>& heads() const { return heads_; }
 
  private:
   std::vector<MonitorQuantity> quantities_;
-  std::map<std::string, std::vector<std::string>> bookkeeping_;
+  std::map<std::string, std::vector<std::string>, std::less<>> bookkeeping_, words_;
   std::vector<NominalClub> clubs_;
   std::vector<MonitorLayout> layouts_;
   std::map<std::string, NominalHead> heads_;
@@ -62,9 +72,6 @@ class Dictionary {
 
 /// Where the shipped dictionary is: in the tree, else installed.
 std::filesystem::path shipped_dictionary();
-
-/// A club's name in one spelling: number and kind (`7i`, `3w`, `4h`), else as `plain` has it.
-std::string club_key(const std::string& name);
 
 /// Whether a header, as `plain` has it, is about the player's hand: `player hand`, `left handed`; not `hand speed`.
 bool names_a_hand(const std::string& words);

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The file as UTF-8 without a byte-order mark: UTF-8, UTF-16 with a mark, else Latin-1.
-std::string read_text(const fs::path& file) {
+std::string read_utf8(const fs::path& file) {
   constexpr std::uintmax_t most = 64u << 20;
   std::error_code none;
   if (!fs::is_regular_file(file, none)) throw InputError(fmt::format("{}: no such file", file.string()));
@@ -49,6 +49,14 @@ std::string read_text(const fs::path& file) {
   std::string out;
   for (std::size_t i = 0; i < raw.size(); ++i) utf8::append(char32_t(byte(i)), out);
   return out;
+}
+
+/// The same, its unbreakable and narrow blanks as plain ones.
+std::string read_text(const fs::path& file) {
+  std::string text = read_utf8(file);
+  for (const std::string_view blank : {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"})
+    for (std::size_t at = 0; (at = text.find(blank, at)) != text.npos; ++at) text.replace(at, blank.size(), " ");
+  return text;
 }
 
 std::vector<Row> split(const std::string& text, char delimiter) {
@@ -163,11 +171,25 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   Sheet sheet;
   std::vector<std::map<std::string, std::string>> flat;
   std::set<std::string> known;
+  std::map<std::string, std::string> standing;  // the player's hand and club, told apart from the shots that follow
   for (const auto& shot : shots) {
-    flat.emplace_back();
-    flatten(shot, "", flat.back());
-    for (const auto& [key, value] : flat.back())
+    std::map<std::string, std::string> said;
+    flatten(shot, "", said);
+    const auto quantity = [&](const auto& entry) {
+      return d.quantity_of(known_name(d, entry.first)) && number(entry.second, false, true);
+    };
+    if (std::ranges::none_of(said, quantity)) {
+      ++sheet.messages;
+      for (const auto& [key, value] : said) {
+        const std::string role = d.bookkeeping_of(known_name(d, key));
+        if (!role.empty() && role != "shot" && !missing(value)) standing[key] = value;
+      }
+      continue;
+    }
+    said.insert(standing.begin(), standing.end());  // what the shot itself says stays
+    for (const auto& [key, value] : said)
       if (known.insert(key).second) sheet.names.push_back(key);
+    flat.push_back(std::move(said));
   }
   check_size(file, sheet.names.size(), flat.size());
   for (auto& shot : flat) {
@@ -202,6 +224,112 @@ void list_names(const std::string& text, const Dictionary& d) {
   fmt::print("with one of: {}; and its unit, as ball_speed_mph\n", fmt::join(d.quantity_names(), ", "));
 }
 
+/// Cells that are units or say nothing: most of those that say anything, and no number among them.
+bool is_row_of_units(const Row& row) {
+  std::size_t units = 0, other = 0;
+  for (const std::string& c : row) {
+    const bool bracketed = (c.starts_with('[') && c.ends_with(']')) || (c.starts_with('(') && c.ends_with(')'));
+    if (!unit_of(c).empty()) ++units;
+    else if (number(c, false, false)) return false;
+    else other += !bracketed && !missing(c);
+  }
+  return units > 0 && (other == 0 || (units >= 3 && units > 2 * other));
+}
+
+/// The club that a line above shots names: `7 Iron` alone, or `Club:` and its name.
+std::string club_heading(const Row& row, const Dictionary& d) {
+  Row said;
+  for (const std::string& c : row)
+    if (!c.empty()) said.push_back(c);
+  if (said.size() == 1 && d.club(said[0])) return said[0];
+  if (said.size() == 2 && d.bookkeeping_of(said[0]) == "club" && d.club(said[1])) return said[1];
+  return "";
+}
+
+/// Whether a column counts the shots, 1, 2, 3, ..., whatever its header: one above the row before, or 1 again.
+bool counts(const std::vector<Row>& rows, std::size_t column) {
+  std::size_t steps = 0, numbers = 0;
+  double last = 0;
+  for (const Row& row : rows) {
+    const auto x = number(row[column], false, false);
+    if (!x) continue;
+    ++numbers;
+    steps += x->value == last + 1 || x->value == 1;
+    last = x->value;
+  }
+  return numbers > 2 && numbers == steps && 2 * numbers > rows.size();
+}
+
+/// The rows below the header as shots: units, repeated headers, summaries and lines that name a club are taken out.
+void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
+  const std::size_t width = sheet.names.size();
+  std::string club;
+  for (const Row& row : sheet.before)
+    if (const std::string named = club_heading(row, d); !named.empty()) club = named;
+  std::vector<Row> shots;
+  Row clubs;
+  for (Row& row : sheet.rows) {
+    row.resize(std::max(width, row.size()));
+    if (std::ranges::equal(row.begin(), row.begin() + long(width), sheet.names.begin(), sheet.names.end())) {
+      ++sheet.headers_again;
+      continue;
+    }
+    if (is_row_of_units(row)) {
+      if (shots.empty() && sheet.units.empty()) sheet.units = row;
+      else if (!std::ranges::equal(row.begin(), row.begin() + long(width), sheet.units.begin(),
+                                   sheet.units.begin() + long(std::min(width, sheet.units.size()))))
+        throw InputError(
+            fmt::format("{}: the units change after shot {}: import each part by itself", file.string(), shots.size()));
+      else ++sheet.units_again;
+      continue;
+    }
+    if (const std::string named = club_heading(row, d); !named.empty()) {
+      club = named;
+      continue;
+    }
+    // Summaries stand where the club's, the player's or the shot's name would.
+    bool summary = false;
+    for (std::size_t c = 0; c < width && !summary; ++c) {
+      const std::string role = d.bookkeeping_of(sheet.names[c]);
+      if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
+      summary = d.begins_or_ends("summary", row[c]) || (role != "player" && d.says("extreme", row[c]));
+    }
+    if (summary) {
+      ++sheet.summaries;
+      continue;
+    }
+    if (std::any_of(row.begin() + long(width), row.end(), [](const std::string& c) { return !c.empty(); }))
+      throw InputError(fmt::format("{}: shot {} has {} cells under {} names: its values stand under the wrong ones",
+                                   file.string(), shots.size() + 1, row.size(), width));
+    row.resize(width);
+    shots.push_back(std::move(row));
+    clubs.push_back(club);
+  }
+  // Where a column counts the shots, a word in it is a summary's in another language.
+  for (std::size_t c = 0; c < width; ++c) {
+    const std::string role = d.bookkeeping_of(sheet.names[c]);
+    if (!(role == "shot" || (c == 0 && role.empty() && !d.quantity_of(sheet.names[c]))) || !counts(shots, c)) continue;
+    for (std::size_t r = shots.size(); r-- > 0;)
+      if (!missing(shots[r][c]) && !number(shots[r][c], false, false)) {
+        shots.erase(shots.begin() + long(r));
+        clubs.erase(clubs.begin() + long(r));
+        ++sheet.summaries;
+      }
+  }
+  const auto says_club = [&](std::size_t c) {
+    return d.bookkeeping_of(sheet.names[c]) == "club" &&
+           std::ranges::any_of(shots, [&](const Row& row) { return d.club(row[c]) != nullptr; });
+  };
+  bool column = false;
+  for (std::size_t c = 0; c < width; ++c) column = column || says_club(c);
+  if (!column && std::ranges::any_of(clubs, [](const std::string& c) { return !c.empty(); })) {
+    sheet.names.push_back("Club (its line)");
+    if (!sheet.units.empty()) sheet.units.resize(sheet.names.size());
+    for (std::size_t r = 0; r < shots.size(); ++r) shots[r].push_back(clubs[r]);
+  }
+  sheet.rows = std::move(shots);
+}
+
 Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   Sheet best;
   std::size_t most = 1;
@@ -231,45 +359,7 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   }
   while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
   check_size(file, best.names.size(), best.rows.size());
-  // A row of units is one whose cells are units or empty.
-  if (!best.rows.empty()) {
-    const Row& first = best.rows.front();
-    const auto named = std::ranges::count_if(first, [](const std::string& c) { return !unit_of(c).empty(); });
-    const bool only = std::ranges::all_of(first, [](const std::string& c) {
-      const bool bracketed = (c.starts_with('[') && c.ends_with(']')) || (c.starts_with('(') && c.ends_with(')'));
-      return c.empty() || c == "-" || bracketed || !unit_of(c).empty();
-    });
-    if (named > 0 && only) {
-      best.units = first;
-      best.rows.erase(best.rows.begin());
-    }
-  }
-  const std::size_t width = best.names.size();
-  std::erase_if(best.rows, [&](Row& row) {
-    row.resize(std::max(width, row.size()));
-    if (std::ranges::equal(row.begin(), row.begin() + long(width), best.names.begin(), best.names.end())) {
-      ++best.headers_again;
-      return true;
-    }
-    // Summaries stand where the club's or the shot's name would.
-    for (std::size_t c = 0; c < width; ++c) {
-      const std::string role = d.bookkeeping_of(best.names[c]);
-      if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
-      const std::string word = plain(row[c]);
-      static const std::vector<std::string> words = {"average",     "avg",   "mean",   "std", "st dev", "deviation",
-                                                     "consistency", "total", "median", "max", "min"};
-      if (std::ranges::any_of(words, [&](const std::string& w) { return word == w || word.starts_with(w + " "); })) {
-        ++best.summaries;
-        return true;
-      }
-    }
-    return false;
-  });
-  for (std::size_t i = 0; i < best.rows.size(); ++i)
-    if (std::any_of(best.rows[i].begin() + long(width), best.rows[i].end(),
-                    [](const std::string& c) { return !c.empty(); }))
-      throw InputError(fmt::format("{}: shot {} has {} cells under {} names: its values stand under the wrong ones",
-                                   file.string(), i + 1, best.rows[i].size(), width));
+  take_shots(best, d, file);
   return best;
 }
 

@@ -18,8 +18,8 @@ struct Sheet {
   std::string layout;     ///< of the dictionary; empty: none that is known
   std::string family;     ///< units of that layout: imperial, metric
   std::string delimiter = "JSON";
-  std::vector<Row> before;                       ///< rows above the header
-  std::size_t summaries = 0, headers_again = 0;  ///< rows passed over
+  std::vector<Row> before;                                                      ///< rows above the header
+  std::size_t summaries = 0, headers_again = 0, units_again = 0, messages = 0;  ///< rows passed over
 };
 
 /// Throws InputError in one sentence.

@@ -21,6 +21,7 @@
 #include "app/study/history.hpp"
 #include "app/study/landing.hpp"
 #include "app/study/optimum.hpp"
+#include "app/study/sliders.hpp"
 #include "app/study/statement.hpp"
 #include "app/study/table.hpp"
 #include "app/sweep.hpp"
@@ -141,6 +142,13 @@ class StudyJob final : public PointJob {
     effects.emulators.resize(table.series.size());
     if (named) {
       tell_effects(out, table, effects, summary);
+      const json between = sliders(table, effects);
+      if (!between.is_null()) out.page().section("Between the points", "");
+      out.page().sliders(
+          "Answers by the emulator through the points, with the larger of its error there and at points left out. "
+          "Line: along the parameter "
+          "that was moved last, over the range of the answers.",
+          between);
       if (const post::TextTable rows = table.rows(); rows.rows.size() > 1) out.show(rows, "Points");
     }
     if (landing_) summary["landing"] = report_landing(out, table, effects, *landing_, title_);

@@ -204,7 +204,8 @@ std::string said_cell(const std::string& column, const std::string& cell) {
   if (column == "variant" || column == "row") return cell;
   const SplitName split = split_unit(column);
   const std::string name = post::label(column);
-  return fmt::format("{} {}{}", name.substr(0, name.find(" [")), cell,
+  const auto number = cell_number(cell);
+  return fmt::format("{} {}{}", name.substr(0, name.find(" [")), number ? fmt::format("{:.6g}", *number) : cell,
                      split.unit ? " " + post::symbol(split.unit->suffix) : "");
 }
 

@@ -17,12 +17,17 @@ constexpr double kEnough = 0.9;  // of the variance, at points left out
 
 }  // namespace
 
+StudyEmulator::Scale StudyEmulator::scale(std::size_t column) const {
+  const solvers::Distribution& s = columns_[column].spread;
+  if (s.kind == solvers::Distribution::Kind::uniform) return {(s.low + s.high) / 2, (s.high - s.low) / 2};
+  return {s.mean, 2 * s.sd};
+}
+
 Eigen::VectorXd StudyEmulator::scaled(const Eigen::VectorXd& x) const {
   Eigen::VectorXd out(x.size());
   for (Index i = 0; i < x.size(); ++i) {
-    const solvers::Distribution& s = columns_[std::size_t(i)].spread;
-    out[i] = s.kind == solvers::Distribution::Kind::uniform ? 2 * (x[i] - s.low) / (s.high - s.low) - 1
-                                                            : (x[i] - s.mean) / (2 * s.sd);
+    const Scale s = scale(std::size_t(i));
+    out[i] = (x[i] - s.centre) / s.half;
   }
   return out;
 }

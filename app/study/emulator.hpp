@@ -24,6 +24,15 @@ class StudyEmulator {
   double predicted() const { return predicted_; }  ///< share of the variance there
   std::size_t points() const { return points_; }   ///< through which it goes
 
+  /// Of a parameter in the process: (x - centre) / half, within -1 and 1 over a uniform range, of a normal one over two
+  /// standard deviations either way.
+  struct Scale {
+    double centre, half;
+  };
+  Scale scale(std::size_t column) const;
+  /// Over parameters so scaled.
+  solvers::Kriging::Parts parts() const { return whole_.parts(); }
+
   /// Parameters whose ranks among all that may be drawn are `share`, each in (0, 1).
   Eigen::VectorXd at_shares(const Eigen::VectorXd& share) const;
   const std::vector<DrawnColumn>& columns() const { return columns_; }

@@ -40,7 +40,8 @@ std::vector<Rivals> rivals(const Selection& s) {
   return all;
 }
 
-/// What a club can do: what was recorded, a quarter wider on each side.
+/// What this player can do: what was recorded, a tenth wider on each side; a range that is narrow may be widened by
+/// aim. A player swings slower at will, hardly faster.
 struct Box {
   std::vector<int> input;
   std::vector<double> low, high;
@@ -56,10 +57,11 @@ struct Box {
         lo = std::min(lo, x);
         hi = std::max(hi, x);
       }
-      double wide = 0.25 * (hi - lo);
-      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) wide = std::max(wide, 0.008);
-      if (k == int(Input::club_speed)) wide = std::max(wide, 0.15 * hi);
-      lo -= wide;
+      const bool place = k == int(Input::impact_toe) || k == int(Input::impact_high);
+      const double aimed = place ? 0.008 : radians(1.5);  // half of a range that aim alone makes
+      const double wide = std::max(0.1 * (hi - lo), k == int(Input::club_speed) ? 0.0 : aimed - 0.5 * (hi - lo));
+      const double slower = k == int(Input::club_speed) ? std::max(wide, 0.15 * hi) : wide;
+      lo -= slower;
       hi += wide;
       if (k == int(Input::impact_toe) || k == int(Input::impact_high)) {
         lo = std::max(lo, -0.03);
@@ -218,9 +220,14 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       if (const auto l =
               std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
           l != so_far.unexplained.end())
-        next.text = fmt::format(
-            "vary {} on purpose with everything else held, and repeat each setting: {}", l->regressor,
-            l->channel.empty() ? l->detail : l->channel + " follows it in a way that no candidate explains");
+        next.text =
+            l->regressor == "constant"
+                ? fmt::format(
+                      "check the zero of {} against another instrument: it is off by the same amount everywhere",
+                      l->channel.empty() ? "every channel" : l->channel)
+                : fmt::format(
+                      "change {} on purpose, keep everything else as it is, and repeat each setting: {}", l->regressor,
+                      l->channel.empty() ? l->detail : l->channel + " follows it in a way that no candidate explains");
       else
         next.text = fmt::format("repeat one setting ten times, ball, player and instrument noted for every shot: {}",
                                 so_far.unexplained.front().detail);
@@ -287,15 +294,18 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
           if (!std::ranges::count(sensors, s)) sensors.push_back(s);
         }
       if (after > before + 1 && partial.empty()) partial = more;
-      sentences.push_back(
-          fmt::format("shots of this kind hardly separate {} and {} ({:.1f} noise units now, {:.1f} after {} designed "
-                      "shots, 4.8 are needed): measure {}",
-                      r.one, r.two, before, after, more.size(), sensor));
+      sentences.push_back(fmt::format(
+          "shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by {:.1f} "
+          "after {} more shots, and 4.8 are needed. Measure {}",
+          r.one, r.two, before, after, more.size(), sensor));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
-      sentences.push_back(fmt::format(
-          "{} shots at these inputs separate {} and {}: {:.1f} noise units now, {:.1f} then (4.8 are needed)",
-          chosen.size(), r.one, r.two, before, after));
+      sentences.push_back(
+          chosen.empty()
+              ? fmt::format("more shots of the same kind separate {} from {}", r.one, r.two)
+              : fmt::format("{} shots at these inputs separate {} from {}: they differ by {:.1f} noise units now, by "
+                            "{:.1f} then, and 4.8 are needed",
+                            chosen.size(), r.one, r.two, before, after));
     }
   }
   if (chosen.empty()) chosen = partial;

@@ -137,7 +137,8 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   for (int k = 0; k < kInputs; ++k)
     if (filled[std::size_t(k)])
       in.notes.push_back(
-          fmt::format("{}: {} missing values filled with the mean of the recorded ones, at their variance",
+          fmt::format("{}: {} missing values are the mean of the recorded ones; these shots count as uncertain by the "
+                      "spread of those",
                       column[std::size_t(k)]->name, filled[std::size_t(k)]));
   if (!any) return in;
 

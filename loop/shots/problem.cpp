@@ -598,7 +598,9 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                                 100 * share)});
   else if (const double all = double(flagged + used.size()); far > std::max(3.0, kMany * all))
     told.push_back(
-        {"", "", fmt::format("{:.0f} of {:.0f} shots further off than one in a thousand should be", far, all)});
+        {"", "",
+         fmt::format("{:.0f} of {:.0f} shots lie so far from the model that noise puts one shot in a thousand there",
+                     far, all)});
   return told;
 }
 

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
             "2024-05-01,Iron 7,Range,114.9,82.0,16.2,6450,22.0\n",
             "",
             {{"ball_speed_mph", {115.2, 116.1, 114.9}}, {"club_speed_mph", {82.4, 82.9, 82.0}}},
-            {"clubs: 7 Iron 1, 7Iron 1, Iron 7 1", "head_mass_kg"}},
+            {"clubs: 7 Iron 3", "'7Iron' is '7 Iron'", "head_mass_kg"}},
         Layout{
             "GarminUnitsAndEstimates",
             "Date,Player,Club Type,Club Speed,Ball Speed,Launch Angle,Launch Direction,Spin Rate,Spin Rate Type,Spin "
@@ -289,6 +289,102 @@ INSTANTIATE_TEST_SUITE_P(
                "--column Schlaeger=club",
                {{"dynamic_loft_deg", {23.5, 26.5}}},
                {"clubs: 7i 1, 8i 1"}},
+        Layout{
+            "BlocksOfClubsWithUnitsEach",
+            "Report;;;;;\nPlayer:;Jo;;;;\n7 Iron;;;;;\nNo.;Club Speed;Ball Speed;Launch Angle;Spin Rate;Dyn. Loft\n"
+            ";km/h;km/h;deg;rpm;deg\n1;132,5;181,3;17,3;6523;23,4\n2;129,7;172,9;17,6;6790;24,8\nAverage;131,1;177,1;"
+            "17,5;6656;24,1\n9 Iron;;;;;\nNo.;Club Speed;Ball Speed;Launch Angle;Spin Rate;Dyn. Loft\n"
+            ";km/h;km/h;deg;rpm;deg\n1;120,5;155,0;24,3;8523;31,0\n",
+            "",
+            {{"ball_speed_kmh", {181.3, 172.9, 155.0}}, {"dynamic_loft_deg", {23.4, 24.8, 31.0}}},
+            {"clubs: 7 Iron 2, 9 Iron 1", "1 repeated header", "1 repeated row of units", "1 summary row"}},
+        Layout{"SummariesInAnotherLanguage",
+               "Hit,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "1,7i,115,82,16,6400,22\n2,7i,116,82,16,6500,22\n3,7i,117,83,16,6500,22\n"
+               "Snitt,7i,116,82.3,16,6466,22\nAvvik,7i,1,0.6,0,57,0\n",
+               "",
+               {{"ball_speed_mph", {115, 116, 117}}},
+               {"2 summary rows"}},
+        Layout{"LeftHandedInThePlayersOwnWords",
+               "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Side Angle,Total Spin,Spin Axis,Club "
+               "Path,Face to "
+               "Target,Loft\nLeft,7i,109.9,81,17,0.7 R,7003,3.0 R,0.5 In-Out,0.9 Closed,24\n"
+               "Left,7i,108.6,81,16,2.7 L,7076,3.4 L,4.0 Out-In,2.4 Open,23\n",
+               "",
+               {{"azimuth_deg", {-0.7, 2.7}},
+                {"spin_axis_deg", {-3, 3.4}},
+                {"club_path_deg", {0.5, -4}},
+                {"face_angle_deg", {-0.9, 2.4}}},
+               {"2 of 2 shots"}},
+        Layout{"GermanHeadersAndEstimates",
+               "Datum,Schlägername,Schlägertyp,Schlägerkopfgeschwindigkeit,Ballgeschwindigkeit,Abflugwinkel,"
+               "Abflugrichtung,"
+               "Spinrate,Spinraten-Typ,Spinachse\n,,,[km/h],[km/h],[deg],[deg],[rpm],,[deg]\n"
+               "14.05.24,G430,Eisen 7,130.1,180.3,17.0,1.2,6400,Gemessen,2.5\n"
+               "14.05.24,G430,Eisen 7,131.2,181.4,17.4,-0.4,6100,Geschätzt,-1.5\n",
+               "",
+               {{"ball_speed_kmh", {180.3, 181.4}}, {"spin_rate_rpm", {6400, kNone}}, {"spin_axis_deg", {2.5, kNone}}},
+               {"clubs: Eisen 7 2", "left out (--modelled takes it): 1 of 2"}},
+        Layout{"TheSideStandsInFront",
+               "Club,Ball Speed(mph),Club Speed(mph),Launch Angle(°),Side Angle(°),Total Spin(rpm),Spin Axis(°),Loft\n"
+               "IRON7,106.0,81.4,16.6,L1.5,6384,R 5.2,23\nIRON7,107.0,81.9,16.1,R0.4,6484,0.0,23\n",
+               "",
+               {{"azimuth_deg", {-1.5, 0.4}}, {"spin_axis_deg", {5.2, 0}}},
+               {}},
+        Layout{
+            "OneWordWithTwoUnits",
+            "Club:,7 Iron\nSHOT,HAND,BALL (mph),LAUNCH (deg),BACK (rpm),SIDE (rpm),SIDE (deg),CARRY (yds),CLUB (mph)\n"
+            "1,L,113,18.0,6547,829,-0.8,162.8,82\n2,R,115,16.9,6740,358,-1.2,167.3,82\n",
+            "",
+            {{"azimuth_deg", {0.8, -1.2}}, {"sidespin_rpm", {-829, 358}}, {"launch_angle_deg", {18, 16.9}}},
+            {"clubs: 7 Iron 2"}},
+        Layout{"NoUnitButACarry",
+               "\"Rapsodo MLM2PRO: Jo\"\n\"Club Type\",\"Carry Distance\",\"Ball Speed\",\"Launch Angle\",\"Launch "
+               "Direction\",\"Club Speed\",\"Spin Rate\",\"Spin "
+               "Axis\"\n\"pw\",\"111.0\",\"153.4\",\"25.4\",\"3.0\",\"121.2\","
+               "\"9178\",\"8.0\"\n\"pw\",\"108.9\",\"149.1\",\"23.5\",\"0.8\",\"121.3\",\"8426\",\"-2.1\"\n",
+               "",
+               {{"ball_speed_kmh", {153.4, 149.1}}, {"club_speed_kmh", {121.2, 121.3}}},
+               {"no unit in the file: this one by its carry"}},
+        Layout{
+            "MessagesBetweenTheShots",
+            "{\"Code\":201,\"Player\":{\"Handed\":\"LH\",\"Club\":\"DR\"}}\n"
+            "{\"DeviceID\":\"x\",\"ShotNumber\":0,\"ShotDataOptions\":{\"IsHeartBeat\":true}}\n"
+            "{\"ShotNumber\":1,\"BallData\":{\"Speed\":149.8,\"TotalSpin\":2471,\"SpinAxis\":5,\"HLA\":-0.5,\"VLA\":13}"
+            ","
+            "\"ClubData\":{\"Speed\":101.8,\"Loft\":14,\"Path\":-2.9,\"FaceToTarget\":0.5}}\n"
+            "{\"Code\":201,\"Player\":{\"Handed\":\"RH\",\"Club\":\"I7\"}}\n"
+            "{\"ShotNumber\":2,\"BallData\":{\"Speed\":115,\"TotalSpin\":6400,\"SpinAxis\":5,\"HLA\":-0.5,\"VLA\":16},"
+            "\"ClubData\":{\"Speed\":82,\"Loft\":23,\"Path\":-2.9,\"FaceToTarget\":0.5}}\n",
+            "",
+            {{"ball_speed_mph", {149.8, 115}}, {"club_path_deg", {2.9, -2.9}}, {"dynamic_loft_deg", {14, 23}}},
+            {"3 messages without a shot", "clubs: DR 1, I7 1", "1 of 2 shots"}},
+        Layout{"MarkedEstimates",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "7i,115,82,16,6401*,22\n7i,116,82,16,6500,22\n7i,117,82,16,6806 (est.),22\n",
+               "",
+               {{"spin_rate_rpm", {kNone, 6500, kNone}}},
+               {"marked as estimated, left out (--modelled takes them): 2"}},
+        Layout{"TheClubStandsBesideItsBrand",
+               "Club Name,Club Type,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n"
+               "Apex,7 Iron,115,82,16,6400\nApex,8 Iron,112,81,18,7000\n",
+               "",
+               {{"dynamic_loft_deg", {23.5, 26.5}}},
+               {"clubs: 7 Iron 1, 8 Iron 1"}},
+        Layout{"NarrowBlanksAndFrenchClubs",
+               "Club;Club Speed (km/h);Ball Speed (km/h);Launch Angle (deg);Spin Rate (rpm)\n"
+               "Fer 7;129,7;177,4;17,4;5\xE2\x80\xAF"
+               "879\nFer 7;129,3;172,3;17,5;6\xC2\xA0"
+               "450\n",
+               "",
+               {{"spin_rate_rpm", {5879, 6450}}, {"dynamic_loft_deg", {23.5, 23.5}}},
+               {}},
+        Layout{"ByHandWithItsUnit",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Loft,OFF (rpm),OFF (deg)\n"
+               "7i,115,82,16,6400,22,300,1.5\n7i,116,82,16,6500,22,-200,-0.5\n",
+               "--column 'OFF (deg)=azimuth_deg' --column 'OFF (rpm)=sidespin_rpm'",
+               {{"azimuth_deg", {1.5, -0.5}}, {"sidespin_rpm", {300, -200}}},
+               {}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
@@ -314,6 +410,16 @@ TEST(Import, WhatWouldBeReadWrongIsRefused) {
   refuse(commas + "7i,115.1,82.1,16.1,6400,22.1,9\n", "shot 1 has 7 cells under 6 names");
   refuse(commas + "7i,115.1,82.1,16.1 mph,6400,22.1\n", "is in another kind of unit");
   refuse("Player Hand," + commas + "Middle,7i,115.1,82.1,16.1,6400,22.1\n", "'Middle' is neither left nor right");
+  refuse(
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Carry (yd)\n"
+      "7i,115,82,16,6400,22,90\n7i,116,82,16,6500,22,92\n",
+      "of what the ball's speed (116 mph), launch angle and spin make");
+  refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n7i,115,-,16,6400,22\n",
+         "column 'Club Speed (mph)' is empty");
+  refuse(
+      "Club,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dynamic Loft\n,mph,mph,deg,rpm,deg\n7i,115,82,16,6400,22\n"
+      ",km/h,km/h,deg,rpm,deg\n7i,185,132,16,6400,22\n",
+      "the units change after shot 1");
   refuse("Velo,Kopf,Abflug\n185.1,132.0,16.4\n", "--column 'Velo=?'    185.1, ...");
 }
 

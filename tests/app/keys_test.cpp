@@ -11,6 +11,7 @@
 #include "build_info.hpp"
 #include "command.hpp"
 #include "golf/units.hpp"
+#include "loop/effect.hpp"
 
 namespace hosel::app {
 namespace {
@@ -54,6 +55,15 @@ TEST(Keys, ReferenceIsWhatTheReaderSays) {
   const std::string page = keys_markdown(accepted_keys());
   EXPECT_NE(page.find("| `club_speed_mps` |"), std::string::npos);
   EXPECT_EQ(test::content(fs::path(HOSEL_SOURCE_DIR) / "docs" / "reference.md"), page) << "run scripts/write-reference";
+}
+
+TEST(Glossary, HasEveryEffectModelAndVerdictOfTheLoop) {
+  const std::string page = test::content(fs::path(HOSEL_SOURCE_DIR) / "docs" / "glossary.md");
+  ASSERT_GT(loop::effects().size(), 30u);
+  std::vector<std::string> words = {"rigid-planar", "rigid-eccentric", "no-residual",  "explained",
+                                    "ambiguous",    "unexplained",     "insufficient", "noise-contradicted"};
+  for (const loop::EffectEntry& e : loop::effects()) words.emplace_back(e.name);
+  for (const std::string& w : words) EXPECT_NE(page.find("`" + w + "`"), std::string::npos) << w;
 }
 
 TEST(Keys, OneKindOrOneTable) {

@@ -35,7 +35,7 @@ const std::string kGrid = "thickness = {map = 'grid', file = 'data.csv'}\n";
 const std::string kCorners = "toe_mm,high_mm,thickness_mm\n-45,-25,2.8\n45,-25,2.8\n-45,25,2.6\n";
 
 TEST(PlateCase, ThicknessGridsAreRefusedWithTheirLine) {
-  refused(kGrid, kCorners, "data.csv:3: the grid has no row for toe 45 mm, high 25 mm");
+  refused(kGrid, kCorners, "data.csv:1: no row has toe 45 mm, high 25 mm");
   refused(kGrid, kCorners + "45,25,0\n", "data.csv:5: a thickness of 0 mm is out of range");
   refused(kGrid, kCorners + "45,25,thin\n", "data.csv:5: thickness_mm 'thin' is no number");
   refused(kGrid, kCorners + "45,25,2.8\n-45,25,2.8\n", "data.csv:6: this place stands in line 4 already");

@@ -5,9 +5,13 @@
 
 #include <cmath>
 
+#include "fem/rigid_body.hpp"
+#include "fem/supports.hpp"
 #include "golf/shaft_library.hpp"
 #include "golf/units.hpp"
 #include "models/calibration/ball_calibration.hpp"
+#include "models/club/swing.hpp"
+#include "solvers/modes.hpp"
 
 namespace hosel::models {
 namespace {
@@ -102,6 +106,32 @@ TEST(ChangeableFe, FacesInSeriesAddTheirComplianceAndAStiffOneIsRigid) {
                stiff = base.launch(blow, {.face_compliance = 1e-13}).ball_speed();
   ASSERT_GT(yielding - rigid, 0.3);  // a yielding face is felt
   EXPECT_LT(std::abs(stiff - rigid), 1e-3 * (yielding - rigid));
+}
+
+/// Lowest frequencies of a clamped shaft with nothing at its tip [rad/s].
+std::vector<double> clamped(const Shaft& shaft) {
+  fem::System system;
+  const auto line =
+      mesh::straight(mesh::graded(shaft.length(), 10), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
+  auto owned = std::make_unique<fem::Beam>(system.dof_map, line, fem::shaft_sections(shaft), fem::BeamOptions{});
+  const fem::Beam& beam = *owned;
+  system.terms.push_back(std::move(owned));
+  system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(beam.nodes().front(), fem::at_rest(Vec3::Zero())));
+  fem::State rest = system.dof_map.rest();
+  beam.place(rest);
+  return solvers::modes(system, rest, 4).omega;
+}
+
+/// Bending and mass by one factor: a bare shaft's frequencies stay; bending alone by exp(s): they rise by exp(s / 2).
+TEST(ChangeableFe, AShareOfTheShaftKeepsItsFrequenciesAndStiffnessRaisesThem) {
+  const Shaft shaft = shaft_library().front().make();
+  const auto whole = clamped(shaft), third = clamped(changed(shaft, 1.0 / 3, 0)),
+             stiff = clamped(changed(shaft, 1, 0.4));
+  ASSERT_GT(whole[0], 5);
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    EXPECT_NEAR(third[k] / whole[k], 1, 1e-8) << k;
+    EXPECT_NEAR(stiff[k] / whole[k], std::exp(0.2), 1e-8) << k;
+  }
 }
 
 TEST(ChangeableFe, ASmallShareOfTheShaftIsNearTheFreeHead) {

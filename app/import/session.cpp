@@ -1,0 +1,749 @@
+#include "app/import/session.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+
+#include "app/import/cells.hpp"
+#include "app/reader.hpp"
+#include "loop/median.hpp"
+#include "models/flight/flight.hpp"
+#include "solvers/errors.hpp"
+
+namespace hosel::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return trimmed(text);
+}
+
+/// Whether a cell's comma (1) or its point (-1) is the decimal one; 0 where it may as well part thousands, or has none.
+int decimal_of(const std::string& cell) {
+  const std::string text = figure_of(cell);
+  const auto point = text.rfind('.'), comma = text.rfind(',');
+  constexpr auto none = std::string::npos;
+  if (point == none && comma == none) return 0;
+  if (point != none && comma != none) return comma > point ? 1 : -1;
+  const char sign = comma != none ? ',' : '.';
+  const int decimal = comma != none ? 1 : -1;
+  const auto first = text.find(sign), last = text.rfind(sign);
+  if (first != last) return -decimal;  // thousands stand several times
+  const std::size_t before = first - std::min(first, text.find_first_of("0123456789")), after = text.size() - last - 1;
+  return after == 3 && before >= 1 && before <= 3 && text[text.find_first_of("0123456789")] != '0' ? 0 : decimal;
+}
+
+/// Of a whole file: 1 where a column of it surely has decimal commas and none has points, -1 the contrary, else 0.
+int decimal_of(const Sheet& sheet) {
+  bool comma = false, point = false;
+  for (const Row& row : sheet.rows)
+    for (const std::string& cell : row)
+      if (!cell.empty() && figure_of(cell).size() > 1 && cell.size() < figure_of(cell).size() + 12) {
+        const int d = decimal_of(cell);
+        comma |= d > 0;
+        point |= d < 0;
+      }
+  return comma == point ? 0 : comma ? 1 : -1;
+}
+
+bool decimal_comma(const std::vector<std::string>& cells, const Sheet& sheet, const std::string& header,
+                   const fs::path& file) {
+  std::vector<std::size_t> commas, points;
+  bool any = false;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int d = decimal_of(cells[i]);
+    if (d > 0) commas.push_back(i);
+    if (d < 0) points.push_back(i);
+    any |= figure_of(cells[i]).find(',') != std::string::npos;
+  }
+  if (!commas.empty() && !points.empty()) {
+    const std::size_t odd = commas.size() < points.size() ? commas.front() : points.front();
+    throw InputError(
+        fmt::format("{}: column '{}', shot {}: '{}' among {} that write the decimals otherwise: correct it",
+                    file.string(), header, odd + 1, cells[odd], std::max(commas.size(), points.size())));
+  }
+  if (!commas.empty() || !points.empty()) return !commas.empty();
+  if (const int d = decimal_of(sheet); d != 0) return d > 0;
+  // 94,213 alone: thousands in a file of commas, decimals where small numbers stand in a file of semicolons.
+  return any && sheet.delimiter != "," && sheet.delimiter != "JSON" &&
+         std::ranges::all_of(cells, [](const std::string& c) { return c.size() < 6; });
+}
+
+/// What some programs write where nothing was measured.
+bool no_reading(double value) {
+  const double a = std::abs(value);
+  return a == 99999 || a == 999999 || a == 99999.9 || value == -9999 || value == -999;
+}
+
+std::optional<Dimension> dimension_of(const std::string& unit) {
+  if (unit == "cm" || unit == "in") return Dimension::length;
+  for (const Unit& u : units())
+    if (u.suffix == unit) return u.dimension;
+  return {};
+}
+
+/// Empties the cells of the rows where `which`; how many had something.
+std::size_t blank(Understood& u, const std::vector<bool>& which) {
+  const std::size_t before = u.filled;
+  for (std::size_t i = 0; i < u.cells.size(); ++i)
+    if (which[i]) u.cells[i].clear();
+  count_again(u);
+  return before - u.filled;
+}
+
+bool says_any(const std::string& cell, std::initializer_list<const char*> words) {
+  const std::string text = plain(cell);
+  return std::ranges::any_of(words, [&](const char* w) { return text.find(w) != std::string::npos; });
+}
+
+/// Face minus path under the name of a place on the face, as one connector writes it: nine cells in ten agree.
+bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
+  if (!face || !path || !face->filled || !path->filled) return false;
+  std::size_t same = 0, seen = 0;
+  for (std::size_t i = 0; i < u.cells.size(); ++i) {
+    const auto a = number(u.cells[i], false, false), f = number(face->cells[i], false, false),
+               p = number(path->cells[i], false, false);
+    if (!a || !f || !p) continue;
+    ++seen;
+    same += std::abs(a->value - (f->value - p->value)) < 0.15;
+  }
+  return seen > 2 && 10 * same >= 9 * seen;
+}
+
+/// A blow's carry by the default law, in calm air at sea level [m].
+double carry_of(double speed, double launch, double spin) {
+  Launch l;
+  l.velocity = speed * Vec3(std::cos(launch), 0, std::sin(launch));
+  l.spin = Vec3(0, -spin, 0);
+  return models::fly(l, {}, {}).carry;
+}
+
+/// One file being understood: each step reads what the steps before it found.
+class Reading {
+ public:
+  Reading(const fs::path& from, const ImportOptions& o, const Dictionary& d, const ByHand& by_hand)
+      : o_(o), d_(d), by_hand_(by_hand) {
+    out_.file = from;
+    out_.sheet = read_sheet(from, d);
+    family_ = !o.units.empty() ? o.units : out_.sheet.family;
+  }
+
+  Session run(const std::string& club) {
+    find_roles();
+    keep_one_club();
+    read_columns();
+    one_name_a_club();
+    leave_out_modelled();
+    mirror_left_hand();
+    leave_out_zeros();
+    derive_face();
+    leave_out_copies();
+    check_speeds();
+    add_nominal(club);
+    return std::move(out_);
+  }
+
+ private:
+  Understood* find(std::string_view stem) { return out_.find(stem); }
+
+  /// Which columns are bookkeeping: of several for one role the one whose cells the dictionary knows best, then the
+  /// first.
+  void find_roles() {
+    const Sheet& sheet = out_.sheet;
+    role_.assign(sheet.names.size(), "");
+    std::map<std::string, std::pair<std::size_t, std::size_t>> best;  // role -> known cells, column
+    for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+      if (by_hand_.of(sheet.names[c], sheet.names)) continue;
+      std::string r = d_.bookkeeping_of(sheet.names[c]);
+      if ((r == "club" || r == "ball") && d_.quantity_of(sheet.names[c]) && is_speed(c, r)) r.clear();
+      if (r.empty() && tells_how_spin_was_found(c)) r = "accuracy";
+      if (r.empty() || std::ranges::all_of(sheet.rows, [&](const Row& row) { return missing(row[c]); })) continue;
+      const auto known = r != "club" ? 1 : std::size_t(std::ranges::count_if(sheet.rows, [&](const Row& row) {
+        return d_.club(row[c]) != nullptr;
+      }));
+      const auto [at, first] = best.try_emplace(r, known, c);
+      if (!first && known > at->second.first) at->second = {known, c};
+    }
+    for (const auto& [r, at] : best) role_[at.second] = r;
+  }
+
+  /// "Club" and "Ball" are names where their cells are not numbers, speeds where they are; "Ball" without a unit, and
+  /// beside a column of ball speed, is a number of the ball.
+  bool is_speed(std::size_t c, const std::string& role) const {
+    const Sheet& sheet = out_.sheet;
+    const auto same = std::ranges::count_if(
+        sheet.names, [&](const std::string& n) { return d_.quantity_of(n) == d_.quantity_of(sheet.names[c]); });
+    const bool unit = !unit_in(sheet.names[c]).empty() || (c < sheet.units.size() && !unit_of(sheet.units[c]).empty());
+    return std::ranges::all_of(sheet.rows, [&](const Row& row) {
+      return missing(row[c]) || (number(row[c], false, false) && (unit || (role == "ball" && same == 1)));
+    });
+  }
+
+  /// A column about spin that holds nothing but words for measured and estimated.
+  bool tells_how_spin_was_found(std::size_t c) const {
+    if (!says_any(out_.sheet.names[c], {"spin"})) return false;
+    std::size_t said = 0;
+    for (const Row& row : out_.sheet.rows) {
+      if (missing(row[c])) continue;
+      if (!d_.says("estimated", row[c]) && !d_.says("measured", row[c])) return false;
+      ++said;
+    }
+    return said > 0;
+  }
+
+  std::optional<std::size_t> column_of(std::string_view role) const {
+    const auto at = std::ranges::find(role_, role);
+    return at == role_.end() ? std::nullopt : std::optional(std::size_t(at - role_.begin()));
+  }
+
+  void keep_one_club() {
+    const auto c = column_of("club");
+    if (o_.club.empty() || !c) return;
+    Sheet& sheet = out_.sheet;
+    std::vector<std::string> names;
+    for (const Row& row : sheet.rows)
+      if (!std::ranges::count(names, row[*c])) names.push_back(row[*c]);
+    out_.other_clubs = sheet.rows.size();
+    std::erase_if(sheet.rows, [&](const Row& row) { return d_.club_key(row[*c]) != d_.club_key(o_.club); });
+    out_.other_clubs -= sheet.rows.size();
+    if (sheet.rows.empty())
+      throw InputError(fmt::format("{}: no shot with club '{}'; there are: {}", out_.file.string(), o_.club,
+                                   fmt::join(names, ", ")));
+  }
+
+  void read_columns() {
+    const Sheet& sheet = out_.sheet;
+    out_.shots = sheet.rows.size();
+    find_speed_unit();
+    out_.columns.reserve(sheet.names.size() + 4);  // pointers into it stay good
+    std::set<std::string> quantities;
+    for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+      const std::string& header = sheet.names[c];
+      const std::string* hand = by_hand_.of(header, sheet.names);
+      const MonitorQuantity* q = nullptr;
+      std::string unit;
+      if (hand && !hand->empty()) {
+        const SplitName part = split_unit(*hand);
+        q = d_.quantity(part.stem);
+        unit = std::string(part.unit->suffix);
+      } else if (!hand && role_[c].empty()) {
+        q = d_.quantity_of(header);
+      }
+      if (q && !quantities.insert(q->name).second) q = nullptr;  // a second column of one quantity is kept aside
+      if (!q) {
+        keep(c);
+        continue;
+      }
+      if (unit.empty()) unit = unit_of_column(*q, c);
+      const HeaderSign said = sign_in(header);
+      const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(header));
+      out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
+      if (!o_.modelled && says_any(header, {"estimated", "calculated", "modelled"}))
+        out_.columns.back().name.clear(), out_.columns.back().note = "modelled by the instrument; --modelled takes it";
+    }
+  }
+
+  /// From the header, the row of units or the cells; empty where none of them says.
+  std::string stated_unit(const MonitorQuantity& q, std::size_t c) const {
+    const Sheet& sheet = out_.sheet;
+    std::string unit = unit_in(sheet.names[c]);
+    if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+    if (unit.empty() && family_ == "si" && q.metric == "mm") unit = "m";
+    if (unit.empty() && q.imperial == q.metric) unit = q.imperial;  // degrees, rpm, mm: no monitor uses others
+    if (unit.empty())
+      for (const Row& row : sheet.rows)
+        if (const auto cell = number(row[c], false, q.side); unit.empty() && cell) unit = cell->unit;
+    return unit;
+  }
+
+  /// Of a file that names none, by what its layout is known for or --units says, as far as its carry bears it out.
+  void find_speed_unit() {
+    if (family_ == "si") return;
+    for (std::size_t c = 0; c < role_.size(); ++c) {
+      const MonitorQuantity* q = d_.quantity_of(out_.sheet.names[c]);
+      if (!q || q->name != "ball_speed" || !role_[c].empty() || by_hand_.of(out_.sheet.names[c], out_.sheet.names) ||
+          !stated_unit(*q, c).empty())
+        continue;
+      speed_unit_ = unit_by_carry();
+      by_carry_ = !speed_unit_.empty() &&
+                  (family_.empty() || speed_unit_ != (family_ == "imperial" ? q->imperial : q->metric));
+      if (family_.empty() && by_carry_) family_ = speed_unit_ == q->imperial ? "imperial" : "metric";
+    }
+  }
+
+  std::string unit_of_column(const MonitorQuantity& q, std::size_t c) const {
+    const std::string& header = out_.sheet.names[c];
+    std::string unit = stated_unit(q, c);
+    if (unit.empty() && (q.name == "ball_speed" || q.name == "club_speed")) unit = speed_unit_;
+    if (unit.empty() && !family_.empty()) unit = family_ == "imperial" ? q.imperial : q.metric;
+    if (unit.empty())
+      throw InputError(
+          fmt::format("{}: column '{}' has no unit; say --units imperial, --units metric or --column '{}={}_{}'",
+                      out_.file.string(), header, header, q.name, q.imperial));
+    return unit;
+  }
+
+  /// The numbers of a quantity as they stand, of a role likewise; NaN where there is none.
+  std::vector<double> raw(std::string_view quantity, std::string_view role = "") const {
+    const Sheet& sheet = out_.sheet;
+    std::vector<double> out(sheet.rows.size(), NAN);
+    for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+      const MonitorQuantity* q = d_.quantity_of(sheet.names[c]);
+      if (role.empty() ? !q || q->name != quantity || !role_[c].empty() : role_[c] != role) continue;
+      std::vector<std::string> cells;
+      for (const Row& row : sheet.rows) cells.push_back(missing(row[c]) ? "" : row[c]);
+      const bool comma = decimal_comma(cells, sheet, sheet.names[c], out_.file);
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (const auto x = number(cells[i], comma, true)) out[i] = x->value;
+      return out;
+    }
+    return out;
+  }
+
+  /// A file that names no unit: that of the ball's speed by which its shots carry as far as the file says, the
+  /// layout's own first. Empty where no shot has what this takes.
+  std::string unit_by_carry() const {
+    const auto speed = raw("ball_speed"), launch = raw("launch_angle"), spin = raw("spin_rate"),
+               carry = raw("", "carry");
+    // What --units says stands; of metric units there are two.
+    std::vector<std::string> units = {"mps", "kmh"};
+    if (o_.units == "imperial") units = {"mph"};
+    else if (family_ == "imperial") units = {"mph", "kmh", "mps"};
+    else if (o_.units.empty()) units.push_back("mph");
+    std::vector<std::string> fitting;
+    for (const std::string& unit : units) {
+      const auto ratio = carry_ratio(speed, si_of(unit), launch, si_of("deg"), spin, si_of("rpm"), carry,
+                                     unit == "mph" ? si_of("yd") : 1);
+      if (!ratio) return "";
+      if (*ratio > 1 / kCarryFits && *ratio < kCarryFits) fitting.push_back(unit);
+    }
+    // What the layout is known for comes first; where nothing is known, one alone must fit.
+    if (family_.empty() && fitting.size() != 1) return "";
+    if (!fitting.empty()) return fitting.front();
+    throw InputError(
+        fmt::format("{}: the ball's speed in {} does not fit the carry in the file; --column 'header=ball_speed_mph' "
+                    "states its unit",
+                    out_.file.string(), fmt::join(units, ", ")));
+  }
+
+  /// Recorded over computed carry in the median, of at most 25 shots that have speed and launch; a spin that is
+  /// missing is that of a middle iron, 5,000 rpm. Nothing where there are none.
+  static std::optional<double> carry_ratio(const std::vector<double>& speed, double of_speed,
+                                           const std::vector<double>& launch, double of_launch,
+                                           const std::vector<double>& spin, double of_spin,
+                                           const std::vector<double>& carry, double of_carry) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < speed.size() && ratios.size() < 25; ++i) {
+      const double v = of_speed * speed[i], a = of_launch * launch[i];
+      if (!(v > 3 && v < 150 && a > 0.03 && a < 1.2 && carry[i] > 0)) continue;
+      const double rate = spin[i] > 0 ? of_spin * spin[i] : 5000 * si_of("rpm");
+      try {
+        if (const double x = carry_of(v, a, rate); x > 0) ratios.push_back(of_carry * carry[i] / x);
+      } catch (const solvers::NonConvergence&) {}  // no flight that ends: another shot tells
+    }
+    return ratios.empty() ? std::nullopt : std::optional(loop::median(ratios));
+  }
+
+  Understood make_quantity(const MonitorQuantity& q, std::size_t column, std::string unit, double sign, bool own) {
+    const Sheet& sheet = out_.sheet;
+    Understood out;
+    out.header = sheet.names[column];
+    const auto fail = [&](const std::string& why) {
+      return InputError(fmt::format("{}: column '{}'{}", out_.file.string(), out.header, why));
+    };
+    std::vector<std::string> raw;
+    for (const Row& row : sheet.rows) raw.push_back(missing(row[column]) ? "" : row[column]);
+    const bool comma = decimal_comma(raw, sheet, out.header, out_.file);
+    std::vector<double> values;
+    const std::string given = unit;
+    const bool lengths = dimension_of(unit) == Dimension::length;
+    if (lengths) unit = "mm";
+    std::size_t others = 0, empty = 0, zeros = 0, marked = 0;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      out.own.push_back(own);
+      if (raw[i].empty()) {
+        out.cells.emplace_back();
+        continue;
+      }
+      const auto cell = number(raw[i], comma, q.side);
+      if (!cell)
+        throw fail(
+            fmt::format(", shot {}: '{}' is not a number: correct or empty the cell; --column '{}=' leaves the "
+                        "column out",
+                        i + 1, raw[i], out.header));
+      out.own.back() = own || cell->own;
+      const bool zero = cell->value == 0 && !q.zero, left_out = cell->marked && !o_.modelled;
+      if (zero || left_out || no_reading(cell->value)) {
+        out.cells.emplace_back();
+        ++(left_out ? marked : zero ? zeros : empty);
+        continue;
+      }
+      const std::string of_cell = cell->unit.empty() ? given : cell->unit;
+      if (dimension_of(of_cell) != dimension_of(given))
+        throw fail(fmt::format(" in {}, shot {}: '{}' is in another kind of unit", given, i + 1, raw[i]));
+      others += of_cell != given;
+      const double si = sign * si_of(of_cell) * cell->value;
+      const bool as_recorded = of_cell == unit;
+      out.cells.push_back(!as_recorded ? fmt::format("{:.6g}", si / si_of(unit))
+                          : sign > 0   ? cell->digits
+                                       : (cell->digits.front() == '-' ? cell->digits.substr(1) : "-" + cell->digits));
+      values.push_back(si);
+      ++out.filled;
+    }
+    if (lengths && given != "mm") out.remark(fmt::format("{} made mm", given));
+    if (by_carry_ && (q.name == "ball_speed" || q.name == "club_speed"))
+      out.remark("no unit in the file: this one by its carry");
+    if (comma) out.remark("decimal comma");
+    if (sign < 0) out.remark("sign turned");
+    if (others > 0) out.remark(fmt::format("cells in a unit of their own: {}", others));
+    if (zeros > 0) out.remark(fmt::format("0 taken as not measured: {}", zeros));
+    if (marked > 0) out.remark(fmt::format("marked as estimated, left out (--modelled takes them): {}", marked));
+    if (empty > 0) out.remark(fmt::format("cells without a reading: {}", empty));
+    out.name = q.name + "_" + unit;
+    out.median = loop::median(values);
+    if (!values.empty() && !(out.median >= q.low && out.median <= q.high)) {
+      std::string reads;
+      for (const Unit& u : units())
+        if (u.dimension == split_unit(out.name).unit->dimension && u.suffix != given) {
+          const double other = out.median / si_of(given) * u.si;
+          if (other >= q.low && other <= q.high) reads += (reads.empty() ? "" : " or ") + std::string(u.suffix);
+        }
+      throw fail(fmt::format(": the median {:.4g} {} is no {} ({:.3g} to {:.3g} in SI){}; say --column '{}={}_UNIT'",
+                             out.median / si_of(given), given, q.name, q.low, q.high,
+                             reads.empty() ? "" : ": it reads like " + reads, out.header, q.name));
+    }
+    return out;
+  }
+
+  /// A column that is no quantity: bookkeeping, or kept aside.
+  void keep(std::size_t c) {
+    const Sheet& sheet = out_.sheet;
+    const std::string& header = sheet.names[c];
+    Understood u;
+    u.header = header.empty() ? fmt::format("column {}", c + 1) : header;
+    for (const Row& row : sheet.rows) {
+      u.cells.push_back(missing(row[c]) ? "" : row[c]);
+      // A session is a day, not a second.
+      if (role_[c] == "session") u.cells.back() = u.cells.back().substr(0, u.cells.back().find_first_of(" T"));
+      u.filled += !u.cells.back().empty();
+    }
+    if (role_[c] == "carry") {
+      std::string unit = unit_in(header);
+      if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+      if (unit.empty() && !family_.empty()) unit = family_ == "imperial" && !by_carry_ ? "yd" : "m";
+      if (dimension_of(unit) == Dimension::length) {
+        out_.carry = {.header = header, .name = unit};
+        const bool comma = decimal_comma(u.cells, sheet, header, out_.file);
+        for (const std::string& cell : u.cells) {
+          const auto x = number(cell, comma, false);
+          out_.carry.cells.push_back(x && x->unit.empty() && x->value > 0 ? x->digits : "");
+        }
+      }
+    }
+    if (role_[c] == "accuracy" || role_[c] == "hand") u.note = "read";
+    else if (!role_[c].empty() && role_[c] != "carry" && u.filled > 0) u.name = role_[c];
+    else if (std::ranges::any_of(o_.keep, [&](const std::string& k) { return plain(k) == plain(header); })) {
+      u.name = plain(header);
+      std::ranges::replace(u.name, ' ', '_');
+      u.name = "kept_" + u.name;
+    }
+    out_.columns.push_back(std::move(u));
+  }
+
+  /// A club's first spelling for all of its shots.
+  void one_name_a_club() {
+    Understood* clubs = find("club");
+    if (!clubs) return;
+    std::map<std::string, std::string> names;
+    std::set<std::string> said;
+    for (std::string& cell : clubs->cells) {
+      if (cell.empty()) continue;
+      const std::string& first = names.try_emplace(d_.club_key(cell), cell).first->second;
+      if (cell != first && said.insert(cell).second) clubs->remark(fmt::format("'{}' is '{}'", cell, first));
+      cell = first;
+    }
+  }
+
+  /// What the instrument modelled says nothing of the blow: its own model's answer would be explained.
+  void leave_out_modelled() {
+    for (std::size_t c = 0; c < role_.size(); ++c) {
+      if (role_[c] != "accuracy" || o_.modelled) continue;
+      std::vector<bool> rate, axis;
+      const bool of_spin = says_any(out_.sheet.names[c], {"spin"});
+      for (const Row& row : out_.sheet.rows) {
+        const bool estimated = of_spin && (d_.begins_or_ends("estimated", row[c]) ||
+                                           says_any(row[c], {"estim", "calc", "model", "simul", "predict"}));
+        rate.push_back(estimated || says_any(row[c], {"spinrate", "spin rate"}));
+        axis.push_back(estimated || says_any(row[c], {"spinaxis", "spin axis"}));
+      }
+      for (const char* q : {"spin_rate", "backspin", "sidespin"})
+        if (Understood* u = find(q)) out_.modelled = std::max(out_.modelled, blank(*u, rate));
+      if (Understood* u = find("spin_axis")) blank(*u, axis);
+    }
+  }
+
+  /// Whether a cell names the left hand (1), the right one (0), or says nothing of a hand.
+  std::optional<bool> left_hand(const std::string& cell, bool asked) const {
+    const std::string word = plain(cell);
+    static const std::set<std::string> yes = {"yes", "y", "true", "1"}, no = {"no", "n", "false", "0"};
+    if (d_.says("left_hand", cell) || (asked && yes.contains(word))) return true;
+    if (d_.says("right_hand", cell) || missing(cell) || (asked && no.contains(word))) return false;
+    return {};
+  }
+
+  /// A left-handed player's shots as a right-handed one's: what is signed towards the right turns round. The place on
+  /// the face is towards the toe for both, and in-to-out, open and a fade are the same words for both.
+  void mirror_left_hand() {
+    const Sheet& sheet = out_.sheet;
+    std::vector<bool> left(sheet.rows.size(), o_.left_handed);
+    for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
+      std::istringstream words(plain(fmt::format("{}", fmt::join(row, " "))));
+      std::string before;
+      for (std::string word; words >> word; before = word)  // the word beside the hand's name, not one further on
+        if (names_a_hand(before) && left_hand(word, false) == true) left.assign(left.size(), true);
+    }
+    for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+      if (role_[c] != "hand") continue;
+      for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+        const auto hand = left_hand(sheet.rows[i][c], plain(sheet.names[c]).find("left handed") != std::string::npos);
+        if (!hand)
+          throw InputError(
+              fmt::format("{}: column '{}', shot {}: '{}' is neither left nor right; --column '{}=' leaves "
+                          "it out, --left-handed mirrors every shot",
+                          out_.file.string(), sheet.names[c], i + 1, sheet.rows[i][c], sheet.names[c]));
+        left[i] = left[i] || *hand;
+      }
+    }
+    for (const char* q : {"azimuth", "spin_axis", "sidespin", "club_path", "face_angle", "face_to_path"}) {
+      Understood* u = find(q);
+      if (!u) continue;
+      for (std::size_t i = 0; i < u->cells.size(); ++i)
+        if (left[i] && !u->own[i] && !u->cells[i].empty())
+          u->cells[i] = u->cells[i].front() == '-' ? u->cells[i].substr(1) : "-" + u->cells[i];
+      count_again(*u);
+    }
+    out_.left_handed = std::size_t(std::ranges::count(left, true));
+  }
+
+  void leave_out_zeros() {
+    // Zeros of the club beside no speed of it, of the axis beside no spin, and through a whole column are no readings.
+    const auto silent = [&](const char* of, std::initializer_list<const char*> others) {
+      const Understood* measured = find(of);
+      for (const char* other : others) {
+        Understood* u = find(other);
+        if (!u || !u->filled) continue;
+        std::vector<bool> zero, silent_zero;
+        for (std::size_t i = 0; i < out_.shots; ++i) {
+          const auto x = number(u->cells[i], false, false);
+          zero.push_back(x && x->value == 0);
+          silent_zero.push_back(zero.back() && measured && measured->cells[i].empty());
+        }
+        const bool all = std::size_t(std::ranges::count(zero, true)) == u->filled && out_.shots > 1;
+        if (const std::size_t n = blank(*u, all ? zero : silent_zero); n > 0)
+          u->remark(fmt::format("0 taken as not measured: {}", n));
+      }
+    };
+    silent("club_speed", {"attack_angle", "club_path", "face_angle", "face_to_path", "impact_toe", "impact_high"});
+    silent("spin_rate", {"spin_axis", "sidespin"});
+  }
+
+  void derive_face() {
+    if (Understood* u = find("impact_toe"); u && is_face_to_path(*u, find("face_angle"), find("club_path")))
+      u->name.clear(), u->note = "holds face angle minus path";
+
+    // The face is path and face-to-path together, where it is not recorded by itself.
+    if (Understood* across = find("face_to_path")) {
+      const Understood* path = find("club_path");
+      if (path && across->filled && path->filled && !find("face_angle")) {
+        Understood face;
+        face.header = across->header + " + " + path->header;
+        face.name = "face_angle_deg";
+        const double a = split_unit(across->name).unit->si, p = split_unit(path->name).unit->si;
+        for (std::size_t i = 0; i < out_.shots; ++i) {
+          const auto x = number(across->cells[i], false, false), y = number(path->cells[i], false, false);
+          face.cells.push_back(x && y ? fmt::format("{:.6g}", (a * x->value + p * y->value) / si_of("deg")) : "");
+        }
+        count_again(face);
+        out_.columns.push_back(std::move(face));
+      }
+      across = find("face_to_path");
+      across->name.clear(), across->note = "face minus path";
+    }
+  }
+
+  void leave_out_copies() {
+    // Spin stands twice in most exports: rate and tilt are what is measured, back and side follow from them.
+    if (const auto* rate = find("spin_rate"), *axis = find("spin_axis"); rate && rate->filled && axis && axis->filled)
+      for (const char* copy : {"backspin", "sidespin"})
+        if (Understood* u = find(copy)) u->name.clear(), u->note = "follows from rate and axis";
+    for (Understood& u : out_.columns)
+      if (!u.name.empty() && u.filled == 0) {
+        u.name.clear();
+        if (u.note.empty()) u.note = "empty";
+      }
+  }
+
+  /// Two speeds check each other, and the carry in the file checks the ball's.
+  void check_speeds() {
+    Understood *club = find("club_speed"), *ball = find("ball_speed");
+    for (const auto& [u, what] : {std::pair{ball, "ball"}, {club, "club"}}) {
+      if (u) continue;
+      std::string empty;  // the file has such a column, and nothing in it
+      for (const std::string& n : out_.sheet.names)
+        if (const MonitorQuantity* q = d_.quantity_of(n); q && q->name == std::string(what) + "_speed") empty = n;
+      if (!empty.empty())
+        throw InputError(
+            fmt::format("{}: column '{}' is empty: without the speed of the {} there is no blow to compute",
+                        out_.file.string(), empty, what));
+      throw InputError(fmt::format("{}: no column of {} speed; --column 'header={}_speed_mph' names one",
+                                   out_.file.string(), what, what));
+    }
+    const double smash = ball->median / club->median;
+    const auto said = [](const Understood& u) {
+      const auto unit = split_unit(u.name).unit;
+      return fmt::format("{:.4g} {}", u.median / unit->si, unit->suffix);
+    };
+    if (!(smash > 0.8 && smash < 1.62))
+      throw InputError(
+          fmt::format("{}: ball over club speed is {:.2f} in the median, no blow's ({} over {}): one of "
+                      "the two units is wrong; --column '{}=ball_speed_UNIT' or '{}=club_speed_UNIT' corrects it",
+                      out_.file.string(), smash, said(*ball), said(*club), ball->header, club->header));
+    const auto values = [&](std::string_view stem) {
+      const Understood* u = find(stem);
+      std::vector<double> out(out_.shots, NAN);
+      for (std::size_t i = 0; u && i < out_.shots; ++i)
+        if (const auto x = number(u->cells[i], false, false)) out[i] = x->value * split_unit(u->name).unit->si;
+      return out;
+    };
+    if (out_.carry.cells.empty()) return;
+    std::vector<double> carry(out_.shots, NAN);
+    for (std::size_t i = 0; i < out_.shots; ++i)
+      if (const auto x = number(out_.carry.cells[i], false, false)) carry[i] = x->value;
+    const auto ratio = carry_ratio(values("ball_speed"), 1, values("launch_angle"), 1, values("spin_rate"), 1, carry,
+                                   si_of(out_.carry.name));
+    if (ratio && !(*ratio > 1 / kCarryFits && *ratio < kCarryFits))
+      throw InputError(fmt::format(
+          "{}: '{}' is {:.2f} of what the ball's speed ({}), launch angle and spin make in the median: a unit "
+          "is wrong; --column '{}=ball_speed_UNIT' corrects the speed's, --column '{}=' leaves the carry out",
+          out_.file.string(), out_.carry.header, *ratio, said(*ball), ball->header, out_.carry.header));
+  }
+
+  /// What the loop needs and the file lacks comes from the clubs' nominal figures, said as such.
+  void add_nominal(const std::string& club_of_file) {
+    const Understood* clubs = find("club");
+    if (!clubs) out_.club = club_of_file;
+    std::vector<std::string>& unknown = out_.no_nominal;
+    const auto nominal = [&](double NominalClub::*what, std::string_view option) {
+      Understood u;
+      for (std::size_t i = 0; i < out_.shots; ++i) {
+        const std::string name = clubs ? clubs->cells[i] : out_.club;
+        const NominalClub* entry = d_.club(name);
+        if (!entry && !std::ranges::count(unknown, name)) unknown.push_back(name);
+        u.cells.push_back(entry ? fmt::format("{:g}", entry->*what) : "");
+        u.filled += entry != nullptr;
+      }
+      if (u.filled == 0)
+        throw InputError(fmt::format(
+            "{}: {} is not in the file, and no club is known to take it from ({}); add a column, --club NAME "
+            "where the file names none, or a [[club]] to --dictionary",
+            out_.file.string(), option,
+            clubs ? fmt::format("{}: '{}'", clubs->header, clubs->cells.front()) : "no column of clubs"));
+      return u;
+    };
+    if (!find("dynamic_loft")) {
+      Understood u = nominal(&NominalClub::loft, "dynamic loft");
+      u.header = "(nominal)";
+      u.name = "dynamic_loft_deg";
+      u.note = "not recorded: nominal of the club, +- 4 deg";
+      out_.columns.push_back(std::move(u));
+      out_.nominal_loft = true;
+    }
+    Understood mass = nominal(&NominalClub::head_mass, "head mass");
+    mass.header = "(nominal)";
+    mass.name = "head_mass_kg";
+    mass.note = "not recorded: nominal of the club";
+    out_.columns.push_back(std::move(mass));
+  }
+
+  /// Other balls, air and laws change a carry by a tenth or two, a wrong unit by a factor of 1.8 at least.
+  static constexpr double kCarryFits = 1.45;
+
+  const ImportOptions& o_;
+  const Dictionary& d_;
+  const ByHand& by_hand_;
+  Session out_;
+  std::string family_;
+  std::vector<std::string> role_;  ///< of every column; empty: none
+  std::string speed_unit_;         ///< of a file that names none; empty: not known
+  bool by_carry_ = false;          ///< it is not the layout's
+};
+
+}  // namespace
+
+const std::string* ByHand::of(const std::string& header, const Row& headers) const {
+  if (const auto at = quantity.find(lower(header)); at != quantity.end()) return &at->second;
+  const auto at = quantity.find(plain(header));
+  if (at == quantity.end()) return nullptr;
+  for (const std::string& other : headers)
+    if (other != header && plain(other) == plain(header) && lower(other) == at->first) return nullptr;
+  return &at->second;
+}
+
+ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
+  ByHand out;
+  auto& [by_hand, turned] = out;
+  // By its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
+  const auto key = [](const std::string& header) { return unit_in(header).empty() ? plain(header) : lower(header); };
+  for (const std::string& c : o.columns) {
+    const auto at = c.rfind('=');
+    if (at == std::string::npos || at == 0)
+      throw InputError(fmt::format("--column '{}': header=quantity_unit is wanted", c));
+    std::string name = c.substr(at + 1);
+    if (name.starts_with('-')) turned.insert(key(c.substr(0, at))), name.erase(0, 1);
+    by_hand[key(c.substr(0, at))] = name;
+    if (name.empty()) {
+      d.learn(c.substr(0, at), "");
+      continue;
+    }
+    const std::vector<std::string> roles = d.roles();
+    if (std::ranges::count(roles, name)) {
+      d.learn(c.substr(0, at), name);
+      by_hand.erase(key(c.substr(0, at)));
+      continue;
+    }
+    const SplitName part = split_unit(name);
+    const std::vector<std::string> known = d.quantity_names();
+    if (!part.unit || !std::ranges::count(known, part.stem))
+      throw InputError(fmt::format("--column '{}': no such quantity with a unit, nor {}; quantities: {}", c,
+                                   fmt::join(roles, ", "), fmt::join(known, ", ")));
+    d.learn(c.substr(0, at), part.stem);
+  }
+  return out;
+}
+
+Understood* Session::find(std::string_view stem) {
+  for (Understood& u : columns)
+    if (!u.name.empty() && split_unit(u.name).stem == stem) return &u;
+  return nullptr;
+}
+
+void count_again(Understood& u) {
+  std::vector<double> values;
+  for (const std::string& cell : u.cells)
+    if (const auto x = number(cell, false, false)) values.push_back(x->value * split_unit(u.name).unit->si);
+  u.filled = values.size();
+  u.median = loop::median(values);
+}
+
+Session understand(const fs::path& from, const std::string& club, const ImportOptions& options,
+                   const Dictionary& dictionary, const ByHand& by_hand) {
+  return Reading(from, options, dictionary, by_hand).run(club);
+}
+
+}  // namespace hosel::app
