@@ -124,6 +124,7 @@ Session join(std::vector<Session>& sessions, const Dictionary& d) {
       out.carry.cells.push_back(x ? fmt::format("{:.6g}", x->value * si_of(s.carry.name) / si_of(out.carry.name)) : "");
     }
     out.shots += s.shots;
+    out.left_handed += s.left_handed;
     if (!out.carry.name.empty()) out.carry.cells.resize(out.shots);
     for (Understood& u : out.columns) u.cells.resize(out.shots);
     file.cells.resize(out.shots, name);
@@ -242,7 +243,12 @@ void import_shots(const ImportOptions& o) {
   if (different.empty())
     if (const NominalClub* entry = d.club(o.club)) heads.insert(entry->head);
   const bool turns = find("azimuth") && heads.size() == 1 && d.heads().contains(*heads.begin());
+  // Whole launches, whatever the case's model takes of them.
   bool sideways = false;
+  std::vector<Understood> launches;
+  for (const char* q :
+       {"club", "ball_speed", "launch_angle", "azimuth", "spin_rate", "spin_axis", "backspin", "sidespin"})
+    if (const Understood* u = find(q)) launches.push_back(*u);
   if (!turns && heads.size() > 1)  // the planar model says nothing of these
     for (const char* q : {"azimuth", "spin_axis", "sidespin"})
       if (Understood* u = find(q)) sideways = true, u->name.clear(), u->note = "the planar model has no direction";
@@ -267,6 +273,12 @@ void import_shots(const ImportOptions& o) {
   }
   write_csv(o.out / "shots.csv", good, good_names);
   if (!rest.empty()) write_csv(o.out / "kept.csv", rest, rest_names);
+  if (sideways) {
+    std::vector<const Understood*> whole;
+    std::vector<std::string> whole_names;
+    for (const Understood& u : launches) whole.push_back(&u), whole_names.push_back(u.name);
+    write_csv(o.out / "launches.csv", whole, whole_names);
+  }
   std::string names;
   for (const fs::path& file : o.files) names += (names.empty() ? "" : ", ") + file.filename().string();
   const std::string title =
@@ -286,13 +298,16 @@ void import_shots(const ImportOptions& o) {
   } else if (one_mass) {
     toml += "\n[head]\n" + own_mass;
   }
-  toml += "\n[data]\nshots = \"shots.csv\"\n";
+  toml += fmt::format(
+      "\n[data]\nshots = \"shots.csv\"\nlandings = \"{}\"  # a line for each club, and where its shots land\n",
+      sideways ? "launches.csv" : "shots.csv");
+  if (all.left_handed > 0 && all.left_handed == all.shots) toml += "mirrored = true  # the player is left-handed\n";
   if (all.nominal_loft)
     toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";
   if (different.size() > 2) toml += "\n[split]  # whole clubs are held out\nby = \"club\"\n";
   post::write_file(o.out / "case.toml", toml);
-  fmt::print("\nwritten: {0}/case.toml, shots.csv{1}\nnext:    hosel run {0}\n", o.out.string(),
-             rest.empty() ? "" : ", kept.csv");
+  fmt::print("\nwritten: {0}/case.toml, shots.csv{1}{2}\nnext:    hosel run {0}\n", o.out.string(),
+             sideways ? ", launches.csv" : "", rest.empty() ? "" : ", kept.csv");
 }
 
 }  // namespace hosel::app

@@ -14,6 +14,7 @@
 #include "app/kinds/loop_corrected.hpp"
 #include "app/kinds/loop_flight.hpp"
 #include "app/kinds/loop_history.hpp"
+#include "app/kinds/loop_landings.hpp"
 #include "app/kinds/loop_offer.hpp"
 #include "app/library.hpp"
 #include "app/read_blow.hpp"
@@ -95,6 +96,16 @@ class LoopJob final : public Job {
       if (name != "dynamic_loft") data.fail("unknown", "only dynamic_loft can be found from the launch: its angle");
     case_.loft_unknown = !unknown.empty();
     const auto path = data.data_file({"shots", "CSV of the measured shots"});
+    if (data.has("landings")) {
+      try {
+        landings_ = loop::read_shots(
+            post::read_csv(data.file({"landings",
+                                      "CSV of launches, named as in the shots: a line for each club, and where "
+                                      "its shots land"})));
+      } catch (const DataError& e) { throw InputError(e.what()); }
+    }
+    mirrored_ =
+        data.flag({"mirrored", "the shots are a left-handed player's, made those of a right-handed one"}, false);
     const std::string average_by = data.text(
         {"average_by", "column whose shots are compared as their mean, with their own scatter for noise"}, "");
     if (!average_by.empty() && data.has("noise"))
@@ -160,7 +171,10 @@ class LoopJob final : public Job {
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);
     offer_corrected(out, case_, result, fe_.get());
-    report_loop(out, result, case_.shots, "rows");
+    report_loop(out, result, case_.shots, "rows", [&] {
+      if (landings_)
+        show_landings(out, *landings_, case_.blow.ball, case_.flight.value_or(models::FlightConditions{}), mirrored_);
+    });
   }
 
  private:
@@ -267,6 +281,8 @@ class LoopJob final : public Job {
   loop::SlowBase slow_;
   std::unique_ptr<models::ChangeableFe> fe_;  ///< of a finite-element base
   std::filesystem::path skipped_;
+  std::optional<loop::Shots> landings_;
+  bool mirrored_ = false;
   std::size_t repeated_ = 0;  // rows of the file
 };
 

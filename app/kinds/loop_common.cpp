@@ -47,9 +47,11 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
   }
 }
 
-void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows) {
+void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows,
+                 const std::function<void()>& beside) {
   out.write("residuals.csv", loop::residuals_csv(result, table));
   out.page().section("", loop::page(result, table));
+  if (beside) beside();
   out.write_json("report.json", loop::to_json(result));
   out.say(loop::sentence(result));
   for (const auto& c : result.channels)

@@ -1,6 +1,7 @@
 /// What every loop reads and leaves behind, whatever its data are.
 #pragma once
 
+#include <functional>
 #include <string_view>
 
 #include "app/output.hpp"
@@ -18,6 +19,7 @@ loop::Told progress_of(const Output& out);
 
 /// Writes report.json, report.html, residuals.csv and the summary, and tells the person what came out. `table`: what
 /// the result's rows count; `rows`: what a flagged one is called.
-void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows);
+void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows,
+                 const std::function<void()>& beside = {});
 
 }  // namespace hosel::app

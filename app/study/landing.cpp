@@ -7,50 +7,19 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 
 #include "post/labels.hpp"
+#include "post/scatter.hpp"
 
 namespace hosel::app {
 namespace {
 
 using Eigen::Vector2d;
 
-/// Squared radius, in standard deviations, of the circle that holds a share of a normal distribution in the plane.
-double squared_radius(double share) { return -2 * std::log(1 - share); }
-
-struct Scatter {
-  std::vector<Vector2d> at;  ///< side, carry, in the unit of carry
-  Vector2d mean = Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-
-  explicit Scatter(std::vector<Vector2d> points) : at(std::move(points)) {
-    for (const Vector2d& p : at) mean += p / double(at.size());
-    for (const Vector2d& p : at) covariance += (p - mean) * (p - mean).transpose() / double(at.size() - 1);
-  }
-  post::Series ellipse(double share, std::string label) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
-    const Eigen::Matrix2d root = axes.operatorSqrt() * std::sqrt(squared_radius(share));
-    post::Series out{.label = std::move(label), .style = "lines"};
-    constexpr int corners = 90;
-    for (int k = 0; k <= corners; ++k) {
-      const double angle = 2 * std::numbers::pi * k / corners;
-      const Vector2d p = mean + root * Vector2d(std::cos(angle), std::sin(angle));
-      out.x.push_back(p.x());
-      out.y.push_back(p.y());
-    }
-    return out;
-  }
-  /// Length and width of that ellipse.
-  Vector2d extent(double share) const {
-    const Vector2d v = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues();
-    return 2 * (v.reverse() * squared_radius(share)).cwiseMax(0).cwiseSqrt();
-  }
-  std::size_t within(double width) const {
-    return std::size_t(std::ranges::count_if(at, [&](const Vector2d& p) { return std::abs(p.x()) <= width / 2; }));
-  }
-};
+std::size_t within(const post::Scatter& balls, double width) {
+  return std::size_t(std::ranges::count_if(balls.at, [&](const Vector2d& p) { return std::abs(p.x()) <= width / 2; }));
+}
 
 std::size_t output_of(const Table& table, const StudyTable& study, std::string_view stem) {
   for (std::size_t o = 0; o < study.outputs.size(); ++o)
@@ -93,9 +62,9 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
       out.say(fmt::format("{}fewer than three balls landed: nothing is said of their scatter", whose));
       continue;
     }
-    const Scatter all(std::move(landed));
+    const post::Scatter all(std::move(landed));
     using Binomial = boost::math::binomial_distribution<>;
-    const double n = double(all.at.size()), hit = double(all.within(fairway));
+    const double n = double(all.at.size()), hit = double(within(all, fairway));
     const double low = Binomial::find_lower_bound_on_p(n, hit, 0.025),
                  high = Binomial::find_upper_bound_on_p(n, hit, 0.025);
     const Vector2d extent = all.extent(0.95), sd = all.covariance.diagonal().cwiseSqrt();

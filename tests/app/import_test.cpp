@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "loop/shots/shots.hpp"
+#include "models/flight/flight.hpp"
 #include "tests/app/command.hpp"
 
 namespace hosel {
@@ -456,6 +457,37 @@ TEST(Import, SeveralFilesMakeOneBag) {
   const auto twice = command("import" + quoted("a.csv") + quoted("a.csv") + " --out" + quoted("twice"));
   EXPECT_EQ(twice.status, 2);
   EXPECT_NE(twice.text.find("given twice"), std::string::npos) << twice.text;
+}
+
+/// The page of an imported session: a line for each club, and its shots where the flight of each measured launch ends.
+TEST(Import, ThePageSaysWhereTheShotsLand) {
+  const fs::path dir = test::fresh_directory("import_landings");
+  test::write(
+      dir / "a.csv",
+      "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n"
+      "L,7i,115,82,16,1,6400,0,22\nL,7i,117,83,17,-1,6500,0,23\nL,7i,116,82,16,0,6450,0,22\n"
+      "L,PW,100,76,24,0,8500,0,33\n");
+  ASSERT_EQ(command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'").status, 0);
+  const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const post::Sheet landings = post::read_csv(dir / "out" / "landings.csv");
+  ASSERT_EQ(landings.rows(), 4u);
+  ASSERT_EQ(landings.names[2], "carry_yd");
+  // By itself: the flight of the first launch, whose direction was mirrored.
+  Launch first;
+  const double v = 115 * 0.44704, a = radians(16), d = radians(-1), spin = 6400 * 2 * kPi / 60;
+  first.velocity = v * Vec3(std::cos(a) * std::cos(d), -std::cos(a) * std::sin(d), std::sin(a));
+  first.spin = Vec3(0, -spin, 0);
+  const models::Flight flight = models::fly(first, Ball{}, {});
+  ASSERT_GT(flight.carry, 100);
+  EXPECT_NEAR(std::stod(landings.columns[2][0]), flight.carry / 0.9144, 0.3);
+  EXPECT_NEAR(std::stod(landings.columns[3][0]), flight.side / 0.9144, 0.1);
+  EXPECT_LT(std::stod(landings.columns[3][0]), -1);
+  const std::string page = test::content(dir / "out" / "report.html");
+  EXPECT_NE(page.find("The clubs"), std::string::npos);
+  EXPECT_NE(page.find("116.0 ± 1.0"), std::string::npos) << "mean and deviation of the 7-iron's ball speed";
+  EXPECT_NE(page.find("the player's left"), std::string::npos);
+  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "landings.png") || o.text.find("gnuplot") != std::string::npos);
 }
 
 TEST(Import, ByHand) {

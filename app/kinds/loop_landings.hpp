@@ -1,0 +1,17 @@
+/// What a player asks of a session beside the loop's findings: each club's figures, and where its shots land.
+#pragma once
+
+#include "app/output.hpp"
+#include "loop/shots/shots.hpp"
+#include "models/flight/flight.hpp"
+
+namespace hosel::app {
+
+/// A line a club (column `club`; one for all without it): mean and standard deviation of ball speed, launch angle,
+/// spin, carry and side. A shot flies from its measured launch; one whose launch is not whole counts in what it has.
+/// Draws figures/landings with the ellipse that holds 95 % of each club's, where directions are recorded; writes
+/// landings.csv. `mirrored`: the shots are a left-handed player's, and the page says so.
+void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, const models::FlightConditions& conditions,
+                   bool mirrored);
+
+}  // namespace hosel::app
