@@ -125,7 +125,7 @@ bool shows_something(const Panel& p) {
 void place_axes(PanelFile& file, const Panel& p, int above) {
   const double w = file.width, h = file.height,
                lines = p.title.empty() ? 0 : 1 + std::floor(7.8 * double(p.title.size()) / w);
-  double left = 92, right = w - 88, top = above + 14 + 20 * lines, bottom = h - 58;
+  double left = 92, right = w - 106, top = above + 14 + 20 * lines, bottom = h - 58;
   if (p.map_equal_axes) {
     const double across = p.map_x.back() - p.map_x.front(), up = p.map_y.back() - p.map_y.front();
     const double scale = std::min((right - left) / across, (bottom - top) / up);
@@ -181,7 +181,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
           "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\nset tmargin at screen {:.6f}\nset bmargin at "
           "screen {:.6f}\n",
           alone->left, alone->right, 1 - alone->top, 1 - alone->bottom);
-    else s += "set lmargin 12\nset rmargin 10\n";
+    else s += "set lmargin 12\nset rmargin 13\n";
     s += fmt::format("set pm3d map interpolate {},{}\nsplot ${} with pm3d nocontour notitle", parts(p.map_x.size()),
                      parts(p.map_y.size()), name);
     if (p.map_contours) s += ", $" + name + " with lines nosurface lc rgb '#303030' lw 1 notitle";

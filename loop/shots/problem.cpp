@@ -173,8 +173,10 @@ std::vector<Parametrisation> ShotProblem::forms() const {
   for (const EffectEntry& e : effects_with(case_.own)) {
     if (!e.on_shots || (e.name == "session-drift" && sorted_by(as_read(case_)))) continue;
     for (Parametrisation& f : e.on_shots(setting)) {
-      // Rows without a shot number may stand in any order: that it is the session's is an assumption more.
-      if (f.effect == "session-drift" && !case_.shots.has_shot_column) f.complexity += 10;
+      // Rows without a shot number may stand in any order: that it is the session's is an assumption more. Likewise
+      // where one club was hit after the other: what differs between clubs then follows the order too.
+      if (f.effect == "session-drift" && (!case_.shots.has_shot_column || one_club_after_another(as_read(case_))))
+        f.complexity += 10;
       for (const Known& k : case_.known)
         for (Parameter& p : f.parameters)
           if (k.effect == f.effect && k.parameter == p.name) p.known = k.sd * p.si;

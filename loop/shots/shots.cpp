@@ -337,6 +337,15 @@ const Column* sorted_by(const Shots& shots) {
   return nullptr;
 }
 
+bool one_club_after_another(const Shots& shots) {
+  const Column* c = shots.find("club");
+  if (!c || c->numeric) return false;
+  const Groups g = groups(*c);
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < g.of_row.size(); ++i) changes += g.of_row[i] != g.of_row[i - 1];
+  return g.name.size() > 1 && changes + 1 == g.name.size();
+}
+
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
   const auto read = [&](Output o) -> std::optional<double> {
     const Column* c = shots.find_stem(stem(o));

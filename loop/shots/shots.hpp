@@ -65,5 +65,7 @@ Groups groups(const Column& column);
 /// The text column by which rows without a shot number stand sorted, every value in one block: they are not in the
 /// order in which they were struck. nullptr where there is none.
 const Column* sorted_by(const Shots& shots);
+/// Whether every club of a column `club` was hit in one go, and there are several.
+bool one_club_after_another(const Shots& shots);
 
 }  // namespace hosel::loop

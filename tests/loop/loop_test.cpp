@@ -341,6 +341,27 @@ TEST_F(Loop, RowsSortedByAColumnAreNoSession) {
             r.notes.end());
 }
 
+TEST_F(Loop, ClubsHitOneAfterAnotherMakeADriftLessLikely) {
+  // The same shots with their numbers: in three blocks of a club each, and with the clubs in turn.
+  std::istringstream lines(csv({.drift = 2}));
+  std::string blocks, turns, line;
+  for (int i = -1; std::getline(lines, line); ++i) {
+    blocks += (i < 0 ? "club," : i < 30 ? "a," : i < 60 ? "b," : "c,") + line + "\n";
+    turns += (i < 0 ? "club," : i % 3 == 0 ? "a," : i % 3 == 1 ? "b," : "c,") + line + "\n";
+  }
+  const ShotCase one = case_of(blocks), other = case_of(turns);
+  ASSERT_TRUE(one.shots.has_shot_column);
+  EXPECT_TRUE(one_club_after_another(one.shots));
+  EXPECT_FALSE(one_club_after_another(other.shots));
+  const auto cost = [](const ShotCase& c) {
+    const LoopResult r = run(c);
+    for (const Parametrisation& f : r.forms)
+      if (f.effect == "session-drift") return f.complexity;
+    return std::nan("");
+  };
+  EXPECT_NEAR(cost(one) - cost(other), 10, 1e-9);
+}
+
 TEST_F(Loop, ScatterThatTooFewShotsCannotRefuteIsNotCalledNoise) {
   for (const double over : {1.3, 2.6}) {
     ShotCase c = case_of(csv({.shots = 30}));
