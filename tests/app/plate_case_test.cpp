@@ -165,6 +165,31 @@ TEST(PlateCase, WhatIsTheMirrorImageIsComputedOnce) {
   EXPECT_EQ(told["least_ball_speed_mps"], std::min({double(speeds[0]), double(speeds[1]), double(speeds[2])}));
 }
 
+/// A study says of a blow the stress that the face's own case says of it.
+TEST(PlateCase, StudiesTellThePeakStress) {
+  const fs::path dir = fresh_directory("plate_stress");
+  write(dir / "face" / "case.toml", kFace);
+  const Outcome one = command("run '" + (dir / "face").string() + "' --out '" + (dir / "one").string() +
+                              "' --set figures=false --set numerical_error=false");
+  ASSERT_EQ(one.status, 0) << one.text;
+  write(dir / "case.toml",
+        "kind = 'study'\naccuracy = 'look'\nmodels = ['fe-free-body']\noutputs = ['peak_stress_MPa', "
+        "'ball_speed_mps']\n[[axis]]\nkey = 'face.plate.thickness.value_mm'\nvalues = [2.8, 3.4]\n"
+        "[delivery]\nclub_speed_mps = 50\n[ball]\nmodel = 'tour'\n[head]\nname = 'driver-200'\n"
+        "[face.plate]\nthickness = {value_mm = 2.8}\n");
+  const std::string run = "run '" + dir.string() + "' --out '" + (dir / "out").string() + "' ";
+  const Outcome study = command(run);
+  ASSERT_EQ(study.status, 0) << study.text;
+  const auto stress = column_of(dir / "out" / "points.csv", "peak_stress_MPa");
+  const auto told = nlohmann::json::parse(content(dir / "one" / "summary.json"));
+  ASSERT_EQ(stress.size(), 2u);
+  EXPECT_NEAR(stress[0], told["peak_stress_MPa"].get<double>(), 1e-9 * stress[0]);
+  EXPECT_LT(stress[1], 0.9 * stress[0]);
+  const Outcome sought = command(run + "--set matched_launch=true --force");
+  EXPECT_EQ(sought.status, 2) << sought.text;
+  EXPECT_NE(sought.text.find("peak_stress"), std::string::npos) << sought.text;
+}
+
 /// A thicker plate is tapped for a shorter time, and gives less back.
 TEST(PlateCase, CharacteristicTimeAndStudiesTakeAPlate) {
   const fs::path dir = fresh_directory("plate_tap");
