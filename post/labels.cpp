@@ -49,9 +49,14 @@ SpokenKey spoken_key(std::string_view key) {
 }
 
 std::string label(std::string_view key) {
-  if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
-  // One number of a list: "cg_mm[2]".
   std::string which;
+  // One number of a list: "ball_speed_mps.4" in a summary, "cg_mm[2]" in a case.
+  if (const auto dot = key.rfind('.');
+      dot != key.npos && dot > 0 && dot + 1 < key.size() && key.find_first_not_of("0123456789", dot + 1) == key.npos) {
+    which = " " + std::string(key.substr(dot + 1));
+    key = key.substr(0, dot);
+  }
+  if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
   if (const auto open = key.find('['); open != key.npos && key.ends_with(']')) {
     which = " " + std::string(key.substr(open + 1, key.size() - open - 2));
     if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "app/check_memory.hpp"
 #include "app/read_blow.hpp"
@@ -35,6 +35,22 @@ using nlohmann::json;
 constexpr double kRulesTime = 239e-6, kRulesTolerance = 18e-6;  // of the rules' pendulum [s]
 constexpr std::size_t kModes = 6;                               // in tables and pictures
 
+/// Whether a head and its face are their own mirror image from heel to toe.
+bool heel_toe_alike(const Head& head, const models::PlateDesign& face) {
+  return face.heel_toe_alike() && head.cg.y() == 0 && head.inertia(0, 1) == 0 && head.inertia(1, 2) == 0;
+}
+
+bool heel_toe_alike(const Delivery& d) {
+  return d.face_angle == 0 && d.club_path == 0 && d.head_angular_velocity.x() == 0 && d.head_angular_velocity.z() == 0;
+}
+
+/// By the plane of target and vertical: velocities change their side, spins about axes in the plane their sense.
+Launch mirrored(Launch launch) {
+  for (Vec3* velocity : {&launch.velocity, &launch.head_velocity}) velocity->y() *= -1;
+  for (Vec3* spin : {&launch.spin, &launch.head_spin}) *spin = Vec3(-spin->x(), spin->y(), -spin->z());
+  return launch;
+}
+
 class PlateFaceJob final : public PointJob {
  public:
   explicit PlateFaceJob(CaseFile& file) {
@@ -60,10 +76,20 @@ class PlateFaceJob final : public PointJob {
         root.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps", {1, 100}, 48.77);
     errors_ = root.flag({"numerical_error", "solve the first place twice more: coarser, and with more modes"}, true);
     vtk_ = root.flag({"vtk", "write the modes for ParaView"}, true);
+    draw_ = root.flag({"figures", "draw pictures; a study of many faces may do without"}, true);
+    alike_ = heel_toe_alike(blow_.club.head, fe_.plate->design());
     for (const double high : high_)
-      for (const double toe : toe_) blows_.push_back({Vector2d(-toe, high), fe_});
+      for (const double toe : toe_) {
+        const Vector2d place(-toe, high), image(toe, high);
+        const auto twin = std::ranges::find(blows_, image, &Struck::place);
+        const bool known = alike_ && heel_toe_alike(blow_.delivery) && toe != 0 && twin != blows_.end();
+        places_.push_back({place, known ? std::size_t(twin - blows_.begin()) : blows_.size(), known});
+        if (!known) blows_.push_back({place, fe_});
+      }
+    middle_ = places_.size() / 2;
+    companions_ = blows_.size();
     if (!errors_) return;
-    const Vector2d middle = blows_[blows_.size() / 2].place;
+    const Vector2d middle = places_[middle_].at;
     if (const auto coarser = fe_.coarser()) blows_.push_back({middle, *coarser, "coarser"});
     models::PlateDesign more = fe_.plate->design();
     more.modes = std::min(27, 2 * more.modes);
@@ -78,17 +104,15 @@ class PlateFaceJob final : public PointJob {
     Blow blow = blow_;
     blow.delivery.impact_toe = -struck.place.x();
     blow.delivery.impact_high = struck.place.y();
-    std::optional<models::PlateFace::Stresses> stresses;
-    models::PlateFace::Peak peak;
+    models::FaceStress stress;
     const StopSignals stop;
     const models::FeOutcome outcome = solve_free_body(blow, struck.fe, [&](const models::ImpactView& v) {
       stop.check();
-      if (!stresses) stresses.emplace(v.parts->plate->plate(), v.parts->condensed->fields);
-      const auto now = stresses->peak(v.parts->face->unknowns(v.state));
-      if (now.stress > peak.stress) peak = now;
+      stress.see(v);
     });
     models::check_launch(models::FeFreeBody(struck.fe), blow, outcome.launch);
     json out = stored(outcome.launch);
+    const models::PlateFace::Peak& peak = stress.peak().value();
     out["peak_stress_Pa"] = peak.stress;
     out["peak_stress_toe_m"] = -peak.place.x();
     out["peak_stress_high_m"] = peak.place.y();
@@ -102,8 +126,8 @@ class PlateFaceJob final : public PointJob {
     const std::shared_ptr<const models::PlateFace> plate = fe_.plate->on(blow_.club.head.face);
     const models::PlateStrike strike(plate, blow_.club.head);
     json summary;
-    show_plate(out, *plate, summary);
     show_maps(out, strike, summary);
+    show_plate(out, *plate, summary);
     show_blows(out, points, summary);
     if (vtk_) write_modes(out, *plate);
     out.write_summary(summary);
@@ -115,6 +139,18 @@ class PlateFaceJob final : public PointJob {
     models::FeImpactOptions fe;
     std::string companion = {};  ///< empty: a place of the case
   };
+
+  /// A place of the case, and the blow that answers there.
+  struct Place {
+    Vector2d at;
+    std::size_t blow;
+    bool image;  ///< the blow is at the mirrored place
+  };
+
+  static std::optional<Launch> launch_at(const Place& place, const std::vector<json>& points) {
+    const auto launch = launch_from(points[place.blow]);
+    return launch && place.image ? mirrored(*launch) : launch;
+  }
 
   void show_plate(Output& out, const models::PlateFace& plate, json& summary) const {
     const double f1 = plate.omega().front() / (2 * kPi);
@@ -148,6 +184,7 @@ class PlateFaceJob final : public PointJob {
     summary["face_mass_g"] = 1e3 * plate.mass();
     summary["lumped"] = {{"stiffness_N_per_m", 1 / compliance}, {"effective_mass_g", 1e3 * mass}};
 
+    if (!draw_) return;
     post::Figure figure{.title = std::string("natural modes; ") + post::kFaceView,
                         .columns = 3,
                         .panel_width = 520,
@@ -198,22 +235,28 @@ class PlateFaceJob final : public PointJob {
     std::vector<Point> points(grid_.size());
     const models::Striker ball = models::golf_ball(blow_.ball);
     const models::PlateFace& plate = strike.plate();
-    std::atomic<std::size_t> without = 0;
+    std::vector<char> lacks(points.size(), 0);  // a characteristic time
+    const auto columns = std::size_t(grid_.columns);
+    const auto image = [&](std::size_t i) { return i - i % columns + (columns - 1 - i % columns); };
     for_all_alone(std::size_t{0}, points.size(), [&](std::size_t i) {
       const Vector2d at(-grid_.toe_at(i), grid_.high_at(i));
-      if (!plate.covers(at)) return;
+      if (!plate.covers(at) || (alike_ && image(i) < i)) return;
       Point& p = points[i];
       models::CharacteristicTime ct;
       try {
         ct = strike.characteristic_time(sphere_, at, speeds_);
       } catch (const solvers::NonConvergence&) {
-        ++without;
+        lacks[i] = 1;
         return;
       }
       const auto place = strike.at(at, models::kBallPatch);
       p = {ct.time, ct.departure, strike.strike(ball, place, restitution_speed_).restitution, place.mass,
            2 * models::pendulum_patch(plate, at)};
     });
+    if (alike_)
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (image(i) < i) points[i] = points[image(i)], lacks[i] = lacks[image(i)];
+    const auto without = std::ranges::count(lacks, 1);
     std::string csv =
         "toe_mm,high_mm,thickness_mm,characteristic_time_us,departure_us,restitution,head_mass_kg,"
         "ball_speed_ratio\n";
@@ -245,9 +288,9 @@ class PlateFaceJob final : public PointJob {
     out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us", 1e6 * longest,
                         fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
     if (without > 0) {
-      summary["places_without_characteristic_time"] = without.load();
+      summary["places_without_characteristic_time"] = without;
       out.warn(fmt::format("{} places have no characteristic time: the pendulum bounces on the vibrating face there",
-                           without.load()));
+                           without));
     }
     const double error = departure + time_error(slowest, longest);
     std::string verdict = rules_verdict(longest, error);
@@ -255,11 +298,11 @@ class PlateFaceJob final : public PointJob {
       verdict = "this face has no verdict by the rules' test: not every place has a characteristic time";
     out.say(fmt::format(
         "{}: {:.1f} +- {:.1f} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
-        verdict, 1e6 * longest, 1e6 * error, -1e3 * slowest.x(), 1e3 * slowest.y(), 1e6 * kRulesTime,
+        verdict, 1e6 * longest, 1e6 * error, -1e3 * slowest.x() + 0.0, 1e3 * slowest.y() + 0.0, 1e6 * kRulesTime,
         1e6 * kRulesTolerance));
-    out.page().answer("rules' test", verdict.substr(std::string_view("this face ").size()),
+    out.page().answer("verdict", verdict.substr(std::string_view("this face ").size()),
                       fmt::format("{:.1f} ± {:.1f} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest, 1e6 * error,
-                                  -1e3 * slowest.x(), 1e3 * slowest.y()));
+                                  -1e3 * slowest.x() + 0.0, 1e3 * slowest.y() + 0.0));
     summary["characteristic_time_error_us"] = 1e6 * error;
     summary["characteristic_time_verdict"] = verdict;
     out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * centre.time),
@@ -280,7 +323,7 @@ class PlateFaceJob final : public PointJob {
         post::face_panel(grid_, thickness, "thickness [mm]", "[mm]", false)};
     figure.panels.front().map_contours = false;
     limit_line(figure.panels.front(), time, 1e6 * (kRulesTime + kRulesTolerance));
-    out.draw(figure, "map");
+    if (draw_) out.draw(figure, "map");
   }
 
   /// What a mesh with half the elements each way changes; 0 without `numerical_error`, or where the mesh is too coarse
@@ -334,14 +377,13 @@ class PlateFaceJob final : public PointJob {
     std::string csv =
         "toe_mm,high_mm,ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm,face_travel_mm,"
         "peak_stress_MPa,stress_toe_mm,stress_high_mm,face_energy_J,energy_closure\n";
-    const std::size_t middle = toe_.size() * high_.size() / 2;
     std::vector<double> speeds;
     double stress = 0, closure = 0;
     Vector2d stressed = Vector2d::Zero();  // toe, high [mm]
-    for (std::size_t i = 0; i < toe_.size() * high_.size(); ++i) {
-      const json& p = points[i];
-      const auto launch = launch_from(p);
-      const double toe = -1e3 * blows_[i].place.x(), high = 1e3 * blows_[i].place.y();
+    for (const Place& place : places_) {
+      const json& p = points[place.blow];
+      const auto launch = launch_at(place, points);
+      const double side = place.image ? -1 : 1, toe = -1e3 * place.at.x(), high = 1e3 * place.at.y();
       if (!launch) {
         table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), "no answer", "", "", "", "", ""});
         speeds.push_back(std::nan(""));
@@ -351,7 +393,7 @@ class PlateFaceJob final : public PointJob {
       speeds.push_back(launch->ball_speed());
       if (value("peak_stress_Pa") > stress)
         stress = value("peak_stress_Pa"),
-        stressed = {1e3 * value("peak_stress_toe_m"), 1e3 * value("peak_stress_high_m")};
+        stressed = {side * 1e3 * value("peak_stress_toe_m"), 1e3 * value("peak_stress_high_m")};
       closure = std::max(closure, std::abs(value("closure")));
       table.rows.push_back(
           {fmt::format("{:g}", toe), fmt::format("{:g}", high), fmt::format("{:.2f}", launch->ball_speed()),
@@ -361,12 +403,13 @@ class PlateFaceJob final : public PointJob {
       csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.5f},{:.3e}\n",
                          toe, high, launch->ball_speed(), degrees(launch->launch_angle()), degrees(launch->azimuth()),
                          rpm(launch->backspin()), rpm(launch->sidespin()), 1e3 * value("face_travel_m"),
-                         1e-6 * value("peak_stress_Pa"), 1e3 * value("peak_stress_toe_m"),
+                         1e-6 * value("peak_stress_Pa"), side * 1e3 * value("peak_stress_toe_m"),
                          1e3 * value("peak_stress_high_m"), value("face_energy_J"), value("closure"));
     }
     out.write("blows.csv", csv);
     out.show(table, "Balls struck over the face");
-    const auto centre = launch_from(points[middle]);
+    const json& middle = points[places_[middle_].blow];
+    const auto centre = launch_at(places_[middle_], points);
     out.say(fmt::format("largest stress in the face {:.0f} MPa; energy closes to {:.1e} of the initial", 1e-6 * stress,
                         closure));
     out.page().answer("largest stress", fmt::format("{:.0f} MPa", 1e-6 * stress), "von Mises, over these blows");
@@ -378,14 +421,22 @@ class PlateFaceJob final : public PointJob {
     summary["peak_stress_MPa"] = 1e-6 * stress;
     summary["energy_closure"] = closure;
     for (const double v : speeds) summary["ball_speed_mps"].push_back(std::isfinite(v) ? json(v) : json());
+    if (std::ranges::all_of(speeds, [](double v) { return std::isfinite(v); })) {
+      const double least = std::ranges::min(speeds),
+                   mean = std::accumulate(speeds.begin(), speeds.end(), 0.0) / double(speeds.size());
+      out.say(fmt::format("ball speed over {} places: {:.2f} m/s in the mean, at least {:.2f} m/s", speeds.size(), mean,
+                          least));
+      summary["mean_ball_speed_mps"] = mean;
+      summary["least_ball_speed_mps"] = least;
+    }
     if (centre) summary["centre"] = post::to_json(*centre);
-    for (std::size_t i = toe_.size() * high_.size(); i < blows_.size(); ++i) {
+    for (std::size_t i = companions_; i < blows_.size(); ++i) {
       const auto other = launch_from(points[i]);
       if (!other || !centre) continue;
       const double speed = std::abs(other->ball_speed() - centre->ball_speed()),
                    spin = std::abs(other->spin.norm() - centre->spin.norm()),
                    peak = std::abs(points[i].at("peak_stress_Pa").get<double>() -
-                                   points[middle].at("peak_stress_Pa").get<double>());
+                                   middle.at("peak_stress_Pa").get<double>());
       out.say(fmt::format("{} at toe {:g}, high {:g} mm: {:.3f} m/s, {:.0f} rpm, {:.1f} MPa of difference",
                           blows_[i].companion, -1e3 * blows_[i].place.x(), 1e3 * blows_[i].place.y(), speed, rpm(spin),
                           1e-6 * peak));
@@ -429,8 +480,12 @@ class PlateFaceJob final : public PointJob {
   post::FaceGrid grid_;
   models::Striker sphere_;
   double restitution_speed_ = 0;
-  bool errors_ = true, vtk_ = true;
+  bool errors_ = true, vtk_ = true, draw_ = true;
+  bool alike_ = false;  ///< head and face, from heel to toe
   std::vector<Struck> blows_;
+  std::vector<Place> places_;
+  std::size_t middle_ = 0;      ///< of the places
+  std::size_t companions_ = 0;  ///< the first of the blows that tell numerical errors
 };
 
 }  // namespace

@@ -94,10 +94,8 @@ class StudyJob final : public PointJob {
     figures_ = read_study_figures(root, table_, reference_.has_value());
     landing_ = read_landing(root, table_);
     optimum_ = read_optimum(root, table_);
-    if (optimum_ && (studied_ || conditions_.matched_launch || conditions_.bounce_speed))
-      root.fail(
-          "optimum",
-          "is confirmed by a blow: of a study whose own tables are the blow, without matched_launch and keep_bounce");
+    if (optimum_ && (conditions_.matched_launch || conditions_.bounce_speed))
+      root.fail("optimum", "is confirmed by one point more: without matched_launch and keep_bounce");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
     if (conditions_.histories && !maps_face() &&
         std::ranges::any_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))
@@ -154,8 +152,9 @@ class StudyJob final : public PointJob {
     if (landing_) summary["landing"] = report_landing(out, table, effects, *landing_, title_);
     if (optimum_)
       summary["optimum"] =
-          report_optimum(out, table, effects, *optimum_,
-                         [&](const std::vector<std::string>& set, std::size_t m) { return answers_at(set, m); });
+          report_optimum(out, table, effects, *optimum_, [&](const std::vector<std::string>& set, std::size_t m) {
+            return studied_ ? answers_of_case(set, out.directory() / "optimum") : answers_at(set, m);
+          });
     std::vector<StudySeries> against;
     if (reference_) {
       against = references(table, *reference_);
@@ -214,6 +213,7 @@ class StudyJob final : public PointJob {
     for (const std::string& name : table_.outputs) {
       if (std::ranges::count(table_.outputs, name) > 1) root.fail("outputs", fmt::format("'{}' is there twice", name));
       outputs_.push_back(find_study_output(root, "outputs", name, base.flight.has_value()));
+      conditions_.stresses = conditions_.stresses || outputs_.back().stress;
     }
     conditions_.matched_launch =
         root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
@@ -230,6 +230,8 @@ class StudyJob final : public PointJob {
         root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
     if (conditions_.histories && conditions_.matched_launch)
       root.fail("histories", "with matched_launch there is a blow at every loft of the search");
+    if (conditions_.stresses && conditions_.matched_launch)
+      root.fail("outputs", "with matched_launch there is a blow at every loft of the search, and no one peak_stress");
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
   }
 
@@ -270,10 +272,12 @@ class StudyJob final : public PointJob {
     return {};
   }
 
-  json compute_case(std::size_t d, const fs::path& scratch) const {
+  json compute_case(std::size_t d, const fs::path& scratch) const { return compute_case(overrides(d), scratch); }
+
+  json compute_case(const std::vector<std::string>& set, const fs::path& scratch) const {
     // A killed process may have finished the point, but only what is in the store is sealed: computed again.
     fs::remove(scratch / "summary.json");
-    CaseFile file(*studied_, overrides(d));
+    CaseFile file(*studied_, set);
     const auto job = read_job(file);
     {
       Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file);
@@ -307,6 +311,16 @@ class StudyJob final : public PointJob {
     CaseFile file(*blow_, set);
     const StudyBlow asked = read_study_blow(file.root());
     return numbers(answer(asked.models[model], asked, conditions_, {}, nullptr));
+  }
+
+  /// The same of a study of another case, run once more.
+  std::vector<std::optional<double>> answers_of_case(std::vector<std::string> set, const fs::path& scratch) const {
+    set.insert(set.begin(), set_.begin(), set_.end());
+    const json said = compute_case(set, scratch);
+    std::vector<std::optional<double>> out;
+    for (const std::string& o : table_.outputs)
+      out.push_back(said.contains(o) ? std::optional(said[o].get<double>()) : std::nullopt);
+    return out;
   }
 
   /// In the outputs' units; nothing where the answer has none.

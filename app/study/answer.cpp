@@ -112,7 +112,7 @@ struct BlowQuantity {
   std::string_view name;               ///< whole, where the table of units knows none for it
   std::optional<Dimension> dimension;  ///< of the unit behind the name
   MaybeNumber (*value)(const StudyAnswer&);
-  bool cause = false;
+  bool cause = false, stress = false;
 };
 using Given = const StudyAnswer&;
 const std::array kBlowQuantities = {
@@ -138,6 +138,7 @@ const std::array kBlowQuantities = {
     BlowQuantity{"characteristic_time", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).time); }},
     BlowQuantity{"give_to_ball_m_per_N", {}, [](Given a) { return give(a, false); }},
     BlowQuantity{"give_to_pendulum_m_per_N", {}, [](Given a) { return give(a, true); }},
+    BlowQuantity{"peak_stress", Dimension::pressure, [](Given a) { return a.face_stress; }, false, true},
     BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
     BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
     BlowQuantity{"dynamic_loft", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.dynamic_loft); }},
@@ -233,10 +234,10 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
   }
   for (const BlowQuantity& q : kBlowQuantities) {
     if (q.dimension) {
-      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause};
+      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause, q.stress};
     } else {
       known.emplace_back(q.name);
-      if (name == q.name) return {name, 1, q.value, q.cause};
+      if (name == q.name) return {name, 1, q.value, q.cause, q.stress};
     }
   }
   const std::string near = nearest(name, known);
@@ -273,10 +274,14 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
-  } else if (const auto* fe = dynamic_cast<const models::FeModel*>(made.get()); fe && conditions.histories) {
+  } else if (const auto* fe = dynamic_cast<const models::FeModel*>(made.get());
+             fe && (conditions.histories || (conditions.stresses && out.face_plate))) {
+    models::FaceStress stress;
     out.launch = fe->solve(out.blow, [&](const models::ImpactView& v) {
-                     if (v.shaft) out.hosel.add(*v.shaft, v.state);
+                     if (v.shaft && conditions.histories) out.hosel.add(*v.shaft, v.state);
+                     if (conditions.stresses) stress.see(v);
                    }).launch;
+    if (stress.peak()) out.face_stress = stress.peak()->stress;
     models::check_launch(*made, out.blow, out.launch);
   } else if (conditions.histories) {
     out.launch = launch_with_history(model, options, out.blow, out.history);

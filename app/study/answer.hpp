@@ -33,6 +33,7 @@ struct StudyConditions {
   bool matched_launch = false;         ///< the loft is an unknown: the launch angle is the measured one
   std::optional<double> bounce_speed;  ///< moduli are scaled until the ball bounces as the first blow's does [m/s]
   bool histories = false;              ///< forces over time are kept: of the contact, of finite elements at the hosel
+  bool stresses = false;               ///< the largest of a face with a thickness is kept
 };
 
 /// At one instant of a blow.
@@ -53,7 +54,8 @@ struct StudyAnswer {
   std::optional<post::ShotFlight> flight;
   std::optional<KeptBounce> bounce;
   std::vector<ForceSample> history;
-  models::HoselHistory hosel;  ///< of a finite-element club
+  models::HoselHistory hosel;         ///< of a finite-element club
+  std::optional<double> face_stress;  ///< largest von Mises stress of a face with a thickness, where it was kept [Pa]
 };
 
 /// A quantity by its name and unit, as a study asks for it: "ball_speed_mph", "launch_ratio".
@@ -61,7 +63,8 @@ struct StudyOutput {
   std::string name;
   double si = 1;
   std::function<std::optional<double>(const StudyAnswer&)> value;  ///< SI; nothing where the answer does not have it
-  bool cause = false;  ///< of the contact itself: may explain why a launch differs
+  bool cause = false;   ///< of the contact itself: may explain why a launch differs
+  bool stress = false;  ///< is there where StudyConditions::stresses asks for it
 };
 /// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so.
 StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies);

@@ -212,12 +212,23 @@ post::Figure maps(const StudyTable& table, const StudyView& view, const std::str
   return figure;
 }
 
+/// A name that leaves a picture its width: of a longer one the middle is left out, whole characters of it.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t most = 60, begin = 40, end = 17;
+  if (name.size() <= most) return name;
+  const auto whole = [&](std::size_t at) {
+    while (at < name.size() && (static_cast<unsigned char>(name[at]) & 0xC0) == 0x80) ++at;
+    return at;
+  };
+  return name.substr(0, whole(begin)) + "..." + name.substr(whole(name.size() - end));
+}
+
 /// Every point in a row, what was measured beside.
 post::Figure bars(const StudyTable& table, const std::string& title, const std::vector<std::size_t>& outputs) {
   std::size_t widest = 0;
   std::vector<std::string> names;
   for (std::size_t d = 0; d < table.design.size(); ++d) {
-    names.push_back(table.design.said(d));
+    names.push_back(shortened(table.design.said(d)));
     widest = std::max(widest, names.back().size());
   }
   post::Figure figure{

@@ -111,7 +111,7 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
     for (std::size_t o = 0; o < table.outputs.size(); ++o)
       if (!effects.emulators[first + o] && (o == optimum.output || where.uses(formula_name(table.outputs[o]))))
         lacking = table.outputs[o];
-    auto& entry = json[name];
+    auto& entry = name.empty() ? json : json[name];  // another case answers: it has no model's name
     if (!lacking.empty()) {
       entry = {{"sought", false}};
       out.warn(fmt::format("{}no optimum is sought: these points do not predict {} well enough; take more of them",

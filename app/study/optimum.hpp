@@ -27,7 +27,7 @@ using AnswersAt =
 /// Seeks within the ranges of the sample, of a normal distribution within two standard deviations, where the condition
 /// holds with two standard deviations of the emulator's error to spare; says the place,
 /// what the emulator expects there, what the model answers, and which parameters end at their range. For the summary:
-/// one entry a model.
+/// one entry a model, or the entry itself where another case answers.
 nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyEffects& effects,
                               const StudyOptimum& optimum, const AnswersAt& answers);
 

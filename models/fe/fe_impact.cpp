@@ -364,6 +364,13 @@ FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::Sta
   return out;
 }
 
+void FaceStress::see(const ImpactView& view) {
+  if (!view.parts->plate) return;
+  if (!stresses_) stresses_.emplace(view.parts->plate->plate(), view.parts->condensed->fields);
+  const PlateFace::Peak now = stresses_->peak(view.parts->face->unknowns(view.state));
+  if (!peak_ || now.stress > peak_->stress) peak_ = now;
+}
+
 Launch launch_of(const FeImpactResult& result) {
   Launch l;
   l.velocity = result.ball_velocity;

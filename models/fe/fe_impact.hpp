@@ -165,6 +165,19 @@ struct ImpactView {
 };
 using ImpactObserver = std::function<void(const ImpactView&)>;
 
+/// The largest von Mises stress of a face with a thickness over a blow, by an observer that sees every step.
+class FaceStress {
+ public:
+  /// Of a blow on any other face nothing is seen.
+  void see(const ImpactView& view);
+  /// Nothing where no face with a thickness was seen.
+  const std::optional<PlateFace::Peak>& peak() const { return peak_; }
+
+ private:
+  std::optional<PlateFace::Stresses> stresses_;
+  std::optional<PlateFace::Peak> peak_;
+};
+
 struct FeOutcome {
   FeImpactResult result;
   Launch launch;

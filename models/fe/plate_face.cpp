@@ -71,6 +71,11 @@ std::vector<std::string> PlateDesign::faults() const {
   return out;
 }
 
+bool PlateDesign::heel_toe_alike() const {
+  return outline.form != mesh::PlateOutline::Form::polygon &&
+         !std::holds_alternative<mesh::PlateThickness::Grid>(thickness.map);
+}
+
 PlateFace::PlateFace(PlateDesign design, const Face& curvature) : design_(std::move(design)), curvature_(curvature) {
   if (const auto faults = design_.faults(); !faults.empty())
     throw std::invalid_argument("face plate: " + faults.front());

@@ -105,26 +105,22 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
       // d + residual F(d, d') = approach with d' of this step: what F leaves in d would feed back on a rate of the last
       // step and grow. F rises with d: Newton, between bounds.
       const double before = indentation;
-      const auto force_at = [&](double d) {
-        const double rate_factor = 1 + striker.damping * (d - before) / step;
-        return rate_factor > 0 ? striker.stiffness * std::pow(d, striker.exponent) * rate_factor : 0.0;
-      };
+      const auto rate_factor = [&](double d) { return std::max(0.0, 1 + striker.damping * (d - before) / step); };
       double low = 0, high = approach, d = before > 0 ? std::min(before, approach) : approach;
       for (int i = 0; i < 60; ++i) {
-        F = force_at(d);
+        const double elastic = striker.stiffness * std::pow(d, striker.exponent);
+        F = elastic * rate_factor(d);
         const double error = d + place.residual * F - approach;
         (error > 0 ? high : low) = d;
         const double slope =
-            1 + (F > 0 ? place.residual * (striker.exponent * F / d +
-                                           striker.stiffness * std::pow(d, striker.exponent) * striker.damping / step)
-                       : 0.0);
+            1 + (F > 0 ? place.residual * (striker.exponent * F / d + elastic * striker.damping / step) : 0.0);
         double next = d - error / slope;
         if (!(next > low && next < high)) next = 0.5 * (low + high);
         if (std::abs(next - d) < 1e-13 * approach) break;
         d = next;
       }
       indentation = d;
-      F = force_at(d);
+      F = striker.stiffness * std::pow(d, striker.exponent) * rate_factor(d);
       if (!touching) ++out.touches;
       touching = true;
       last_touch = time;

@@ -1,6 +1,7 @@
 // [face.plate]: faults of a case and of its CSV are refused with file and line; kinds that take a plate.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
@@ -109,6 +110,84 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   ASSERT_LT(other["largest_characteristic_time_us"].get<double>(), 250) << thick;
   EXPECT_NE(thick.find("this face passes the rules' test"), std::string::npos) << thick;
   EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
+}
+
+/// Numbers of a column of a CSV by its name.
+std::vector<double> column_of(const fs::path& file, const std::string& name) {
+  std::istringstream table(content(file));
+  std::string line, cell;
+  std::getline(table, line);
+  std::istringstream head(line);
+  std::size_t at = 0;
+  while (std::getline(head, cell, ',') && cell != name) ++at;
+  EXPECT_EQ(cell, name) << "no column of " << line;
+  std::vector<double> out;
+  while (std::getline(table, line)) {
+    std::istringstream cells(line);
+    for (std::size_t c = 0; c <= at; ++c) std::getline(cells, cell, ',');
+    out.push_back(std::stod(cell));
+  }
+  return out;
+}
+
+/// A head whose centre of gravity is 1e-9 mm aside is no mirror image: each of its places is computed. It answers as
+/// the one on the centre line does, of which the blows and taps on the heel's side alone are.
+TEST(PlateCase, WhatIsTheMirrorImageIsComputedOnce) {
+  const fs::path dir = fresh_directory("plate_twins");
+  write(dir / "case.toml", kFace);
+  const std::string places = " --set places.toe_mm=[-18,0,18] --set places.high_mm=[6] --set numerical_error=false";
+  const auto run = [&](const std::string& to, const std::string& options) {
+    const Outcome o = command("run '" + dir.string() + "' --out '" + (dir / to).string() + "' --set figures=false" +
+                              places + options);
+    EXPECT_EQ(o.status, 0) << o.text;
+    const std::string store = content(dir / to / "shards" / "1-of-1" / "points.jsonl");
+    return std::ranges::count(store, '\n') - 1;  // its first line is a header
+  };
+  ASSERT_EQ(run("alike", ""), 2);
+  ASSERT_EQ(run("each", " --set head.cg_mm=[-35,1e-9,0]"), 3);
+  EXPECT_EQ(run("open", " --set delivery.face_angle_deg=1"), 3);  // alike, but not how it is delivered
+  for (const char* name : {"ball_speed_mps", "launch_angle_deg", "azimuth_deg", "backspin_rpm", "sidespin_rpm",
+                           "peak_stress_MPa", "stress_toe_mm", "stress_high_mm"}) {
+    const auto once = column_of(dir / "alike" / "blows.csv", name), each = column_of(dir / "each" / "blows.csv", name);
+    ASSERT_EQ(once.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(once[i], each[i], 2e-3) << name << " " << i;
+  }
+  ASSERT_GT(std::abs(column_of(dir / "alike" / "blows.csv", "azimuth_deg")[0]), 0.1);
+  for (const char* name : {"characteristic_time_us", "restitution", "ball_speed_ratio", "thickness_mm"}) {
+    const auto once = column_of(dir / "alike" / "map.csv", name), each = column_of(dir / "each" / "map.csv", name);
+    ASSERT_EQ(once.size(), 9u);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(once[i], each[i], 2e-3) << name << " " << i;
+  }
+  EXPECT_FALSE(fs::exists(dir / "alike" / "map.png"));
+  const auto told = nlohmann::json::parse(content(dir / "open" / "summary.json"));
+  const auto& speeds = told["ball_speed_mps"];
+  EXPECT_NEAR(told["mean_ball_speed_mps"], (double(speeds[0]) + double(speeds[1]) + double(speeds[2])) / 3, 1e-9);
+  EXPECT_EQ(told["least_ball_speed_mps"], std::min({double(speeds[0]), double(speeds[1]), double(speeds[2])}));
+}
+
+/// A study says of a blow the stress that the face's own case says of it.
+TEST(PlateCase, StudiesTellThePeakStress) {
+  const fs::path dir = fresh_directory("plate_stress");
+  write(dir / "face" / "case.toml", kFace);
+  const Outcome one = command("run '" + (dir / "face").string() + "' --out '" + (dir / "one").string() +
+                              "' --set figures=false --set numerical_error=false");
+  ASSERT_EQ(one.status, 0) << one.text;
+  write(dir / "case.toml",
+        "kind = 'study'\naccuracy = 'look'\nmodels = ['fe-free-body']\noutputs = ['peak_stress_MPa', "
+        "'ball_speed_mps']\n[[axis]]\nkey = 'face.plate.thickness.value_mm'\nvalues = [2.8, 3.4]\n"
+        "[delivery]\nclub_speed_mps = 50\n[ball]\nmodel = 'tour'\n[head]\nname = 'driver-200'\n"
+        "[face.plate]\nthickness = {value_mm = 2.8}\n");
+  const std::string run = "run '" + dir.string() + "' --out '" + (dir / "out").string() + "' ";
+  const Outcome study = command(run);
+  ASSERT_EQ(study.status, 0) << study.text;
+  const auto stress = column_of(dir / "out" / "points.csv", "peak_stress_MPa");
+  const auto told = nlohmann::json::parse(content(dir / "one" / "summary.json"));
+  ASSERT_EQ(stress.size(), 2u);
+  EXPECT_NEAR(stress[0], told["peak_stress_MPa"].get<double>(), 1e-9 * stress[0]);
+  EXPECT_LT(stress[1], 0.9 * stress[0]);
+  const Outcome sought = command(run + "--set matched_launch=true --force");
+  EXPECT_EQ(sought.status, 2) << sought.text;
+  EXPECT_NE(sought.text.find("peak_stress"), std::string::npos) << sought.text;
 }
 
 /// A thicker plate is tapped for a shorter time, and gives less back.

@@ -369,6 +369,42 @@ where = "ball_speed_mps < 45"
   EXPECT_NE(said.text.find("It lies at an end of the range of delivery.dynamic_loft_deg"), std::string::npos);
 }
 
+/// The same where another case answers: the point that confirms is one more run of it, and leaves nothing behind.
+TEST(Study, AnotherCaseConfirmsAnOptimumToo) {
+  const fs::path dir = sweep_case("sweep_optimum", R"(kind = "study"
+case = "../blow"
+set = ["delivery.impact_high_mm=0"]
+outputs = ["models.rigid-eccentric.ball_speed_mps", "models.rigid-eccentric.spin_rate_rpm"]
+[sample]
+points = 60
+seed = 7
+[[axis]]
+key = "delivery.club_speed_mps"
+range = [30.0, 50.0]
+[[axis]]
+key = "delivery.impact_toe_mm"
+range = [5.0, 20.0]
+[optimum]
+output = "models.rigid-eccentric.ball_speed_mps"
+seek = "largest"
+where = "spin_rate_rpm < 100000"
+)");
+  const Outcome o = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto best = nlohmann::json::parse(content(dir / "out" / "summary.json"))["optimum"];
+  EXPECT_NEAR(best["at"]["delivery.club_speed_mps"], 50, 0.1) << best;
+  EXPECT_NEAR(best["at"]["delivery.impact_toe_mm"], 5, 0.1) << best;
+  EXPECT_TRUE(best["condition_met"]);
+  EXPECT_FALSE(fs::exists(dir / "out" / "optimum"));
+  // The blow by itself, there.
+  const Outcome one = command("run " + (dir / "blow").string() + " --out " + (dir / "one").string() +
+                              " --set delivery.club_speed_mps=" + best["at"]["delivery.club_speed_mps"].dump() +
+                              " --set delivery.impact_toe_mm=" + best["at"]["delivery.impact_toe_mm"].dump());
+  ASSERT_EQ(one.status, 0) << one.text;
+  const auto told = nlohmann::json::parse(content(dir / "one" / "summary.json"));
+  EXPECT_NEAR(best["confirmed"], told["models"]["rigid-eccentric"]["ball_speed_mps"].get<double>(), 1e-9);
+}
+
 TEST(Study, NothingIsEmulatedOfWhatThePointsDoNotPredict) {
   // Five points are fewer than three for each of two parameters.
   const auto summary = studied("study_few", R"(models = ["rigid-eccentric"]

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/fe/plate_strike.hpp"
@@ -80,6 +81,34 @@ TEST(PlateFace, LedgerClosesOffCentre) {
   ASSERT_GT(a.result.face_energy, 0);
   EXPECT_LT(std::abs(a.result.ledger.closure), 2 * std::abs(b.result.ledger.closure) + 1e-4 * a.result.ledger.initial);
   EXPECT_GT(a.launch.velocity.norm(), b.launch.velocity.norm() * 1.005);
+}
+
+/// The largest stress is that of one of the steps, and no step has a larger one; a face that is no plate has none.
+TEST(PlateFace, StressOfABlowIsTheLargestOfItsSteps) {
+  const Blow blow = test::driver_blow(0.015, 0.006);
+  FeImpactOptions o = with_plate(plate_design());
+  FaceStress stress;
+  std::vector<PlateFace::Peak> steps;
+  const auto watch = [&](const ImpactView& v) {
+    stress.see(v);
+    if (v.parts->condensed)
+      steps.push_back(PlateFace::Stresses(v.parts->plate->plate(), v.parts->condensed->fields)
+                          .peak(v.parts->face->unknowns(v.state)));
+  };
+  solve_free_body(blow, o, watch);
+  const auto largest = std::ranges::max_element(steps, {}, &PlateFace::Peak::stress);
+  ASSERT_GT(std::distance(steps.begin(), largest), 5) << "the stress rises at first";
+  ASSERT_LT(largest + 5, steps.end()) << "and falls again";
+  ASSERT_TRUE(stress.peak());
+  EXPECT_EQ(stress.peak()->stress, largest->stress);
+  EXPECT_EQ(stress.peak()->place, largest->place);
+  EXPECT_GT(stress.peak()->stress, 5e8);
+  // It is beside the place struck: y points to the heel.
+  EXPECT_LT((stress.peak()->place - Vector2d(-0.015, 0.006)).norm(), 0.012);
+  o.plate = nullptr;
+  FaceStress none;
+  solve_free_body(blow, o, [&](const ImpactView& v) { none.see(v); });
+  EXPECT_FALSE(none.peak());
 }
 
 /// Modes beyond those kept are worth 0.05 % of ball speed and 0.5 % of spin.
