@@ -108,7 +108,7 @@ void copy_case(const std::string& from, const fs::path& to) {
     if (*path.lexically_normal().begin() != "..") continue;  // copied with the case
     std::string moved = fs::proximate(fs::canonical(source / path), fs::canonical(to)).string();
     if (const fs::path own = path.filename();
-        fs::is_regular_file(source / path) && own != "case.toml" && !fs::exists(to / own)) {
+        fs::is_regular_file(source / path) && own.extension() != ".toml" && !fs::exists(to / own)) {
       fs::copy_file(source / path, to / own);
       moved = own.string();
     }

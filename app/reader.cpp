@@ -31,6 +31,7 @@ struct Document {
   std::shared_ptr<Inputs> inputs = std::make_shared<Inputs>();
   fs::path copies = kInputs;  // folder below OUT for what this case names
   std::vector<Declared> declared;
+  std::set<std::string> quantities;  // stems of those among them that have a unit
   std::set<std::string> looked_for;  // keys whose presence decided something, as the reference shows them
   toml::table root, resolved;
   std::map<const toml::node*, std::string> set;  // what `--set` put there: errors name it, not a line of the file
@@ -222,6 +223,7 @@ bool Table::has(std::string_view key) const {
 
 bool Table::has_quantity(std::string_view stem) const {
   document_->looked_for.insert(dotted(shown_, stem));
+  document_->quantities.insert(dotted(shown_, stem));
   for (auto&& [key, value] : as_table(node_)) {
     const SplitName split = split_unit(key.str());
     if (split.unit && split.stem == stem) return true;
@@ -792,7 +794,7 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
                                        unknown_unit(key.str(), split.stem, split.unit->dimension)));
       // A quantity that may be left out is known by its stem alone.
       const std::string_view word = key.str();
-      for (const std::string& asked : d->looked_for) {
+      for (const std::string& asked : d->quantities) {
         const std::string stem = path.empty()                    ? asked
                                  : asked.starts_with(path + ".") ? asked.substr(path.size() + 1)
                                                                  : "";

@@ -22,7 +22,8 @@ Scatter::Scatter(std::vector<Vector2d> points) : at(std::move(points)) {
 
 Series Scatter::ellipse(double share, std::string label) const {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
-  const Eigen::Matrix2d root = axes.operatorSqrt() * std::sqrt(squared_radius(share));
+  const Eigen::Matrix2d root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
+                               axes.eigenvectors().transpose() * std::sqrt(squared_radius(share));
   Series out{.label = std::move(label), .style = "lines"};
   constexpr int corners = 90;
   for (int k = 0; k <= corners; ++k) {

@@ -57,6 +57,8 @@ HeaderSign sign_in(const std::string& header) {
   std::string text = header.substr(open);
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   std::erase_if(text, [](char c) { return c == ' ' || c == '='; });
+  // `(Right/Left +/-)` says that there are signs, not which.
+  for (std::size_t at; (at = text.find("+/-")) != text.npos;) text.erase(at, 3);
   using Words = std::vector<std::string>;
   const auto says = [&](const Words& words, char sign) {
     return std::ranges::any_of(words, [&](const std::string& w) {
@@ -86,6 +88,7 @@ std::string figure_of(const std::string& cell) {
 double si_of(const std::string& unit) {
   if (unit == "cm") return 0.01;
   if (unit == "in") return 0.0254;
+  if (unit == "ft") return 0.3048;
   for (const Unit& u : units())
     if (u.suffix == unit) return u.si;
   return 1;
@@ -137,6 +140,7 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
     if (!before) return {};
     sign = before->sign;
     out.own = before->own;
+    out.sided = true;
     text.erase(0, gap);
   }
   for (const char* minus : {"\xE2\x88\x92", "\xE2\x80\x93"})  // typographic ones
@@ -153,8 +157,10 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   std::ranges::replace(digits, ',', '.');
   if (!tail.empty()) {
     if (const auto behind = side ? side_of(plain(tail)) : std::nullopt) {
-      sign *= behind->sign;
+      if (out.sided) return {};
+      sign = behind->sign;
       out.own = behind->own;
+      out.sided = true;
       // `5 mm Toe`: a unit may stand before the side.
       if (const auto gap = tail.find_first_of(" \t"); gap != std::string::npos) out.unit = unit_of(tail.substr(0, gap));
     } else if (out.unit = unit_of(tail); out.unit.empty()) {
@@ -164,6 +170,7 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   if (!digits.empty() && digits.front() == '+') digits.erase(0, 1);
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out.value);
   if (error != std::errc() || stop != digits.data() + digits.size() || digits.empty()) return {};
+  if (out.sided && out.value < 0) return {};  // `-2.5 L`: to which side?
   if (sign < 0) {
     out.value = -out.value;
     digits = digits.front() == '-' ? digits.substr(1) : "-" + digits;

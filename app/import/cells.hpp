@@ -30,6 +30,7 @@ struct Cell {
   std::string digits;  ///< as recorded, with a decimal point and our sign
   double value = 0;
   std::string unit = {};  ///< where the cell has one of its own
+  bool sided = false;     ///< it says its side
   bool own = false;       ///< its sign is the player's own: in-to-out, open, a fade
   bool marked = false;    ///< `6401*`, `6806 (est.)`: the instrument's own estimate
 };

@@ -143,8 +143,9 @@ bool Dictionary::says(std::string_view list, const std::string& cell) const {
 
 bool Dictionary::begins_or_ends(std::string_view list, const std::string& cell) const {
   const std::string word = plain(cell);
-  return says(list, cell) || says(list, word.substr(0, word.find(' '))) ||
-         says(list, word.substr(std::min(word.size(), word.rfind(' ') + 1)));
+  const std::string last = word.substr(word.rfind(' ') == word.npos ? 0 : word.rfind(' ') + 1);
+  return says(list, cell) || says(list, word.substr(0, word.find(' '))) || says(list, last) ||
+         says(std::string(list) + "_end", last);
 }
 
 namespace {

@@ -57,7 +57,7 @@ class Dictionary {
   std::string club_key(const std::string& name) const;
   /// Whether a cell is one of the words of a list in [words], as `plain` has it.
   bool says(std::string_view list, const std::string& cell) const;
-  /// Whether its first or its last word is.
+  /// Whether its first or its last word is, or its last one of the list with _end behind its name.
   bool begins_or_ends(std::string_view list, const std::string& cell) const;
   const std::vector<MonitorLayout>& layouts() const { return layouts_; }
   const std::map<std::string, NominalHead>& heads() const { return heads_; }

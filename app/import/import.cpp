@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 
 #include "app/import/cells.hpp"
@@ -82,7 +83,11 @@ void show(Session& x) {
     if (u.name.empty()) aside += (aside.empty() ? "" : ", ") + u.header + (u.note.empty() ? "" : " (" + u.note + ")");
   if (!aside.empty()) fmt::print("\n  in kept.csv only: {}\n", aside);
   if (!x.no_nominal.empty())
-    fmt::print("  no nominal figures for: {}; these shots will be left out\n", fmt::join(x.no_nominal, ", "));
+    fmt::print("  no nominal figures for: {}; these shots will be left out\n",
+               fmt::join(x.no_nominal | std::views::transform([](const std::string& n) {
+                           return n.empty() ? std::string("(no club)") : n;
+                         }),
+                         ", "));
 }
 
 /// Several files as one: quantities in the unit of the first file that has them, a club under one name.

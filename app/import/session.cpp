@@ -82,7 +82,7 @@ bool no_reading(double value) {
 }
 
 std::optional<Dimension> dimension_of(const std::string& unit) {
-  if (unit == "cm" || unit == "in") return Dimension::length;
+  if (unit == "cm" || unit == "in" || unit == "ft") return Dimension::length;
   for (const Unit& u : units())
     if (u.suffix == unit) return u.dimension;
   return {};
@@ -140,6 +140,7 @@ class Reading {
     read_columns();
     one_name_a_club();
     leave_out_modelled();
+    leave_out_false_place();
     mirror_left_hand();
     leave_out_zeros();
     derive_face();
@@ -164,6 +165,10 @@ class Reading {
       if ((r == "club" || r == "ball") && d_.quantity_of(sheet.names[c]) && is_speed(c, r)) r.clear();
       if (r.empty() && tells_how_spin_was_found(c)) r = "accuracy";
       if (r.empty() || std::ranges::all_of(sheet.rows, [&](const Row& row) { return missing(row[c]); })) continue;
+      if (r == "accuracy") {  // one for the rate and one for the axis
+        role_[c] = r;
+        continue;
+      }
       const auto known = r != "club" ? 1 : std::size_t(std::ranges::count_if(sheet.rows, [&](const Row& row) {
         return d_.club(row[c]) != nullptr;
       }));
@@ -235,7 +240,9 @@ class Reading {
       } else if (!hand && role_[c].empty()) {
         q = d_.quantity_of(header);
       }
-      if (q && !quantities.insert(q->name).second) q = nullptr;  // a second column of one quantity is kept aside
+      // A second column of one quantity is kept aside, and one that is empty.
+      const bool empty = std::ranges::all_of(sheet.rows, [&](const Row& row) { return missing(row[c]); });
+      if (q && (empty || !quantities.insert(q->name).second)) q = nullptr;
       if (!q) {
         keep(c);
         continue;
@@ -244,9 +251,19 @@ class Reading {
       const HeaderSign said = sign_in(header);
       const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(header));
       out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
-      if (!o_.modelled && says_any(header, {"estimated", "calculated", "modelled"}))
+      const std::string whole = lower(header);
+      if (!o_.modelled && !hand &&
+          (whole.find("estimated") != whole.npos || whole.find("calculated") != whole.npos ||
+           whole.find("modelled") != whole.npos))
         out_.columns.back().name.clear(), out_.columns.back().note = "modelled by the instrument; --modelled takes it";
     }
+  }
+
+  /// From the header or the row of units, of a column of distances; empty where neither says.
+  std::string stated_length(std::size_t c) const {
+    std::string unit = unit_in(out_.sheet.names[c]);
+    if (unit.empty() && c < out_.sheet.units.size()) unit = unit_of(out_.sheet.units[c]);
+    return dimension_of(unit) == Dimension::length ? unit : "";
   }
 
   /// From the header, the row of units or the cells; empty where none of them says.
@@ -256,9 +273,14 @@ class Reading {
     if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
     if (unit.empty() && family_ == "si" && q.metric == "mm") unit = "m";
     if (unit.empty() && q.imperial == q.metric) unit = q.imperial;  // degrees, rpm, mm: no monitor uses others
-    if (unit.empty())
-      for (const Row& row : sheet.rows)
-        if (const auto cell = number(row[c], false, q.side); unit.empty() && cell) unit = cell->unit;
+    if (!unit.empty()) return unit;
+    // One cell alone does not speak for the others.
+    for (const Row& row : sheet.rows) {
+      if (missing(row[c])) continue;
+      const auto cell = number(row[c], false, q.side);
+      if (!cell || cell->unit.empty()) return "";
+      if (unit.empty()) unit = cell->unit;
+    }
     return unit;
   }
 
@@ -311,21 +333,30 @@ class Reading {
   std::string unit_by_carry() const {
     const auto speed = raw("ball_speed"), launch = raw("launch_angle"), spin = raw("spin_rate"),
                carry = raw("", "carry");
+    const auto carried = column_of("carry");
+    const std::string carry_unit = carried ? stated_length(*carried) : "";
     // What --units says stands; of metric units there are two.
     std::vector<std::string> units = {"mps", "kmh"};
     if (o_.units == "imperial") units = {"mph"};
     else if (family_ == "imperial") units = {"mph", "kmh", "mps"};
     else if (o_.units.empty()) units.push_back("mph");
-    std::vector<std::string> fitting;
+    std::string best;
+    std::size_t fit = 0;
+    double least = std::log(kCarryFits);
     for (const std::string& unit : units) {
       const auto ratio = carry_ratio(speed, si_of(unit), launch, si_of("deg"), spin, si_of("rpm"), carry,
-                                     unit == "mph" ? si_of("yd") : 1);
+                                     si_of(!carry_unit.empty() ? carry_unit
+                                           : unit == "mph"     ? "yd"
+                                                               : "m"));
       if (!ratio) return "";
-      if (*ratio > 1 / kCarryFits && *ratio < kCarryFits) fitting.push_back(unit);
+      const double off = std::abs(std::log(*ratio));
+      if (!(off < std::log(kCarryFits))) continue;
+      ++fit;
+      if (off < least) least = off, best = unit;
     }
-    // What the layout is known for comes first; where nothing is known, one alone must fit.
-    if (family_.empty() && fitting.size() != 1) return "";
-    if (!fitting.empty()) return fitting.front();
+    // Where no layout is known one alone must fit.
+    if (family_.empty() && fit != 1) return "";
+    if (!best.empty()) return best;
     throw InputError(
         fmt::format("{}: the ball's speed in {} does not fit the carry in the file; --column 'header=ball_speed_mph' "
                     "states its unit",
@@ -388,10 +419,11 @@ class Reading {
       if (dimension_of(of_cell) != dimension_of(given))
         throw fail(fmt::format(" in {}, shot {}: '{}' is in another kind of unit", given, i + 1, raw[i]));
       others += of_cell != given;
-      const double si = sign * si_of(of_cell) * cell->value;
+      const double turn = cell->sided ? 1 : sign;  // the cell's own word is nearer than the header's
+      const double si = turn * si_of(of_cell) * cell->value;
       const bool as_recorded = of_cell == unit;
       out.cells.push_back(!as_recorded ? fmt::format("{:.6g}", si / si_of(unit))
-                          : sign > 0   ? cell->digits
+                          : turn > 0   ? cell->digits
                                        : (cell->digits.front() == '-' ? cell->digits.substr(1) : "-" + cell->digits));
       values.push_back(si);
       ++out.filled;
@@ -430,12 +462,14 @@ class Reading {
     for (const Row& row : sheet.rows) {
       u.cells.push_back(missing(row[c]) ? "" : row[c]);
       // A session is a day, not a second.
-      if (role_[c] == "session") u.cells.back() = u.cells.back().substr(0, u.cells.back().find_first_of(" T"));
+      if (std::string& day = u.cells.back(); role_[c] == "session" && !day.empty() &&
+                                             std::isdigit(static_cast<unsigned char>(day.front())) &&
+                                             day.find(':') != day.npos)
+        day = day.substr(0, day.find_first_of(" T"));
       u.filled += !u.cells.back().empty();
     }
     if (role_[c] == "carry") {
-      std::string unit = unit_in(header);
-      if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+      std::string unit = stated_length(c);
       if (unit.empty() && !family_.empty()) unit = family_ == "imperial" && !by_carry_ ? "yd" : "m";
       if (dimension_of(unit) == Dimension::length) {
         out_.carry = {.header = header, .name = unit};
@@ -474,13 +508,26 @@ class Reading {
   void leave_out_modelled() {
     for (std::size_t c = 0; c < role_.size(); ++c) {
       if (role_[c] != "accuracy" || o_.modelled) continue;
+      const std::string& header = out_.sheet.names[c];
+      const bool of_spin = says_any(header, {"spin"}), asks = says_any(header, {"measured"}),
+                 of_axis = says_any(header, {"axis"});
+      static const std::set<std::string> no = {"no", "n", "false", "0"}, yes = {"yes", "y", "true", "1"};
+      const auto estimated = [&](const std::string& cell) {
+        return d_.begins_or_ends("estimated", cell) || (asks && no.contains(plain(cell))) ||
+               says_any(cell, {"estim", "calc", "model", "simul", "predict"});
+      };
+      const auto measured = [&](const std::string& cell) {
+        return d_.begins_or_ends("measured", cell) || (asks && yes.contains(plain(cell)));
+      };
+      // A word that is neither leaves the spin out too, where others are known; a column of other words says nothing.
+      const bool speaks = of_spin && std::ranges::any_of(out_.sheet.rows, [&](const Row& row) {
+                            return estimated(row[c]) || measured(row[c]);
+                          });
       std::vector<bool> rate, axis;
-      const bool of_spin = says_any(out_.sheet.names[c], {"spin"});
       for (const Row& row : out_.sheet.rows) {
-        const bool estimated = of_spin && (d_.begins_or_ends("estimated", row[c]) ||
-                                           says_any(row[c], {"estim", "calc", "model", "simul", "predict"}));
-        rate.push_back(estimated || says_any(row[c], {"spinrate", "spin rate"}));
-        axis.push_back(estimated || says_any(row[c], {"spinaxis", "spin axis"}));
+        const bool open = speaks && !missing(row[c]) && !measured(row[c]);
+        rate.push_back((open && !of_axis) || says_any(row[c], {"spinrate", "spin rate"}));
+        axis.push_back(open || says_any(row[c], {"spinaxis", "spin axis"}));
       }
       for (const char* q : {"spin_rate", "backspin", "sidespin"})
         if (Understood* u = find(q)) out_.modelled = std::max(out_.modelled, blank(*u, rate));
@@ -503,10 +550,17 @@ class Reading {
     const Sheet& sheet = out_.sheet;
     std::vector<bool> left(sheet.rows.size(), o_.left_handed);
     for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
-      std::istringstream words(plain(fmt::format("{}", fmt::join(row, " "))));
-      std::string before;
-      for (std::string word; words >> word; before = word)  // the word beside the hand's name, not one further on
-        if (names_a_hand(before) && left_hand(word, false) == true) left.assign(left.size(), true);
+      std::istringstream text(plain(fmt::format("{}", fmt::join(row, " "))));
+      std::vector<std::string> words;
+      for (std::string word; text >> word;) words.push_back(word);
+      for (std::size_t i = 0; i < words.size(); ++i) {  // the words beside the hand's name, not those further on
+        if (!names_a_hand(words[i])) continue;
+        const std::string next = i + 1 < words.size() ? words[i + 1] : "";
+        const bool denied = next == "no" || next == "false" || left_hand(next, false) == false;
+        if (left_hand(next, false) == true ||
+            (i > 0 && left_hand(words[i - 1], false) == true && (next.empty() || !denied)))
+          left.assign(left.size(), true);
+      }
     }
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       if (role_[c] != "hand") continue;
@@ -551,12 +605,15 @@ class Reading {
     };
     silent("club_speed", {"attack_angle", "club_path", "face_angle", "face_to_path", "impact_toe", "impact_high"});
     silent("spin_rate", {"spin_axis", "sidespin"});
+    silent("ball_speed", {"azimuth"});
+  }
+
+  void leave_out_false_place() {
+    if (Understood* u = find("impact_toe"); u && is_face_to_path(*u, find("face_angle"), find("club_path")))
+      u->name.clear(), u->note = "holds face angle minus path";
   }
 
   void derive_face() {
-    if (Understood* u = find("impact_toe"); u && is_face_to_path(*u, find("face_angle"), find("club_path")))
-      u->name.clear(), u->note = "holds face angle minus path";
-
     // The face is path and face-to-path together, where it is not recorded by itself.
     if (Understood* across = find("face_to_path")) {
       const Understood* path = find("club_path");

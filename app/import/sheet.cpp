@@ -76,7 +76,8 @@ std::vector<Row> split(const std::string& text, char delimiter) {
       if (c != '"') cell += c;
       else if (i + 1 < text.size() && text[i + 1] == '"') cell += text[++i];
       else quoted = false;
-    } else if (c == '"') {
+    } else if (c == '"' && trimmed(cell).empty()) {
+      cell.clear();
       quoted = true;
     } else if (c == delimiter) {
       row.push_back(trimmed(cell));
@@ -129,20 +130,29 @@ void check_size(const fs::path& file, std::size_t names, std::size_t shots) {
                                  file.string(), names, shots, most_names, most_shots));
 }
 
-/// The list of objects with the most known names, anywhere in the document, the longest of several: the shots. A
-/// trajectory is a list as well.
+/// A list of objects in a document, and what its ancestors say of all of them: the club, the player, the hand.
 struct ShotList {
-  std::size_t known = 0;
+  std::string path;  ///< names of the keys that lead to it
   const nlohmann::json* list = nullptr;
+  std::map<std::string, std::string> said;
 };
-void find_shots(const Dictionary& d, const nlohmann::json& node, ShotList& best) {
-  if (node.is_array() && !node.empty() && node.front().is_object()) {
-    const std::size_t known = known_names(d, node.front());
-    const bool longer = !best.list ? best.known == 0 : known == best.known && node.size() > best.list->size();
-    if (known > best.known || longer) best = {known, &node};
+
+void find_lists(const Dictionary& d, const nlohmann::json& node, const std::string& path,
+                std::map<std::string, std::string> said, std::vector<ShotList>& out) {
+  if (node.is_array()) {
+    if (!node.empty() && node.front().is_object()) out.push_back({path, &node, said});
+    for (const auto& child : node)
+      if (child.is_structured()) find_lists(d, child, path + "/", said, out);
   }
-  if (node.is_structured())
-    for (const auto& child : node) find_shots(d, child, best);
+  if (!node.is_object()) return;
+  for (const auto& [key, value] : node.items())
+    if (value.is_primitive() && !value.is_null()) {
+      const std::string role = d.bookkeeping_of(known_name(d, key));
+      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      if (!role.empty() && role != "shot" && role != "carry" && !number(text, false, false)) said[key] = text;
+    }
+  for (const auto& [key, value] : node.items())
+    if (value.is_structured()) find_lists(d, value, path + "/" + key, said, out);
 }
 
 /// One document, or one on each line.
@@ -164,21 +174,42 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   try {
     document = documents(text);
   } catch (const std::exception& e) { throw InputError(fmt::format("{}: broken JSON ({})", file.string(), e.what())); }
-  nlohmann::json shots = nlohmann::json::array({document});
-  ShotList found{document.is_object() ? known_names(d, document) : 0};
-  find_shots(d, document, found);
-  if (found.list) shots = *found.list;
+  // The shots are the lists under one path whose objects know most names, the longest of several. A trajectory is a
+  // list as well: where the document itself knows more than twice as many names, it is the one shot.
+  std::vector<ShotList> lists;
+  find_lists(d, document, "", {}, lists);
+  const ShotList* best = nullptr;
+  std::size_t known_best = 0;
+  for (const ShotList& l : lists) {
+    const std::size_t names = known_names(d, l.list->front());
+    if (names > known_best || (best && names == known_best && l.list->size() > best->list->size()))
+      best = &l, known_best = names;
+  }
+  if (document.is_object() && known_names(d, document) > 2 * known_best) best = nullptr;
+  nlohmann::json shots = nlohmann::json::array();
+  std::vector<const std::map<std::string, std::string>*> said_above;
+  for (const ShotList& l : lists) {
+    if (!best || l.path != best->path) continue;
+    for (const auto& shot : *l.list) shots.push_back(shot), said_above.push_back(&l.said);
+  }
+  if (!best) shots.push_back(document), said_above.push_back(nullptr);
   Sheet sheet;
   std::vector<std::map<std::string, std::string>> flat;
-  std::set<std::string> known;
+  std::set<std::string> known, every;
   std::map<std::string, std::string> standing;  // the player's hand and club, told apart from the shots that follow
-  for (const auto& shot : shots) {
+  for (std::size_t k = 0; k < shots.size(); ++k) {
     std::map<std::string, std::string> said;
-    flatten(shot, "", said);
+    flatten(shots[k], "", said);
+    for (const auto& [key, value] : said) every.insert(key);
     const auto quantity = [&](const auto& entry) {
       return d.quantity_of(known_name(d, entry.first)) && number(entry.second, false, true);
     };
-    if (std::ranges::none_of(said, quantity)) {
+    const auto zero = [](const auto& entry) {
+      const auto x = number(entry.second, false, true);
+      return x && x->value == 0;
+    };
+    const auto reading = [&](const auto& entry) { return quantity(entry) && !zero(entry); };
+    if (std::ranges::none_of(said, reading)) {
       ++sheet.messages;
       for (const auto& [key, value] : said) {
         const std::string role = d.bookkeeping_of(known_name(d, key));
@@ -187,11 +218,12 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
       continue;
     }
     said.insert(standing.begin(), standing.end());  // what the shot itself says stays
+    if (said_above[k]) said.insert(said_above[k]->begin(), said_above[k]->end());
     for (const auto& [key, value] : said)
       if (known.insert(key).second) sheet.names.push_back(key);
     flat.push_back(std::move(said));
   }
-  check_size(file, sheet.names.size(), flat.size());
+  check_size(file, every.size(), shots.size());
   for (auto& shot : flat) {
     Row row;
     for (const std::string& name : sheet.names) row.push_back(shot.contains(name) ? shot[name] : "");
@@ -236,13 +268,14 @@ bool is_row_of_units(const Row& row) {
   return units > 0 && (other == 0 || (units >= 3 && units > 2 * other));
 }
 
-/// The club that a line above shots names: `7 Iron` alone, or `Club:` and its name.
+/// What a line above shots may name as their club: `7 Iron` alone, or `Club:` and its name.
 std::string club_heading(const Row& row, const Dictionary& d) {
   Row said;
   for (const std::string& c : row)
     if (!c.empty()) said.push_back(c);
-  if (said.size() == 1 && d.club(said[0])) return said[0];
-  if (said.size() == 2 && d.bookkeeping_of(said[0]) == "club" && d.club(said[1])) return said[1];
+  const auto letter = [](unsigned char c) { return std::isalpha(c) || c >= 0x80; };
+  if (said.size() == 1 && std::ranges::any_of(said[0], letter)) return said[0];
+  if (said.size() == 2 && d.bookkeeping_of(said[0]) == "club") return said[1];
   return "";
 }
 
@@ -265,7 +298,7 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
   const std::size_t width = sheet.names.size();
   std::string club;
   for (const Row& row : sheet.before)
-    if (const std::string named = club_heading(row, d); !named.empty()) club = named;
+    if (const std::string named = club_heading(row, d); d.club(named)) club = named;
   std::vector<Row> shots;
   Row clubs;
   for (Row& row : sheet.rows) {
@@ -283,7 +316,8 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
       else ++sheet.units_again;
       continue;
     }
-    if (const std::string named = club_heading(row, d); !named.empty()) {
+    // Where blocks have clubs, the next line of this form names one too, known or not.
+    if (const std::string named = club_heading(row, d); !named.empty() && (d.club(named) || !club.empty())) {
       club = named;
       continue;
     }
@@ -292,7 +326,9 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
     for (std::size_t c = 0; c < width && !summary; ++c) {
       const std::string role = d.bookkeeping_of(sheet.names[c]);
       if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
-      summary = d.begins_or_ends("summary", row[c]) || (role != "player" && d.says("extreme", row[c]));
+      const bool named = role == "player" || role == "session";  // may hold such a word
+      summary = (named ? d.says("summary", row[c]) : d.begins_or_ends("summary", row[c])) ||
+                (role == "shot" && d.says("extreme", row[c]));
     }
     if (summary) {
       ++sheet.summaries;

@@ -36,7 +36,9 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
   const loop::Column *clubs = shots.find("club"), *speed = shots.find_stem("ball_speed"),
                      *angle = shots.find_stem("launch_angle"), *spin = shots.find_stem("spin_rate");
   if (spin == nullptr) spin = shots.find_stem("backspin");
-  const bool directed = shots.find_stem("azimuth") != nullptr;
+  const loop::Column *azimuth = shots.find_stem("azimuth"), *axis = shots.find_stem("spin_axis"),
+                     *sidespin = shots.find_stem("sidespin");
+  const auto has = [](const loop::Column* c, std::size_t i) { return c && c->numeric && std::isfinite(c->value[i]); };
   // Distances in the family of the ball's speed.
   const bool imperial = speed && speed->name.ends_with("_mph");
   const double metre = imperial ? 0.9144 : 1;
@@ -63,12 +65,15 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
     if (!launch) continue;
     try {
       const models::Flight f = models::fly(*launch, ball, conditions);
+      if (!(f.carry > 0)) continue;  // it rolls
+      const bool aside = has(azimuth, i) && (has(axis, i) || has(sidespin, i));
       club->carry.push_back(f.carry);
-      if (directed) club->side.push_back(f.side), club->landed.emplace_back(f.side / metre, f.carry / metre);
+      if (aside) club->side.push_back(f.side), club->landed.emplace_back(f.side / metre, f.carry / metre);
       csv += fmt::format("{},{},{:.2f},{}\n", post::csv_cell(shots.id[i]), post::csv_cell(name), f.carry / metre,
-                         directed ? fmt::format("{:.2f}", f.side / metre + 0.0) : "");
+                         aside ? fmt::format("{:.2f}", f.side / metre + 0.0) : "");
       ++flew;
-    } catch (const solvers::NonConvergence&) {}  // a launch that does not come down within a minute has no carry
+    } catch (const solvers::NonConvergence&) {  // it does not come down within a minute
+    } catch (const std::invalid_argument&) {}   // it does not rise to the case's ground
   }
 
   post::TextTable table{

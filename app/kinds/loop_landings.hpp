@@ -8,9 +8,10 @@
 namespace hosel::app {
 
 /// A line a club (column `club`; one for all without it): mean and standard deviation of ball speed, launch angle,
-/// spin, carry and side. A shot flies from its measured launch; one whose launch is not whole counts in what it has.
-/// Draws figures/landings with the ellipse that holds 95 % of each club's, where directions are recorded; writes
-/// landings.csv. `mirrored`: the shots are a left-handed player's, and the page says so.
+/// spin, carry and side. A shot flies from its measured launch. One whose launch is not whole counts in what it has;
+/// one without direction or tilt has no side. Draws figures/landings with the ellipse that holds 95 % of a normal
+/// distribution with each club's scatter; writes landings.csv. `mirrored`: the shots are a left-handed player's, and
+/// the page says so.
 void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, const models::FlightConditions& conditions,
                    bool mirrored);
 

@@ -386,6 +386,51 @@ INSTANTIATE_TEST_SUITE_P(
                "--column 'OFF (deg)=azimuth_deg' --column 'OFF (rpm)=sidespin_rpm'",
                {{"azimuth_deg", {1.5, -0.5}}, {"sidespin_rpm", {300, -200}}},
                {}},
+        Layout{"ABlockWhoseClubIsNotKnown",
+               "7 Iron,,,,\nNo.,Club Speed (mph),Ball Speed (mph),Launch Angle,Spin Rate\n1,82,115,16,6400\n"
+               "Chipper,,,,\nNo.,Club Speed (mph),Ball Speed (mph),Launch Angle,Spin Rate\n1,70,90,20,4000\n",
+               "",
+               {{"ball_speed_mph", {115, 90}}, {"dynamic_loft_deg", {23.5, kNone}}},
+               {"clubs: 7 Iron 1, Chipper 1", "no nominal figures for: Chipper"}},
+        Layout{"ListsOfShotsWithTheirClub",
+               R"({"player":"Jo","handed":"LH","average":{"ballSpeed":60,"clubSpeed":44},"groups":[
+{"club":"7 Iron","strokes":[{"ballSpeed":50,"clubSpeed":36,"launchAngle":16,"launchDirection":1,"spinRate":6400}]},
+{"club":"8 Iron","strokes":[{"ballSpeed":47,"clubSpeed":35,"launchAngle":18,"launchDirection":-2,"spinRate":7000},
+{"ballSpeed":48,"clubSpeed":36,"launchAngle":18,"launchDirection":0,"spinRate":7000}]}]})",
+               "--column ballSpeed=ball_speed_mps --column clubSpeed=club_speed_mps",
+               {{"ball_speed_mps", {50, 47, 48}}, {"azimuth_deg", {-1, 2, 0}}},
+               {"clubs: 7 Iron 1, 8 Iron 2", "3 of 3 shots"}},
+        Layout{"NamesThatHoldAWordOfASummary",
+               "Location,Player,Session,Club Model,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n"
+               "Range,Dev Patel,Consistency drill,MAX,7i,115,82,16,6400\nRange,Max,Session 2,MAX,7i,116,82,16,6400\n",
+               "",
+               {{"ball_speed_mph", {115, 116}}},
+               {}},
+        Layout{"SpinMeasuredYesOrNo",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Spin Axis,Spin Measured,Spin Axis Type\n"
+               "7i,115,82,16,6400,2,Yes,Estimated\n7i,116,82,16,6500,3,No,Measured\n",
+               "",
+               {{"spin_rate_rpm", {6400, kNone}}, {"spin_axis_deg", {kNone, kNone}}},
+               {}},
+        Layout{"AnInchSignInACell",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Notes\n"
+               "7i,115,82,16,6400,3\" behind\n7i,116,82,16,6500,4\" behind\n",
+               "",
+               {{"ball_speed_mph", {115, 116}}},
+               {}},
+        Layout{"TheLayoutsUnitIsNotTheBestFit",
+               "\"Rapsodo MLM2PRO: Jo\"\nClub Type,Carry Distance (m),Ball Speed,Launch Angle,Club Speed,Spin Rate\n"
+               "7i,150,185,16.5,132,6500\n7i,151,186,16.5,132,6500\n",
+               "",
+               {{"ball_speed_kmh", {185, 186}}},
+               {"this one by its carry"}},
+        Layout{"SignsThatAHeaderOnlyMentions",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction (Right/Left +/-),Spin Rate,Impact "
+               "Offset "
+               "(mm toe-/heel+)\n7i,115,82,16,1.5,6400,5 Toe\n7i,116,82,16,-1.5,6500,-4\n",
+               "",
+               {{"azimuth_deg", {1.5, -1.5}}, {"impact_toe_mm", {5, 4}}},
+               {}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
@@ -421,6 +466,10 @@ TEST(Import, WhatWouldBeReadWrongIsRefused) {
       "Club,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dynamic Loft\n,mph,mph,deg,rpm,deg\n7i,115,82,16,6400,22\n"
       ",km/h,km/h,deg,rpm,deg\n7i,185,132,16,6400,22\n",
       "the units change after shot 1");
+  refuse(
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Side Angle\n"
+      "7i,115,82,16,6400,22,-2.5 L\n",
+      "'-2.5 L' is not a number");
   refuse("Velo,Kopf,Abflug\n185.1,132.0,16.4\n", "--column 'Velo=?'    185.1, ...");
 }
 
