@@ -342,20 +342,22 @@ class Reading {
     else if (o_.units.empty()) units.push_back("mph");
     std::string best;
     std::size_t fit = 0;
+    bool told = false;
     double least = std::log(kCarryFits);
     for (const std::string& unit : units) {
       const auto ratio = carry_ratio(speed, si_of(unit), launch, si_of("deg"), spin, si_of("rpm"), carry,
                                      si_of(!carry_unit.empty() ? carry_unit
                                            : unit == "mph"     ? "yd"
                                                                : "m"));
-      if (!ratio) return "";
+      if (!ratio) continue;  // no shot has all of it, or none flies at such speeds
+      told = true;
       const double off = std::abs(std::log(*ratio));
       if (!(off < std::log(kCarryFits))) continue;
       ++fit;
       if (off < least) least = off, best = unit;
     }
     // Where no layout is known one alone must fit.
-    if (family_.empty() && fit != 1) return "";
+    if (!told || (family_.empty() && fit != 1)) return "";
     if (!best.empty()) return best;
     throw InputError(
         fmt::format("{}: the ball's speed in {} does not fit the carry in the file; --column 'header=ball_speed_mph' "

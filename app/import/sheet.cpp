@@ -182,10 +182,10 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   std::size_t known_best = 0;
   for (const ShotList& l : lists) {
     const std::size_t names = known_names(d, l.list->front());
-    if (names > known_best || (best && names == known_best && l.list->size() > best->list->size()))
+    if (!best || names > known_best || (names == known_best && l.list->size() > best->list->size()))
       best = &l, known_best = names;
   }
-  if (document.is_object() && known_names(d, document) > 2 * known_best) best = nullptr;
+  if (document.is_object() && known_names(d, document) > std::max<std::size_t>(1, 2 * known_best)) best = nullptr;
   nlohmann::json shots = nlohmann::json::array();
   std::vector<const std::map<std::string, std::string>*> said_above;
   for (const ShotList& l : lists) {

@@ -408,9 +408,10 @@ INSTANTIATE_TEST_SUITE_P(
                {}},
         Layout{"SpinMeasuredYesOrNo",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Spin Axis,Spin Measured,Spin Axis Type\n"
-               "7i,115,82,16,6400,2,Yes,Estimated\n7i,116,82,16,6500,3,No,Measured\n",
+               "7i,115,82,16,6400,2,Yes,Estimated\n7i,116,82,16,6500,3,No,Measured\n"
+               "7i,117,83,16,6600,4,Yes,Measured\n",
                "",
-               {{"spin_rate_rpm", {6400, kNone}}, {"spin_axis_deg", {kNone, kNone}}},
+               {{"spin_rate_rpm", {6400, kNone, 6600}}, {"spin_axis_deg", {kNone, kNone, 4}}},
                {}},
         Layout{"AnInchSignInACell",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Notes\n"
@@ -514,13 +515,14 @@ TEST(Import, ThePageSaysWhereTheShotsLand) {
   test::write(
       dir / "a.csv",
       "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n"
-      "L,7i,115,82,16,1,6400,0,22\nL,7i,117,83,17,-1,6500,0,23\nL,7i,116,82,16,0,6450,0,22\n"
-      "L,PW,100,76,24,0,8500,0,33\n");
+      "L,7i,115,82,16,1,6400,0,22\nL,7i,117,83,17,-1,6500,2,23\nL,7i,116,82,16,0,6450,-1,22\n"
+      "L,PW,100,76,24,0,8500,1,33\nL,PW,101,76,24,,8500,1,33\n");
   ASSERT_EQ(command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'").status, 0);
   const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
   const post::Sheet landings = post::read_csv(dir / "out" / "landings.csv");
-  ASSERT_EQ(landings.rows(), 4u);
+  ASSERT_EQ(landings.rows(), 5u);
+  EXPECT_EQ(landings.columns[3][4], "") << "no direction, no side";
   ASSERT_EQ(landings.names[2], "carry_yd");
   // By itself: the flight of the first launch, whose direction was mirrored.
   Launch first;
