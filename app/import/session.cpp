@@ -328,8 +328,8 @@ class Reading {
     return out;
   }
 
-  /// A file that names no unit: that of the ball's speed by which its shots carry as far as the file says, the
-  /// layout's own first. Empty where no shot has what this takes.
+  /// A file that names no unit: that of the ball's speed by which its shots carry most nearly as far as the file says.
+  /// Empty where no shot has what this takes.
   std::string unit_by_carry() const {
     const auto speed = raw("ball_speed"), launch = raw("launch_angle"), spin = raw("spin_rate"),
                carry = raw("", "carry");
@@ -431,7 +431,7 @@ class Reading {
       ++out.filled;
     }
     if (lengths && given != "mm") out.remark(fmt::format("{} made mm", given));
-    if (by_carry_ && (q.name == "ball_speed" || q.name == "club_speed"))
+    if (by_carry_ && (q.name == "ball_speed" || q.name == "club_speed") && stated_unit(q, column).empty())
       out.remark("no unit in the file: this one by its carry");
     if (comma) out.remark("decimal comma");
     if (sign < 0) out.remark("sign turned");
@@ -472,7 +472,8 @@ class Reading {
     }
     if (role_[c] == "carry") {
       std::string unit = stated_length(c);
-      if (unit.empty() && !family_.empty()) unit = family_ == "imperial" && !by_carry_ ? "yd" : "m";
+      const bool imperial = speed_unit_.empty() ? family_ == "imperial" : speed_unit_ == "mph";
+      if (unit.empty() && !family_.empty()) unit = imperial ? "yd" : "m";
       if (dimension_of(unit) == Dimension::length) {
         out_.carry = {.header = header, .name = unit};
         const bool comma = decimal_comma(u.cells, sheet, header, out_.file);

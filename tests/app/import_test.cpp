@@ -541,6 +541,19 @@ TEST(Import, ThePageSaysWhereTheShotsLand) {
   EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "landings.png") || o.text.find("gnuplot") != std::string::npos);
 }
 
+/// Where the carry alone tells the unit of a speed, it is in the yards or metres that go with that unit.
+TEST(Import, ACarryThatTellsTheUnitIsReadInItsOwn) {
+  const fs::path dir = test::fresh_directory("import_carry_unit");
+  const std::string head = "Club,BallSpeed,ClubSpeed,VLA,HLA,TotalSpin,Carry\n";
+  test::write(dir / "a.csv", head + "7i,115,82,16,1,6400,155\n7i,116,82,16,0,6400,157\n");
+  test::write(dir / "b.csv", head + "8i,110,80,18,1,7000,146\n8i,111,80,18,0,7000,148\n");
+  const auto o = command("import '" + (dir / "a.csv").string() + "' '" + (dir / "b.csv").string() + "' --out '" +
+                         (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("ball speed [mph]"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("carry [yd]"), std::string::npos) << o.text;
+}
+
 TEST(Import, ByHand) {
   const fs::path dir = test::fresh_directory("import_by_hand");
   test::write(dir / "a.csv",
