@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "loop/effect.hpp"
+#include "loop/mechanism.hpp"
 #include "loop/remainder.hpp"
 #include "solvers/least_squares.hpp"
 
@@ -130,6 +131,8 @@ class Problem {
                                  const Rules& rules) const = 0;
   /// What of it follows the inputs and has no name, learnt from the training rows alone. Absent: not looked for.
   virtual std::optional<Remainder> remainder(const Fit& /*fit*/) const { return {}; }
+  /// One free function through one mechanism in place of the chosen effects: the likeliest, and what is as likely.
+  virtual std::vector<Mechanism> mechanisms(const Selection& /*selection*/, const Rules& /*rules*/) const { return {}; }
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;
   /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.

@@ -49,9 +49,47 @@ std::vector<Location> nameless(const Study& study, const std::optional<Remainder
   return {};
 }
 
+/// Beside the chosen effects: one free function through one mechanism.
+struct OneFunction {
+  std::vector<Location> unexplained;  ///< it says more, or as much as several effects, and is none of them
+  std::vector<std::string> names;     ///< it says as much, and is these of them
+};
+
+OneFunction one_function(const Study& study) {
+  const Selection& s = study.selection;
+  if (s.level == 0 || !s.clean) return {};
+  const std::vector<Mechanism> found = study.problem.mechanisms(s, study.rules);
+  if (found.empty()) return {};
+  double criterion = s.chosen.deviance + study.rules.parameter_cost * double(s.chosen.size()) + improbability(s.chosen);
+  std::vector<std::string> names;
+  for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k) {
+    criterion += s.chosen.model.forms[k]->complexity;
+    names.push_back(s.chosen.model.forms[k]->effect);
+  }
+  const Mechanism& best = found.front();
+  const bool more = best.criterion + study.rules.tie < criterion,
+             as_much = best.criterion < criterion + study.rules.tie;
+  // A drift is slow and steady: what may be a step is none.
+  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
+                     best.names.empty();
+  if (!more && !(as_much && (names.size() > 1 || drift))) return {};
+  std::vector<std::string> among;
+  for (const std::string& e : names)
+    if (std::ranges::any_of(found, [&](const Mechanism& m) { return std::ranges::count(m.names, e) > 0; }))
+      among.push_back(e);
+  const bool keeps = drift ? best.criterion > criterion : !more || names.size() == 1;
+  if (keeps && !among.empty()) return {.unexplained = {}, .names = std::move(among)};
+  return {
+      .unexplained = {{study.problem.channel(best.channel).name, best.along,
+                       fmt::format("one function of {}, acting through {}{}, says as much as {}", best.along, best.acts,
+                                   best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
+                                   fmt::join(names, " and "))}},
+      .names = {}};
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
-              std::vector<Location>& unexplained) {
+              const OneFunction& one, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
@@ -66,11 +104,12 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   }
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
+  if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
   if (s.structured && s.level == 0) return Verdict::insufficient;
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
   if (s.nameless) return Verdict::insufficient;
-  if (!s.ties.empty()) return Verdict::ambiguous;
+  if (!s.ties.empty() && one.names.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
     unexplained.push_back(
@@ -166,24 +205,30 @@ void conclude(const Study& study, LoopResult& result) {
     bare = s.level > 0 ? problem.remainder(s.base) : left;
   }
   const std::vector<Location> without_name = nameless(study, left, bare);
-  result.verdict = judge(study, result.columns, without_name, result.unexplained);
+  const OneFunction one = one_function(study);
+  result.verdict = judge(study, result.columns, without_name, one, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);
     result.next = problem.next_experiment(result);
     return;
   }
-  if (result.verdict != Verdict::unexplained && result.verdict != Verdict::insufficient) {
-    result.adopted = s.adopted;
-    result.ties = s.ties;
+  const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous;
+  const Candidate* single = nullptr;  // the effect that is the one function
+  if (named) {
+    result.adopted = one.names.empty() ? s.adopted : one.names;
+    if (one.names.empty()) result.ties = s.ties;
+    for (const Candidate& c : s.candidates)
+      if (!single && c.effects == one.names) single = &c;
   }
 
   // What was selected on some of the training data is fitted to all of them.
   const bool some = problem.density(Part::select).values < problem.density(Part::train).values;
-  const Fit chosen = some ? fit(problem, Part::train, s.chosen.model, {s.chosen.p}, 1, true) : s.chosen;
+  const Fit& best = single ? single->fit : s.chosen;
+  const Fit chosen = some ? fit(problem, Part::train, best.model, {best.p}, 1, true) : best;
 
   // The holdout is read here, once: what was chosen must not fail there.
-  bool shown = s.level > 0 && result.verdict != Verdict::unexplained && result.verdict != Verdict::insufficient;
+  bool shown = s.level > 0 && named;
   if (shown &&
       deviance(problem, Part::holdout, chosen) > deviance(problem, Part::holdout, s.base) + study.rules.holdout_loss) {
     std::vector<std::string> names;
@@ -191,14 +236,15 @@ void conclude(const Study& study, LoopResult& result) {
       names.push_back(chosen.model.forms[k]->effect);
     result.notes.push_back(
         fmt::format("{} explained the training data and not those held out: not adopted", fmt::join(names, " and ")));
-    if (result.verdict != Verdict::noise_contradicted) result.verdict = Verdict::insufficient;
+    result.verdict = Verdict::insufficient;
     result.adopted.clear();
     result.ties.clear();
     shown = false;
   }
-  // Structure remains: what is beyond doubt is kept all the same.
+  // Structure remains, or the scatter is not the declared: what is beyond doubt is kept all the same.
   BeyondDoubt kept;
-  if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
+  if (s.level > 0 && (result.verdict == Verdict::noise_contradicted ||
+                      (result.verdict == Verdict::unexplained && (!s.clean || !without_name.empty())))) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && !beats(kept.fit, problem.remainder(kept.fit), bare, study.rules)) kept = {};
   }

@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -66,6 +68,7 @@ struct Columns::Slip {
   double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
   double deviance = 0;
   double criterion() const { return deviance + cost; }
+  bool disputed = false;  ///< of a level shift: physics that changes there does as well, or every group differs
 };
 
 Columns::~Columns() = default;
@@ -157,6 +160,18 @@ Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& m
     }
   }
   return r;
+}
+
+/// Derivatives of the channels by a quantity of the contact law: rows x channels.
+Eigen::MatrixXd Columns::sensitivity(double ContactLaw::*of) const {
+  constexpr double h = 1e-3;
+  Parametrisation form{.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, h}}};
+  form.before = [of](std::span<const double> p, Shot& s) { s.blow.contact.*of += p[0]; };
+  const Model with{{&form}};
+  const Eigen::MatrixXd d = (residuals(values_, with, Eigen::VectorXd::Constant(1, h)) -
+                             residuals(values_, with, Eigen::VectorXd::Constant(1, -h))) /
+                            (2 * h);
+  return d.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
 }
 
 /// Derivatives of the channels by an input column, or minus one for the channel itself: rows x channels.
@@ -278,6 +293,31 @@ void Columns::try_constants() {
   }
 }
 
+namespace {
+
+/// The rows of `j` that are members.
+Eigen::MatrixXd only(const Eigen::MatrixXd& j, const std::vector<char>& member) {
+  Eigen::MatrixXd out = j;
+  for (Eigen::Index i = 0; i < out.rows(); ++i)
+    if (!member[std::size_t(i)]) out.row(i).setZero();
+  return out;
+}
+
+/// Whether these groups too are off, each by an amount of its own: then a group is no exception.
+bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const std::vector<std::vector<char>>& groups) {
+  double sum = 0;
+  for (const std::vector<char>& member : groups) {
+    double a = 0, b = 0;
+    for (Eigen::Index i = 0; i < j.rows(); ++i)
+      if (member[std::size_t(i)] && z.row(i).allFinite()) a += j.row(i).squaredNorm(), b += j.row(i).dot(z.row(i));
+    if (a > 0) sum += b * b / a;
+  }
+  if (groups.empty()) return false;
+  return sum > boost::math::quantile(boost::math::chi_squared(double(groups.size())), 0.999);
+}
+
+}  // namespace
+
 /// Slips whose size is found: offset, scale, and offset of a part of the session. All by linear algebra about the
 /// recorded values, the best of them again about themselves.
 void Columns::try_sizes() {
@@ -324,28 +364,37 @@ void Columns::try_sizes() {
   };
   std::vector<Trial> trials;
   const Eigen::MatrixXd z = r * W.transpose();
-  std::vector<std::pair<std::vector<char>, std::string>> parts;
+  struct Rows {
+    std::vector<char> member;
+    std::string what;
+    std::vector<std::vector<char>> others;  // the other groups, where it is one
+  };
+  std::vector<Rows> parts;
   std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
   std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
   std::ranges::stable_sort(by_order, {}, [&](Eigen::Index i) { return order_[std::size_t(i)]; });
   for (Eigen::Index k = n / 6; n >= 12 && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
     std::vector<char> member(static_cast<std::size_t>(n), 0);
     for (Eigen::Index i = k; i < n; ++i) member[std::size_t(by_order[std::size_t(i)])] = 1;
-    parts.emplace_back(member, fmt::format("from shot {} on",
-                                           case_.shots.id[std::size_t(rows_[std::size_t(by_order[std::size_t(k)])])]));
+    parts.push_back(
+        {member,
+         fmt::format("from shot {} on", case_.shots.id[std::size_t(rows_[std::size_t(by_order[std::size_t(k)])])]),
+         {}});
   }
   for (const Column& c : case_.shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
     if (g.name.size() < 2 || g.name.size() > 12) continue;
-    for (std::size_t k = 0; k + (g.name.size() == 2) < g.name.size(); ++k) {
-      std::vector<char> member(static_cast<std::size_t>(n), 0);
-      for (Eigen::Index i = 0; i < n; ++i)
-        member[std::size_t(i)] = g.of_row[std::size_t(rows_[std::size_t(i)])] == int(k + (g.name.size() == 2));
-      const auto inside = std::ranges::count(member, 1);
+    std::vector<std::vector<char>> of(g.name.size(), std::vector<char>(static_cast<std::size_t>(n), 0));
+    for (Eigen::Index i = 0; i < n; ++i)
+      of[std::size_t(g.of_row[std::size_t(rows_[std::size_t(i)])])][std::size_t(i)] = 1;
+    for (std::size_t k = g.name.size() == 2; k < g.name.size(); ++k) {
+      const auto inside = std::ranges::count(of[k], 1);
       // A smaller group that recorded something else is a finding about rows.
       if (inside * 4 < n || inside * 4 > 3 * n) continue;
-      parts.emplace_back(member, fmt::format("where {} is {}", c.name, g.name[k + (g.name.size() == 2)]));
+      std::vector<std::vector<char>> others = of;
+      others.erase(others.begin() + std::ptrdiff_t(k));
+      parts.push_back({of[k], fmt::format("where {} is {}", c.name, g.name[k]), std::move(others)});
     }
   }
   for (int k = 0; k < int(columns_.size()); ++k) {
@@ -360,13 +409,21 @@ void Columns::try_sizes() {
     consider({.finding = "offset", .column = k, .cost = 8}, J);
     const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
     consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
-    for (const auto& [member, what] : parts) {
-      Eigen::MatrixXd j = J;
-      for (Eigen::Index i = 0; i < n; ++i)
-        if (!member[std::size_t(i)]) j.row(i).setZero();
-      consider({.finding = "level-shift", .column = k, .member = member, .what = what, .cost = 15}, j);
+    for (const Rows& part : parts) {
+      Slip shift{.finding = "level-shift", .column = k, .member = part.member, .what = part.what, .cost = 15};
+      shift.disputed = spread_over(z, J, part.others);
+      consider(std::move(shift), only(J, part.member));
     }
   }
+  // What a club or a ball does from some shot on does the same to the ball speed as a reading that is off by then.
+  double physics = std::numeric_limits<double>::infinity();
+  for (double ContactLaw::*of : {&ContactLaw::restitution, &ContactLaw::tangential_restitution}) {
+    const Eigen::MatrixXd J = sensitivity(of) * W.transpose();
+    if (J.norm() < 1e-12) continue;
+    for (const Rows& part : parts) physics = std::min(physics, fitted(z, only(J, part.member)).second + 15);
+  }
+  for (Trial& t : trials)
+    if (t.slip.finding == "level-shift" && physics < t.criterion + case_.rules.tie) t.slip.disputed = true;
   std::ranges::stable_sort(trials, {}, &Trial::criterion);
   // The best few, of different columns or kinds, about themselves.
   std::vector<Slip> kept;
@@ -426,7 +483,8 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) c
            (!free || s.deviance - log_scale < kClean * values);
   };
   const auto best = std::ranges::find_if(slips_, holds);
-  if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie) return {};
+  if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie || best->disputed)
+    return {};
   std::vector<WrongColumn> told;
   std::string also;
   for (const Slip& s : slips_)

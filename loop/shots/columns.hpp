@@ -39,6 +39,7 @@ class Columns {
   Shot shot(Eigen::Index row, const Eigen::MatrixXd& values) const;
   Eigen::MatrixXd residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
   Eigen::MatrixXd sensitivity(const Eigen::MatrixXd& values, int column) const;
+  Eigen::MatrixXd sensitivity(double ContactLaw::*of) const;
   double deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values) const;
   Eigen::MatrixXd corrected(const Slip& slip) const;

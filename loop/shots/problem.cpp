@@ -7,6 +7,7 @@
 
 #include "loop/median.hpp"
 #include "loop/shots/experiment.hpp"
+#include "loop/shots/mechanism.hpp"
 #include "loop/shots/mixture.hpp"
 #include "loop/shots/remainder.hpp"
 #include "loop/shots/scatter.hpp"
@@ -415,6 +416,12 @@ std::optional<Remainder> ShotProblem::remainder(const Fit& fit) const {
   for (int i = 0; i < model_->shots(); ++i)
     group[std::size_t(i)] = by ? clusters.of_row[std::size_t(inputs_.row_of[std::size_t(i)])] : i;
   return loop::remainder(*model_, case_.shots, inputs_.row_of, rows_.train, group, fit);
+}
+
+/// A base that answers slowly, means of clubs and flights have no such look.
+std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& rules) const {
+  if (!case_.direct || case_.averages || case_.loft_unknown || s.base.size() > 0) return {};
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, select_, s.base, s.chosen, rules.tie);
 }
 
 Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }

@@ -54,6 +54,7 @@ class ShotProblem final : public Problem {
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                          const Rules& rules) const override;
   std::optional<Remainder> remainder(const Fit& fit) const override;
+  std::vector<Mechanism> mechanisms(const Selection& selection, const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
   std::vector<Location> doubts(const Selection& selection) const override;

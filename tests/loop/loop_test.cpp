@@ -35,6 +35,9 @@ struct World {
   int swapped = -1;       ///< row whose ball speed is written in mph
   double second = 0;      ///< of a second ball: its ball speed beyond the first's [m/s]
   double drift = 0;       ///< hidden: of the ball speed over the session [m/s]
+  double side = 0;        ///< hidden: of the normal restitution, per 10 mm towards the toe
+  double cracked = 0;     ///< hidden: of the normal restitution in the second half of the session
+  double misread = 0;     ///< hidden: of the recorded club speed there [m/s]
   bool rate = false;      ///< a column spin_rate computed from the other two
   unsigned seed = 1;
 };
@@ -63,7 +66,8 @@ std::string csv(const World& w) {
          .impact_toe = 0.009 * gauss(random),
          .impact_high = 0.006 * gauss(random)};
     b.contact.tangential_restitution = w.tangential;
-    b.contact.restitution += w.level;
+    const bool late = 2 * i >= w.shots;
+    b.contact.restitution += w.level + w.side * d.impact_toe / 0.01 + w.cracked * late;
     if (w.face) {
       // Struck as equations of motion, not by the closed form that the effect has.
       const FaceCompliance face = find_face("modern-driver")->face;
@@ -86,8 +90,8 @@ std::string csv(const World& w) {
                  side = std::round(rpm(l.sidespin()) + 60 * gauss(random));
     char line[512];
     std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1,
-                  d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle), recorded_loft,
-                  1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
+                  d.club_speed + w.misread * late, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle),
+                  recorded_loft, 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
                   degrees(l.launch_angle()) + 0.2 * gauss(random), degrees(l.azimuth()) + 0.25 * gauss(random), back,
                   side);
     text += line;
@@ -325,6 +329,51 @@ TEST_F(Loop, ADriftIsNoLevelShiftOfAColumn) {
   const LoopResult r = run(case_of(csv({.drift = 2})));
   EXPECT_TRUE(r.columns.empty());
   EXPECT_EQ(r.adopted, std::vector<std::string>{"session-drift"});
+}
+
+/// What the chosen effects have as a rival: here of the base alone.
+std::vector<Mechanism> one_function(ShotCase& c, double& base) {
+  const ShotProblem problem(c, {}, {}, {});
+  Selection s;
+  s.base = s.chosen = fit(problem, Part::select, Model{}, starts(Model{}), 1);
+  base = s.base.deviance;
+  return problem.mechanisms(s, Rules{});
+}
+
+TEST_F(Loop, AFunctionIsFoundByHowTheChannelsMoveTogether) {
+  // No form of the library falls in a line from heel to toe.
+  double base = 0;
+  ShotCase c = case_of(csv({.side = -0.015}));
+  const std::vector<Mechanism> found = one_function(c, base);
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(found.front().criterion, base - Rules{}.gain);
+  EXPECT_EQ(found.front().acts, "the normal restitution");
+  EXPECT_EQ(found.front().along, "impact_toe_mm");
+  EXPECT_EQ(found.front().names, (std::vector<std::string>{"restitution-falloff", "face-compliance"}));
+  // A misread club speed moves spin and ball speed, a restitution the ball speed alone.
+  ShotCase wrong = case_of(csv({.misread = 1.5}));
+  const std::vector<Mechanism> of_column = one_function(wrong, base);
+  ASSERT_FALSE(of_column.empty());
+  EXPECT_EQ(of_column.front().acts, "an error of club_speed_mps");
+  EXPECT_EQ(of_column.front().along, "shot");
+  EXPECT_TRUE(of_column.front().names.empty()) << "a step is no drift";
+  // Noise alone: no function pays for itself.
+  ShotCase nothing = case_of(csv({}));
+  for (const Mechanism& m : one_function(nothing, base)) EXPECT_GT(m.criterion, base - Rules{}.tie);
+}
+
+TEST_F(Loop, AStepOfThePhysicsAccusesNoColumn) {
+  const LoopResult cracked = run(case_of(csv({.cracked = -0.03})));
+  EXPECT_EQ(name(cracked.verdict), "unexplained") << sentence(cracked);
+  EXPECT_TRUE(cracked.columns.empty());
+  EXPECT_TRUE(cracked.adopted.empty());
+  ASSERT_FALSE(cracked.unexplained.empty());
+  EXPECT_EQ(cracked.unexplained.front().regressor, "shot");
+  // The club speed's step moves every channel, as no restitution does.
+  const LoopResult misread = run(case_of(csv({.misread = 1.5})));
+  ASSERT_EQ(misread.columns.size(), 1U) << sentence(misread);
+  EXPECT_EQ(misread.columns[0].column, "club_speed_mps");
+  EXPECT_EQ(misread.columns[0].finding, "level-shift");
 }
 
 TEST_F(Loop, RowsSortedByAColumnAreNoSession) {

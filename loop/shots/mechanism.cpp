@@ -1,0 +1,317 @@
+#include "loop/shots/mechanism.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "golf/parallel.hpp"
+#include "golf/units.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr std::size_t kMechanismRows = 150;
+constexpr double kPrice = 8;  // of the choice among some hundred functions and mechanisms [units of deviance]
+
+/// One way in which a shot's channels move together.
+struct Way {
+  std::string acts, column;  ///< column: the input or reading that is wrong; empty: physics
+  Parametrisation form;
+  enum class Kind { normal, tangential, input, reading } kind;
+};
+
+std::vector<Way> ways(const ShotModel& model, const Shots& shots) {
+  std::vector<Way> all;
+  const auto add = [&](std::string acts, std::string column, Way::Kind kind, double scale) -> Parametrisation& {
+    Parametrisation form{.effect = "", .what = acts, .parameters = {{"size", "1", 1, -1e9, 1e9, scale}}};
+    all.push_back({std::move(acts), std::move(column), std::move(form), kind});
+    return all.back().form;
+  };
+  add("the normal restitution", "", Way::Kind::normal, 0.01).before = [](std::span<const double> p, Shot& s) {
+    s.blow.contact.restitution += p[0];
+  };
+  add("the tangential restitution", "", Way::Kind::tangential, 0.02).before = [](std::span<const double> p, Shot& s) {
+    s.blow.contact.tangential_restitution += p[0];
+  };
+  for (int k = 0; k < kInputs; ++k)
+    if (const Column* c = shots.find_stem(stem(Input(k))); c && c->role == Role::input)
+      add("an error of " + c->name, c->name, Way::Kind::input, quantity(Input(k)).step).before =
+          [k](std::span<const double> p, Shot& s) { set(s.blow, Input(k), get(s.blow, Input(k)) + p[0]); };
+  for (int c = 0; c < model.width(); ++c) {
+    const ShotChannel& ch = model.channel(c);
+    add("an error of the reading " + ch.name, ch.name, Way::Kind::reading, ch.noise * ch.si).reading =
+        [o = ch.output](std::span<const double> p, const Shot&, Output of, double value) {
+          return of == o ? value + p[0] : value;
+        };
+  }
+  return all;
+}
+
+/// Functions of one quantity: each an orthonormal basis over the rows with the variance of its coefficients, a level
+/// apart.
+struct Field {
+  std::string along;
+  bool place = false, step = false;  ///< over the place of impact; one step in the session
+  struct Basis {
+    Eigen::MatrixXd phi;       // rows x terms
+    Eigen::VectorXd variance;  // mean variance over the rows is one
+  };
+  std::vector<Basis> smoothness;
+};
+
+double matern(double r) {
+  const double a = std::sqrt(5.0) * r;
+  return (1 + a + a * a / 3) * std::exp(-a);
+}
+
+/// The leading terms of a covariance over the rows, its level taken out.
+Field::Basis basis(const Eigen::MatrixXd& covariance) {
+  constexpr Eigen::Index most = 12;
+  const Eigen::Index n = covariance.rows();
+  const Eigen::VectorXd mean = covariance.colwise().mean().transpose();
+  Eigen::MatrixXd centred = covariance;
+  centred.rowwise() -= mean.transpose();
+  centred.colwise() -= mean;
+  centred.array() += mean.mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred);
+  const Eigen::Index terms = std::clamp<Eigen::Index>(
+      (solver.eigenvalues().array() > 1e-6 * solver.eigenvalues().maxCoeff()).count(), 1, most);
+  Field::Basis b{solver.eigenvectors().rightCols(terms), solver.eigenvalues().tail(terms).cwiseMax(0)};
+  const double whole = b.variance.sum() / double(n);
+  if (whole > 0) b.variance /= whole;
+  return b;
+}
+
+std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                          const std::vector<int>& rows) {
+  const auto n = Eigen::Index(rows.size());
+  const auto scaled = [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd out(n);
+    for (Eigen::Index i = 0; i < n; ++i) out[i] = x[rows[std::size_t(i)]];
+    double sum = 0, count = 0;
+    for (const double v : out)
+      if (std::isfinite(v)) sum += v, ++count;
+    for (double& v : out) v = (std::isfinite(v) ? v : sum / count) - sum / count;
+    const double sd = std::sqrt(out.squaredNorm() / double(n));
+    return Eigen::VectorXd(sd > 1e-9 * (1 + std::abs(sum / count)) ? out / (2 * sd) : Eigen::VectorXd());
+  };
+  std::vector<Field> all;
+  const auto smooth = [&](std::string along, const std::vector<Eigen::VectorXd>& x, bool place) {
+    Field f{.along = std::move(along), .place = place};
+    for (const double length : {0.5, 1.0, 2.0, 4.0}) {
+      Eigen::MatrixXd K(n, n);
+      for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j < n; ++j) {
+          double square = 0;
+          for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
+          K(i, j) = matern(std::sqrt(square));
+        }
+      f.smoothness.push_back(basis(K));
+    }
+    all.push_back(std::move(f));
+  };
+  Eigen::VectorXd toe, high;
+  for (const Line& line : columns_of(shots, row_of, model)) {
+    const Eigen::VectorXd x = scaled(line.x);
+    if (!x.size()) continue;
+    if (const Column* c = shots.find(line.name)) {
+      if (c->stem == stem(Input::impact_toe)) toe = x;
+      if (c->stem == stem(Input::impact_high)) high = x;
+    }
+    smooth(line.name, {x}, false);
+    if (line.name != "shot") continue;
+    // A walk: steps and slow wander.
+    Eigen::MatrixXd K(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) K(i, j) = std::min(x[i], x[j]) - x.minCoeff();
+    all.back().smoothness.push_back(basis(K));
+    // One step, wherever it is: no drift.
+    Field step{.along = line.name, .step = true};
+    std::vector<double> sorted(x.begin(), x.end());
+    std::ranges::sort(sorted);
+    constexpr Eigen::Index places = 15;
+    for (Eigen::Index k = 1; k <= places; ++k) {
+      const double from = sorted[std::size_t(k * n / (places + 1))];
+      const Eigen::VectorXd after = (x.array() >= from).cast<double>();
+      step.smoothness.push_back(basis(after * after.transpose()));
+    }
+    all.push_back(std::move(step));
+  }
+  if (toe.size() && high.size()) smooth(shots.find_stem(stem(Input::impact_toe))->name, {toe, high}, true);
+  for (const Column& c : shots.columns) {
+    if (c.numeric || c.role == Role::output) continue;
+    const Groups g = groups(c);
+    if (g.name.size() < 2 || g.name.size() > 12) continue;
+    Eigen::MatrixXd K(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        K(i, j) = g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(i)])])] ==
+                  g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(j)])])];
+    Field f{.along = c.name};
+    f.smoothness.push_back(basis(K));
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+/// The function of largest posterior density for one way and one basis, over a grid of amplitudes.
+struct Found {
+  double fall = -std::numeric_limits<double>::infinity();  ///< of -2 log evidence, with the weights given
+  Eigen::VectorXd g;                                       ///< per row, in the way's scale
+  double price = 0;                                        ///< of the function: prior and determinant
+};
+
+/// `z` (width x rows) whitened residuals, `j` their derivatives by the way, `w` the weights of the rows.
+Found likeliest(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::VectorXd& w, const Field& field) {
+  const Eigen::Index n = z.cols();
+  const Eigen::VectorXd precision = w.cwiseProduct(j.colwise().squaredNorm().transpose()),
+                        pull = -w.cwiseProduct(z.cwiseProduct(j).colwise().sum().transpose());
+  const double typical = precision.mean();
+  if (!(typical > 0)) return {};
+  Found best;
+  std::vector<double> falls;
+  for (const Field::Basis& b : field.smoothness) {
+    const Eigen::Index terms = b.phi.cols();
+    Eigen::MatrixXd phi(n, terms + 1);
+    phi << Eigen::VectorXd::Ones(n), b.phi;
+    const Eigen::MatrixXd A = phi.transpose() * precision.asDiagonal() * phi;
+    const Eigen::VectorXd rhs = phi.transpose() * pull;
+    for (const double level : {0.0, 0.1, 0.4, 1.6, 6.4})
+      for (const double size : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4}) {
+        // Standard deviations in noise units of a typical shot.
+        Eigen::VectorXd root(terms + 1);
+        root << level, size * b.variance.cwiseSqrt();
+        root /= std::sqrt(typical);
+        const Eigen::MatrixXd M = Eigen::MatrixXd::Identity(terms + 1, terms + 1) +
+                                  root.asDiagonal() * A * root.asDiagonal();
+        const Eigen::LLT<Eigen::MatrixXd> factor(M);
+        const Eigen::VectorXd scaled = root.cwiseProduct(rhs), solved = factor.solve(scaled);
+        const double determinant = 2 * factor.matrixLLT().diagonal().array().log().sum();
+        const double fall = scaled.dot(solved) - determinant;
+        falls.push_back(fall);
+        if (fall > best.fall) {
+          best.fall = fall;
+          best.g = phi * root.cwiseProduct(solved);
+          best.price = solved.squaredNorm() + determinant;
+        }
+      }
+  }
+  // The evidence is the mean over the grid, not its largest.
+  double mean = 0;
+  for (const double f : falls) mean += std::exp(0.5 * (f - best.fall)) / double(falls.size());
+  best.price -= 2 * std::log(mean);
+  best.fall += 2 * std::log(mean);
+  return best;
+}
+
+bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
+  std::vector<std::size_t> by(order.size());
+  for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;
+  std::ranges::sort(by, {}, [&](std::size_t i) { return order[i]; });
+  double way = 0, path = 0;
+  for (std::size_t i = 1; i < by.size(); ++i) {
+    const double d = g[Eigen::Index(by[i])] - g[Eigen::Index(by[i - 1])];
+    way += d;
+    path += std::abs(d);
+  }
+  return std::abs(way) > 0.8 * path;
+}
+
+/// The effects that such a function is.
+std::vector<std::string> names_of(const Way& way, const Field& field, const Shots& shots, bool steady) {
+  const Column* along = shots.find(field.along);
+  const auto is = [&](Input i) { return along && along->stem == stem(i); };
+  const bool blow = is(Input::club_speed) || is(Input::dynamic_loft) || is(Input::attack_angle);
+  switch (way.kind) {
+    case Way::Kind::normal:
+      if (field.place || is(Input::impact_toe) || is(Input::impact_high))
+        return {"restitution-falloff", "face-compliance"};
+      if (blow) return {"restitution-law"};
+      break;
+    case Way::Kind::tangential:
+      if (blow) return {"ball-tangential-compliance"};
+      break;
+    case Way::Kind::input:
+      if (way.column == field.along && is(Input::dynamic_loft)) return {"loft-bias"};
+      break;
+    case Way::Kind::reading: break;
+  }
+  if (field.along == "shot" && steady && !field.step) return {"session-drift"};
+  return {};
+}
+
+}  // namespace
+
+std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                  const std::vector<int>& all, const Fit& base, const Fit& chosen, double tie) {
+  std::vector<int> rows;
+  const std::size_t count = std::min(all.size(), kMechanismRows);
+  for (std::size_t k = 0; k < count; ++k) rows.push_back(all[k * all.size() / count]);
+  const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
+  if (n < 12) return {};
+  const solvers::Loss loss = loss_of_shot(model.width());
+  const Eigen::MatrixXd z = model.whitened(rows, base.model, base.p).reshaped(width, n),
+                        after = model.whitened(rows, chosen.model, chosen.p).reshaped(width, n);
+  Eigen::VectorXd weight(n);
+  for (Eigen::Index i = 0; i < n; ++i) weight[i] = loss.weight(after.col(i).squaredNorm());
+  const std::vector<Way> every = ways(model, shots);
+  const std::vector<Field> functions = fields(model, shots, row_of, rows);
+  std::vector<double> order;
+  for (const int i : rows) order.push_back(model.trial(i).order);
+
+  struct Trial {
+    std::size_t way, field;
+    Found found;
+  };
+  std::vector<std::vector<Trial>> of_way(every.size());
+  std::vector<Eigen::MatrixXd> columns(every.size());
+  for_all(std::size_t(0), every.size(), [&](std::size_t k) {
+    const Fit with = beside(base, &every[k].form);
+    columns[k] = model.jacobian(rows, with.model, with.p).rightCols(1).reshaped(width, n);
+    if (!(columns[k].norm() > 1e-9)) return;
+    for (std::size_t f = 0; f < functions.size(); ++f)
+      of_way[k].push_back({k, f, likeliest(z, columns[k], weight, functions[f])});
+  });
+  std::vector<Trial> trials;
+  for (auto& t : of_way) std::ranges::move(t, std::back_inserter(trials));
+  std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
+  if (trials.size() > 12) trials.resize(12);
+
+  // The deviance as fits count it: each with the weights of its own residual.
+  const double scale = double(all.size()) / double(rows.size());
+  std::vector<Mechanism> out;
+  for (Trial& t : trials) {
+    const Eigen::MatrixXd& j = columns[t.way];
+    double deviance = 0;
+    for (int pass = 0; pass < 3; ++pass) {
+      Eigen::VectorXd w(n);
+      deviance = 0;
+      Eigen::MatrixXd left = z;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        left.col(i) += j.col(i) * t.found.g[i];
+        w[i] = loss.weight(left.col(i).squaredNorm());
+        deviance += loss(left.col(i).squaredNorm());
+      }
+      if (pass == 2) break;
+      Found again = likeliest(z, j, w, functions[t.field]);
+      if (!again.g.size()) break;
+      t.found = std::move(again);
+    }
+    Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along};
+    const Eigen::VectorXd moved = (j * t.found.g.asDiagonal()).rowwise().squaredNorm();
+    Eigen::Index most = 0;
+    moved.maxCoeff(&most);
+    m.channel = int(most);
+    m.criterion = scale * deviance + t.found.price + kPrice;
+    m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
+    out.push_back(std::move(m));
+  }
+  std::ranges::stable_sort(out, {}, &Mechanism::criterion);
+  if (out.empty()) return {};
+  const double within = out.front().criterion + tie;
+  std::erase_if(out, [&](const Mechanism& m) { return m.criterion > within; });
+  return out;
+}
+
+}  // namespace hosel::loop
