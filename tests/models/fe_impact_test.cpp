@@ -264,6 +264,14 @@ TEST(FeImpact, RefusesWhatItCannotDo) {
   away.delivery.dynamic_loft = radians(80);
   away.delivery.attack_angle = radians(-80);
   EXPECT_THROW(Impact(coarse(2)).run(away), std::invalid_argument);
+  Blow rough = wall_blow(20);
+  rough.contact.patch = {.coefficient = 0.3, .at_rest = StaticFriction{.coefficient = 0.2, .distance = 1e-6}};
+  EXPECT_THROW(Impact(coarse(2)).run(rough), std::invalid_argument);
+  Blow two_faces = wall_blow(20);
+  two_faces.club.head.compliance = {.mass = 0.01, .stiffness = 1e7};
+  o = coarse(2);
+  o.face = own_face(Head{});
+  EXPECT_THROW(Impact(o).run(two_faces), std::invalid_argument);
 }
 
 }  // namespace
