@@ -220,8 +220,8 @@ TEST(Library, ABallsSetsAreChosenByLoft) {
   const std::string blow = kBlow + "[head]\nname = \"iron-7\"\n[ball]\nmodel = \"mine\"\n";
   const auto stiffness = [&](const std::vector<std::string>& set) {
     CaseFile file = case_of(dir, blow, set);
-    Blow blow;
-    return read_options(file.root(), {"volumetric"}, blow).volumetric.stiffness;
+    Blow read;
+    return read_options(file.root(), {"volumetric"}, read).volumetric.stiffness;
   };
   EXPECT_EQ(stiffness({}), 8e9);
   EXPECT_EQ(stiffness({"delivery.dynamic_loft_deg=12"}), 7e9);
