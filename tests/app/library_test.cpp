@@ -110,9 +110,9 @@ TEST(Library, ACaseTakesAHeadAndChangesSingleValues) {
   // Its face, the case's own, none.
   const auto face = [&](const std::string& more) {
     CaseFile c = case_of(dir, kBlow + "[head]\nname = \"driver-460\"\n[contact]\nface_friction = 0.3\n" + more);
-    Blow blow;
-    read_options(c.root(), {"fe-free-body"}, blow);
-    return blow.club.head.compliance;
+    Blow read;
+    read_options(c.root(), {"fe-free-body"}, read);
+    return read.club.head.compliance;
   };
   ASSERT_TRUE(face(""));
   EXPECT_EQ(face("")->stiffness, find_face(entry.face)->face.stiffness);
