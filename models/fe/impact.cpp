@@ -29,7 +29,7 @@ std::unique_ptr<const fem::FrictionLaw> friction_law(const PatchFriction& fricti
 /// Ball, face and contact, behind a head or wall that carries the face. `free`: the carrier may leave the blow's plane
 /// of symmetry.
 void add_contact(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o, const fem::SurfaceCarrier& carrier,
-              bool free) {
+                 bool free) {
   const ContactFrame& e = out.frame;
   const Head& head = blow.club.head;
   if (o.face && head.compliance) throw std::invalid_argument("fe impact: a face is lumped or a plate, not both");
