@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/reader.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::app {
 

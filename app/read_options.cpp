@@ -1,6 +1,7 @@
 #include "app/read_options.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "app/check_memory.hpp"
 #include "app/library.hpp"
@@ -12,10 +13,10 @@
 namespace hosel::app {
 namespace {
 
-models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>& face) {
+models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
+                                std::shared_ptr<const models::PlateOnDemand>& made) {
   models::FeImpactOptions o;
-  o.face = face;
-  if (auto plate = read_optional_plate(root)) o.plate = std::make_shared<const models::PlateOnDemand>(*plate);
+  if (auto plate = read_optional_plate(root)) o.face = made = std::make_shared<const models::PlateOnDemand>(*plate);
   if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
   if (root.has("accuracy")) {
     o.resolve(accuracy_named(
@@ -26,15 +27,17 @@ models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>&
   const std::optional<NamedContact> named = named_contact(root);
   const bool stated = named && named->face_friction;
   Table contact = stated ? root.default_table("contact") : root.table("contact");
-  o.friction = contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"},
-                              {0, 5}, stated ? named->face_friction : std::nullopt);
+  friction = {};
+  friction.coefficient =
+      contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"}, {0, 5},
+                     stated ? named->face_friction : std::nullopt);
   if (contact.has_quantity("face_transition_speed"))
-    o.transition_speed = contact.quantity(
+    friction.transition_speed = contact.quantity(
         {"face_transition_speed",
          "regularised friction: slip speed at which it is fully developed; absent: sticking on a spring"},
         "mps", Range::positive());
   if (contact.has("face_static_friction"))
-    o.static_friction = {
+    friction.at_rest = {
         contact.number({"face_static_friction", "coefficient at a point that has not slid yet; absent: as sliding"},
                        {0, 5}),
         contact.quantity({"face_slip_distance", "slip over which friction falls from static to sliding by 1 - 1/e"},
@@ -81,7 +84,9 @@ models::FeImpactOptions read_fe(Table root, const std::optional<FaceCompliance>&
   o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
                                   {1e-14, 1e-2}, o.newton_relative);
   o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
-  if (const auto faults = o.faults(); !faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+  std::vector<std::string> faults = o.faults();
+  std::ranges::copy(friction.faults(), std::back_inserter(faults));
+  if (!faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
   check_memory(root, o);
   return o;
 }
@@ -161,7 +166,7 @@ models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::
   return law;
 }
 
-models::Options read_options(Table root, const std::vector<std::string>& models) {
+models::Options read_options(Table root, const std::vector<std::string>& models, Blow& blow) {
   models::Options options;
   const auto asked = [&](std::string_view name) { return std::ranges::find(models, name) != models.end(); };
   // The set that a model uses by default is echoed with the case: nobody is to guess whose ball it was.
@@ -175,8 +180,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
                      (root.has("contact") && root.table("contact").has("face_friction"));
   std::optional<NamedContact> named;
   if (overlap || asked("hertz-maw")) named = named_contact(root);
-  std::optional<FaceCompliance> face;
-  if (overlap || fe || there) face = read_club_face(root);
+  if (overlap || fe || there) blow.club.head.compliance = read_club_face(root);
   if (overlap && has_plate(root))
     root.table("face").fail(
         "plate",
@@ -229,8 +233,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models)
         t->fail("kind", "shaft-coupled knows a rigid joint and a hinge about YG; for others use fe-full-club");
       options.shaft_beam.hinged = joint.hinge_across();
     }
-  options.volumetric.face = face;
-  if (fe || there) options.fe = read_fe(root, face);
+  if (fe || there) options.fe = read_fe(root, blow.contact.patch, options.plate);
   return options;
 }
 

@@ -12,8 +12,9 @@
 
 namespace hosel::app {
 
-/// Reads the tables that the named models look at, and no others.
-models::Options read_options(Table root, const std::vector<std::string>& models);
+/// Reads the tables that the named models look at, and no others. What of them is the blow's goes there: the compliance
+/// of the head's face, friction on the patch of a deformable ball.
+models::Options read_options(Table root, const std::vector<std::string>& models, Blow& blow);
 
 /// Constants of the reduced models; without a standard each is required.
 models::VolumetricLaw read_volumetric_law(Table table, const std::optional<models::VolumetricLaw>& standard);

@@ -9,7 +9,7 @@
 
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "solvers/contact_newton.hpp"
 
 namespace {
@@ -45,18 +45,19 @@ double seconds(int repeats, const Work& work) {
 void Shares(benchmark::State& state) {
   for (auto _ : state) {
     const FeImpactOptions o = options(3, 3);
-    const FreeBodyImpact impact = assemble_free_body(oblique(), o);
-    FreeBodyImpact run = assemble_free_body(oblique(), o);
+    const ImpactBodies impact = Impact(o).assemble(oblique());
     FeImpactResult result;
     fem::State peak;
     double force = 0;
     const double whole = seconds(1, [&] {
-      result =
-          run_impact(run.system, run.parts, run.initial, o, run.encounter.normal_speed, [&](const ImpactView& view) {
-            if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
-          });
+      result = Impact(o)
+                   .run(oblique(),
+                        [&](const ImpactView& view) {
+                          if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
+                        })
+                   .result;
     });
-    impact.parts.contact->start(impact.initial);
+    impact.contact->start(impact.initial);
     fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
     const fem::Weights weights{1, 0, 1e10};
     solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth), all(impact.system);
@@ -65,7 +66,7 @@ void Shares(benchmark::State& state) {
     solvers::Factorisation lu;
     const auto touch = [&] {
       abrupt.clear();
-      impact.parts.contact->tangent(peak, weights, abrupt);
+      impact.contact->tangent(peak, weights, abrupt);
     };
     touch();
     smooth.assemble(impact.system, peak, weights);
@@ -76,8 +77,8 @@ void Shares(benchmark::State& state) {
       return;
     }
     lu.factorise(all);
-    const double ball = seconds(20, [&] { impact.parts.ball->residual(peak, inertia, internal); });
-    const double contact = seconds(20, [&] { impact.parts.contact->residual(peak, inertia, internal); });
+    const double ball = seconds(20, [&] { impact.ball->residual(peak, inertia, internal); });
+    const double contact = seconds(20, [&] { impact.contact->residual(peak, inertia, internal); });
     const double assembly = seconds(5, [&] { smooth.assemble(impact.system, peak, weights); });
     const double factorisation = seconds(5, [&] { factors.factorise(smooth, abrupt.touched(), apart); });
     const double dense = seconds(20, [&] {
@@ -85,7 +86,7 @@ void Shares(benchmark::State& state) {
       const auto m = static_cast<Eigen::Index>(factors.kept().size());
       benchmark::DoNotOptimize((factors.schur() + abrupt.on(factors.places(), m)).partialPivLu().matrixLU().sum());
     });
-    const double stock = seconds(5, [&] { benchmark::DoNotOptimize(impact.parts.ball->energies(peak)); });
+    const double stock = seconds(5, [&] { benchmark::DoNotOptimize(impact.ball->energies(peak)); });
     const fem::Vector right = smooth.gather(internal);
     const double solve = seconds(20, [&] {
       const fem::Vector half = factors.eliminate(right);
@@ -136,7 +137,7 @@ void AccuracyLevels(benchmark::State& state) {
     for (int i = 0; i < 2; ++i) {
       FeImpactOptions o;
       o.resolve(i ? Accuracy::reference : static_cast<Accuracy>(state.range(0)));
-      cost[i] = seconds(1, [&] { launch[i] = solve_free_body(blow, o).launch; });
+      cost[i] = seconds(1, [&] { launch[i] = Impact(o).run(blow).launch; });
     }
     const auto angle = [](const Launch& l) { return std::atan2(l.velocity.z(), l.velocity.x()); };
     state.counters["seconds"] = cost[0];
@@ -166,7 +167,7 @@ void TwoCores(benchmark::State& state) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(1 + i % 2));
       double start[3];
       for (int k = 0; k < 3; ++k) start[k] = now(kClocks[k]);
-      benchmark::DoNotOptimize(solve_free_body(blow, o).launch);
+      benchmark::DoNotOptimize(Impact(o).run(blow).launch);
       for (int k = 0; k < 3; ++k) spent[k][i % 2] += now(kClocks[k]) - start[k];
     }
     state.counters["wall_one_over_two"] = spent[0][0] / spent[0][1];
@@ -182,17 +183,18 @@ void YieldingFace(benchmark::State& state) {
   blow.club.head = {
       .mass = 0.2, .cg = Vec3(-0.035, 0, 0.004), .inertia = Vec3(2e-4, 3e-4, 4.5e-4).asDiagonal(), .face = {0.4, 0.35}};
   blow.delivery = {.club_speed = 50, .dynamic_loft = radians(10), .impact_toe = 0.015, .impact_high = 0.004};
-  FeImpactOptions rigid;
-  rigid.resolve(static_cast<Accuracy>(state.range(0)));
-  FeImpactOptions yielding = rigid;
-  yielding.face = find_face("modern-driver")->face;
+  FeImpactOptions o;
+  o.resolve(static_cast<Accuracy>(state.range(0)));
+  const Impact impact(o);
+  Blow yielding = blow;
+  yielding.club.head.compliance = find_face("modern-driver")->face;
   for (auto _ : state) {
     using Counts = solvers::GeneralizedAlpha::Counts;
     double cpu[2] = {};
     Counts counts[2];
     for (int i = 0; i < 8; ++i) {
       const std::clock_t start = std::clock();
-      counts[i % 2] = solve_free_body(blow, i % 2 ? yielding : rigid).result.counts;
+      counts[i % 2] = impact.run(i % 2 ? yielding : blow).result.counts;
       cpu[i % 2] += double(std::clock() - start) / CLOCKS_PER_SEC / 4;
     }
     state.counters["rigid_s"] = cpu[0];
@@ -214,7 +216,7 @@ void Growth(benchmark::State& state) {
       Blow b = oblique();
       if (state.range(0) == 0) b.delivery.club_path = 0;
       cost[i] = seconds(1, [&] {
-        solve_free_body(b, o, [&](const ImpactView& view) { nodes[i] = double(view.ball.mesh().nodes.size()); });
+        Impact(o).run(b, [&](const ImpactView& view) { nodes[i] = double(view.ball.mesh().nodes.size()); });
       });
     }
     state.counters["exponent"] = std::log(cost[1] / cost[0]) / std::log(nodes[1] / nodes[0]);
@@ -228,7 +230,7 @@ BENCHMARK(Growth)->Arg(0)->Arg(2)->ArgName("harmonics")->Iterations(1)->Unit(ben
 void GrowthOverHarmonics(benchmark::State& state) {
   for (auto _ : state) {
     double cost[2];
-    for (int i = 0; i < 2; ++i) cost[i] = seconds(1, [&] { solve_free_body(oblique(), options(3, 3 + 3 * i)); });
+    for (int i = 0; i < 2; ++i) cost[i] = seconds(1, [&] { Impact(options(3, 3 + 3 * i)).run(oblique()); });
     state.counters["exponent"] = std::log2(cost[1] / cost[0]);
     state.counters["seconds"] = cost[1];
   }

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kYoung = 60e6, kRadius = 0.021335, kMass = 0.04593;
 
-struct Impact {
+struct ThrownSphere {
   double nu = 0.3, v_n = 0, v_t = 0, friction = 0;  ///< [-, m/s, m/s, -]
   bool finite = false;                              ///< St Venant-Kirchhoff, else linear
   mesh::MeridianOptions mesh;
@@ -51,7 +51,7 @@ double cpu_seconds(int who) {
 
 /// CalculiX input in mm, N, s, t: z along the ball's axis, the contact pole down, x along the slip, y across it.
 /// Returns the places of the plate's nodes.
-std::map<int, Vec3> write_deck(const Impact& impact, const fs::path& path) {
+std::map<int, Vec3> write_deck(const ThrownSphere& impact, const fs::path& path) {
   const mesh::Meridian m = mesh::sphere_meridian({1e3 * kRadius}, impact.mesh);
   const double half = impact.span / (2 * impact.sectors);  // angle between planes of nodes
   const bool wedge = impact.sectors == 1;
@@ -142,7 +142,7 @@ std::map<int, Vec3> write_deck(const Impact& impact, const fs::path& path) {
 }
 
 /// Momentum and angular momentum from the forces on the plate's nodes.
-Answer read_answer(const Impact& impact, const fs::path& path, const std::map<int, Vec3>& plate) {
+Answer read_answer(const ThrownSphere& impact, const fs::path& path, const std::map<int, Vec3>& plate) {
   const double share = impact.span / (2 * kPi), mass = kMass * share;
   std::ifstream in(path);
   std::string line;
@@ -182,7 +182,7 @@ Answer read_answer(const Impact& impact, const fs::path& path, const std::map<in
   return out;
 }
 
-std::optional<Answer> calculix(const Impact& impact) {
+std::optional<Answer> calculix(const ThrownSphere& impact) {
   const fs::path dir = fs::temp_directory_path() / fmt::format("hosel_calculix_{}", getpid());
   fs::create_directories(dir);
   const auto plate = write_deck(impact, dir / "impact.inp");
@@ -199,25 +199,24 @@ std::optional<Answer> calculix(const Impact& impact) {
   return out;
 }
 
-Answer hosel(const Impact& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps, double penalty) {
+Answer hosel(const ThrownSphere& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps, double penalty) {
   FeImpactOptions o;
   const fem::Lame lame = fem::Lame::of(kYoung, impact.nu);
   fem::Solid rubber{.elastic = fem::LinearElastic{lame}, .branches = {}, .density = 1129};
   if (impact.finite) rubber.elastic = fem::StVenantKirchhoff{lame};
   o.ball = elastic_ball("sphere", rubber);
-  o.friction = impact.friction;
   o.mesh = mesh;
   o.harmonics = harmonics;
   o.steps_per_contact = steps;
   o.penalty = penalty;
   o.newton_relative = 1e-5;
   const double before = cpu_seconds(RUSAGE_SELF);
-  const test::Bounce b = test::bounce(o, impact.v_n, impact.v_t);
+  const test::Bounce b = test::bounce(o, impact.v_n, impact.v_t, impact.friction);
   return {b.v_n, b.v_t, b.rim, b.peak_force, cpu_seconds(RUSAGE_SELF) - before};
 }
 
-void report(benchmark::State& state, const Impact& impact, const mesh::MeridianOptions& mesh, int harmonics, int steps,
-            double penalty) {
+void report(benchmark::State& state, const ThrownSphere& impact, const mesh::MeridianOptions& mesh, int harmonics,
+            int steps, double penalty) {
   for (auto _ : state) {
     if (std::system("command -v ccx > /dev/null") != 0) {
       state.SkipWithError("CalculiX is not installed (apt-get install calculix-ccx)");

@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace {
@@ -24,16 +24,16 @@ void FullClub(benchmark::State& state) {
   blow.club = test::driver_club();
   blow.club.shaft->damping_time = 2 * 0.01 / (2 * kPi * 1000);
   blow.delivery = {.club_speed = 45, .dynamic_loft = radians(11), .impact_toe = 0.02};
-  FeFullClubOptions options;
-  options.impact.harmonics = 2;
-  options.impact.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
-  options.impact.steps_per_contact = 60;
+  FeImpactOptions options;
+  options.harmonics = 2;
+  options.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
+  options.steps_per_contact = 60;
   for (auto _ : state) {
     double cpu[2] = {};
     for (int i = 0; i < 6; ++i)
       cpu[i % 2] += seconds([&] {
-        benchmark::DoNotOptimize(i % 2 ? solve_full_club(blow, options).launch
-                                       : solve_free_body(blow, options.impact).launch);
+        benchmark::DoNotOptimize(i % 2 ? Impact(options, ShaftMount{}).run(blow).launch
+                                       : Impact(options).run(blow).launch);
       });
     state.counters["free_body_s"] = cpu[0] / 3;
     state.counters["full_club_over_free_body"] = cpu[1] / cpu[0];

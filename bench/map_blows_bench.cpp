@@ -7,7 +7,7 @@
 
 #include "golf/shaft_library.hpp"
 #include "golf/units.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 
 namespace {
 using namespace hosel;
@@ -29,11 +29,11 @@ void MapBlows(benchmark::State& state) {
   blow.delivery = {.club_speed = 45, .attack_angle = radians(3.0), .dynamic_loft = radians(13.0)};
   blow.ball.mass = 0.04593;
   blow.ball.radius = 0.0213;
-  FeFullClubOptions options;
-  options.impact.harmonics = options.impact.mesh.sector = options.impact.mesh.rings = 2;
-  options.impact.antisymmetric = 1;
-  options.impact.steps_per_contact = 30;
-  solve_full_club(blow, options);
+  FeImpactOptions options;
+  options.harmonics = options.mesh.sector = options.mesh.rings = 2;
+  options.antisymmetric = 1;
+  options.steps_per_contact = 30;
+  Impact(options, ShaftMount{}).run(blow);
   for (auto _ : state) {
     double cpu[2] = {};
     for (const double toe : {-0.0375, 0.0, 0.01875})
@@ -42,8 +42,8 @@ void MapBlows(benchmark::State& state) {
           blow.delivery.impact_toe = toe;
           blow.delivery.impact_high = high;
           const std::clock_t start = std::clock();
-          benchmark::DoNotOptimize(club ? solve_full_club(blow, options).launch
-                                        : solve_free_body(blow, options.impact).launch);
+          benchmark::DoNotOptimize(club ? Impact(options, ShaftMount{}).run(blow).launch
+                                        : Impact(options).run(blow).launch);
           cpu[club] += double(std::clock() - start) / CLOCKS_PER_SEC / 6;
         }
     state.counters["free_body_cpu_ms"] = 1e3 * cpu[0];

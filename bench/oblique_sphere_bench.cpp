@@ -13,10 +13,9 @@ namespace {
 using namespace hosel;
 using namespace hosel::models;
 
-FeImpactOptions sphere(const fem::Solid& material, double friction, int harmonics, const mesh::MeridianOptions& mesh) {
+FeImpactOptions sphere(const fem::Solid& material, int harmonics, const mesh::MeridianOptions& mesh) {
   FeImpactOptions o;
   o.ball = elastic_ball("sphere", material);
-  o.friction = friction;
   o.harmonics = harmonics;
   o.mesh = mesh;
   o.tangential_penalty = 1;
@@ -61,12 +60,12 @@ void HalfSphere(benchmark::State& state) {
   if (row.speed == 1) mesh.pole = .13, mesh.far = 4, mesh.skin = .15;
   FeImpactOptions o =
       sphere({.elastic = fem::StVenantKirchhoff{fem::Lame::of(60e6, .3)}, .branches = {}, .density = 1129},
-             row.friction, row.speed == 10 ? 3 : 2, mesh);
+             row.speed == 10 ? 3 : 2, mesh);
   o.penalty = 4000;
   o.steps_per_contact = 120;
   const double angle = radians(row.angle);
   for (auto _ : state)
-    against(state, test::bounce(o, row.speed * std::cos(angle), row.speed * std::sin(angle)), row.found);
+    against(state, test::bounce(o, row.speed * std::cos(angle), row.speed * std::sin(angle), row.friction), row.found);
 }
 BENCHMARK(HalfSphere)->DenseRange(0, 7)->ArgName("row")->Iterations(1)->Unit(benchmark::kSecond);
 
@@ -75,7 +74,7 @@ BENCHMARK(HalfSphere)->DenseRange(0, 7)->ArgName("row")->Iterations(1)->Unit(ben
 void GolfLike(benchmark::State& state) {
   const bool steep = state.range(0) == 20;
   FeImpactOptions o =
-      sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .4, 4,
+      sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, 4,
              {.sector = 4, .rings = 4, .pole = .5, .skin = .5});
   o.tilt = steep ? .06 : .2;
   o.penalty = 1000;
@@ -108,14 +107,14 @@ void SmallPatch(benchmark::State& state) {
                       {.031, 1, -.497, {.sector = 10, .rings = 14, .pole = .045, .far = 14, .skin = .02}, 4000},
                       {.0125, 1, -.454, {.sector = 10, .rings = 17, .pole = .018, .far = 30, .skin = .008}, 10000}};
   const Row& row = rows[state.range(0)];
-  FeImpactOptions o = sphere(
-      {.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, .1, 2, row.mesh);
+  FeImpactOptions o =
+      sphere({.elastic = fem::LinearElastic{fem::Lame::of(100e6, .49)}, .branches = {}, .density = 1129}, 2, row.mesh);
   o.penalty = row.penalty;
   o.steps_per_contact = 60;
   constexpr double kappa = 2 * .51 / 1.51;
   const double v = .3 * std::pow(row.radius / .079, 2.5);  // Hertz: a^2 = R d, d ~ v^0.8
   for (auto _ : state) {
-    const test::Bounce b = test::bounce(o, v, row.psi1 * .1 / kappa * v);
+    const test::Bounce b = test::bounce(o, v, row.psi1 * .1 / kappa * v, .1);
     state.counters["a_over_R"] = row.radius;
     state.counters["psi1"] = row.psi1;
     state.counters["psi2"] = kappa / .1 * (b.v_t - b.rim) / v;

@@ -57,10 +57,9 @@ BENCHMARK(Volumetric)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
 
 /// With a face that yields, and what that costs.
 void VolumetricOnAFace(benchmark::State& state) {
-  const Blow b = blow(0.014);
-  models::VolumetricLaw law;
-  law.face = find_face("modern-driver")->face;
-  for (auto _ : state) benchmark::DoNotOptimize(models::volumetric_impact(b, law).launch);
+  Blow b = blow(0.014);
+  b.club.head.compliance = find_face("modern-driver")->face;
+  for (auto _ : state) benchmark::DoNotOptimize(models::volumetric_impact(b, {}).launch);
 }
 BENCHMARK(VolumetricOnAFace)->Unit(benchmark::kMicrosecond);
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "golf/units.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 int main() {
   using namespace hosel;
@@ -19,15 +19,12 @@ int main() {
   options.steps_per_contact = 30;
 
   double largest = 0, end = 0;
-  const models::FeOutcome out = models::FeFreeBody(options).solve(
-      blow,
-      [&](const models::ImpactView& now) {
-        largest = std::max(largest, now.report.normal_force);
-        end = now.state.time;
-        std::printf("%.3f ms  %8.0f N  patch %5.1f mm2\n", 1e3 * now.state.time, now.report.normal_force,
-                    1e6 * now.report.area);
-      },
-      nullptr);
+  const models::FeOutcome out = models::Impact(options).run(blow, [&](const models::ImpactView& now) {
+    largest = std::max(largest, now.report.normal_force);
+    end = now.state.time;
+    std::printf("%.3f ms  %8.0f N  patch %5.1f mm2\n", 1e3 * now.state.time, now.report.normal_force,
+                1e6 * now.report.area);
+  });
   std::printf("ball speed %.1f m/s, backspin %.0f rpm, contact %.2f ms, energy ledger closes to %.1e\n",
               out.launch.ball_speed(), rpm(out.launch.backspin()), 1e3 * out.result.contact_time,
               std::abs(out.result.ledger.closure) / out.result.ledger.initial);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace {
 
@@ -76,7 +76,7 @@ int main() {
   options.ball = models::elastic_ball("gent", rubber);
   options.harmonics = 0;
   options.mesh = {.sector = 3, .rings = 3, .pole = 0.4, .skin = 0.5, .core = 0.4};
-  const models::FeOutcome out = models::solve_free_body(drop, options);
+  const models::FeOutcome out = models::Impact(options).run(drop);
   const double e = out.launch.velocity.x() / 30 - 1;
   std::printf("restitution %.3f, contact %.3f ms, largest force %.1f kN\n", e, 1e3 * out.result.contact_time,
               1e-3 * out.result.peak_force);

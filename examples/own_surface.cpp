@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/face_surface.hpp"
 #include "fem/materials/hyperelastic.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace {
 
@@ -32,45 +31,36 @@ class Sphere final : public fem::ContactSurface {
   double radius_;
 };
 
-models::FeImpactResult drop_on(std::unique_ptr<const fem::ContactSurface> surface, double speed) {
-  const Ball ball;
-  const fem::Solid rubber{.elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, 0.45)),
-                          .branches = {},
-                          .density = ball.mass / (4.0 / 3 * M_PI * std::pow(ball.radius, 3))};
+/// The face that has it.
+class Post final : public models::StruckFace {
+ public:
+  bool symmetric(models::Mirror, const Face&) const override { return true; }
+  models::FaceInSystem add(fem::System&, const models::FaceBlow& struck) const override {
+    return {.surface = std::make_unique<Sphere>(struck.blow.ball.radius)};
+  }
+};
+
+/// Without a face of its own the wall is flat.
+models::FeImpactResult drop_on(std::shared_ptr<const models::StruckFace> face, double speed) {
+  const fem::Solid rubber{
+      .elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(100e6, 0.45)), .branches = {}, .density = 1129};
   models::FeImpactOptions options;
   options.ball = models::elastic_ball("rubber", rubber);
+  options.face = std::move(face);
   options.harmonics = 0;
-  const mesh::MeridianOptions fine{.sector = 6, .rings = 4, .pole = 0.2, .skin = 0.3, .core = 0.4};
-
-  fem::System system;
-  // The pole that touches looks along -X, towards the surface.
-  Mat3 axes;
-  axes.col(0) = -Vec3::UnitX();
-  axes.col(1) = Vec3::UnitZ();
-  axes.col(2) = axes.col(0).cross(axes.col(1));
-  auto solid = std::make_unique<fem::HarmonicSolid>(
-      system.dof_map, mesh::sphere_meridian({ball.radius}, fine), fem::axisymmetric_basis(),
-      fem::SolidQuadrature{fem::single_angle(), 2}, std::vector{rubber}, fem::Placement{Vec3::Zero(), axes});
-  fem::SurfaceCarrier still;
-  still.position = Vec3(-ball.radius, 0, 0);
-  fem::ContactLaws laws{.normal_stiffness = options.penalty * options.ball.instant_young() / ball.radius,
-                        .friction = nullptr};
-  auto contact = std::make_unique<fem::Contact>(*solid, std::move(surface), still, std::move(laws), fem::single_angle(),
-                                                fem::Symmetry::axis);
-  const models::BallOnFace parts{solid.get(), contact.get()};
-  system.terms.push_back(std::move(solid));
-  system.terms.push_back(std::move(contact));
-  fem::State initial = system.dof_map.rest();
-  parts.ball->set_velocity(initial, Vec3(-speed, 0, 0), Vec3::Zero());
-  return models::run_impact(system, parts, initial, options, speed);
+  options.mesh = {.sector = 6, .rings = 4, .pole = 0.2, .skin = 0.3, .core = 0.4};
+  Blow drop;
+  drop.club.head.mass = INFINITY;
+  drop.delivery.club_speed = speed;
+  return models::Impact(options).run(drop).result;
 }
 
 }  // namespace
 
 int main() {
   const double speed = 2;
-  const auto wall = drop_on(std::make_unique<fem::FaceSurface>(Face{}), speed);
-  const auto post = drop_on(std::make_unique<Sphere>(Ball{}.radius), speed);
+  const auto wall = drop_on(nullptr, speed);
+  const auto post = drop_on(std::make_shared<Post>(), speed);
   const double force = post.peak_force / wall.peak_force, time = post.contact_time / wall.contact_time;
   const double hertz = std::pow(0.5, 0.2);
   std::printf("wall %.0f N, %.3f ms; sphere %.0f N, %.3f ms\n", wall.peak_force, 1e3 * wall.contact_time,

@@ -111,39 +111,19 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     frames_.push_back(frame);
   }
 
-  const auto rule = mesh::gauss(quadrature_.points), mass_rule = mesh::gauss(3);
-  const auto shape = [&](const std::array<int, 8>& element, double x, double y, double w) {
-    const mesh::Q8 q = mesh::Q8::at(x, y);
-    Eigen::Matrix<double, 8, 2> nodes;
-    for (int i = 0; i < 8; ++i)
-      nodes.row(i) = mesh_.nodes[static_cast<std::size_t>(element[static_cast<std::size_t>(i)])];
-    const Eigen::Matrix2d jacobian = q.derivative.transpose() * nodes;  // rows d/dxi, d/deta
-    const double det = jacobian.determinant();
-    if (!(det > 0)) throw std::invalid_argument("harmonic solid: an element of the mesh is turned inside out");
-    const Eigen::Matrix<double, 8, 2> gradient = q.derivative * jacobian.inverse().transpose();
-    Point p{q.value, gradient.col(0), gradient.col(1), nodes.col(1).dot(q.value), 0};
-    p.weight = det * w * p.rho;
-    return p;
-  };
+  const auto rule = mesh::gauss(quadrature_.points);
   std::size_t start = 0;
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
     for (const auto& [y, wy] : rule)
       for (const auto& [x, wx] : rule) {
-        Point p = shape(mesh_.elements[e], x, y, wx * wy);
+        Point p = point(mesh_, e, x, y, wx * wy);
         p.weight *= angles.weight;
         points_.push_back(p);
         history_start_.push_back(start);
         start += static_cast<std::size_t>(material.history_size() * n);
       }
-    Eigen::Matrix<double, 8, 8> m = Eigen::Matrix<double, 8, 8>::Zero();
-    for (const auto& [y, wy] : mass_rule)
-      for (const auto& [x, wx] : mass_rule) {
-        const Point p = shape(mesh_.elements[e], x, y, wx * wy);
-        m += material.density * p.weight * p.value * p.value.transpose();
-        volume_ += 2 * M_PI * p.weight;
-      }
-    element_mass_.push_back(m);
+    element_mass_.push_back(element_mass(mesh_, e, material.density));
   }
   history_.assign(start, 0);
   const std::size_t per = points_per_element();
@@ -186,6 +166,33 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     }
     mean_gradient_ /= total;
   }
+}
+
+HarmonicSolid::Point HarmonicSolid::point(const mesh::Meridian& mesh, std::size_t element, double x, double y,
+                                          double w) {
+  const mesh::Q8 q = mesh::Q8::at(x, y);
+  Eigen::Matrix<double, 8, 2> nodes;
+  for (int i = 0; i < 8; ++i)
+    nodes.row(i) = mesh.nodes[static_cast<std::size_t>(mesh.elements[element][static_cast<std::size_t>(i)])];
+  const Eigen::Matrix2d jacobian = q.derivative.transpose() * nodes;  // rows d/dxi, d/deta
+  const double det = jacobian.determinant();
+  if (!(det > 0)) throw std::invalid_argument("harmonic solid: an element of the mesh is turned inside out");
+  const Eigen::Matrix<double, 8, 2> gradient = q.derivative * jacobian.inverse().transpose();
+  Point p{q.value, gradient.col(0), gradient.col(1), nodes.col(1).dot(q.value), 0};
+  p.weight = det * w * p.rho;
+  return p;
+}
+
+Eigen::Matrix<double, 8, 8> HarmonicSolid::element_mass(const mesh::Meridian& mesh, std::size_t element,
+                                                        double density) {
+  const auto rule = mesh::gauss(3);
+  Eigen::Matrix<double, 8, 8> m = Eigen::Matrix<double, 8, 8>::Zero();
+  for (const auto& [y, wy] : rule)
+    for (const auto& [x, wx] : rule) {
+      const Point p = point(mesh, element, x, y, wx * wy);
+      m += density * p.weight * p.value * p.value.transpose();
+    }
+  return m;
 }
 
 Index HarmonicSolid::offset(int node, Index k) const {
@@ -651,6 +658,13 @@ Vec3 HarmonicSolid::centre(const State& s) const {
 double HarmonicSolid::mass() const {
   double m = 0;
   for (const auto& e : element_mass_) m += 2 * M_PI * e.sum();
+  return m;
+}
+
+double HarmonicSolid::mass(const mesh::Meridian& mesh, const std::vector<Solid>& materials) {
+  double m = 0;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    m += 2 * M_PI * element_mass(mesh, e, materials.at(static_cast<std::size_t>(mesh.layer[e])).density).sum();
   return m;
 }
 

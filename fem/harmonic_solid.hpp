@@ -84,8 +84,10 @@ class HarmonicSolid final : public Term {
   void set_velocity(State& s, const Vec3& linear, const Vec3& angular) const;
 
   MeanMotion motion(const State& s) const;
-  Vec3 centre(const State& s) const;                                     ///< of mass alone, as motion() has it
-  double mass() const;                                                   ///< of the mesh [kg]
+  Vec3 centre(const State& s) const;  ///< of mass alone, as motion() has it
+  double mass() const;                ///< of the mesh [kg]
+  /// The same before there is a solid. Throws std::invalid_argument on an element that is turned inside out.
+  static double mass(const mesh::Meridian& mesh, const std::vector<Solid>& materials);
   const std::vector<double>& dissipated() const { return dissipated_; }  ///< by layer, cumulative [J]
   std::vector<double> strain_by_layer(const State& accepted) const;      ///< [J]
   /// Largest |strain| measure max |eigenvalue of F^T F - 1|/2 over all points.
@@ -96,6 +98,8 @@ class HarmonicSolid final : public Term {
     Eigen::Matrix<double, 8, 1> value, ds, drho;
     double rho = 0, weight = 0;  // of the meridian area times rho times the angular weight
   };
+  static Point point(const mesh::Meridian& mesh, std::size_t element, double xi, double eta, double weight);
+  static Eigen::Matrix<double, 8, 8> element_mass(const mesh::Meridian& mesh, std::size_t element, double density);
   struct Direction {  // the functions with a component along one Cartesian axis
     std::vector<Index> functions;
     Eigen::MatrixXd value, derivative;  // that component at each angle: angles x functions
@@ -136,7 +140,6 @@ class HarmonicSolid final : public Term {
   Eigen::MatrixXd gram_;             // integral of f_k . f_l over theta
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
-  double volume_ = 0;
 
   double time_ = 0;                         // of the last accepted state
   std::vector<std::size_t> history_start_;  // of each meridian point

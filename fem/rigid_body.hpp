@@ -31,6 +31,8 @@ class RigidBody final : public Term {
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   Energies energies(const State& accepted) const override;
   void commit(const State& accepted) override;
+  void save(std::vector<double>& history) const override;
+  void restore(std::span<const double>& history) override;
 
   const RigidBodyProperties& properties() const { return properties_; }
   Vec3 position(const State& s) const;          ///< of the centre of gravity, global [m]

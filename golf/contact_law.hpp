@@ -1,11 +1,31 @@
-/// What a model with an impact law (rather than a deformable ball) declares of the contact.
-/// The defaults are the base models of the specification: linear restitution law, sticking.
+/// The contact of a blow: the impact law of the models that have one, and friction on the patch of a deformable ball.
 #pragma once
 
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace hosel {
 
+/// What holds a point that has not slid yet.
+struct StaticFriction {
+  double coefficient = 0;  ///< [-]
+  double distance = 0;     ///< of slip over which what it has beyond sliding friction falls to 1/e [m]
+};
+
+/// Between a point of a deformable ball and the face.
+struct PatchFriction {
+  double coefficient = 0.4;                     ///< Coulomb's, of sliding [-]
+  std::optional<double> transition_speed = {};  ///< where set, friction is regularised by velocity [m/s]
+  std::optional<StaticFriction> at_rest = {};   ///< where set, what holds a point until it has slid some way
+
+  /// Sentences naming what cannot be; empty if all is well.
+  std::vector<std::string> faults() const;
+};
+
+/// The impact law's defaults: linear restitution law, sticking.
 struct ContactLaw {
   /// Normal coefficient of restitution e = level + slope * approach speed.
   double restitution = 0.86;           ///< level [-]
@@ -19,6 +39,8 @@ struct ContactLaw {
   /// The normal impulse passes this far above the ball's centre (towards the slip direction of the
   /// face's pull), as a fraction of the ball radius; positive adds spin.
   double normal_force_offset = 0;  ///< [-]
+  /// Of a finite-element ball, which knows none of the above.
+  PatchFriction patch = {};
 
   double normal_restitution(double approach_speed, double distance_from_centre) const {
     return restitution + restitution_slope * approach_speed -

@@ -19,6 +19,8 @@ std::vector<std::string> Head::faults() const {
   else if (principal[2] > (principal[0] + principal[1]) * (1 + 1e-9))
     said.push_back("the largest principal moment of inertia exceeds the sum of the others");
   if (!(face.bulge > 0) || !(face.roll > 0)) said.push_back("bulge and roll radii must be positive");
+  if (compliance)
+    for (const auto& fault : compliance->faults()) said.push_back(fault);
   return said;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/shaft_coupled.hpp"
 #include "models/rigid/hertz_maw.hpp"
 #include "models/rigid/hinged_head.hpp"
@@ -21,7 +21,7 @@ namespace {
 /// What a model's blow may gain by its numerics, of the energy with which head and ball meet. A shaft that the swing
 /// has loaded, or that turns with the head, gives energy which the launch does not tell.
 double allowance(const ImpactModel& model, const Blow& blow) {
-  if (dynamic_cast<const FeFullClub*>(&model)) return 0.05;
+  if (const Impact* impact = model.impact()) return impact->whole_club() ? 0.05 : 0.005;
   if (const auto* coupled = dynamic_cast<const ShaftCoupled*>(&model))
     return coupled->loaded() || !blow.delivery.head_angular_velocity.isZero() ? 0.05 : 0.005;
   const bool closed = dynamic_cast<const RigidPlanar*>(&model) || dynamic_cast<const RigidEccentric*>(&model) ||

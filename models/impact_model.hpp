@@ -8,6 +8,8 @@
 
 namespace hosel::models {
 
+class Impact;
+
 class ImpactModel {
  public:
   virtual ~ImpactModel() = default;
@@ -15,6 +17,9 @@ class ImpactModel {
   /// Throws std::invalid_argument on a blow that cannot happen (the head moves away from the ball),
   /// solvers::NonConvergence where a numerical model finds no answer.
   virtual Launch launch(const Blow& blow) const = 0;
+  /// Where the model is the finite-element impact: what can be watched step by step, and gone on with from where it
+  /// stopped. Else nullptr.
+  virtual const Impact* impact() const { return nullptr; }
 };
 
 }  // namespace hosel::models

@@ -24,9 +24,10 @@ std::optional<double> launch_ratio(const Blow& blow, const Launch& launch) {
   return (launch.launch_angle() - path) / (face - path);
 }
 
-Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double angle) {
+Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double angle, const ContactLaw& contact) {
   Blow blow;
   blow.ball = ball;
+  blow.contact = contact;
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = speed;  // the plate moves, the ball rests: the same thing
   blow.delivery.club_path = angle;

@@ -27,6 +27,6 @@ struct Bounce {
   double rebound_angle = 0;           ///< from the normal [rad]
 };
 /// The ball does not turn before the bounce. Throws what the model throws.
-Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double angle);
+Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double angle, const ContactLaw& contact = {});
 
 }  // namespace hosel::models

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "models/club/mounted_shaft.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
+#include "models/fe/plate_face.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "models/rigid/hertz_maw.hpp"
 
@@ -16,6 +17,7 @@ struct Options {
   HertzMawLaw hertz_maw;
   HertzMawOptions hertz_maw_solution;
   FeImpactOptions fe;
+  std::shared_ptr<const PlateOnDemand> plate = {};  ///< where `fe.face` is one
   ShaftMount shaft_mount;
 };
 

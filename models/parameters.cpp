@@ -63,7 +63,7 @@ constexpr std::array kParameters = {
     NamedParameter{"common_friction", "", 0.01, 2.0, [](const Options&, const Blow& b) { return b.contact.friction; },
                    [](Options& o, Blow& b, double x) {
                      b.contact.friction = o.volumetric.friction = o.volumetric.static_friction = o.hertz_maw.friction =
-                         o.fe.friction = x;
+                         b.contact.patch.coefficient = x;
                    }},
     PLAIN("hertz_modulus", "MPa", 1e6, 1e9, o.hertz_maw.modulus),
     PLAIN("hertz_poisson", "", 0.0, 0.5, o.hertz_maw.poisson),

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "models/fe/fe_full_club.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/shaft_coupled.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "models/rigid/hinged_head.hpp"
@@ -32,10 +31,8 @@ std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
 std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
   return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam, o.shaft_mount);
 }
-std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<FeFreeBody>(o.fe); }
-std::unique_ptr<ImpactModel> fe_full_club(const Options& o) {
-  return std::make_unique<FeFullClub>(FeFullClubOptions{o.fe, o.shaft_mount});
-}
+std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<Impact>(o.fe); }
+std::unique_ptr<ImpactModel> fe_full_club(const Options& o) { return std::make_unique<Impact>(o.fe, o.shaft_mount); }
 
 constexpr std::array kModels = {
     ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "golf/face.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::post {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "post/ball_section.hpp"
 #include "post/history.hpp"
 #include "post/moving_blow.hpp"

@@ -30,7 +30,6 @@ bool deforms(const std::string& body) { return body != "head" && body != "contac
 struct ImpactRecorder::State {
   fs::path directory;
   Blow blow;
-  Vec3 slip;  // of the face along the ball at first touch: the tangential force begins positive and reverses
   RecorderOptions options;
   VtkMesh face_shape, head_shape;
   std::optional<History> history;
@@ -73,7 +72,6 @@ ImpactRecorder::ImpactRecorder(fs::path directory, const Blow& blow, RecorderOpt
   s.directory = std::move(directory);
   s.options = options;
   s.blow = blow;
-  s.slip = models::encounter(blow).ball_axes.col(1);
   fs::create_directories(s.directory);
   remove_unfinished(s.directory);
   s.face_shape = face_mesh(blow.club.head.face, options.face_width, options.face_height);
@@ -117,13 +115,15 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
     s.history.emplace(s.history_file(), columns, s.resumed ? &s.resumed->history : nullptr);
   }
   const fem::SurfacePose face = view.face;
+  // Of the face along the ball at first touch: the tangential force begins positive and reverses.
+  const Vec3 slip = view.bodies.frame.ball_axes.col(1);
   const Vec3 force = face.axes.transpose() * view.report.force;
   std::vector<double> row = {view.state.time,
                              view.report.normal_force,
                              force.x(),
                              force.y(),
                              force.z(),
-                             view.report.force.dot(s.slip),
+                             view.report.force.dot(slip),
                              view.report.pressure,
                              view.report.area,
                              view.report.penetration,

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "golf/blow.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "post/ball_section.hpp"
 #include "post/moving_blow.hpp"
 

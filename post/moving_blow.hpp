@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "post/vtk_series.hpp"
 
 namespace hosel::post {

@@ -50,7 +50,7 @@ class Model {
     const models::ModelEntry* entry = models::find(name_);
     if (!entry) throw app::InputError(fmt::format("no model '{}'; `hosel list` shows them", name_));
     blow_ = app::read_blow(file.root(), {name_});
-    model_ = entry->make(app::read_options(file.root(), {name_}));
+    model_ = entry->make(app::read_options(file.root(), {name_}, blow_));
   }
 
   const std::string& name() const { return name_; }

@@ -50,7 +50,7 @@ class BallRuleJob final : public Job {
     for (const auto& m : models::registry()) names.emplace_back(m.name);
     const std::string model = root.choice({"model", "that answers (`hosel list`)"}, names);
     blow_ = read_blow(root, {model});
-    model_ = models::find(model)->make(read_options(root, {model}));
+    model_ = models::find(model)->make(read_options(root, {model}, blow_));
     setup_ = read_flight(root.table("flight"));
     if (!setup_.turf) root.fail("flight", "the rule limits the total distance: a [flight.turf] is needed");
     Table rule = root.table("rule");

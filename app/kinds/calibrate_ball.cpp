@@ -36,7 +36,7 @@ class CalibrateBallJob final : public Job {
     read_target(target);
     read_shots(root);
     if (problem_.bounce || !problem_.shots.empty())
-      options.friction =
+      problem_.friction.coefficient =
           root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
     options.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
@@ -246,7 +246,7 @@ class CalibrateBallJob final : public Job {
       shot.blow.delivery = read_delivery(t.table("delivery"));
       shot.blow.club.head = read_head(t.table("head"), true);
       const bool own_head = t.table("head").has("name");
-      shot.face = own_head || t.has("face") ? read_club_face(t) : face;
+      shot.blow.club.head.compliance = own_head || t.has("face") ? read_club_face(t) : face;
       auto own_shaft = t.optional_table("shaft");
       shot.blow.club.shaft = own_shaft ? std::optional(read_shaft(*own_shaft)) : shaft;
       shot.blow.club.geometry = own_head || t.has("hosel") ? read_club_geometry(t, false) : geometry;

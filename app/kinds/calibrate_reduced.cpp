@@ -85,8 +85,8 @@ class CalibrateReducedJob final : public Job {
   static Set read_set(Table root, std::size_t index) {
     const std::vector<std::string> models{"fe-free-body"};
     Set set;
-    const Blow base = read_blow(root, models);
-    set.fe = read_options(root, models).fe;
+    Blow base = read_blow(root, models);
+    set.fe = read_options(root, models, base).fe;
     if (auto face = root.optional_table("face"); face && face->has("name"))
       set.faces.push_back(face->text({"name", "a face of the library (`hosel list`)"}));
     Table t = root.tables("sets")[index];

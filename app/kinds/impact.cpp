@@ -16,7 +16,7 @@
 #include "golf/face_library.hpp"
 #include "golf/parallel.hpp"
 #include "models/checked_launch.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
 #include "models/reduced/face_strike.hpp"
@@ -53,8 +53,7 @@ class ImpactJob final : public Job {
 
   void run(Output& out) override {
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
-    if (fe && !own_.fe.face && !own_.fe.plate && models::wants_yielding_face(own_.blow.club.head))
-      out.say(rigid_face_costs());
+    if (fe && !own_.yields() && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
     if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
     if (flight_) flight_->show_in(out);
     nlohmann::json summary;
@@ -66,7 +65,7 @@ class ImpactJob final : public Job {
     for (const Entry& entry : own_.models) {
       blow = at_measured_launch(entry, own_.blow);
       nlohmann::json& said = summary["models"][entry.name];
-      if (const models::FeModel* model = entry.fe()) {
+      if (const models::Impact* model = entry.fe()) {
         const models::FeOutcome outcome = run_fe(out, entry.name, *model, blow, home(out, entry), files, runs);
         models::check_launch(*model, blow, outcome.launch);
         columns.push_back({entry.name, outcome.launch});
@@ -92,9 +91,8 @@ class ImpactJob final : public Job {
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
-    const ImpactStory story{
-        blow,       columns, measured_, table, runs, matched_, own_.fe.face || own_.fe.plate, flight_.has_value(),
-        record_.vtk};
+    const ImpactStory story{blow,     columns,       measured_,           table,      runs,
+                            matched_, own_.yields(), flight_.has_value(), record_.vtk};
     show_shaft(out, story);
     if (flight_)  // where the errors of the answer's carry come from; the other columns have theirs in the summary
       for (const post::LaunchColumn& c : columns) {
@@ -122,7 +120,7 @@ class ImpactJob final : public Job {
     std::string name;
     std::unique_ptr<models::ImpactModel> model;
     std::unique_ptr<models::ImpactModel> companion = nullptr;  ///< the same on coarser numerics
-    const models::FeModel* fe() const { return dynamic_cast<const models::FeModel*>(model.get()); }
+    const models::Impact* fe() const { return model->impact(); }
   };
   /// The case itself, or one that it is compared with.
   struct Side {
@@ -130,13 +128,14 @@ class ImpactJob final : public Job {
     Blow blow;
     models::FeImpactOptions fe;
     std::vector<Entry> models;
+    bool yields() const { return fe.face || blow.club.head.compliance; }
   };
 
   static Side read_side(Table root) {
     Side side;
     const std::vector<std::string> names = read_models(root);
     side.blow = read_blow(root, names);
-    const models::Options options = read_options(root, names);
+    const models::Options options = read_options(root, names, side.blow);
     side.fe = options.fe;
     for (const std::string& name : names) side.models.push_back({name, models::find(name)->make(options)});
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
@@ -232,10 +231,9 @@ class ImpactJob final : public Job {
   /// the widest heads of the rules of golf have (127 mm heel to toe, 71 mm high).
   std::string off_the_face() const {
     const double toe = own_.blow.delivery.impact_toe, high = own_.blow.delivery.impact_high;
-    const bool bounded = own_.fe.face && std::isfinite(own_.fe.face->half_width) &&
-                         std::isfinite(own_.fe.face->half_height);
-    const double width = bounded ? own_.fe.face->half_width : 0.0635,
-                 height = bounded ? own_.fe.face->half_height : 0.0355;
+    const std::optional<FaceCompliance>& face = own_.blow.club.head.compliance;
+    const bool bounded = face && std::isfinite(face->half_width) && std::isfinite(face->half_height);
+    const double width = bounded ? face->half_width : 0.0635, height = bounded ? face->half_height : 0.0355;
     const bool on = bounded ? std::hypot(toe / width, high / height) < 1
                             : std::abs(toe) <= width && std::abs(high) <= height;
     if (on) return {};
@@ -252,7 +250,7 @@ class ImpactJob final : public Job {
         models::mass_at(own_.blow.club.head, -own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high);
     const FaceCompliance face = find_face("modern-driver")->face;
     const double shape = face.shape(-own_.blow.delivery.impact_toe, own_.blow.delivery.impact_high).value;
-    const double speed = models::encounter(own_.blow).normal_speed;
+    const double speed = first_contact(own_.blow).closing_speed();
     const double gain = (1 + models::strike(ball, mass, face, shape, speed).restitution) /
                             (1 + models::strike(ball, mass, {}, 0, speed).restitution) -
                         1;
@@ -269,7 +267,7 @@ class ImpactJob final : public Job {
     return several ? out.directory() / entry.name : out.directory();
   }
 
-  models::FeOutcome run_fe(Output& out, const std::string& name, const models::FeModel& model, const Blow& blow,
+  models::FeOutcome run_fe(Output& out, const std::string& name, const models::Impact& model, const Blow& blow,
                            const fs::path& home, std::vector<fs::path>& files, std::vector<FeRun>& runs) const {
     if (out.force()) post::remove_file(home / "checkpoint.cbor");
     post::ImpactRecorder recorder(home, blow, record_,
@@ -279,13 +277,13 @@ class ImpactJob final : public Job {
                            1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
     const StopSignals stop;
-    const models::FeOutcome outcome = model.solve(
+    const models::FeOutcome outcome = model.run(
         blow,
         [&](const models::ImpactView& view) {
           recorder(view);
           stop.check();
           progress.update(
-              std::min(0.99, view.state.time / view.expected_end),
+              std::min(0.99, view.state.time / view.bodies.contact_time),
               fmt::format("t = {:.3f} ms, force {:.1f} kN", 1e3 * view.state.time, 1e-3 * view.report.normal_force));
         },
         recorder.resume());
@@ -294,9 +292,7 @@ class ImpactJob final : public Job {
     runs.push_back({name, home, outcome.result});
     runs.back().section = recorder.at_largest_force();
     runs.back().moving = recorder.moving();
-    if (record_.vtk)
-      runs.back().patch =
-          post::read_patch(home / "vtk", models::encounter(blow).ball_axes, models::mesh_axes(blow, own_.fe));
+    if (record_.vtk) runs.back().patch = post::read_patch(home / "vtk", outcome.frame.ball_axes, outcome.mesh_axes);
     return outcome;
   }
 
@@ -325,9 +321,9 @@ class ImpactJob final : public Job {
     const models::FeImpactResult& r = outcome.result;
     const double closure = r.ledger.closure / r.ledger.initial;
     // What the blow can change is the energy of the relative motion, not that of a head that flies on.
-    const models::Encounter e = models::encounter(blow);
     const double head = blow.club.head.mass, ball = blow.ball.mass;
-    const double relative = 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) * e.approach.squaredNorm();
+    const double relative = 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) *
+                            outcome.frame.approach.squaredNorm();
     const auto doubt = [&](const char* what, double value, double limit, const char* remedy) {
       if (std::abs(value) > limit)
         out.warn(fmt::format("{}: {} is {:.2g} (wanted: below {:g}): {}", name, what, value, limit, remedy));
@@ -339,7 +335,7 @@ class ImpactJob final : public Job {
           "a higher contact.tangential_penalty");
     // Pressure alone turns no sphere; but the ball is flattened, and a face that turns or dishes carries the flat
     // round.
-    if (const double spin = outcome.launch.spin.norm(); own_.fe.friction == 0 && spin > 1)
+    if (const double spin = outcome.launch.spin.norm(); own_.blow.contact.patch.coefficient == 0 && spin > 1)
       out.warn(
           fmt::format("{}: without friction the ball leaves with {:.1f} rad/s ({:.0f} rpm): the face turns or dishes "
                       "under the flattened ball; \"look\" is off by as much (docs/limits.md)",
@@ -363,7 +359,7 @@ class ImpactJob final : public Job {
                         {"factorisations", r.counts.factorisations},
                         {"worst_residual_of_forces", r.counts.worst_residual},
                         {"dissipated_by_layer_J", r.dissipated}};
-    if (own_.fe.face || own_.fe.plate) {
+    if (own_.yields()) {
       j["face_travel_mm"] = 1e3 * r.face_travel;
       j["face_energy_J"] = r.face_energy;
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/output.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "post/ball_section.hpp"
 #include "post/launch_table.hpp"
 #include "post/moving_blow.hpp"

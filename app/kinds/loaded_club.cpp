@@ -15,7 +15,7 @@
 #include "models/checked_launch.hpp"
 #include "models/club/hosel_load.hpp"
 #include "models/club/swing_end.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/shaft_coupled.hpp"
 #include "post/csv.hpp"
 #include "post/figure.hpp"
@@ -50,7 +50,7 @@ class LoadedClubJob final : public Job {
     // A condensed shaft knows no joint that gives: the reduced models are then not asked.
     std::vector<std::string> asked{"fe-free-body"};
     if (!swing_.joint.gives()) asked.emplace_back("volumetric");
-    solve_ = read_options(root, asked);
+    solve_ = read_options(root, asked, blow_);
     models::ShaftMount& mount = solve_.shaft_mount;
     mount.elements = swing_.elements;
     mount.growth = swing_.growth;
@@ -221,8 +221,8 @@ class LoadedClubJob final : public Job {
         if (view.shaft) a.hosel.add(*view.shaft, view.state);
         if (name == "club loaded") record(view);
       };
-      a.launch = mount ? models::solve_full_club(blow, {solve_.fe, *mount}, watch).launch
-                       : models::solve_free_body(blow, solve_.fe).launch;
+      a.launch = mount ? models::Impact(solve_.fe, *mount).run(blow, watch).launch
+                       : models::Impact(solve_.fe).run(blow).launch;
       answers.push_back(std::move(a));
     };
     fe("free body", nullptr);

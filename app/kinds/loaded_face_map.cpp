@@ -20,7 +20,7 @@
 #include "app/sweep.hpp"
 #include "models/checked_launch.hpp"
 #include "models/club/swing_end.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/shaft_coupled.hpp"
 #include "post/csv.hpp"
 #include "post/face_map.hpp"
@@ -57,6 +57,7 @@ constexpr std::array<const char*, 4> kPlaces = {"centre", "heel", "toe", "mean"}
 struct Setup {
   Club club;
   Ball ball;
+  ContactLaw contact;
   MotionInput motion;
   models::SwingOptions swing;
   models::Options solve;
@@ -130,7 +131,7 @@ class LoadedFaceMapJob final : public PointJob {
     const LoadedLayer& layer = layers_[work_[point].layer];
     const Setup& s = setups_[layer.setup];
     const models::SwingEnd& end = swung(s);
-    Blow blow{.delivery = end.delivery, .club = end.club, .ball = s.ball};
+    Blow blow{.delivery = end.delivery, .club = end.club, .ball = s.ball, .contact = s.contact};
     blow.delivery.impact_toe = grid_.toe_at(work_[point].place);
     blow.delivery.impact_high = grid_.high_at(work_[point].place);
     models::turn_place(end.lie, blow.delivery);
@@ -194,7 +195,10 @@ class LoadedFaceMapJob final : public PointJob {
     if (setup.swing.joint.kind == models::HeadJoint::Kind::none) root.fail("joint", "a blow needs a head on the shaft");
     if (s.reduced && setup.swing.joint.gives())
       root.fail("joint", "a condensed shaft does not know how far the swing turns a joint: model = \"finite-element\"");
-    setup.solve = read_options(root, {s.reduced ? "volumetric" : "fe-free-body"});
+    Blow blow;
+    setup.solve = read_options(root, {s.reduced ? "volumetric" : "fe-free-body"}, blow);
+    setup.club.head.compliance = blow.club.head.compliance;
+    setup.contact = blow.contact;
     models::ShaftMount& mount = setup.solve.shaft_mount;
     mount.elements = setup.swing.elements;
     mount.growth = setup.swing.growth;
@@ -229,11 +233,11 @@ class LoadedFaceMapJob final : public PointJob {
   static Launch by_elements(const Setup& s, Body club, const Blow& blow) {
     const StopSignals stop;
     const auto watch = [&](const models::ImpactView&) { stop.check(); };
-    if (club == free_head) return models::solve_free_body(blow, s.solve.fe, watch).launch;
+    if (club == free_head) return models::Impact(s.solve.fe).run(blow, watch).launch;
     models::ShaftMount mount = s.solve.shaft_mount;
     mount.grip = club == loaded ? Grip::forced : Grip::clamped;
     if (club != at_rest) mount.loaded = s.end.shaft;
-    return models::solve_full_club(blow, {s.solve.fe, mount}, watch).launch;
+    return models::Impact(s.solve.fe, mount).run(blow, watch).launch;
   }
 
   static Launch by_overlap(const Setup& s, Body club, const Blow& blow) {

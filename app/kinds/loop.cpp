@@ -59,7 +59,8 @@ class LoopJob final : public Job {
     std::optional<Shaft> shaft;
     if (auto table = root.optional_table("shaft")) shaft = read_shaft(*table);
     // A free head's shaft is what the loop may hang on it.
-    const models::Options options = read_options(root, {fe && shaft ? "fe-full-club" : case_.base});
+    Blow declared;
+    const models::Options options = read_options(root, {fe && shaft ? "fe-full-club" : case_.base}, declared);
     if (fe) {
       read_fe_base(root, model.default_table("surrogate"), options, std::move(shaft));
     } else {
@@ -74,7 +75,8 @@ class LoopJob final : public Job {
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     case_.blow.contact = read_contact(root);
-    if (fe) case_.blow.contact.friction = options.fe.friction;
+    case_.blow.contact.patch = declared.contact.patch;
+    if (fe) case_.blow.contact.friction = case_.blow.contact.patch.coefficient;
     case_.blow.club.geometry = read_club_geometry(root, root.has("shaft"));
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
@@ -85,6 +87,7 @@ class LoopJob final : public Job {
     } else {
       head.inertia = std::numeric_limits<double>::infinity() * Mat3::Identity();
     }
+    head.compliance = declared.club.head.compliance;
     case_.inertia_declared = head.inertia.allFinite();
     if (const auto flight = read_optional_flight(root)) case_.flight = flight->conditions;
 

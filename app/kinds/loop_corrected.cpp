@@ -52,7 +52,7 @@ void put_common(toml::table& root, const loop::Shot& s, const models::Changeable
   change("branch_moduli_factor", std::exp(c.losses), 1);
   change("branch_times_factor", std::exp(c.relaxation), 1);
   table(root, "ball").insert_or_assign("changes", std::move(changes));  // also where none: the base's mesh has a skin
-  if (const auto face = models::changed(base.impact().face, c.face_compliance, head); face && c.face_compliance != 0)
+  if (const auto face = models::changed(head.compliance, c.face_compliance, head); face && c.face_compliance != 0)
     root.insert_or_assign("face", toml::table{{"effective_mass_g", rounded(1e3 * face->mass)},
                                               {"stiffness_N_per_m", rounded(face->stiffness)},
                                               {"damping_N_s_per_m", rounded(face->damping)},

@@ -171,7 +171,7 @@ void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResul
   const bool one_mass = std::ranges::all_of(
       shots, [&](const Shot& s) { return s.blow.club.head.mass == shots.front().blow.club.head.mass; });
   std::optional<FaceCompliance> face;
-  if (base) face = models::changed(base->impact().face, found.first.change.face_compliance, blow.club.head);
+  if (base) face = models::changed(blow.club.head.compliance, found.first.change.face_compliance, blow.club.head);
   if (found.of.head && one_mass && blow.club.head.faults().empty() && blow.club.head.inertia.allFinite())
     offer(out, Shelf::heads, o, head_tables(blow.club.head, kRigidFace, blow.club.geometry));
   else if (found.of.head)

@@ -19,7 +19,7 @@
 #include "golf/parallel.hpp"
 #include "golf/units.hpp"
 #include "models/checked_launch.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "models/fe/plate_strike.hpp"
 #include "post/face_map.hpp"
 #include "post/launch_table.hpp"
@@ -58,7 +58,9 @@ class PlateFaceJob final : public PointJob {
     Table root = file.root();
     if (!has_plate(root)) root.table("face").fail("", "a face with a thickness is needed: [face.plate]");
     blow_ = read_blow(root, {"fe-free-body"});
-    fe_ = read_options(root, {"fe-free-body"}).fe;
+    const models::Options options = read_options(root, {"fe-free-body"}, blow_);
+    fe_ = options.fe;
+    plate_ = options.plate;
     if (blow_.delivery.impact_toe != 0 || blow_.delivery.impact_high != 0)
       root.fail("delivery", "[places] says where the ball meets the face: impact_toe and impact_high stay out");
     Table places = root.default_table("places");
@@ -77,7 +79,7 @@ class PlateFaceJob final : public PointJob {
     errors_ = root.flag({"numerical_error", "solve the first place twice more: coarser, and with more modes"}, true);
     vtk_ = root.flag({"vtk", "write the modes for ParaView"}, true);
     draw_ = root.flag({"figures", "draw pictures; a study of many faces may do without"}, true);
-    alike_ = heel_toe_alike(blow_.club.head, fe_.plate->design());
+    alike_ = heel_toe_alike(blow_.club.head, plate_->design());
     for (const double high : high_)
       for (const double toe : toe_) {
         const Vector2d place(-toe, high), image(toe, high);
@@ -91,10 +93,10 @@ class PlateFaceJob final : public PointJob {
     if (!errors_) return;
     const Vector2d middle = places_[middle_].at;
     if (const auto coarser = fe_.coarser()) blows_.push_back({middle, *coarser, "coarser"});
-    models::PlateDesign more = fe_.plate->design();
+    models::PlateDesign more = plate_->design();
     more.modes = std::min(27, 2 * more.modes);
     blows_.push_back({middle, fe_, "more modes"});
-    blows_.back().fe.plate = std::make_shared<const models::PlateOnDemand>(more);
+    blows_.back().fe.face = std::make_shared<const models::PlateOnDemand>(more);
   }
 
   std::size_t size() const override { return blows_.size(); }
@@ -106,13 +108,13 @@ class PlateFaceJob final : public PointJob {
     blow.delivery.impact_high = struck.place.y();
     models::FaceStress stress;
     const StopSignals stop;
-    const models::FeOutcome outcome = solve_free_body(blow, struck.fe, [&](const models::ImpactView& v) {
+    const models::FeOutcome outcome = models::Impact(struck.fe).run(blow, [&](const models::ImpactView& v) {
       stop.check();
       stress.see(v);
     });
-    models::check_launch(models::FeFreeBody(struck.fe), blow, outcome.launch);
+    models::check_launch(models::Impact(struck.fe), blow, outcome.launch);
     json out = stored(outcome.launch);
-    const models::PlateFace::Peak& peak = stress.peak().value();
+    const models::FacePeak& peak = stress.peak().value();
     out["peak_stress_Pa"] = peak.stress;
     out["peak_stress_toe_m"] = -peak.place.x();
     out["peak_stress_high_m"] = peak.place.y();
@@ -123,7 +125,7 @@ class PlateFaceJob final : public PointJob {
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
-    const std::shared_ptr<const models::PlateFace> plate = fe_.plate->on(blow_.club.head.face);
+    const std::shared_ptr<const models::PlateFace> plate = plate_->on(blow_.club.head.face);
     const models::PlateStrike strike(plate, blow_.club.head);
     json summary;
     show_maps(out, strike, summary);
@@ -224,7 +226,7 @@ class PlateFaceJob final : public PointJob {
 
   /// A grid over the whole outline.
   post::FaceGrid drawn(int columns, int rows) const {
-    const Vector2d extent = fe_.plate->design().outline.extent();
+    const Vector2d extent = plate_->design().outline.extent();
     return {2 * extent.x(), 2 * extent.y(), columns, rows};
   }
 
@@ -329,7 +331,7 @@ class PlateFaceJob final : public PointJob {
   /// What a mesh with half the elements each way changes; 0 without `numerical_error`, or where the mesh is too coarse
   /// to be halved.
   double time_error(const Vector2d& at, double time) const {
-    models::PlateDesign coarser = fe_.plate->design();
+    models::PlateDesign coarser = plate_->design();
     if (!errors_ || coarser.mesh.core < 4 || coarser.mesh.rings < 2) return 0;
     coarser.mesh.core /= 2;
     coarser.mesh.rings /= 2;
@@ -413,7 +415,7 @@ class PlateFaceJob final : public PointJob {
     out.say(fmt::format("largest stress in the face {:.0f} MPa; energy closes to {:.1e} of the initial", 1e-6 * stress,
                         closure));
     out.page().answer("largest stress", fmt::format("{:.0f} MPa", 1e-6 * stress), "von Mises, over these blows");
-    if (const auto yield = fe_.plate->design().yield; yield && stress > *yield)
+    if (const auto yield = plate_->design().yield; yield && stress > *yield)
       out.warn(
           fmt::format("the largest stress, {:.0f} MPa at toe {:.1f}, high {:.1f} mm, exceeds the yield strength of "
                       "{:.0f} MPa: this face yields, and the plate of this model does not",
@@ -476,6 +478,7 @@ class PlateFaceJob final : public PointJob {
 
   Blow blow_;
   models::FeImpactOptions fe_;
+  std::shared_ptr<const models::PlateOnDemand> plate_;
   std::vector<double> toe_, high_, speeds_;
   post::FaceGrid grid_;
   models::Striker sphere_;

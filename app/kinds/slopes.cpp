@@ -72,7 +72,7 @@ class SlopesJob final : public Job {
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
     blow_.club.geometry = read_club_geometry(root, blow_.club.shaft.has_value());
     blow_.contact = read_contact(root);
-    options_ = read_options(root, names_);
+    options_ = read_options(root, names_, blow_);
     if (!head_name.empty()) spread_ = library_head(head_name).spread;
     for (const std::string& ball :
          root.texts({"balls", "further balls of the library, which every finite-element model is asked with"},

@@ -83,7 +83,7 @@ class TuneJob final : public Job {
     blow_.contact = read_contact(root);
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
     blow_.club.geometry = read_club_geometry(root, false);
-    options_ = read_options(root, {model_});
+    options_ = read_options(root, {model_}, blow_);
     const std::optional<FlightSetup> flight = read_optional_flight(root);
     flies_ = flight.has_value();
 

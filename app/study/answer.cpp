@@ -11,7 +11,7 @@
 #include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "models/checked_launch.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "models/fe/plate_strike.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
@@ -159,7 +159,6 @@ KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double spe
   models::FeImpactOptions axial = fe;
   axial.harmonics = 0;
   axial.face.reset();
-  axial.plate.reset();
   const models::NormalImpactTarget target{.speeds = {speed},
                                           .restitution = reference.restitution,
                                           .restitution_slope = 0,
@@ -192,7 +191,7 @@ Launch launch_with_history(const std::string& model, const models::Options& opti
 StudyBlow read_study_blow(Table root) {
   StudyBlow out{.models = read_models(root)};
   out.blow = read_blow(root, out.models);
-  out.options = read_options(root, out.models);
+  out.options = read_options(root, out.models, out.blow);
   out.flight = read_optional_flight(root);
   if (auto t = root.optional_table("plate")) {
     out.plate = {
@@ -252,13 +251,12 @@ models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
   models::FeImpactOptions axial = blow.options.fe;
   axial.harmonics = 0;
   axial.face.reset();  // of the club: the wall is rigid
-  axial.plate.reset();
   return models::normal_impact(axial, blow.blow.ball, speed);
 }
 
 StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
                    const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference) {
-  StudyAnswer out{.blow = asked.blow, .face = asked.options.volumetric.face, .face_plate = asked.options.fe.plate};
+  StudyAnswer out{.blow = asked.blow, .face = asked.blow.club.head.compliance, .face_plate = asked.options.plate};
   models::Options options = asked.options;
   if (conditions.bounce_speed) {
     const models::NormalImpactPoint own = wall_bounce(asked, *conditions.bounce_speed);
@@ -274,10 +272,10 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
-  } else if (const auto* fe = dynamic_cast<const models::FeModel*>(made.get());
+  } else if (const models::Impact* fe = made->impact();
              fe && (conditions.histories || (conditions.stresses && out.face_plate))) {
     models::FaceStress stress;
-    out.launch = fe->solve(out.blow, [&](const models::ImpactView& v) {
+    out.launch = fe->run(out.blow, [&](const models::ImpactView& v) {
                      if (v.shaft && conditions.histories) out.hosel.add(*v.shaft, v.state);
                      if (conditions.stresses) stress.see(v);
                    }).launch;

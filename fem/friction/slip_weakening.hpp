@@ -2,14 +2,9 @@
 #pragma once
 
 #include "fem/friction/coulomb.hpp"
+#include "golf/contact_law.hpp"
 
 namespace hosel::fem {
-
-/// What holds a point that has not slid yet.
-struct StaticFriction {
-  double coefficient = 0;  ///< [-]
-  double distance = 0;     ///< of slip over which what it has beyond sliding friction falls to 1/e [m]
-};
 
 /// Coulomb's law with a coefficient that falls from the static to the sliding one with the path that the point has
 /// slid: junctions break after a slip of their own size, about a micrometre between hard solids. [@slip-distance]

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "golf/parallel.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
 #include "solvers/errors.hpp"
@@ -49,10 +49,9 @@ class Fit {
   Eigen::Index rows() const { return rows_ + priors_; }
   int blows() const { return blows_; }
 
-  /// The options of a shot (of the wall without one), with the parameters in place.
-  FeImpactOptions options(const Eigen::VectorXd& x, std::optional<std::size_t> shot = {}) const {
+  /// The ball and how it is solved, with the parameters in place.
+  FeImpactOptions options(const Eigen::VectorXd& x) const {
     FeImpactOptions o = problem_.options;
-    o.face = shot ? problem_.shots[*shot].face : std::nullopt;
     for (std::size_t k = 0; k < problem_.free.size(); ++k) {
       const Parameter& p = problem_.free[k];
       const double factor = std::exp(x[Eigen::Index(k)]);
@@ -65,10 +64,29 @@ class Fit {
           if (p.what == What::branch_times) branch.time *= factor;
         }
       }
-      if (p.what == What::friction) o.friction *= factor;
-      if (p.what == What::face_stiffness && shot && concerns(p, *shot)) o.face->stiffness *= factor;
     }
     return o;
+  }
+
+  ContactLaw contact(const Eigen::VectorXd& x) const {
+    ContactLaw out{.patch = problem_.friction};
+    for (std::size_t k = 0; k < problem_.free.size(); ++k)
+      if (problem_.free[k].what == What::friction) out.patch.coefficient *= std::exp(x[Eigen::Index(k)]);
+    return out;
+  }
+
+  /// A shot's blow, with the parameters in place.
+  Blow blow_of(const Eigen::VectorXd& x, std::size_t k) const {
+    Blow blow = problem_.shots[k].blow;
+    blow.contact = contact(x);
+    for (std::size_t c = 0; c < problem_.free.size(); ++c) {
+      const Parameter& p = problem_.free[c];
+      if (!concerns(p, k)) continue;
+      if (p.what == What::impact_high) blow.delivery.impact_high += kHigh * x[Eigen::Index(c)];
+      if (p.what == What::head_mass) blow.club.head.mass += kMass * x[Eigen::Index(c)];
+      if (p.what == What::face_stiffness) blow.club.head.compliance->stiffness *= std::exp(x[Eigen::Index(c)]);
+    }
+    return blow;
   }
 
   /// Everything at x. False where a blow has no answer.
@@ -139,13 +157,9 @@ class Fit {
   /// A shot at its measured launch angle, seen or not; `loft` is where the search begins, and what it finds.
   Struck matched(const Eigen::VectorXd& x, std::size_t k, double& loft) {
     const ObliqueTarget& shot = problem_.shots[k];
-    const FeImpactOptions o = options(x, k);
     Blow blow = blow_of(x, k);
     blow.delivery.dynamic_loft = loft;
-    const FeFreeBody head(o);
-    const FeFullClub club({o, {}});
-    const ImpactModel& model = blow.club.shaft ? static_cast<const ImpactModel&>(club) : head;
-    const MatchedLaunch found = match_launch_angle(model, blow, shot.launch_angle, kLaunchTolerance);
+    const MatchedLaunch found = match_launch_angle(model(x, blow), blow, shot.launch_angle, kLaunchTolerance);
     blows_ += found.blows;
     loft = found.blow.delivery.dynamic_loft;
     return {{shot.name, shot.seen, loft, shot.spin_rate, found.launch.spin_rate(), found.launch.ball_speed(),
@@ -171,15 +185,8 @@ class Fit {
   }
 
  private:
-  Blow blow_of(const Eigen::VectorXd& x, std::size_t k) const {
-    Blow blow = problem_.shots[k].blow;
-    for (std::size_t c = 0; c < problem_.free.size(); ++c) {
-      const Parameter& p = problem_.free[c];
-      if (!concerns(p, k)) continue;
-      if (p.what == What::impact_high) blow.delivery.impact_high += kHigh * x[Eigen::Index(c)];
-      if (p.what == What::head_mass) blow.club.head.mass += kMass * x[Eigen::Index(c)];
-    }
-    return blow;
+  Impact model(const Eigen::VectorXd& x, const Blow& blow) const {
+    return blow.club.shaft ? Impact(options(x), ShaftMount{}) : Impact(options(x));
   }
 
   std::vector<NormalImpactPoint> wall(const Eigen::VectorXd& x) {
@@ -197,7 +204,7 @@ class Fit {
 
   double thrown(const Eigen::VectorXd& x) {
     ++blows_;
-    return models::bounce(FeFreeBody(options(x)), problem_.ball, problem_.bounce->speed, problem_.bounce->angle)
+    return models::bounce(Impact(options(x)), problem_.ball, problem_.bounce->speed, problem_.bounce->angle, contact(x))
         .tangential_restitution;
   }
 
@@ -205,8 +212,7 @@ class Fit {
     ++blows_;
     Blow blow = blow_of(x, k);
     blow.delivery.dynamic_loft = loft;
-    const FeImpactOptions o = options(x, k);
-    return blow.club.shaft ? FeFullClub({o, {}}).launch(blow) : FeFreeBody(o).launch(blow);
+    return model(x, blow).launch(blow);
   }
 
   void shot_rows(const Eigen::VectorXd& x, std::size_t k, Eigen::MatrixXd& J) {
@@ -315,7 +321,7 @@ void describe(BallCalibration& out, const BallCalibrationProblem& problem, const
       case What::long_term: factor("long-term shear modulus [Pa]", first.shear()); break;
       case What::branches: factor("branch shear modulus [Pa]", first.branches.front().modulus); break;
       case What::branch_times: factor("branch time [s]", first.branches.front().time); break;
-      case What::friction: factor("friction [-]", problem.options.friction); break;
+      case What::friction: factor("friction [-]", problem.friction.coefficient); break;
       case What::layer: {
         const double start = layers[p.layer].material.shear() / first.shear();
         const bool cover = p.layer + 1 == layers.size();
@@ -324,7 +330,7 @@ void describe(BallCalibration& out, const BallCalibrationProblem& problem, const
         break;
       }
       case What::face_stiffness:
-        factor("face stiffness" + of + " [N/m]", problem.shots[p.shots.front()].face->stiffness);
+        factor("face stiffness" + of + " [N/m]", problem.shots[p.shots.front()].blow.club.head.compliance->stiffness);
         break;
       case What::impact_high: say("struck higher" + of + " [m]", 0, kHigh * v); break;
       case What::head_mass: say("head heavier" + of + " [kg]", 0, kMass * v); break;
@@ -351,7 +357,7 @@ std::vector<std::string> BallCalibrationProblem::faults() const {
     if (p.what == What::layer && p.layer >= options.ball.layers.size()) out.emplace_back("the ball has no such layer");
     if (p.of_shots() && p.shots.empty()) out.emplace_back("a face, a strike or a head is some shot's: name it");
     for (const std::size_t s : p.shots)
-      if (s >= shots.size() || (p.what == What::face_stiffness && !shots[s].face))
+      if (s >= shots.size() || (p.what == What::face_stiffness && !shots[s].blow.club.head.compliance))
         out.emplace_back("no face to begin with");
     if (!(p.sd > 0)) out.emplace_back("a standard deviation is positive");
   }
@@ -363,7 +369,7 @@ NormalImpactPoint normal_impact(const FeImpactOptions& options, const Ball& ball
   blow.ball = ball;
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = speed;
-  const FeOutcome out = solve_free_body(blow, options);
+  const FeOutcome out = Impact(options).run(blow);
   return {speed, 0, (out.launch.velocity.x() - speed) / speed, out.result.contact_time, out.result.peak_force};
 }
 
@@ -392,13 +398,13 @@ BallCalibration calibrate_ball(const BallCalibrationProblem& problem,
   describe(out, problem, x);
   const FeImpactOptions found = fit.options(x);
   out.ball = found.ball;
-  out.friction = found.friction;
+  out.friction = fit.contact(x).patch.coefficient;
   out.covariance = solvers::covariance(J, 0);
   out.cost = 0.5 * r.squaredNorm();
   out.points = fit.points();
   out.bounce = fit.bounce();
   for (std::size_t k = 0; k < problem.shots.size(); ++k) {
-    out.faces.push_back(fit.options(x, k).face);
+    out.faces.push_back(fit.blow_of(x, k).club.head.compliance);
     double loft = fit.loft(k);
     out.shots.push_back(problem.shots[k].seen ? fit.point(k) : fit.matched(x, k, loft).point);
     if (!problem.leave_one_out || !problem.shots[k].seen) continue;

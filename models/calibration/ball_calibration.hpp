@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::models {
 
@@ -39,14 +39,13 @@ struct BounceTarget {
 /// computed from the ball.
 struct ObliqueTarget {
   std::string name;
-  Blow blow;                           ///< with a shaft: the full club; its loft is where the search begins
-  std::optional<FaceCompliance> face;  ///< of its club; without it the face is rigid
-  bool seen = true;                    ///< by the fit; else it is predicted alone
-  double launch_angle = 0;             ///< [rad]
-  double spin_rate = 0;                ///< [rad/s]
-  double spin_sigma = 0;               ///< relative [-]
-  std::optional<double> ball_speed;    ///< where it is a target as well [m/s]
-  double ball_speed_sigma = 0;         ///< relative; what the club's speed is known to counts here as well [-]
+  Blow blow;                         ///< with a shaft: the full club; its loft is where the search begins
+  bool seen = true;                  ///< by the fit; else it is predicted alone
+  double launch_angle = 0;           ///< [rad]
+  double spin_rate = 0;              ///< [rad/s]
+  double spin_sigma = 0;             ///< relative [-]
+  std::optional<double> ball_speed;  ///< where it is a target as well [m/s]
+  double ball_speed_sigma = 0;       ///< relative; what the club's speed is known to counts here as well [-]
 };
 
 /// An unknown of the calibration.
@@ -110,7 +109,8 @@ struct BallCalibration {
 };
 
 struct BallCalibrationProblem {
-  FeImpactOptions options;  ///< ball and friction to begin with; the wall is met by the axisymmetric ball
+  FeImpactOptions options;  ///< ball to begin with; the wall is met by the axisymmetric ball
+  PatchFriction friction;   ///< to begin with, of the bounce and of every shot
   Ball ball;
   NormalImpactTarget wall;
   std::optional<BounceTarget> bounce;

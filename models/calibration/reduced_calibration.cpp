@@ -80,12 +80,13 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   if (blows.size() < 4) throw std::invalid_argument("reduced models: fewer than four blows tell nothing");
   ReducedCalibration out;
   out.launches.resize(blows.size());
-  const FeFreeBody model(fe);
+  const Impact model(fe);
+  const double friction = blows.front().contact.patch.coefficient;
   for_all(std::size_t{0}, blows.size(), [&](std::size_t k) { out.launches[k] = model.launch(blows[k]); });
 
   const auto law = [&](const Eigen::VectorXd& x) {
     return ContactLaw{
-        .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = fe.friction};
+        .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = friction};
   };
   const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
                       {Eigen::Vector3d(0.86, -0.0029, 0.2)},
@@ -99,13 +100,12 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   const auto volume = [&](const Eigen::VectorXd& x) {
     VolumetricLaw v;
     v.volume_exponent = 0.6;  // the finite-element ball pushes like depth^1.2
-    v.friction = v.static_friction = fe.friction;
+    v.friction = v.static_friction = friction;
     v.stiffness = std::exp(x[0]);
     v.damping = x[1];
     v.joint_stiffness = std::exp(x[2]);
     v.joint_damping = std::exp(x[3]);
     v.cover_thickness = x[4];
-    v.face = fe.face;
     return v;
   };
   const Reduced volumetric{
@@ -121,7 +121,7 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   out.volume = volume(fitted(volumetric, blows, out.launches));
 
   const auto hertz = [&](const Eigen::VectorXd& x) {
-    return HertzMawLaw{.modulus = std::exp(x[0]), .poisson = x[1], .friction = fe.friction, .damping = x[2]};
+    return HertzMawLaw{.modulus = std::exp(x[0]), .poisson = x[1], .friction = friction, .damping = x[2]};
   };
   const Reduced maw{
       {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "models/rigid/hertz_maw.hpp"
 

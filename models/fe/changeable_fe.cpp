@@ -7,7 +7,7 @@
 #include "golf/face_library.hpp"
 #include "golf/shaft_library.hpp"
 #include "golf/units.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/face_strike.hpp"
 
 namespace hosel::models {
@@ -80,13 +80,13 @@ ChangeableFe::ChangeableFe(FeImpactOptions impact, ShaftMount mount, std::option
 Launch ChangeableFe::launch(const Blow& blow, const FeChange& change) const {
   FeImpactOptions impact = impact_;
   impact.ball = changed(impact.ball, change, blow.ball.radius);
-  impact.face = changed(impact.face, change.face_compliance, blow.club.head);
-  if (std::isfinite(blow.contact.friction)) impact.friction = blow.contact.friction;
-  if (share(change) == 0) return solve_free_body(blow, impact).launch;
+  Blow struck = blow;
+  struck.club.head.compliance = changed(blow.club.head.compliance, change.face_compliance, blow.club.head);
+  if (std::isfinite(blow.contact.friction)) struck.contact.patch.coefficient = blow.contact.friction;
+  if (share(change) == 0) return Impact(impact).launch(struck);
   if (!shaft_) throw std::invalid_argument("the club has no shaft");
-  Blow whole = blow;
-  whole.club.shaft = changed(*shaft_, share(change), change.shaft_stiffness);
-  return solve_full_club(whole, {impact, mount_}).launch;
+  struck.club.shaft = changed(*shaft_, share(change), change.shaft_stiffness);
+  return Impact(impact, mount_).launch(struck);
 }
 
 }  // namespace hosel::models

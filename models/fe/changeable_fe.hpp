@@ -3,7 +3,7 @@
 
 #include "models/club/mounted_shaft.hpp"
 #include "models/fe/fe_change.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::models {
 

@@ -58,15 +58,18 @@ ElasticPlate::ElasticPlate(FeImpactOptions sphere, const ElasticSolid& plate, co
   const RigidPlateStandIn instead = RigidPlateStandIn::of(pair, thrown.inertia_factor);
   material.elastic = fem::LinearElastic{fem::Lame::of(instead.sphere.young, instead.sphere.poisson)};
   ball = with_inertia(ball, instead.inertia_factor);
-  stand_in_.friction *= instead.friction;
-  if (stand_in_.static_friction) stand_in_.static_friction->coefficient *= instead.friction;
+  friction_ = instead.friction;
   if (const auto faults = stand_in_.faults(); !faults.empty())
     throw std::invalid_argument("elastic plate: " + faults.front());
 }
 
 Launch ElasticPlate::launch(const Blow& blow) const {
   if (std::isfinite(blow.club.head.mass)) throw std::invalid_argument("elastic plate: it is a wall, not a head");
-  Launch out = solve_free_body(blow, stand_in_).launch;
+  Blow instead = blow;
+  PatchFriction& patch = instead.contact.patch;
+  patch.coefficient *= friction_;
+  if (patch.at_rest) patch.at_rest->coefficient *= friction_;
+  Launch out = Impact(stand_in_).launch(instead);
   const std::optional<double> e_t = tangential_restitution(blow, out);
   if (!e_t) return out;
   const FirstContact contact = first_contact(blow);

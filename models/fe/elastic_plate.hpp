@@ -1,7 +1,7 @@
 /// A sphere thrown at an elastic plate, by a finite-element sphere on a rigid one.
 #pragma once
 
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::models {
 
@@ -41,6 +41,7 @@ class ElasticPlate final : public ImpactModel {
 
  private:
   FeImpactOptions stand_in_;
+  double friction_ = 1;  // of the stand-in, over the pair's
 };
 
 }  // namespace hosel::models

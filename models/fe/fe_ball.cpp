@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "fem/harmonic_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
 
 namespace hosel::models {
@@ -29,6 +30,19 @@ double FeBall::instant_young() const {
     inner = layer.radius;
   }
   return sum;
+}
+
+MeshedBall meshed(const FeBall& ball, const Ball& body, const mesh::MeridianOptions& options) {
+  std::vector<double> radii;
+  std::vector<fem::Solid> materials;
+  for (const BallLayer& layer : ball.layers) {
+    radii.push_back(layer.radius * body.radius);
+    materials.push_back(layer.material);
+  }
+  MeshedBall out{mesh::sphere_meridian(radii, options), std::move(materials)};
+  const double scale = body.mass / fem::HarmonicSolid::mass(out.mesh, out.materials);
+  for (fem::Solid& m : out.materials) m.density *= scale;
+  return out;
 }
 
 FeBall elastic_ball(std::string name, fem::Solid material) { return {std::move(name), {{1, std::move(material)}}}; }

@@ -7,6 +7,7 @@
 
 #include "fem/materials/solid.hpp"
 #include "golf/ball.hpp"
+#include "mesh/meridian.hpp"
 
 namespace hosel::models {
 
@@ -24,6 +25,13 @@ struct FeBall {
   /// Young's modulus at an instant, of the stiffest measure that contact time follows: volume mean [Pa].
   double instant_young() const;
 };
+
+/// The layers on a mesh that weighs what the ball weighs.
+struct MeshedBall {
+  mesh::Meridian mesh;
+  std::vector<fem::Solid> materials;  ///< of the layers, their densities scaled alike
+};
+MeshedBall meshed(const FeBall& ball, const Ball& body, const mesh::MeridianOptions& options);
 
 /// One elastic layer; for comparison with theory.
 FeBall elastic_ball(std::string name, fem::Solid material);

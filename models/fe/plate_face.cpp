@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fem/plate_surface.hpp"
 #include "golf/units.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/linear.hpp"
@@ -249,9 +250,9 @@ PlateFace::Stresses::Stresses(const fem::Plate& plate, const Eigen::MatrixXd& fi
     }
 }
 
-PlateFace::Peak PlateFace::Stresses::peak(const fem::Vector& unknowns) const {
+FacePeak PlateFace::Stresses::peak(const fem::Vector& unknowns) const {
   const Eigen::VectorXd all = rows_ * unknowns;
-  Peak out;
+  FacePeak out;
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const fem::PlateStress s{all.segment<3>(Eigen::Index(6 * i)), all.segment<3>(Eigen::Index(6 * i + 3))};
     if (const double here = s.von_mises(); here > out.stress) out = {here, places_[i]};
@@ -264,6 +265,29 @@ std::shared_ptr<const PlateFace> PlateOnDemand::on(const Face& curvature) const 
   if (!made_ || made_->curvature().bulge != curvature.bulge || made_->curvature().roll != curvature.roll)
     made_ = std::make_shared<const PlateFace>(design_, curvature);
   return made_;
+}
+
+std::vector<std::string> PlateOnDemand::faults(bool axial) const {
+  std::vector<std::string> out = design_.faults();
+  if (axial) out.emplace_back("harmonics = 0 is the axisymmetric ball: it meets no plate");
+  return out;
+}
+
+FaceInSystem PlateOnDemand::add(fem::System& system, const FaceBlow& struck) const {
+  const Head& head = struck.blow.club.head;
+  const std::shared_ptr<const PlateFace> plate = on(head.face);
+  if (!(plate->mass() < head.mass))
+    throw std::invalid_argument("fe impact: the face's mass is part of the head's and must be smaller");
+  const CondensedPlate condensed = plate->condensed(struck.place(), struck.mirror);
+  const fem::DofMap::Block unknowns = system.dof_map.add_vector(condensed.face.size());
+  FaceInSystem out{
+      .surface = std::make_unique<fem::PlateSurface>(head.face, condensed.shapes, condensed.largest, unknowns)};
+  out.spring = std::make_unique<fem::FaceSpring>(condensed.face, struck.carrier, unknowns);
+  out.compliance = plate->compliance(struck.place(), kBallPatch);
+  out.stresses = [plate, fields = condensed.fields] {
+    return [of = PlateFace::Stresses(plate->plate(), fields)](const fem::Vector& w) { return of.peak(w); };
+  };
+  return out;
 }
 
 }  // namespace hosel::models

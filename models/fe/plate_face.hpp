@@ -12,6 +12,7 @@
 #include "fem/reduced_face.hpp"
 #include "fem/shape_spline.hpp"
 #include "golf/face.hpp"
+#include "models/fe/struck_face.hpp"
 
 namespace hosel::models {
 
@@ -30,9 +31,6 @@ struct PlateDesign {
   /// Whether toe and heel are alike by what is stated: the outline is no polygon, the thickness no grid.
   bool heel_toe_alike() const;
 };
-
-/// A mirror of the face: y to -y, or z to -z.
-enum class Mirror { none, heel_toe, up_down };
 
 /// A plate as a blow about one place sees it: natural modes of the plate whose rim rests in the head, and what static
 /// pressure about the place adds to them. Unknowns are the largest deflections of their shapes [m].
@@ -68,14 +66,10 @@ class PlateFace {
   CondensedPlate condensed(const Eigen::Vector2d& place, Mirror mirror = Mirror::none) const;
 
   /// Largest von Mises stress of a deflection over both surfaces, at the corners and centres of the elements [Pa].
-  struct Peak {
-    double stress = 0;
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();
-  };
   class Stresses {
    public:
     Stresses(const fem::Plate& plate, const Eigen::MatrixXd& fields);
-    Peak peak(const fem::Vector& unknowns) const;
+    FacePeak peak(const fem::Vector& unknowns) const;
 
    private:
     std::vector<Eigen::Vector2d> places_;
@@ -103,12 +97,20 @@ class PlateFace {
   Eigen::Matrix3Xd sample_place_;
 };
 
-/// A plate that is made when a blow first asks for it, once for each curvature of the face.
-class PlateOnDemand {
+/// Radius of a golf ball's patch, in the mean over a blow at a driver's speed [m].
+inline constexpr double kBallPatch = 9e-3;
+
+/// A plate that is made when a blow first asks for it, once for each curvature of the face; a blow meets it condensed
+/// about the place struck.
+class PlateOnDemand final : public StruckFace {
  public:
   explicit PlateOnDemand(PlateDesign design) : design_(std::move(design)) {}
   const PlateDesign& design() const { return design_; }
   std::shared_ptr<const PlateFace> on(const Face& curvature) const;
+
+  std::vector<std::string> faults(bool axial) const override;
+  bool symmetric(Mirror mirror, const Face& curvature) const override { return on(curvature)->symmetric(mirror); }
+  FaceInSystem add(fem::System& system, const FaceBlow& struck) const override;
 
  private:
   PlateDesign design_;

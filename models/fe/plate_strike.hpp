@@ -53,7 +53,5 @@ class PlateStrike {
 
 /// Radius over which the pendulum's small patch is spread in the plate's middle [m]: half of the thickness there.
 double pendulum_patch(const PlateFace& plate, const Eigen::Vector2d& place);
-/// Radius of a golf ball's patch, in the mean over a blow at a driver's speed [m].
-inline constexpr double kBallPatch = 9e-3;
 
 }  // namespace hosel::models

@@ -43,7 +43,11 @@ using MutVec = Eigen::Map<Vec3>;
 class Contact {
  public:
   Contact(const Blow& blow, const VolumetricLaw& law, const ShaftImpedance* shaft)
-      : law_(law), ball_(blow.ball), head_(blow.club.head), shaft_(shaft), shaft_at_(kFree + (law.face ? 3 : 0)) {
+      : law_(law),
+        ball_(blow.ball),
+        head_(blow.club.head),
+        shaft_(shaft),
+        shaft_at_(kFree + (head_.compliance ? 3 : 0)) {
     const double r = ball_.radius;
     const Delivery& d = blow.delivery;
     const FirstContact first = first_contact(blow);
@@ -56,7 +60,7 @@ class Contact {
     core_inertia_ = ball_.inertia() * core_share;
     cover_inertia_ = ball_.inertia() - core_inertia_;
     wall_ = std::isinf(head_.mass);
-    if (law.face && !(law.face->mass < head_.mass))
+    if (head_.compliance && !(head_.compliance->mass < head_.mass))
       throw std::invalid_argument("volumetric: the face's effective mass is part of the head's");
     inverse_mass_ = 1 / head_.mass;
     inverse_inertia_ = wall_ ? Mat3(Mat3::Zero()) : Mat3(head_.inertia.inverse());
@@ -92,8 +96,8 @@ class Contact {
     if (i < kHead) return 0.2;
     if (i < kHeadVelocity) return 1;
     if (i < kLostNormal) return speed_ / ball_.radius;
-    if (law_.face && i == kFree) return 0.2 * ball_.radius;
-    if (law_.face && i == kFree + 1) return speed_;
+    if (head_.compliance && i == kFree) return 0.2 * ball_.radius;
+    if (head_.compliance && i == kFree + 1) return speed_;
     return 0;
   }
 
@@ -124,11 +128,11 @@ class Contact {
     const Vec3 spin_body = R_.transpose() * wh;
     const Vec3 gyro = R_ * spin_body.cross(head_.inertia * spin_body);
     const Vec3 torque = wall_ ? Vec3(Vec3::Zero()) : Vec3(-head_arm_.cross(force_) - gyro);
-    if (law_.face) hang_face(y);
+    if (head_.compliance) hang_face(y);
     if (shaft_) {
       shaft_rate(y, dy, torque);
     } else {
-      if (law_.face && !wall_) {
+      if (head_.compliance && !wall_) {
         Vec6 wrench;
         wrench << -force_, torque;
         Eigen::Map<Vec6>(dy + kHeadVelocity) = (rigid_head() + face_.mass).llt().solve(wrench + face_.wrench);
@@ -138,10 +142,10 @@ class Contact {
       }
       dy[kCarrier] = dy[kLostShaft] = 0;
     }
-    if (law_.face) {
+    if (head_.compliance) {
       dy[kFree] = y[kFree + 1];
       dy[kFree + 1] = face_.own + face_.arm.dot(Eigen::Map<const Vec6>(dy + kHeadVelocity));
-      dy[kFree + 2] = law_.face->damping * y[kFree + 1] * y[kFree + 1];
+      dy[kFree + 2] = head_.compliance->damping * y[kFree + 1] * y[kFree + 1];
     }
     dy[kTime] = 1;
     dy[kLostNormal] = elastic_ * law_.damping * approach_ * approach_;
@@ -214,8 +218,8 @@ class Contact {
     const auto head_energy = [&](const Vec3& v, const Vec3& w_body) {
       return wall_ ? 0.0 : (head_.mass * v.squaredNorm() + w_body.dot(head_.inertia * w_body)) / 2;
     };
-    if (law_.face) {
-      const FaceCompliance& f = *law_.face;
+    if (head_.compliance) {
+      const FaceCompliance& f = *head_.compliance;
       const Vec3 moved = face_velocity(y, y[kFree], y[kFree + 1]), carried = face_velocity(y, 0, 0),
                  gained = moved - carried, twice_mean = wall_ ? gained : Vec3(moved + carried);
       out.face_travel = y[kFree];
@@ -271,12 +275,12 @@ class Contact {
     }
     D = s.x() + 0.5 * (by_ * py * py + bz_ * pz * pz);
     double ty = by_ * py, tz = bz_ * pz;  // slopes of the face there
-    if (law_.face) {
+    if (head_.compliance) {
       // Stationary on the face as it has moved: (y, z) = (s_y, s_z) - D (t_y, t_z). Chord again: the shape's curvature
       // times travel and radius is a tenth at most.
       const double w = y[kFree];
       for (int i = 0; i <= 8; ++i) {
-        const FaceCompliance::Shape moved = law_.face->shape(py, pz);
+        const FaceCompliance::Shape moved = head_.compliance->shape(py, pz);
         shape_ = moved.value;
         D = s.x() + 0.5 * (by_ * py * py + bz_ * pz * pz) + w * moved.value;
         ty = by_ * py + w * moved.slope.x();
@@ -293,17 +297,17 @@ class Contact {
   }
 
   void evaluate(const double* y) {
-    const bool same_face = !law_.face || std::equal(y + kFree, y + kFree + 2, seen_face_.begin());
+    const bool same_face = !head_.compliance || std::equal(y + kFree, y + kFree + 2, seen_face_.begin());
     if (same_face && std::equal(seen_.begin(), seen_.end(), y)) return;  // the same instant again
     std::copy(y, y + kLostNormal, seen_.begin());
-    if (law_.face) std::copy(y + kFree, y + kFree + 2, seen_face_.begin());
+    if (head_.compliance) std::copy(y + kFree, y + kFree + 2, seen_face_.begin());
     geometry(y);
     const ConstVec vb(y + kBallVelocity), cover(y + kCover), vh(y + kHeadVelocity), wh(y + kHeadSpin);
     overlap_ = overlap(depth_, ball_.radius, curvature_);
     arm_ = -overlap_.centroid * normal_;
     head_arm_ = from_cg_ + arm_;
     Vec3 w = vh + wh.cross(head_arm_) - vb - cover.cross(arm_);
-    if (law_.face) w -= shape_ * y[kFree + 1] * R_.col(0);
+    if (head_.compliance) w -= shape_ * y[kFree + 1] * R_.col(0);
     approach_ = w.dot(normal_);
     slip_ = w - approach_ * normal_;
     elastic_ = law_.stiffness * powered(overlap_.volume, law_.volume_exponent);
@@ -340,7 +344,7 @@ class Contact {
   /// head. With G = (1, -[r]x), p'' = G a + b - w'' e and w'' = own + e . G a, the travel leaves the head's equations,
   /// which gain a mass and a wrench.
   void hang_face(const double* y) {
-    const FaceCompliance& f = *law_.face;
+    const FaceCompliance& f = *head_.compliance;
     const ConstVec wh(y + kHeadSpin);
     const double w = y[kFree], rate = y[kFree + 1];
     const Vec3 e = R_.col(0), r0 = -(R_ * head_.cg), r = r0 - w * e;
@@ -379,7 +383,7 @@ class Contact {
     wrench << -force_, torque;
     // From the carrier's motion, in which the loaded shaft holds the head with `held_`.
     Mat6 head = rigid_head();
-    if (law_.face) {
+    if (head_.compliance) {
       head += face_.mass;
       wrench += face_.wrench;
     }

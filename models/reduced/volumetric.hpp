@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "golf/face_compliance.hpp"
 #include "models/impact_model.hpp"
 #include "models/reduced/shaft_impedance.hpp"
 
@@ -18,6 +17,9 @@ namespace hosel::models {
 /// (2024), Sports Eng. 27:16.
 /// Friction F_t = F_n (mu tanh(4 s) + (mu_s - mu) s / (s^2/4 + 3/4)^2), s = v_t / v_tr: Brown and McPhee
 /// (2016), J. Comput. Nonlin. Dyn. 11:054502, without its viscous part.
+/// A head's compliance is in series with all this, its effective mass at the face centre, as in fem/face_spring.hpp;
+/// without one the face is rigid, bit for bit. The published driver's damping was identified on a driver: it holds a
+/// yielding face already.
 /// The ball is a core in a cover of the same density, which share their centre and are joined by a
 /// rotary spring and damper about all three axes: the tangential compliance.
 struct VolumetricLaw {
@@ -32,10 +34,6 @@ struct VolumetricLaw {
   /// V in the normal force becomes V_0 (V / V_0)^exponent, V_0 = 1 cm^3. 1: the published law, force like depth
   /// squared. The finite-element ball pushes like depth^1.2 (exponent 0.6), a flatter and wider pulse.
   double volume_exponent = 1;
-  /// What of the face yields, in series with all this; none: rigid, bit for bit. Its effective mass is part of the
-  /// head's and sits at the face centre, as in fem/face_spring.hpp. The published driver's damping was identified on a
-  /// driver: it holds a yielding face already.
-  std::optional<FaceCompliance> face = {};
 
   /// Table 8 of Caldwell and McPhee (2024); their ball's radius is 21.3 mm.
   static VolumetricLaw published_driver() { return {}; }

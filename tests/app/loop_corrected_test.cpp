@@ -21,7 +21,8 @@ TEST(LoopCorrected, IsACaseWithTheEffectsInIt) {
   const auto dir = test::fresh_directory("corrected");
   CaseFile own(std::filesystem::path(HOSEL_SOURCE_DIR) / "cases/loop-full-club");
   read_job(own);
-  const models::ChangeableFe base(read_options(own.root(), {"fe-free-body"}).fe, {}, {}, false);
+  Blow own_blow;
+  const models::ChangeableFe base(read_options(own.root(), {"fe-free-body"}, own_blow).fe, {}, {}, false);
 
   loop::LoopResult result;
   result.base = "fe-free-body";
@@ -49,14 +50,15 @@ TEST(LoopCorrected, IsACaseWithTheEffectsInIt) {
 
   CaseFile corrected(dir / "out/corrected");
   read_job(corrected);  // every key is known, every value allowed
-  const models::Options options = read_options(corrected.root(), {"fe-free-body"});
+  Blow declared;
+  const models::Options options = read_options(corrected.root(), {"fe-free-body"}, declared);
   ASSERT_EQ(options.fe.ball.layers.size(), 2U);
   const auto& layers = options.fe.ball.layers;
   EXPECT_NEAR(layers[1].material.instant_shear() / layers[0].material.instant_shear(), 1.7, 1e-8);
   EXPECT_NEAR((1 - layers[0].radius) * 0.0213, models::kSkin + 0.2e-3, 1e-9);
-  EXPECT_DOUBLE_EQ(options.fe.friction, 0.27);
-  ASSERT_TRUE(options.fe.face);
-  EXPECT_NEAR(options.fe.face->stiffness, 12.5e6, 1e-2);
+  EXPECT_DOUBLE_EQ(declared.contact.patch.coefficient, 0.27);
+  ASSERT_TRUE(declared.club.head.compliance);
+  EXPECT_NEAR(declared.club.head.compliance->stiffness, 12.5e6, 1e-2);
   CaseFile second(corrected, corrected.root().tables("variant")[1].texts("set"));
   const Blow blow = read_blow(second.root(), {"fe-free-body"});
   EXPECT_NEAR(blow.delivery.dynamic_loft, radians(15), 1e-9);

@@ -56,6 +56,15 @@ TEST(HarmonicSolid, TangentAndGradient) {
   }
 }
 
+/// What a mesh weighs is known before there is a solid of it, to the last bit: densities are scaled by it.
+TEST(HarmonicSolid, AMeshWeighsWhatItsSolidWeighs) {
+  DofMap dof_map;
+  const HarmonicSolid solid(dof_map, ball(2, 2), cartesian_basis(2), rule_of(cartesian_basis(2), true),
+                            {neo_hooke(0.4)}, {});
+  ASSERT_NEAR(solid.mass(), 4 * kPi / 3 * kDensity * std::pow(solid.mesh().radius, 3), 0.01 * solid.mass());
+  EXPECT_EQ(HarmonicSolid::mass(solid.mesh(), solid.materials()), solid.mass());
+}
+
 /// [@sphere-modes]: omega R / c_s of the free sphere; the spheroidal modes of degree l appear in the harmonics
 /// m = 0...l alike.
 struct ModeTable {

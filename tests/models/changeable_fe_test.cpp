@@ -146,10 +146,10 @@ TEST(ChangeableFe, ASmallShareOfTheShaftIsNearTheFreeHead) {
   ASSERT_GT(std::abs(whole - free), 0.02);  // a shaft is felt
   EXPECT_LT(std::abs(tenth - free), 0.3 * std::abs(whole - free));
   blow.contact.friction = 0.05;
-  EXPECT_LT(base.launch(blow, {}).backspin(),
-            0.7 * FeFreeBody(options)
-                      .launch({.delivery = blow.delivery, .club = blow.club, .ball = {}, .contact = {}})
-                      .backspin());
+  EXPECT_LT(
+      base.launch(blow, {}).backspin(),
+      0.7 *
+          Impact(options).launch({.delivery = blow.delivery, .club = blow.club, .ball = {}, .contact = {}}).backspin());
 }
 
 }  // namespace

@@ -19,7 +19,6 @@ FeImpactOptions sphere(const ElasticSolid& s) {
   o.ball = elastic_ball("sphere", {.elastic = fem::LinearElastic{fem::Lame::of(s.young, s.poisson)}, .density = 4000});
   o.mesh = {.sector = 3, .rings = 5, .pole = 0.13, .far = 6, .skin = 0.06, .core = 0.4};
   o.harmonics = 2;
-  o.friction = 0.092;
   o.penalty = 1600;
   o.tangential_penalty = 1;
   o.steps_per_contact = 40;
@@ -27,6 +26,11 @@ FeImpactOptions sphere(const ElasticSolid& s) {
   return o;
 }
 constexpr Ball kSmallBall{.mass = 0.2618e-3, .radius = 2.5e-3};
+
+Bounce thrown(const ImpactModel& model, double degrees, std::optional<StaticFriction> at_rest = {}) {
+  const ContactLaw contact{.patch = {.coefficient = 0.092, .at_rest = at_rest}};
+  return bounce(model, kSmallBall, 3.9, radians(degrees), contact);
+}
 
 TEST(ElasticPlate, StandInKeepsStiffnessCouplingAndPeriod) {
   const ContactPair pair = ContactPair::of(kAlumina, kGlass);
@@ -45,8 +49,8 @@ TEST(ElasticPlate, StandInKeepsStiffnessCouplingAndPeriod) {
 }
 
 TEST(ElasticPlate, OnARigidPlateTheStandInIsTheSphere) {
-  const Bounce plain = bounce(FeFreeBody(sphere(kAlumina)), kSmallBall, 3.9, radians(11));
-  const Bounce pair = bounce(ElasticPlate(sphere(kAlumina), kRigid, kSmallBall), kSmallBall, 3.9, radians(11));
+  const Bounce plain = thrown(Impact(sphere(kAlumina)), 11);
+  const Bounce pair = thrown(ElasticPlate(sphere(kAlumina), kRigid, kSmallBall), 11);
   ASSERT_GT(plain.spin, 200);
   // The stand-in has a layer more, and so another mesh inside.
   EXPECT_NEAR(pair.tangential_restitution, plain.tangential_restitution, 0.005);
@@ -58,12 +62,11 @@ TEST(ElasticPlate, OnARigidPlateTheStandInIsTheSphere) {
 /// it sticks. Where it slides throughout, coupling does not matter.
 TEST(ElasticPlate, GlassUnderTheSphereTakesTangentialReturn) {
   const ElasticPlate pair(sphere(kAlumina), kGlass, kSmallBall);
-  const FeFreeBody alone(sphere({59.1e9, .247}));
-  const Bounce sticks = bounce(pair, kSmallBall, 3.9, radians(3.7)),
-               before = bounce(alone, kSmallBall, 3.9, radians(3.7));
+  const Impact alone(sphere({59.1e9, .247}));
+  const Bounce sticks = thrown(pair, 3.7), before = thrown(alone, 3.7);
   EXPECT_GT(before.tangential_restitution, 0.48);
   EXPECT_LT(sticks.tangential_restitution, 0.40);
-  const Bounce slides = bounce(pair, kSmallBall, 3.9, radians(50));
+  const Bounce slides = thrown(pair, 50);
   EXPECT_NEAR(slides.tangential_ratio, 1 - 0.092 * (1 + slides.normal_restitution) / std::tan(radians(50)), 2e-3);
 }
 
@@ -71,13 +74,11 @@ TEST(ElasticPlate, GlassUnderTheSphereTakesTangentialReturn) {
 /// half a micrometre, the patch is as stiff along the blow as half spaces are, and gives back what was measured: 0.745
 /// at 3.7 degrees. The blow that slides by tens of micrometres hardly knows.
 TEST(ElasticPlate, StaticFrictionHoldsThePatchThatPressureShears) {
-  FeImpactOptions held = sphere(kAlumina);
-  held.static_friction = {{0.2, 0.5e-6}};
-  const ElasticPlate before(sphere(kAlumina), kGlass, kSmallBall), after(held, kGlass, kSmallBall);
-  const double angle = radians(3.7);
-  EXPECT_LT(bounce(before, kSmallBall, 3.9, angle).tangential_ratio, 0.63);
-  EXPECT_NEAR(bounce(after, kSmallBall, 3.9, angle).tangential_ratio, 0.745, 0.045);
-  const Bounce slides = bounce(after, kSmallBall, 3.9, radians(50));
+  const ElasticPlate pair(sphere(kAlumina), kGlass, kSmallBall);
+  const StaticFriction held{0.2, 0.5e-6};
+  EXPECT_LT(thrown(pair, 3.7).tangential_ratio, 0.63);
+  EXPECT_NEAR(thrown(pair, 3.7, held).tangential_ratio, 0.745, 0.045);
+  const Bounce slides = thrown(pair, 50, held);
   EXPECT_NEAR(slides.tangential_ratio, 1 - 0.092 * (1 + slides.normal_restitution) / std::tan(radians(50)), 0.012);
 }
 

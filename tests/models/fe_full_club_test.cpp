@@ -1,5 +1,5 @@
 // The whole club against the free head: what [@shaft-influence] found, and limits that must hold.
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ FeImpactOptions coarse() { return test::coarse_impact(2, 1); }
 TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
   for (double toe : {0.02, -0.02}) {
     const Blow blow = driver_blow(toe);
-    const FeOutcome free = solve_free_body(blow, coarse()), full = solve_full_club(blow, {coarse(), {}});
+    const FeOutcome free = Impact(coarse()).run(blow), full = Impact(coarse(), ShaftMount{}).run(blow);
     // The blow happened: a ball of driver speed, a force of more than 10 kN over about 0.45 ms.
     for (const FeOutcome* o : {&free, &full}) {
       EXPECT_GT(o->launch.ball_speed(), 55);
@@ -37,7 +37,7 @@ TEST(FeFullClub, MoreBallSpeedLessTurningLessGearEffect) {
 /// changes is met to 0.2 % of itself in velocity (four elements, the coarse ball); 1 % of its mass moves that by 0.4 %.
 TEST(FeFullClub, AStiffShaftIsMoreHead) {
   Blow blow = driver_blow(0.01);
-  const FeOutcome bare = solve_free_body(blow, coarse());
+  const FeOutcome bare = Impact(coarse()).run(blow);
   Shaft& shaft = *blow.club.shaft;
   // Of 60 g over 0.3 m; the rotary inertia of its sections is nothing beside the head's.
   shaft.damping_time = 0;
@@ -52,7 +52,7 @@ TEST(FeFullClub, AStiffShaftIsMoreHead) {
                          .mass_per_length = 0.2,
                          .rotary_inertia_y = 1e-8,
                          .rotary_inertia_z = 1e-8};
-  const FeOutcome full = solve_full_club(blow, {coarse(), {.grip = Grip::free, .elements = 4, .growth = 1}});
+  const FeOutcome full = Impact(coarse(), ShaftMount{.grip = Grip::free, .elements = 4, .growth = 1}).run(blow);
   Blow lump = blow;
   Head& head = lump.club.head;
   const Vec3 middle = blow.club.geometry.hosel + 0.15 * blow.club.geometry.shaft_axis,
@@ -66,7 +66,7 @@ TEST(FeFullClub, AStiffShaftIsMoreHead) {
                   rod * 0.3 * 0.3 / 12 * (Mat3::Identity() - axis * axis.transpose());
   head.cg = cg;
   head.mass = mass;
-  const FeOutcome together = solve_free_body(lump, coarse());
+  const FeOutcome together = Impact(coarse()).run(lump);
   const double gain = (together.launch.velocity - bare.launch.velocity).norm();
   ASSERT_GT(gain, 0.5);
   EXPECT_LT((full.launch.velocity - together.launch.velocity).norm(), 0.004 * gain);
@@ -75,13 +75,13 @@ TEST(FeFullClub, AStiffShaftIsMoreHead) {
 
 TEST(FeFullClub, AShaftOfNothingIsAFreeHead) {
   Blow blow = driver_blow(0.02);
-  const FeOutcome free = solve_free_body(blow, coarse());
+  const FeOutcome free = Impact(coarse()).run(blow);
   for (ShaftStation& s : blow.club.shaft->stations) {
     for (double* x : {&s.bending_stiffness_y, &s.bending_stiffness_z, &s.torsional_stiffness, &s.axial_stiffness,
                       &s.shear_stiffness, &s.mass_per_length, &s.rotary_inertia_y, &s.rotary_inertia_z})
       *x *= 1e-7;
   }
-  const FeOutcome full = solve_full_club(blow, {coarse(), {.grip = Grip::free}});
+  const FeOutcome full = Impact(coarse(), ShaftMount{.grip = Grip::free}).run(blow);
   EXPECT_LT((full.launch.velocity - free.launch.velocity).norm(), 1e-4 * free.launch.ball_speed());
   EXPECT_LT((full.launch.spin - free.launch.spin).norm(), 1e-3 * free.launch.spin_rate());
   EXPECT_LT((full.launch.head_spin - free.launch.head_spin).norm(), 1e-3 * free.launch.head_spin.norm());
@@ -95,7 +95,7 @@ TEST(FeFullClub, AHingedHeadFeelsTheShaftButNotItsMomentAboutTheHinge) {
   const auto solve = [&](const HeadJoint& joint, double& moment) {
     ShaftMount mount;
     mount.joint = joint;
-    return solve_full_club(blow, {coarse(), mount}, [&](const ImpactView& v) {
+    return Impact(coarse(), mount).run(blow, [&](const ImpactView& v) {
       moment = std::max(moment, std::abs(hosel_load(*v.shaft, v.state).moment.dot(across)));
     });
   };
@@ -103,8 +103,8 @@ TEST(FeFullClub, AHingedHeadFeelsTheShaftButNotItsMomentAboutTheHinge) {
   weld.stiffness.translation = Vec3::Constant(2e9);
   weld.stiffness.rotation = Vec3::Constant(2e5);
   double rigid_moment = 0, weld_moment = 0, hinge_moment = 0;
-  const FeOutcome free = solve_free_body(blow, coarse()), rigid = solve({}, rigid_moment),
-                  welded = solve(weld, weld_moment), hinged = solve({.kind = HeadJoint::Kind::hinge}, hinge_moment);
+  const FeOutcome free = Impact(coarse()).run(blow), rigid = solve({}, rigid_moment), welded = solve(weld, weld_moment),
+                  hinged = solve({.kind = HeadJoint::Kind::hinge}, hinge_moment);
   for (const FeOutcome* o : {&rigid, &welded, &hinged}) {
     ASSERT_GT(o->result.peak_force, 1e4);
     EXPECT_LT(std::abs(o->result.ledger.closure), 5e-3 * o->result.ledger.initial);
@@ -132,7 +132,7 @@ TEST(FeFullClub, AShaftWithoutShearIsTheLimitOfAStiffOne) {
   const auto solve = [&](double stiffer, bool shear) {
     Blow b = blow;
     for (ShaftStation& s : b.club.shaft->stations) s.shear_stiffness *= stiffer;
-    return solve_full_club(b, {coarse(), {.elements = 20, .growth = 0.92, .shear = shear}});
+    return Impact(coarse(), ShaftMount{.elements = 20, .growth = 0.92, .shear = shear}).run(b);
   };
   const FeOutcome yields = solve(1, true), held = solve(1, false), stiff = solve(1e6, true);
   ASSERT_GT(held.result.peak_force, 1e4);
@@ -151,42 +151,43 @@ TEST(FeFullClub, RefusesALoadedHinge) {
   ShaftMount mount;
   mount.joint.kind = HeadJoint::Kind::hinge;
   mount.load = GripLoad{};
-  EXPECT_THROW(solve_full_club(driver_blow(0), {coarse(), mount}), std::invalid_argument);
+  EXPECT_THROW(Impact(coarse(), mount).run(driver_blow(0)), std::invalid_argument);
 }
 
 TEST(FeFullClub, RefusesAClubWithoutShaft) {
   Blow blow = driver_blow(0);
   blow.club.shaft.reset();
-  EXPECT_THROW(solve_full_club(blow, {coarse(), {}}), std::invalid_argument);
+  EXPECT_THROW(Impact(coarse(), ShaftMount{}).run(blow), std::invalid_argument);
 }
 
 /// A club of every part that remembers: hands that push and hold, a joint that gives, a shaft that is viscous. What is
 /// not remembered would show in the ledger.
 TEST(FeFullClub, GoesOnFromACheckpointToTheSameBits) {
   Blow blow = driver_blow(0.01);
-  FeFullClubOptions options{coarse(), {.grip = Grip::hands, .elements = 4, .growth = 1}};
-  options.mount.hands = {.translation = Vec3::Constant(2e4),
-                         .rotation = Vec3::Constant(50),
-                         .translation_damping = Vec3::Constant(100),
-                         .rotation_damping = Vec3::Constant(1)};
-  options.mount.joint = {.kind = HeadJoint::Kind::spring,
-                         .stiffness = {.translation = Vec3::Constant(1e7),
-                                       .rotation = Vec3::Constant(1e4),
-                                       .translation_damping = Vec3::Constant(100),
-                                       .rotation_damping = Vec3::Constant(1)}};
-  options.mount.loaded = LoadedShaft{};
+  ShaftMount mount{.grip = Grip::hands, .elements = 4, .growth = 1};
+  mount.hands = {.translation = Vec3::Constant(2e4),
+                 .rotation = Vec3::Constant(50),
+                 .translation_damping = Vec3::Constant(100),
+                 .rotation_damping = Vec3::Constant(1)};
+  mount.joint = {.kind = HeadJoint::Kind::spring,
+                 .stiffness = {.translation = Vec3::Constant(1e7),
+                               .rotation = Vec3::Constant(1e4),
+                               .translation_damping = Vec3::Constant(100),
+                               .rotation_damping = Vec3::Constant(1)}};
+  mount.loaded = LoadedShaft{};
+  mount.loaded->gravity = Vec3(-2, 0, -9.6);  // face axes
   for (const mesh::LineNode& n : shaft_line(blow.club, 0, 4, 1))
-    options.mount.loaded->nodes.push_back({.position = n.position});
-  options.mount.loaded->grip = {Vec3(100, -50, 300), Vec3(2, 1, 0)};
+    mount.loaded->nodes.push_back({.position = n.position});
+  mount.loaded->grip = {Vec3(100, -50, 300), Vec3(2, 1, 0)};
 
   std::optional<ImpactCheckpoint> half;
   int steps = 0;
-  const FeOutcome whole = solve_full_club(blow, options, [&](const ImpactView& view) {
+  const FeOutcome whole = Impact(coarse(), mount).run(blow, [&](const ImpactView& view) {
     if (++steps == 30) half = view.checkpoint();
   });
   ASSERT_GT(steps, 45);
   ASSERT_TRUE(half && half->touched && !half->over);
-  const FeOutcome rest = solve_full_club(blow, options, {}, &*half);
+  const FeOutcome rest = Impact(coarse(), mount).run(blow, {}, &*half);
   EXPECT_EQ(rest.launch.velocity, whole.launch.velocity);
   EXPECT_EQ(rest.launch.spin, whole.launch.spin);
   EXPECT_EQ(rest.launch.head_spin, whole.launch.head_spin);
@@ -202,8 +203,8 @@ TEST(FeFullClub, GoesOnFromACheckpointToTheSameBits) {
   EXPECT_LT(std::abs(b.closure), 5e-3 * b.initial);
 
   // Of another club, with fewer parts that remember: not gone on from.
-  options.mount.grip = Grip::free;
-  EXPECT_ANY_THROW(solve_full_club(blow, options, {}, &*half));
+  mount.grip = Grip::free;
+  EXPECT_ANY_THROW(Impact(coarse(), mount).run(blow, {}, &*half));
 }
 
 }  // namespace

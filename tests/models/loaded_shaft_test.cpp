@@ -5,7 +5,7 @@
 
 #include "models/club/hosel_load.hpp"
 #include "models/club/mounted_shaft.hpp"
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::models {
@@ -171,9 +171,8 @@ TEST(LoadedShaft, ASteadyShaftStaysAsItIsOnItsHead) {
 TEST(LoadedShaft, RefusesAnotherMesh) {
   const SwingEnd end = swing_end();
   Blow blow{.delivery = delivery_of(end.from.head), .club = end.club, .ball = {}, .contact = {}};
-  FeFullClubOptions options;
-  options.mount = {.elements = kElements + 1, .loaded = end.loaded};
-  EXPECT_THROW(assemble_full_club(blow, options), std::invalid_argument);
+  const ShaftMount mount{.elements = kElements + 1, .loaded = end.loaded};
+  EXPECT_THROW(Impact(FeImpactOptions{}, mount).assemble(blow), std::invalid_argument);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ PlateDesign plate_design() {
 
 FeImpactOptions with_plate(const PlateDesign& d) {
   FeImpactOptions o = test::coarse_impact(2);
-  o.plate = std::make_shared<const PlateOnDemand>(d);
+  o.face = std::make_shared<const PlateOnDemand>(d);
   return o;
 }
 
@@ -75,8 +75,8 @@ TEST(PlateFace, LedgerClosesOffCentre) {
   const Blow blow = test::driver_blow(0.015, 0.006);
   const FeImpactOptions yielding = with_plate(plate_design());
   FeImpactOptions rigid = yielding;
-  rigid.plate = nullptr;
-  const FeOutcome a = solve_free_body(blow, yielding), b = solve_free_body(blow, rigid);
+  rigid.face = nullptr;
+  const FeOutcome a = Impact(yielding).run(blow), b = Impact(rigid).run(blow);
   ASSERT_GT(a.result.face_travel, 2e-4);
   ASSERT_GT(a.result.face_energy, 0);
   EXPECT_LT(std::abs(a.result.ledger.closure), 2 * std::abs(b.result.ledger.closure) + 1e-4 * a.result.ledger.initial);
@@ -88,15 +88,13 @@ TEST(PlateFace, StressOfABlowIsTheLargestOfItsSteps) {
   const Blow blow = test::driver_blow(0.015, 0.006);
   FeImpactOptions o = with_plate(plate_design());
   FaceStress stress;
-  std::vector<PlateFace::Peak> steps;
+  std::vector<FacePeak> steps;
   const auto watch = [&](const ImpactView& v) {
     stress.see(v);
-    if (v.parts->condensed)
-      steps.push_back(PlateFace::Stresses(v.parts->plate->plate(), v.parts->condensed->fields)
-                          .peak(v.parts->face->unknowns(v.state)));
+    if (v.bodies.face_stresses) steps.push_back(v.bodies.face_stresses()(v.bodies.face->unknowns(v.state)));
   };
-  solve_free_body(blow, o, watch);
-  const auto largest = std::ranges::max_element(steps, {}, &PlateFace::Peak::stress);
+  Impact(o).run(blow, watch);
+  const auto largest = std::ranges::max_element(steps, {}, &FacePeak::stress);
   ASSERT_GT(std::distance(steps.begin(), largest), 5) << "the stress rises at first";
   ASSERT_LT(largest + 5, steps.end()) << "and falls again";
   ASSERT_TRUE(stress.peak());
@@ -105,9 +103,9 @@ TEST(PlateFace, StressOfABlowIsTheLargestOfItsSteps) {
   EXPECT_GT(stress.peak()->stress, 5e8);
   // It is beside the place struck: y points to the heel.
   EXPECT_LT((stress.peak()->place - Vector2d(-0.015, 0.006)).norm(), 0.012);
-  o.plate = nullptr;
+  o.face = nullptr;
   FaceStress none;
-  solve_free_body(blow, o, [&](const ImpactView& v) { none.see(v); });
+  Impact(o).run(blow, [&](const ImpactView& v) { none.see(v); });
   EXPECT_FALSE(none.peak());
 }
 
@@ -117,8 +115,8 @@ TEST(PlateFace, MoreModesChangeLittle) {
   PlateDesign all = plate_design(), few = all;
   all.modes = 27;
   few.modes = 1;
-  const Launch a = solve_free_body(blow, with_plate(plate_design())).launch,
-               b = solve_free_body(blow, with_plate(all)).launch, c = solve_free_body(blow, with_plate(few)).launch;
+  const Launch a = Impact(with_plate(plate_design())).run(blow).launch, b = Impact(with_plate(all)).run(blow).launch,
+               c = Impact(with_plate(few)).run(blow).launch;
   EXPECT_NEAR(a.ball_speed(), b.ball_speed(), 5e-4 * b.ball_speed());
   EXPECT_NEAR(a.spin_rate(), b.spin_rate(), 5e-3 * b.spin_rate());
   EXPECT_GT(std::abs(c.ball_speed() - b.ball_speed()), std::abs(a.ball_speed() - b.ball_speed()));
@@ -143,7 +141,7 @@ TEST(PlateFace, AgreesWithTheUnreducedFace) {
   for (int j = 0; j < whole.modes; ++j)
     kept += std::pow(flat.modes().col(j).dot(load) / flat.omega()[std::size_t(j)], 2);
   ASSERT_NEAR(kept, flat.compliance(place, 9e-3), 1e-3 * kept);
-  const FeOutcome a = solve_free_body(blow, with_plate(reduced)), b = solve_free_body(blow, with_plate(whole));
+  const FeOutcome a = Impact(with_plate(reduced)).run(blow), b = Impact(with_plate(whole)).run(blow);
   ASSERT_GT(b.result.face_travel, 1e-4);
   EXPECT_NEAR(a.launch.ball_speed(), b.launch.ball_speed(), 5e-4 * b.launch.ball_speed());
   EXPECT_NEAR(a.launch.spin_rate(), b.launch.spin_rate(), 5e-3 * b.launch.spin_rate());
@@ -158,7 +156,7 @@ TEST(PlateFace, HalfOfASymmetricBlowIsTheWhole) {
   aside.delivery.impact_toe = 1e-7;
   FeImpactOptions o = with_plate(plate_design());
   o.newton_relative = 1e-8;
-  const FeOutcome half = solve_free_body(blow, o), whole = solve_free_body(aside, o);
+  const FeOutcome half = Impact(o).run(blow), whole = Impact(o).run(aside);
   ASSERT_LT(half.result.last.q.size(), whole.result.last.q.size());
   EXPECT_LT((half.launch.velocity - whole.launch.velocity).norm(), 1e-4 * half.launch.velocity.norm());
   EXPECT_LT((half.launch.spin - whole.launch.spin).norm(), 1e-3 * half.launch.spin.norm());
@@ -174,8 +172,8 @@ TEST(PlateFace, RigidIsItsLimit) {
   FeImpactOptions stiff = with_plate(d);
   stiff.newton_relative = 1e-9;
   FeImpactOptions rigid = stiff;
-  rigid.plate = nullptr;
-  const Launch a = solve_free_body(blow, stiff).launch, b = solve_free_body(blow, rigid).launch;
+  rigid.face = nullptr;
+  const Launch a = Impact(stiff).run(blow).launch, b = Impact(rigid).run(blow).launch;
   ASSERT_GT(b.peak_force, 5e3);
   EXPECT_LT((a.velocity - b.velocity).norm(), 1e-7 * b.velocity.norm());
   EXPECT_LT((a.spin - b.spin).norm(), 1e-6 * b.spin.norm());

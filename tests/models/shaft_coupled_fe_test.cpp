@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/fe/fe_full_club.hpp"
+#include "models/fe/impact.hpp"
 #include "models/reduced/shaft_coupled.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "solvers/least_squares.hpp"
@@ -56,11 +56,11 @@ TEST(SlowShaftCoupled, ShaftsPartAgreesWithTheFullClubOverTheFace) {
   std::vector<double> width;
   for (const Blow& b : blows) {
     PulseWidth pulse;
-    free.push_back(solve_free_body(b, coarse_free(), [&](const ImpactView& v) {
-                     pulse.add(v.state.time, v.report.normal_force);
-                   }).launch);
+    free.push_back(Impact(coarse_free())
+                       .run(b, [&](const ImpactView& v) { pulse.add(v.state.time, v.report.normal_force); })
+                       .launch);
     width.push_back(pulse.value());
-    full.push_back(solve_full_club(b, {coarse_free(), {}}).launch);
+    full.push_back(Impact(coarse_free(), ShaftMount{}).run(b).launch);
     ASSERT_GT(*free.back().peak_force, 1e4);
     ASSERT_GT(width.back(), 5e-5);
   }

@@ -146,16 +146,16 @@ TEST(Volumetric, MomentaAndEnergyBalance) {
 
 /// Off centre, with friction and a curved face that yields: exact momenta, closed ledger, and a faster ball.
 TEST(Volumetric, BalancesOnAYieldingFace) {
-  const Blow b = eccentric();
-  VolumetricLaw law{.volume_exponent = 0.6};
+  Blow b = eccentric();
+  const VolumetricLaw law{.volume_exponent = 0.6};
   const double rigid = volumetric_impact(b, law).launch.ball_speed();
-  law.face = find_face("modern-driver")->face;
+  b.club.head.compliance = find_face("modern-driver")->face;
   for (const VolumetricResult& r : {volumetric_impact(b, law, {Integrator::cvode, 1e-12}),
                                     volumetric_impact(b, law, {Integrator::rosenbrock, 1e-10})}) {
     ASSERT_GT(r.energy.lost_face, 0.1);
     ASSERT_GT(std::abs(r.face_rate), 0.1);
     EXPECT_GT(r.launch.ball_speed(), 1.01 * rigid);
-    expect_balances(b, r, law.face->mass);
+    expect_balances(b, r, b.club.head.compliance->mass);
   }
 }
 
@@ -165,10 +165,10 @@ TEST(Volumetric, YieldingFaceAgreesWithTheClosedTwoMassSolution) {
   constexpr double kSpeed = 0.5, kSpring = 2e6;
   Blow b = central(0.2, kSpeed, kInfiniteMass);
   for (const auto& [mass, stiffness] : {std::pair{0.005, 1e7}, {0.015, 1e7}, {0.02, 7e6}}) {
-    VolumetricLaw law{
+    const VolumetricLaw law{
         .stiffness = kSpring / std::sqrt(1e-6 * kPi * b.ball.radius), .damping = 0, .volume_exponent = 0.5};
-    law.face = FaceCompliance{.mass = mass, .stiffness = stiffness};
-    const test::TwoMasses exact = test::two_masses(b.ball.mass, kSpring, 0.2, *law.face, kSpeed);
+    b.club.head.compliance = {.mass = mass, .stiffness = stiffness};
+    const test::TwoMasses exact = test::two_masses(b.ball.mass, kSpring, 0.2, *b.club.head.compliance, kSpeed);
     const VolumetricResult found = volumetric_impact(b, law, {Integrator::rosenbrock, 1e-8});
     const double head = kSpeed - b.ball.mass / 0.2 * found.launch.velocity.x();
     ASSERT_GT(exact.face_energy, 1e-5);
@@ -179,13 +179,13 @@ TEST(Volumetric, YieldingFaceAgreesWithTheClosedTwoMassSolution) {
 
 /// The rigid face is the limit: the launch departs from it like 1 / stiffness.
 TEST(Volumetric, RigidIsTheLimitOfAStiffFace) {
-  const Blow b = eccentric();
-  VolumetricLaw law;
+  Blow b = eccentric();
+  const VolumetricLaw law;
   const Launch rigid = volumetric_impact(b, law, {Integrator::cvode, 1e-10}).launch;
-  law.face = find_face("modern-driver")->face;
+  FaceCompliance& face = b.club.head.compliance.emplace(find_face("modern-driver")->face);
   for (const double stiffness : {1e9, 1e10}) {
-    law.face->stiffness = stiffness;
-    law.face->damping = 2 * std::sqrt(stiffness * law.face->mass);  // it would ring for ever
+    face.stiffness = stiffness;
+    face.damping = 2 * std::sqrt(stiffness * face.mass);  // it would ring for ever
     const Launch stiff = volumetric_impact(b, law, {Integrator::cvode, 1e-10}).launch;
     const double gap = (stiff.velocity - rigid.velocity).norm() / rigid.ball_speed();
     EXPECT_GT(gap, 1e5 / stiffness);

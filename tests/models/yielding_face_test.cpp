@@ -112,19 +112,17 @@ TEST(YieldingFace, AgreesWithTheClosedTwoMassSolution) {
   }
 }
 
-FeImpactOptions driver_options() {
-  FeImpactOptions o = test::coarse_impact(2);
-  o.face = FaceCompliance{.mass = 0.012, .stiffness = 1e7, .damping = 10, .half_width = 0.05, .half_height = 0.028};
-  return o;
-}
+constexpr FaceCompliance kDriverFace{
+    .mass = 0.012, .stiffness = 1e7, .damping = 10, .half_width = 0.05, .half_height = 0.028};
 
 /// Off centre, with friction and a curved face: the ledger closes as that of the rigid face does, and the yielding one
 /// gives the ball more speed.
 TEST(YieldingFace, LedgerClosesOffCentre) {
-  const Blow blow = test::driver_blow(0.015, 0.006);
-  FeImpactOptions yielding = driver_options(), rigid = yielding;
-  rigid.face.reset();
-  const FeOutcome a = solve_free_body(blow, yielding), b = solve_free_body(blow, rigid);
+  const Blow rigid = test::driver_blow(0.015, 0.006);
+  Blow yielding = rigid;
+  yielding.club.head.compliance = kDriverFace;
+  const Impact impact(test::coarse_impact(2));
+  const FeOutcome a = impact.run(yielding), b = impact.run(rigid);
   ASSERT_GT(a.result.face_travel, 2e-4);
   ASSERT_GT(a.result.ledger.viscous, b.result.ledger.viscous * 0.5);
   EXPECT_LT(std::abs(a.result.ledger.closure), 2 * std::abs(b.result.ledger.closure) + 1e-4 * a.result.ledger.initial);
@@ -142,9 +140,9 @@ TEST(YieldingFace, DriverAt112MilesPerHour) {
   blow.delivery = {.club_speed = 112 * kMpsPerMph, .dynamic_loft = radians(10)};
   FeImpactOptions o;
   o.resolve(Accuracy::look);
-  const auto smash = [&] { return solve_free_body(blow, o).launch.velocity.norm() / blow.delivery.club_speed; };
+  const auto smash = [&] { return Impact(o).run(blow).launch.velocity.norm() / blow.delivery.club_speed; };
   const double rigid = smash();
-  o.face = find_face("modern-driver")->face;
+  blow.club.head.compliance = find_face("modern-driver")->face;
   const double yielding = smash();
   o.ball = elastic_ball(
       "livelier",
@@ -158,14 +156,15 @@ TEST(YieldingFace, DriverAt112MilesPerHour) {
 
 /// The rigid face is the limit: travel and launch depart from it like 1 / stiffness.
 TEST(YieldingFace, RigidIsItsLimit) {
-  const Blow blow = test::driver_blow(0.015, 0.006);
-  FeImpactOptions stiff = driver_options();
-  stiff.newton_relative = 1e-9;  // what Newton leaves is not what is looked for
-  FeImpactOptions rigid = stiff;
-  rigid.face.reset();
-  stiff.face->stiffness = 1e16;
-  stiff.face->damping = 0;
-  const Launch a = solve_free_body(blow, stiff).launch, b = solve_free_body(blow, rigid).launch;
+  const Blow rigid = test::driver_blow(0.015, 0.006);
+  Blow stiff = rigid;
+  stiff.club.head.compliance = kDriverFace;
+  stiff.club.head.compliance->stiffness = 1e16;
+  stiff.club.head.compliance->damping = 0;
+  FeImpactOptions o = test::coarse_impact(2);
+  o.newton_relative = 1e-9;  // what Newton leaves is not what is looked for
+  const Impact impact(o);
+  const Launch a = impact.launch(stiff), b = impact.launch(rigid);
   ASSERT_GT(b.peak_force, 5e3);
   EXPECT_LT((a.velocity - b.velocity).norm(), 1e-8 * b.velocity.norm());
   EXPECT_LT((a.spin - b.spin).norm(), 1e-7 * b.spin.norm());

@@ -20,19 +20,19 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = 30;
   blow.delivery.club_path = radians(30);
-  models::FeImpactOptions options = test::coarse_impact(2);
-  options.friction = 0.3;
-  const Mat3 axes = models::encounter(blow).ball_axes;
+  blow.contact.patch.coefficient = 0.3;
   const fs::path dir = fs::path(testing::TempDir()) / "hosel_patch";
   fs::remove_all(dir);
   ImpactRecorder recorder(dir, blow, {.steps_per_frame = 2, .angles = 8}, "patch");
   std::map<double, std::vector<fem::ContactPoint>> seen;
-  const models::FeImpactResult result = models::solve_free_body(blow, options, [&](const models::ImpactView& view) {
-                                          recorder(view);
-                                          seen[view.state.time] = view.contact.points(view.state);
-                                        }).result;
-  ASSERT_GT(result.peak_force, 1e3);
-  const PatchHistory patch = read_patch(dir / "vtk", axes, models::mesh_axes(blow, options));
+  const models::FeOutcome outcome =
+      models::Impact(test::coarse_impact(2)).run(blow, [&](const models::ImpactView& view) {
+        recorder(view);
+        seen[view.state.time] = view.contact.points(view.state);
+      });
+  ASSERT_GT(outcome.result.peak_force, 1e3);
+  const Mat3& axes = outcome.frame.ball_axes;
+  const PatchHistory patch = read_patch(dir / "vtk", axes, outcome.mesh_axes);
   ASSERT_GT(patch.time.size(), 20u);
   ASSERT_GT(patch.position.size(), 6u);
   EXPECT_TRUE(std::ranges::is_sorted(patch.position));
@@ -54,7 +54,7 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
       EXPECT_EQ(patch.pressure[k], nearest.pressure);
       EXPECT_NEAR(patch.traction[k], nearest.traction.dot(axes.col(1)), 1e-9 * nearest.pressure);
       EXPECT_EQ(patch.slip[k], nearest.slip);
-      EXPECT_LE(std::abs(patch.traction[k]), options.friction * patch.pressure[k] * (1 + 1e-9));
+      EXPECT_LE(std::abs(patch.traction[k]), blow.contact.patch.coefficient * patch.pressure[k] * (1 + 1e-9));
       EXPECT_GE(patch.slip[k], patch.slip[i > 0 ? k - 1 : k]);
       pull = std::max(pull, patch.traction[k]);
       push = std::min(push, patch.traction[k]);

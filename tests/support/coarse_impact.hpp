@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fem/materials/hyperelastic.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace hosel::test {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "golf/units.hpp"
-#include "models/fe/fe_impact.hpp"
+#include "models/fe/impact.hpp"
 
 namespace hosel::test {
 
@@ -22,16 +22,17 @@ struct Bounce {
 };
 
 /// `v_n` and `v_t` are the speeds of the ball's centre towards the wall and along it [m/s].
-inline Bounce bounce(const models::FeImpactOptions& options, double v_n, double v_t) {
+inline Bounce bounce(const models::FeImpactOptions& options, double v_n, double v_t, double friction = 0.4) {
   Blow blow;
+  blow.contact.patch.coefficient = friction;
   blow.club.head.mass = INFINITY;
   blow.delivery.club_speed = std::hypot(v_n, v_t);
   blow.delivery.club_path = std::atan2(v_t, v_n);
-  const models::Encounter e = models::encounter(blow);
+  const models::ContactFrame e = models::contact_frame(blow);
   const Vec3 v0 = -blow.delivery.velocity();
   const Vec3 slip = v_t > 0 ? Vec3((v0 - v0.dot(e.normal) * e.normal).normalized()) : e.ball_axes.col(1);
   Bounce out;
-  const models::FeOutcome answer = solve_free_body(blow, options, [&](const models::ImpactView& view) {
+  const models::FeOutcome answer = models::Impact(options).run(blow, [&](const models::ImpactView& view) {
     const double along = view.report.force.dot(slip), normal = view.report.normal_force;
     out.pull = std::max(out.pull, -along);
     out.push = std::max(out.push, along);

@@ -1,4 +1,5 @@
-/// The finite-element impact: a deformable ball meets the face of a rigid head.
+/// The finite-element impact: a deformable ball, the head with its face, the contact between them, and the shaft where
+/// the head hangs on one.
 #pragma once
 
 #include <array>
@@ -10,13 +11,12 @@
 
 #include "fem/beam.hpp"
 #include "fem/contact.hpp"
-#include "fem/face_spring.hpp"
-#include "fem/friction/slip_weakening.hpp"
 #include "fem/rigid_body.hpp"
-#include "golf/first_contact.hpp"
 #include "mesh/meridian.hpp"
+#include "models/club/mounted_shaft.hpp"
+#include "models/fe/contact_frame.hpp"
 #include "models/fe/fe_ball.hpp"
-#include "models/fe/plate_face.hpp"
+#include "models/fe/struck_face.hpp"
 #include "models/impact_model.hpp"
 #include "solvers/generalized_alpha.hpp"
 #include "solvers/peak.hpp"
@@ -26,15 +26,11 @@ namespace hosel::models {
 /// How fine space and time are resolved: within some 3 %, 0.5 %, 0.1 % of ball speed, launch angle and spin.
 enum class Accuracy { look, standard, reference };
 
-/// How the impact is solved.
+/// The ball, a face of its own where the head's is not meant, and how the impact is solved. Head, friction and place
+/// are the blow's.
 struct FeImpactOptions {
   FeBall ball = range_ball();
-  double friction = 0.4;                               ///< Coulomb's coefficient between ball and face [-]
-  std::optional<double> transition_speed;              ///< where set, friction is regularised by velocity [m/s]
-  std::optional<fem::StaticFriction> static_friction;  ///< where set, what holds a point until it has slid some way
-
-  std::optional<FaceCompliance> face;               ///< of the club; without it and a plate the face is rigid
-  std::shared_ptr<const PlateOnDemand> plate = {};  ///< of the club: a face with a thickness
+  std::shared_ptr<const StruckFace> face = {};  ///< none: the head's own, rigid or with its compliance
 
   mesh::MeridianOptions mesh;
   int harmonics = 4;       ///< N; 0 is the axisymmetric ball
@@ -66,42 +62,21 @@ struct FeImpactOptions {
   std::vector<std::string> faults() const;
 };
 
-/// The ball and its contact inside a system; owned by it.
-struct BallOnFace {
+/// The bodies of one blow in one system, as they stand at first contact. The system owns them.
+struct ImpactBodies {
+  fem::System system;
+  fem::State initial;
+  ContactFrame frame;
+  Mat3 mesh_axes;  ///< of the ball's mesh: those of the frame, turned about the third by the tilt
   fem::HarmonicSolid* ball = nullptr;
   fem::Contact* contact = nullptr;
-  const fem::FaceSpring* face = nullptr;         ///< of a face that yields
-  double compliance = 0;                         ///< of it where it is struck [m/N]
-  std::shared_ptr<const PlateFace> plate = {};   ///< that is the face
-  std::optional<CondensedPlate> condensed = {};  ///< of it about the place struck
-  const fem::Beam* shaft = nullptr;              ///< of a full club, for observers
+  const fem::RigidBody* head = nullptr;                                             ///< absent for a wall
+  const fem::Beam* shaft = nullptr;                                                 ///< of a whole club
+  const fem::FaceSpring* face = nullptr;                                            ///< of a face that yields
+  double compliance = 0;                                                            ///< of it where it is struck [m/N]
+  std::function<std::function<FacePeak(const fem::Vector&)>()> face_stresses = {};  ///< see FaceInSystem
+  double contact_time = 0;                                                          ///< that Hertz's theory expects [s]
 };
-
-/// First contact, and what of it is symmetric.
-struct Encounter : FirstContact {
-  double normal_speed = 0;       ///< approach along the normal [m/s]
-  bool axial = false;            ///< nothing but a normal blow through the centres
-  bool planar = false;           ///< a plane of symmetry exists
-  bool principal = false;        ///< the plane of normal and slip is one of the face's own about its centre
-  bool across_heel_toe = false;  ///< a principal plane is the one of out and up, not of out and heel-toe
-  Mat3 ball_axes;                ///< contact pole, direction of slip, across both
-  /// The face's mirror by a principal plane.
-  Mirror mirror() const { return !principal ? Mirror::none : across_heel_toe ? Mirror::heel_toe : Mirror::up_down; }
-};
-/// Throws std::invalid_argument where the head moves away from the ball.
-Encounter encounter(const Blow& blow);
-
-/// The angle by which the ball will turn while it touches [rad], to a fifth or so: a spin 1.3 times that of rolling, or
-/// what friction allows, that grows over a contact a good third longer than Hertz's with the instant modulus.
-double expected_turn(const Blow& blow, const FeImpactOptions& options);
-
-/// Axes of the ball's mesh: those of the encounter, turned about the third by the tilt.
-Mat3 mesh_axes(const Blow& blow, const FeImpactOptions& options);
-
-/// Adds ball and contact to a system whose face is carried by `carrier`: the way in for a head on a
-/// shaft. `free` says that the carrier may move out of the blow's plane of symmetry.
-BallOnFace add_ball(fem::System& system, const Blow& blow, const FeImpactOptions& options,
-                    const fem::SurfaceCarrier& carrier, bool free);
 
 /// What the impact was.
 struct FeImpactResult {
@@ -151,16 +126,14 @@ struct ImpactCheckpoint {
 
 /// What an observer sees after every accepted step, and once at the start.
 struct ImpactView {
-  const fem::System& system;
+  const ImpactBodies& bodies;
   const fem::State& state;
   const fem::HarmonicSolid& ball;
   const fem::Contact& contact;
   const fem::ContactReport& report;
   const solvers::Ledger& ledger;
   fem::SurfacePose face;
-  double expected_end = 0;           ///< when Hertz's theory would have contact end [s]
-  const fem::Beam* shaft = nullptr;  ///< of a full club
-  const BallOnFace* parts = nullptr;
+  const fem::Beam* shaft = nullptr;  ///< of a whole club
   std::function<ImpactCheckpoint()> checkpoint;
 };
 using ImpactObserver = std::function<void(const ImpactView&)>;
@@ -168,60 +141,44 @@ using ImpactObserver = std::function<void(const ImpactView&)>;
 /// The largest von Mises stress of a face with a thickness over a blow, by an observer that sees every step.
 class FaceStress {
  public:
-  /// Of a blow on any other face nothing is seen.
+  /// Of a blow on a face that knows no stress nothing is seen.
   void see(const ImpactView& view);
-  /// Nothing where no face with a thickness was seen.
-  const std::optional<PlateFace::Peak>& peak() const { return peak_; }
+  /// Nothing where no stress was seen.
+  const std::optional<FacePeak>& peak() const { return peak_; }
 
  private:
-  std::optional<PlateFace::Stresses> stresses_;
-  std::optional<PlateFace::Peak> peak_;
+  std::function<FacePeak(const fem::Vector&)> stresses_;
+  std::optional<FacePeak> peak_;
 };
 
 struct FeOutcome {
   FeImpactResult result;
   Launch launch;
+  ContactFrame frame;
+  Mat3 mesh_axes;  ///< see ImpactBodies
 };
 
-/// A model whose impact can be watched step by step, and gone on with from where it stopped.
-class FeModel : public ImpactModel {
+/// `fe-free-body` and, with a shaft, `fe-full-club`: asks its bodies, and knows nothing of them beside.
+class Impact final : public ImpactModel {
  public:
-  /// `from`: a checkpoint that an observer of the same blow and options was given.
-  virtual FeOutcome solve(const Blow& blow, const ImpactObserver& observer = {},
-                          const ImpactCheckpoint* from = nullptr) const = 0;
-  Launch launch(const Blow& blow) const final { return solve(blow).launch; }
-};
+  /// A free head, or a wall where its mass is infinite. Throws std::invalid_argument with the first of the faults.
+  explicit Impact(FeImpactOptions options);
+  /// A head on the blow's shaft: at first contact unloaded, moving with the head as one rigid body, or as `mount` says.
+  Impact(FeImpactOptions options, ShaftMount mount);
 
-/// Runs a system with a ball until contact has ended. `initial` holds the velocities at first contact.
-/// Throws solvers::NonConvergence.
-FeImpactResult run_impact(fem::System& system, const BallOnFace& parts, fem::State initial,
-                          const FeImpactOptions& options, double approach_speed, const ImpactObserver& observer = {},
-                          const ImpactCheckpoint* from = nullptr);
+  /// Throws std::invalid_argument on a blow that these bodies cannot meet, solvers::NonConvergence.
+  ImpactBodies assemble(const Blow& blow) const;
+  /// Until contact has ended. `from`: a checkpoint that an observer of the same blow and options was given.
+  FeOutcome run(const Blow& blow, const ImpactObserver& observer = {}, const ImpactCheckpoint* from = nullptr) const;
+  Launch launch(const Blow& blow) const override { return run(blow).launch; }
+  const Impact* impact() const override { return this; }
 
-/// What the ball does, from the result; the head's motion is the caller's to add.
-Launch launch_of(const FeImpactResult& result);
-
-/// A free head (a wall where its mass is infinite) and the ball.
-struct FreeBodyImpact {
-  fem::System system;
-  BallOnFace parts;
-  const fem::RigidBody* head = nullptr;  ///< absent for a wall
-  fem::State initial;
-  Encounter encounter;
-};
-FreeBodyImpact assemble_free_body(const Blow& blow, const FeImpactOptions& options);
-
-FeOutcome solve_free_body(const Blow& blow, const FeImpactOptions& options, const ImpactObserver& observer = {},
-                          const ImpactCheckpoint* from = nullptr);
-
-/// `fe-free-body` behind the common interface.
-class FeFreeBody final : public FeModel {
- public:
-  explicit FeFreeBody(FeImpactOptions options);
-  FeOutcome solve(const Blow& blow, const ImpactObserver& observer, const ImpactCheckpoint* from) const override;
+  const FeImpactOptions& options() const { return options_; }
+  bool whole_club() const { return mount_.has_value(); }
 
  private:
   FeImpactOptions options_;
+  std::optional<ShaftMount> mount_;
 };
 
 }  // namespace hosel::models
