@@ -134,8 +134,11 @@ TEST(Manners, ADrainedNodeLosesNothing) {
     const Outcome again = shell(r.line);
     ASSERT_EQ(again.status, 0) << which << again.text;
     expect_same_results(r.out, r.whole, which);
-    if (which == "study") EXPECT_TRUE(content(points).starts_with(kept)) << "points were computed twice";
-    else EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
+    if (which == "study") {
+      EXPECT_TRUE(content(points).starts_with(kept)) << "points were computed twice";
+    } else {
+      EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
+    }
   }
 }
 
@@ -175,7 +178,9 @@ TEST(Manners, AClockThatIsSetBackChangesNothing) {
     ASSERT_EQ(o.status, 0) << which << o.text;
     ASSERT_NE(content(r.dir / "clock").find('C'), std::string::npos) << "the clock was read once at most";
     expect_same_results(r.out, r.whole, which);
-    if (which == "blow") EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
+    if (which == "blow") {
+      EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
+    }
   }
 }
 
