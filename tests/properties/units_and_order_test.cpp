@@ -107,8 +107,8 @@ TEST(UnitsAndOrder, AnInstrumentsFormulasAreFoundInAnyOfThem) {
   const post::Sheet plain = irons();
   const auto wanted = told(plain);
   // Of all clubs but one, in whose rows another quantity stands (cases/loop-irons).
-  ASSERT_TRUE(wanted.contains("ball_speed dynamic_loft launch_angle spin_rate in part")) << *wanted.begin();
-  ASSERT_TRUE(wanted.contains("attack_angle dynamic_loft spin_loft"));
+  ASSERT_TRUE(wanted.contains("dynamic_loft from ball_speed launch_angle spin_rate on 23 in part")) << *wanted.begin();
+  ASSERT_TRUE(wanted.contains("spin_loft from attack_angle dynamic_loft on 36")) << *wanted.rbegin();
   const int rounds = std::max(12, test::checks(10000) / 40);
   for (int k = 0; k < rounds; ++k) {
     std::mt19937_64 random(unsigned(3000 + k));
