@@ -106,7 +106,8 @@ void refuse_small_address_spaces() {
   char number[24];
   std::size_t at = sizeof number;
   for (rlim_t n = limit.rlim_cur / 1'000'000; n || at == sizeof number; n /= 10) number[--at] = char('0' + n % 10);
-  const std::string_view words[] = {"hosel: the address space is limited to ", {number + at, sizeof number - at},
+  const std::string_view words[] = {"hosel: the address space is limited to ",
+                                    {number + at, sizeof number - at},
                                     " MB (ulimit -v); 250 MB are the least\n"};
   for (const std::string_view w : words)
     if (::write(STDERR_FILENO, w.data(), w.size()) < 0) {}

@@ -274,13 +274,12 @@ class Audit {
     const int spin = back >= 0 ? back : rate;
     if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
       const double arm = ball_.inertia_factor * ball_.radius;
-      if (attempt(
-              {launch, speed, spin},
-              fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
-              [&](V x) {
-                const double rim = arm * x[std::size_t(spin)] / x[std::size_t(speed)];
-                return x[std::size_t(launch)] + std::asin(std::clamp(rim, -1.0, 1.0));
-              }))
+      if (attempt({launch, speed, spin},
+                  fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
+                  [&](V x) {
+                    const double rim = arm * x[std::size_t(spin)] / x[std::size_t(speed)];
+                    return x[std::size_t(launch)] + std::asin(std::clamp(rim, -1.0, 1.0));
+                  }))
         return true;
     }
     return false;

@@ -66,7 +66,8 @@ std::map<std::string, std::string> results_below(const fs::path& out) {
   return all;
 }
 
-void expect_same_results(const fs::path& out, const std::map<std::string, std::string>& whole, const std::string& told) {
+void expect_same_results(const fs::path& out, const std::map<std::string, std::string>& whole,
+                         const std::string& told) {
   const auto here = results_below(out);
   ASSERT_EQ(here.size(), whole.size()) << told;
   for (const auto& [name, bytes] : whole) {
@@ -113,7 +114,8 @@ std::pair<int, double> drained(const LongRun& r, const std::string& before = "")
     _exit(127);
   }
   int status = 0;
-  while (!at_work(r) && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!at_work(r) && waitpid(child, &status, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   const auto begin = std::chrono::steady_clock::now();
   kill(child, SIGTERM);
   waitpid(child, &status, 0);
@@ -178,9 +180,7 @@ TEST(Manners, AClockThatIsSetBackChangesNothing) {
     ASSERT_EQ(o.status, 0) << which << o.text;
     ASSERT_NE(content(r.dir / "clock").find('C'), std::string::npos) << "the clock was read once at most";
     expect_same_results(r.out, r.whole, which);
-    if (which == "blow") {
-      EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
-    }
+    if (which == "blow") { EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos); }
   }
 }
 
@@ -200,7 +200,8 @@ TEST(Manners, ADiskThatLiesAboutWhatItHasMakesNoOtherAnswer) {
     std::ranges::sort(written);
     // Of many frames the first and the last.
     std::map<std::pair<std::string, std::string>, std::vector<fs::path>> alike;
-    for (const fs::path& file : written) alike[{file.parent_path().string(), file.extension().string()}].push_back(file);
+    for (const fs::path& file : written)
+      alike[{file.parent_path().string(), file.extension().string()}].push_back(file);
     int same = 0, refused = 0;
     for (const auto& [kind, files] : alike)
       for (std::size_t k = 0; k < files.size(); k += std::max<std::size_t>(1, files.size() - 1))

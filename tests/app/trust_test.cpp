@@ -574,9 +574,11 @@ TEST(Loop, UnitsAndOrderChangeNoVerdict) {
     for (const json& d : told.at("derived_columns")) {
       std::set<std::string> from;
       for (const std::string f : d.at("from")) from.insert(split_unit(f).stem);
-      all["computed"].push_back({split_unit(d.at("column").get<std::string>()).stem, from, d.at("rows"), d.at("share")});
+      all["computed"].push_back(
+          {split_unit(d.at("column").get<std::string>()).stem, from, d.at("rows"), d.at("share")});
     }
-    for (const json& c : told.at("channels")) all["channels"].push_back(split_unit(c.at("name").get<std::string>()).stem);
+    for (const json& c : told.at("channels"))
+      all["channels"].push_back(split_unit(c.at("name").get<std::string>()).stem);
     for (const json& c : told.at("columns")) all["columns"].push_back(c.at("finding"));
     for (const json& f : told.at("flagged_rows")) all["flagged"].push_back(f.at("finding"));
     return all;

@@ -97,8 +97,8 @@ TEST(ChangeableFe, SlowerBranchesKeepTheModuliAtTheContactsFrequencyAndTheBounce
   const FeBall dear = changed(options.ball, {}, kRadius), later = changed(options.ball, {.relaxation = 1.5}, kRadius),
                lossy = changed(options.ball, {.losses = 0.3}, kRadius);
   for (const double T : {0.40e-3, 0.45e-3, 0.50e-3})
-    std::printf("ORACLE T %g slow/declared %.4f lossy/declared %.4f -> e %.5f %.5f\n", T, lost(later, T) / lost(dear, T),
-                lost(lossy, T) / lost(dear, T),
+    std::printf("ORACLE T %g slow/declared %.4f lossy/declared %.4f -> e %.5f %.5f\n", T,
+                lost(later, T) / lost(dear, T), lost(lossy, T) / lost(dear, T),
                 std::sqrt(1 - (1 - declared * declared) * lost(later, T) / lost(dear, T)),
                 std::sqrt(1 - (1 - declared * declared) * lost(lossy, T) / lost(dear, T)));
   EXPECT_NEAR(slow, declared, 0.25 * 4 * (declared - more_loss));

@@ -153,7 +153,8 @@ TEST(YieldingFace, DriverAt112MilesPerHour) {
   const double e = normal_impact(wall, blow.ball, normal * std::sqrt(behind / (behind + m))).restitution;
   const double off = (1 + e) * normal * behind / (behind + m),
                along = 2.0 / 7 * blow.delivery.club_speed * std::sin(blow.delivery.dynamic_loft);
-  std::printf("ORACLE e %.5f by momentum %.5f rigid %.5f\n", e, std::hypot(off, along) / blow.delivery.club_speed, rigid);
+  std::printf("ORACLE e %.5f by momentum %.5f rigid %.5f\n", e, std::hypot(off, along) / blow.delivery.club_speed,
+              rigid);
   o.face = find_face("modern-driver")->face;
   const double yielding = smash();
   std::printf("ORACLE yielding %.5f\n", yielding);
