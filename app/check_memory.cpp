@@ -30,15 +30,10 @@ double memory_of(const models::FeImpactOptions& fe) {
   return 40e6 + 8 * elements * matrix;  // the program itself, then what was measured
 }
 
-namespace {
-
-/// What `ulimit -v` leaves this process [B]; infinity where it is not limited.
 double address_limit() {
   rlimit limit{};
   return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? double(limit.rlim_cur) : INFINITY;
 }
-
-}  // namespace
 
 void check_memory(const Table& root, const models::FeImpactOptions& fe) {
   const double one = memory_of(fe), wanted = at_a_time * one,

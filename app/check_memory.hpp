@@ -22,6 +22,9 @@ class BlowsBeside {
   int before_;
 };
 
+/// What `ulimit -v` leaves this process [B]; infinity where it is not limited.
+double address_limit();
+
 /// Refuses, at `[mesh]`, what the memory of this machine cannot hold, as many blows at a time as there will be; and
 /// what the address space of this process cannot.
 void check_memory(const Table& root, const models::FeImpactOptions& fe);
