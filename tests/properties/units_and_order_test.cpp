@@ -142,7 +142,8 @@ TEST(UnitsAndOrder, AResolutionIsThatOfTheInstrument) {
     post::Sheet s{.file = "x.csv", .names = {header}};
     s.columns.resize(1);
     for (int i = 0; i < 40; ++i) {
-      s.columns[0].push_back(cell(20 + 0.1 * ((i * 37) % 101)));
+      // Some above a radian: of as many digits they have a decimal less.
+      s.columns[0].push_back(cell(20 + 0.1 * ((i * 37) % 101) + (i % 5 == 0 ? 60 : 0)));
       s.lines.push_back(std::size_t(i + 2));
     }
     return read_shots(s).columns[0].resolution;
