@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "fem/rigid_body.hpp"
 #include "fem/supports.hpp"
@@ -63,16 +62,6 @@ std::pair<double, double> dynamic(const fem::Solid& m, double frequency) {
   return {storage, loss};
 }
 
-/// Energy that small shear loses in a half sine of this length, but for a factor: by its spectrum.
-double lost(const FeBall& ball, double length) {
-  double sum = 0;
-  for (double w = 0.005; w < 30; w += 0.01) {  // angular frequency over that of the half sine
-    const double spectrum = std::abs(w * w - 1) < 1e-9 ? kPi / 4 : std::cos(0.5 * kPi * w) / (1 - w * w);
-    sum += w * dynamic(ball.layers[0].material, w * kPi / length).second * spectrum * spectrum;
-  }
-  return sum;
-}
-
 TEST(ChangeableFe, SlowerBranchesKeepTheModuliAtTheContactsFrequencyAndTheBounce) {
   const FeBall ball = range_ball(), slower = changed(ball, {.relaxation = 1.5}, kRadius, kContact);
   const auto [storage, loss] = dynamic(ball.layers[0].material, kPi / kContact);
@@ -91,17 +80,10 @@ TEST(ChangeableFe, SlowerBranchesKeepTheModuliAtTheContactsFrequencyAndTheBounce
     o.ball = changed(o.ball, change, kRadius);
     return normal_impact(o, {}, 40).restitution;
   };
-  const double declared = bounce({}), more_loss = bounce({.losses = 0.3}), slow = bounce({.relaxation = 1.5});
+  const double declared = bounce({}), more_loss = bounce({.losses = 0.3});
   ASSERT_GT(declared - more_loss, 0.03);
-  std::printf("ORACLE declared %.5f more %.5f slow %.5f\n", declared, more_loss, slow);
-  const FeBall dear = changed(options.ball, {}, kRadius), later = changed(options.ball, {.relaxation = 1.5}, kRadius),
-               lossy = changed(options.ball, {.losses = 0.3}, kRadius);
-  for (const double T : {0.40e-3, 0.45e-3, 0.50e-3})
-    std::printf("ORACLE T %g slow/declared %.4f lossy/declared %.4f -> e %.5f %.5f\n", T,
-                lost(later, T) / lost(dear, T), lost(lossy, T) / lost(dear, T),
-                std::sqrt(1 - (1 - declared * declared) * lost(later, T) / lost(dear, T)),
-                std::sqrt(1 - (1 - declared * declared) * lost(lossy, T) / lost(dear, T)));
-  EXPECT_NEAR(slow, declared, 0.25 * 4 * (declared - more_loss));
+  // The contact is no sine of one frequency: a quarter of what the same change of the loss alone would do is allowed.
+  EXPECT_NEAR(bounce({.relaxation = 1.5}), declared, 0.25 * 4 * (declared - more_loss));
 }
 
 TEST(ChangeableFe, FacesInSeriesAddTheirComplianceAndAStiffOneIsRigid) {
