@@ -1,6 +1,9 @@
 // The hosel command. Exit status: 0 done, 2 bad input, 3 no convergence, 130 and 143 stopped, 1 anything else.
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -10,9 +13,9 @@
 #include <filesystem>
 #include <new>
 #include <sstream>
+#include <string_view>
 
 #include "app/cases.hpp"
-#include "app/check_memory.hpp"
 #include "app/command_help.hpp"
 #include "app/diff.hpp"
 #include "app/film.hpp"
@@ -93,19 +96,29 @@ void adopt(const Arguments& a) {
   }
 }
 
+/// Before anything else of the process: OpenBLAS starts threads before main, and where they are refused memory it waits
+/// for ever, or ends by a signal. No library is set up yet: the kernel's own calls alone.
+void refuse_small_address_spaces() {
+  constexpr rlim_t least = 250;  // MB
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur / 1'000'000 >= least)
+    return;
+  char number[24];
+  std::size_t at = sizeof number;
+  for (rlim_t n = limit.rlim_cur / 1'000'000; n || at == sizeof number; n /= 10) number[--at] = char('0' + n % 10);
+  const std::string_view words[] = {"hosel: the address space is limited to ",
+                                    {number + at, sizeof number - at},
+                                    " MB (ulimit -v); 250 MB are the least\n"};
+  for (const std::string_view w : words)
+    if (::write(STDERR_FILENO, w.data(), w.size()) < 0) {}
+  ::_exit(2);
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*before_libraries)() = refuse_small_address_spaces;
+
 }  // namespace
 
 int main(int argc, char** argv) {
   app::open_standard_streams();
-  // OpenBLAS's threads were started before this line, and wait for ever for memory that they are refused: nothing that
-  // ends in the usual way would end.
-  if (constexpr double least = 250e6; app::address_limit() < least) {
-    std::fputs(fmt::format("hosel: the address space is limited to {:.0f} MB (ulimit -v); {:.0f} MB are the least\n",
-                           1e-6 * app::address_limit(), 1e-6 * least)
-                   .c_str(),
-               stderr);
-    std::_Exit(2);
-  }
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, said in words
   CLI::App cli{"hosel: what does the ball do after this blow, and how much of that is due to the shaft?"};
   cli.name("hosel");

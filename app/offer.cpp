@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "app/sweep_store.hpp"
@@ -26,8 +26,13 @@ fs::path offered_file(const fs::path& out, Shelf shelf) {
   return out / "entries" / fmt::format("{}.toml", singular(shelf));
 }
 
-/// A text as TOML; JSON's escapes are TOML's.
-std::string toml_text(const std::string& text) { return nlohmann::json(text).dump(); }
+/// A text as TOML, as the resolved case has it: what a file may not hold as it is (DEL, what is no character) escaped.
+std::string toml_text(const std::string& text) {
+  const toml::value<std::string> value(text);
+  std::ostringstream out;
+  out << toml::toml_formatter(value, toml::format_flags{});
+  return out.str();
+}
 
 std::string toml_list(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
@@ -146,7 +151,7 @@ void offer(Output& out, Shelf shelf, const Offer& o, const std::string& tables) 
   try {
     check_entry(shelf, file);
   } catch (const InputError& error) {  // a law may extrapolate beyond what the library takes, a restitution above 1 say
-    fs::remove(file);
+    post::remove_file(file);
     out.tell(
         fmt::format("the {} is not offered to the library, which would refuse it: {}", singular(shelf), error.what()));
     return;

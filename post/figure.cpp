@@ -221,9 +221,9 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
   if (!p.y_names.empty()) {
     std::string names;
     for (std::size_t i = 0; i < p.y_names.size(); ++i) {
-      std::string name;  // a tic's words are a format
-      for (const char c : p.y_names[i]) name += c == '%' ? std::string("%%") : std::string(1, c);
-      names += fmt::format("{}{} {}", i ? ", " : "", shown(name), -std::ptrdiff_t(i));
+      std::string name;  // a tic's words are a format; doubled where they are short already, or a half would be left
+      for (const char c : shown(p.y_names[i])) name += c == '%' ? std::string("%%") : std::string(1, c);
+      names += fmt::format("{}{} {}", i ? ", " : "", name, -std::ptrdiff_t(i));
     }
     s += fmt::format("set ytics ({})\nset yrange [{}:0.5]\n", names, 0.5 - double(p.y_names.size()));
   }

@@ -25,8 +25,8 @@ struct Term {
 
 struct Source {
   const Column* column;
-  Eigen::VectorXd x;  ///< header's unit; NaN where missing
-  double resolution;
+  Eigen::VectorXd x;  ///< SI, so that no formula hangs on a unit; NaN where missing
+  double resolution;  ///< SI
   double spread;
   bool fine;  ///< enough different values to show a formula with free numbers
 };
@@ -36,6 +36,12 @@ double evaluate(const Term& f, const std::vector<Source>& s, Eigen::Index i) {
   if (f.how == '/') return x / s[std::size_t(f.b)].x[i];
   if (f.how == '*') return x * s[std::size_t(f.b)].x[i];
   return x;
+}
+
+/// What one of a term in the units of its headers is in SI.
+double term_unit(const Term& f, const std::vector<Source>& s) {
+  const double a = s[std::size_t(f.a)].column->si, b = f.b < 0 ? 1 : s[std::size_t(f.b)].column->si;
+  return f.how == '/' ? a / b : a * b;
 }
 
 std::string term_name(const Term& f, const std::vector<Source>& s) {
@@ -96,10 +102,10 @@ class Audit {
     for (std::size_t i = 0; i < sorted.size(); i += step) rows.push_back(sorted[i]);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
-      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution / c.si, 0, false};
+      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution, 0, false};
       std::vector<double> seen;
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        s.x[std::ptrdiff_t(k)] = c.value[rows[k]] / c.si;
+        s.x[std::ptrdiff_t(k)] = c.value[rows[k]];
         if (std::isfinite(c.value[rows[k]])) seen.push_back(s.x[std::ptrdiff_t(k)]);
       }
       if (seen.size() < 12) continue;
@@ -122,8 +128,8 @@ class Audit {
       d.column = y.column->name;
       for (const int k : f.from) d.from.push_back(sources_[std::size_t(k)].column->name);
       d.formula = f.text;
-      d.residual_sd = f.residual;
-      d.recording_resolution = y.resolution;
+      d.residual_sd = f.residual / y.column->si;
+      d.recording_resolution = y.resolution / y.column->si;
       d.rows = f.rows;
       d.input = y.column->role == Role::input;
       found.push_back(d);
@@ -246,16 +252,11 @@ class Audit {
   /// Formulas of the field without free numbers.
   bool identity(int target, const std::vector<int>& use, Formula& best) const {
     const Column& y = *sources_[std::size_t(target)].column;
-    const auto si = [&](int k, const std::vector<double>& x) {
-      return x[std::size_t(k)] * sources_[std::size_t(k)].column->si;
-    };
     const auto attempt = [&](const std::set<int>& from, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < 12) return false;
       Formula out;
-      if (!judge(
-              target, from, 0, rows, [&](const std::vector<double>& x) { return f(x) / y.si; }, out))
-        return false;
+      if (!judge(target, from, 0, rows, f, out)) return false;
       out.text = std::move(text);
       out.rows = int(rows.size());
       best = out;
@@ -265,7 +266,7 @@ class Audit {
     for (const Identity& i : kIdentities) {
       const int a = of(i.a, use), b = of(i.b, use);
       if ((i.of.empty() ? y.role == Role::other : y.stem == i.of) && a >= 0 && b >= 0 &&
-          attempt({a, b}, i.text, [&](V x) { return i.value(si(a, x), si(b, x)); }))
+          attempt({a, b}, i.text, [&](V x) { return i.value(x[std::size_t(a)], x[std::size_t(b)]); }))
         return true;
     }
     const int back = of("backspin", use), rate = of("spin_rate", use), launch = of("launch_angle", use),
@@ -273,10 +274,12 @@ class Audit {
     const int spin = back >= 0 ? back : rate;
     if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
       const double arm = ball_.inertia_factor * ball_.radius;
-      if (attempt(
-              {launch, speed, spin},
-              fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
-              [&](V x) { return si(launch, x) + std::asin(std::clamp(arm * si(spin, x) / si(speed, x), -1.0, 1.0)); }))
+      if (attempt({launch, speed, spin},
+                  fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
+                  [&](V x) {
+                    const double rim = arm * x[std::size_t(spin)] / x[std::size_t(speed)];
+                    return x[std::size_t(launch)] + std::asin(std::clamp(rim, -1.0, 1.0));
+                  }))
         return true;
     }
     return false;
@@ -365,14 +368,20 @@ class Audit {
         if ((hi - lo) * scale < 4 * out.tolerance) return false;
       }
       out.rows = int(rows.size());
+      // Numbers as they stand in the units of the headers.
+      const auto unit_of = [&](std::ptrdiff_t j) { return term_unit(features[std::size_t(j - 1)], sources_); };
+      const double own_unit = y.column->si;
       if (logarithmic) {
-        out.text = fmt::format("{:.5g}", std::exp(c[0]));
+        double number = std::exp(c[0]) / own_unit;
+        for (std::ptrdiff_t j = 1; j < p; ++j) number *= std::pow(unit_of(j), c[j]);
+        out.text = fmt::format("{:.5g}", number);
         for (std::ptrdiff_t j = 1; j < p; ++j)
           out.text += fmt::format(" * ({})^{:.4g}", term_name(features[std::size_t(j - 1)], sources_), c[j]);
       } else {
-        out.text = fmt::format("{:.5g}", c[0]);
+        out.text = fmt::format("{:.5g}", c[0] / own_unit);
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          out.text += fmt::format(" {:+.5g} * {}", c[j], term_name(features[std::size_t(j - 1)], sources_));
+          out.text += fmt::format(" {:+.5g} * {}", c[j] * unit_of(j) / own_unit,
+                                  term_name(features[std::size_t(j - 1)], sources_));
       }
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it

@@ -61,9 +61,36 @@ double written_step(const std::vector<std::string>& cells, const std::vector<dou
   return std::pow(10.0, -digits);
 }
 
+/// Digits of a number from its first that is no zero.
+int significant(const std::string& cell) {
+  int n = 0;
+  for (const char c : cell) {
+    if (c == 'e' || c == 'E') break;
+    if (std::isdigit(static_cast<unsigned char>(c)) && (n > 0 || c != '0')) ++n;
+  }
+  return n;
+}
+
+/// What the last digit of each value may be off by, header's unit. A converted column has as many decimals everywhere,
+/// or as many digits: then more decimals where its values are small.
+std::vector<double> last_digits(const std::vector<std::string>& cells, const std::vector<double>& native, double step) {
+  std::map<int, std::size_t> count;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (std::isfinite(native[i])) ++count[significant(cells[i])], ++n;
+  int digits = 1;
+  for (const auto& [d, k] : count)
+    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
+  std::vector<double> last(native.size(), step);
+  for (std::size_t i = 0; i < native.size(); ++i)
+    if (std::isfinite(native[i]) && native[i] != 0)
+      last[i] = std::max(step, std::pow(10.0, std::floor(std::log10(std::abs(native[i]))) + 1 - digits));
+  return last;
+}
+
 /// Values that were recorded in another unit of the same dimension and then converted lie on that unit's decimal steps
 /// to within their own last digit. Then they are taken from there, as if the header said that unit. SI; 0: they do not.
-double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step) {
+double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step, const std::vector<double>& last) {
   constexpr double kCoarser = 4;  // than what is written; and so many bits against chance, over all different values
   constexpr double kBits = 24;
   std::set<double> different;
@@ -79,10 +106,11 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
       if (ratio < kCoarser || double(different.size()) * std::log2(ratio) < kBits) break;
       std::vector<double> values = si;
       std::size_t off = 0, n = 0;
-      for (double& x : values) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        double& x = values[i];
         if (!std::isfinite(x)) continue;
         const double whole = std::round(x / coarse);
-        const double rounding = std::max(0.51 * step * unit.si, 1e-12 * std::abs(x));
+        const double rounding = std::max(0.51 * last[i] * unit.si, 1e-12 * std::abs(x));
         ++n;
         if (std::abs(x - whole * coarse) > rounding) ++off;
         else x = whole / power * other.si;
@@ -155,10 +183,11 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
   if (c.role == Role::bookkeeping && header != "shot") c.numeric = false;
   if (c.numeric) {
     const double step = written_step(cells, c.value);
+    const std::vector<double> last = last_digits(cells, c.value, step);
     c.resolution = shared_step(c.value, step) * c.si;
     for (double& x : c.value) x *= c.si;
     if (split.unit && c.role != Role::bookkeeping)
-      c.resolution = std::max(c.resolution, recorded_elsewhere(c.value, *split.unit, step));
+      c.resolution = std::max(c.resolution, recorded_elsewhere(c.value, *split.unit, step, last));
   } else {
     c.value.clear();
     c.broken.clear();

@@ -129,6 +129,18 @@ TEST(Offer, WhatTheLibraryRefusesIsNotOffered) {
   offer(out, Shelf::contacts, {.what = "a law", .source = "a test"}, contact_tables(contact));
   EXPECT_FALSE(fs::exists(entry));
   EXPECT_NE(content(dir / "out" / "log.txt").find("not offered to the library"), std::string::npos);
+  EXPECT_NO_THROW(out.write_summary({{"offers", 0}}));  // nobody took the file away
+}
+
+/// What no file of TOML holds as it is, is escaped in the entry.
+TEST(Offer, AnyTitleIsThatOfAnEntry) {
+  const fs::path dir = fresh_directory("offer_title");
+  Output out({.directory = dir / "out", .quiet = true},
+             "title = \"a\\u007f \\uFFFF \\u2028 \\U0001F3CC \\\" \\\\ ' \\u0000 \\u00e9\"\n");
+  NamedContact contact;
+  contact.law = ContactLaw{};
+  offer(out, Shelf::contacts, {.what = "a law", .source = "a test"}, contact_tables(contact));
+  EXPECT_TRUE(fs::exists(dir / "out" / "entries" / "contact.toml")) << content(dir / "out" / "log.txt");
 }
 
 /// Every digit of a ball goes through its file.

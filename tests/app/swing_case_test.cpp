@@ -114,6 +114,36 @@ TEST(SwingCase, RunsAndWritesItsHistory) {
   }
   const std::string table = content(dir / "out/shaft.csv");
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 11 * 9);
+  // What the hands and gravity did is what the club has and has lost.
+  const auto energy = nlohmann::json::parse(content(dir / "out/summary.json")).at("energy_J");
+  ASSERT_GT(energy.at("kinetic").get<double>(), 0.1);
+  EXPECT_LT(std::abs(energy.at("closure").get<double>()), 1e-4 * energy.at("kinetic").get<double>()) << energy;
+}
+
+/// Held still, the hands carry the weight of shaft and head, and nothing moves.
+TEST(SwingCase, AClubThatIsHeldStillWeighsWhatItWeighs) {
+  const auto dir = fresh_directory("swing_still");
+  std::ofstream(dir / "case.toml") << kCase;
+  std::string motion = "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n";
+  for (int i = 0; i < 21; ++i) motion += std::to_string(0.01 * i) + ",0,0,1,30,10,0\n";
+  std::ofstream(dir / "grip.csv") << motion;
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  std::ifstream file(dir / "out/swing.csv");
+  std::string row;
+  std::getline(file, row);
+  int rows = 0;
+  const double weight = (0.2 + 1.1 * 0.055) * 9.80665;
+  while (std::getline(file, row)) {
+    std::stringstream cells(row);
+    std::vector<double> x;
+    for (std::string cell; std::getline(cells, cell, ',');) x.push_back(std::stod(cell));
+    // What Newton leaves of the equilibrium at the start.
+    EXPECT_NEAR(std::hypot(x.at(5), x.at(6), x.at(7)), weight, 1e-4 * weight);
+    EXPECT_LT(x.at(4), 1e-4);
+    ++rows;
+  }
+  EXPECT_GT(rows, 40);
 }
 
 TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {

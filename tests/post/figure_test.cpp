@@ -37,12 +37,13 @@ TEST(Figure, AnyNameIsDrawn) {
   for (int i = 0; i < 1000; ++i) accents += "\xC3\xA9";
   for (const std::string& name :
        {std::string("' at the begin"), std::string("two '' and four ''''"), std::string("\xEF\xBF\xBF]]>&#x0;"),
-        std::string(1000, 'n'), accents, std::string("%s%n {} @ _ ^ `id` $(id) \\ \"")}) {
+        std::string(1000, 'n'), accents, std::string("%s%n {} @ _ ^ `id` $(id) \\ \""), std::string(79, '%')}) {
     Figure f = two_panels();
     f.title = name;
     for (Panel& p : f.panels) {
       p.title = p.x_label = p.y_label = p.map_label = name;
       for (Series& s : p.series) s.label = name;
+      if (p.map.empty()) p.y_names = {name, "plain"};
     }
     EXPECT_EQ(draw(f, stem, true), "") << name;
     std::ifstream svg(stem.parent_path() / panel_files(f, "hosel_figure_names").front().picture);

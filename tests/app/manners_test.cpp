@@ -1,0 +1,233 @@
+// What a service does to long runs: a node that is drained, a quota hit in the middle, a clock set back, a disk that
+// says it has what it has not. SECURITY.md promises what is asked here.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "tests/app/command.hpp"
+
+namespace hosel::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Words before the command: under tests/support/hard_life.cpp, with these of its variables.
+std::string hard_life(const std::string& variables, const fs::path& log) {
+  const fs::path library = fs::path(HOSEL_COMMAND).parent_path().parent_path() / "tests/libhard_life.so";
+  EXPECT_TRUE(fs::exists(library)) << library;
+  return fmt::format("env LD_PRELOAD={} ASAN_OPTIONS=verify_asan_link_order=0 HARD_LOG={} {} ", library.string(),
+                     log.string(), variables);
+}
+
+/// A blow that keeps checkpoints, and a study that keeps points.
+const std::vector<std::string> kLongRuns = {"blow", "study"};
+
+void write_long_run(const fs::path& dir, const std::string& which) {
+  const std::string blow = R"(models = ["fe-free-body"]
+[delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 12.0
+[head]
+name = "driver-2024"
+[ball]
+model = "tour"
+[mesh]
+harmonics = 1
+sector = 1
+rings = 1
+[time]
+steps_per_contact = 20
+)";
+  const std::string study =
+      "kind = \"study\"\noutputs = [\"ball_speed_mps\", \"spin_rate_rpm\"]\n[[axis]]\nkey = "
+      "\"delivery.dynamic_loft_deg\"\nvalues = [8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0]\n";
+  if (which == "blow") write(dir / "case.toml", "kind = \"impact\"\n" + blow + "[output]\nsteps_per_frame = 1\n");
+  // The keys of the root stand before its tables.
+  else write(dir / "case.toml", study.substr(0, study.find("[[")) + blow + study.substr(study.find("[[")));
+}
+
+/// What a run is computed for: every file but those that say when and how.
+std::map<std::string, std::string> results_below(const fs::path& out) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(out)) {
+    const std::string name = entry.path().filename().string(), ending = entry.path().extension().string();
+    if (entry.is_regular_file() && name != "log.txt" && name != ".lock" && name != "report.html" &&
+        name != "points.jsonl" && ending != ".pdf")
+      all[fs::relative(entry.path(), out).string()] = content(entry.path());
+  }
+  return all;
+}
+
+void expect_same_results(const fs::path& out, const std::map<std::string, std::string>& whole,
+                         const std::string& told) {
+  const auto here = results_below(out);
+  ASSERT_EQ(here.size(), whole.size()) << told;
+  for (const auto& [name, bytes] : whole) {
+    ASSERT_TRUE(here.contains(name)) << told << ": " << name;
+    EXPECT_TRUE(here.at(name) == bytes) << told << ": " << name << " differs";
+  }
+}
+
+struct LongRun {
+  fs::path dir, out;
+  std::string line;  ///< what is typed, but for what stands before
+  std::map<std::string, std::string> whole;
+};
+
+/// A case with the results of a run that nothing befell.
+LongRun long_run(const std::string& test, const std::string& which) {
+  LongRun r;
+  r.dir = fresh_directory(test + "_" + which);
+  r.out = r.dir / "out";
+  write_long_run(r.dir / "case", which);
+  const std::string run = hosel_command() + " run " + (r.dir / "case").string() + " --quiet --out ";
+  r.line = run + r.out.string();
+  const Outcome o = shell(run + (r.dir / "whole").string());
+  EXPECT_EQ(o.status, 0) << o.text;
+  r.whole = results_below(r.dir / "whole");
+  EXPECT_TRUE(r.whole.contains("summary.json"));
+  return r;
+}
+
+bool at_work(const LongRun& r) {
+  const fs::path points = r.out / "shards/1-of-1/points.jsonl";
+  if (fs::exists(points)) {
+    const std::string text = content(points);
+    return std::ranges::count(text, '\n') >= 4;
+  }
+  return fs::exists(r.out / "checkpoint.cbor");
+}
+
+/// Drains the node: SIGTERM once the run is at work. The status of its end, and how long it took.
+std::pair<int, double> drained(const LongRun& r, const std::string& before = "") {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", ("exec " + before + r.line + " >/dev/null 2>&1").c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  while (!at_work(r) && waitpid(child, &status, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto begin = std::chrono::steady_clock::now();
+  kill(child, SIGTERM);
+  waitpid(child, &status, 0);
+  return {status, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+}
+
+/// Slurm sends SIGTERM and, after 30 s, SIGKILL. By then the run has ended, with all that it can go on from.
+TEST(Manners, ADrainedNodeLosesNothing) {
+  for (const std::string& which : kLongRuns) {
+    const LongRun r = long_run("drained", which);
+    const auto [status, seconds] = drained(r);
+    ASSERT_TRUE(WIFEXITED(status)) << which;
+    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
+    EXPECT_LT(seconds, 15) << which;  // half of Slurm's time: a step of a blow, the points that were being computed
+    ASSERT_FALSE(fs::exists(r.out / "summary.json")) << which;
+    const fs::path points = r.out / "shards/1-of-1/points.jsonl";
+    const std::string kept = fs::exists(points) ? content(points) : "";
+    const Outcome again = shell(r.line);
+    ASSERT_EQ(again.status, 0) << which << again.text;
+    expect_same_results(r.out, r.whole, which);
+    if (which == "study") {
+      EXPECT_TRUE(content(points).starts_with(kept)) << "points were computed twice";
+    } else {
+      EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos);
+    }
+  }
+}
+
+TEST(Manners, AQuotaHitInTheMiddleIsSaidAndTheRunGoesOn) {
+  for (const std::string& which : kLongRuns) {
+    const LongRun r = long_run("quota", which);
+    std::size_t bytes = 0;
+    for (const auto& [name, text] : r.whole) bytes += text.size();
+    int hit = 0;
+    for (const double share : {0.05, 0.3, 0.6, 0.9}) {
+      fs::remove_all(r.out);
+      const fs::path log = r.dir / fmt::format("quota-{}", share);
+      const Outcome full = shell(hard_life(fmt::format("HARD_QUOTA={}", long(share * double(bytes))), log) + r.line);
+      if (full.status == 0) continue;  // what it wrote by other means than the command's own
+      ++hit;
+      ASSERT_TRUE(fs::exists(log)) << which << full.text;
+      EXPECT_EQ(full.status, 1) << which << full.text;
+      EXPECT_EQ(std::ranges::count(full.text, '\n'), 1) << full.text;
+      EXPECT_NE(full.text.find("Disk quota exceeded"), std::string::npos) << full.text;
+      EXPECT_FALSE(fs::exists(r.out / "summary.json"));
+      const Outcome again = shell(r.line);
+      ASSERT_EQ(again.status, 0) << which << again.text;
+      expect_same_results(r.out, r.whole, fmt::format("{}, {} of its bytes", which, share));
+    }
+    EXPECT_GE(hit, 2) << which;
+  }
+}
+
+/// Nothing is ordered or believed by the time of day: an hour less at every reading, and an end before the beginning.
+TEST(Manners, AClockThatIsSetBackChangesNothing) {
+  for (const std::string& which : kLongRuns) {
+    const LongRun r = long_run("clock", which);
+    const std::string backwards = hard_life("HARD_CLOCK=3600", r.dir / "clock");
+    const auto [status, seconds] = drained(r);
+    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
+    const Outcome o = shell(backwards + r.line);
+    ASSERT_EQ(o.status, 0) << which << o.text;
+    ASSERT_NE(content(r.dir / "clock").find('C'), std::string::npos) << "the clock was read once at most";
+    expect_same_results(r.out, r.whole, which);
+    if (which == "blow") { EXPECT_NE(content(r.out / "log.txt").find("goes on from t = "), std::string::npos); }
+  }
+}
+
+/// After a cut of power a disk that lied has names without their bytes. Every file of a run that had not ended is
+/// empty, all zeros or the half of itself, one after the other: the answer is the same, or there is a sentence.
+TEST(Manners, ADiskThatLiesAboutWhatItHasMakesNoOtherAnswer) {
+  for (const std::string& which : kLongRuns) {
+    const LongRun r = long_run("fsync", which);
+    const auto [status, seconds] = drained(r, hard_life("HARD_FSYNC=lies", r.dir / "fsync"));
+    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
+    ASSERT_NE(content(r.dir / "fsync").find('F'), std::string::npos) << which;
+    const fs::path stopped = r.dir / "stopped";
+    fs::rename(r.out, stopped);
+    std::vector<fs::path> written;
+    for (const auto& entry : fs::recursive_directory_iterator(stopped))
+      if (entry.is_regular_file() && entry.file_size() > 1) written.push_back(fs::relative(entry.path(), stopped));
+    std::ranges::sort(written);
+    // Of many frames the first and the last.
+    std::map<std::pair<std::string, std::string>, std::vector<fs::path>> alike;
+    for (const fs::path& file : written)
+      alike[{file.parent_path().string(), file.extension().string()}].push_back(file);
+    int same = 0, refused = 0;
+    for (const auto& [kind, files] : alike)
+      for (std::size_t k = 0; k < files.size(); k += std::max<std::size_t>(1, files.size() - 1))
+        for (const char* left : {"empty", "zeros", "half"}) {
+          fs::remove_all(r.out);
+          fs::copy(stopped, r.out, fs::copy_options::recursive);
+          const std::string bytes = content(stopped / files[k]), how = left;
+          write(r.out / files[k], how == "empty"   ? ""
+                                  : how == "zeros" ? std::string(bytes.size(), '\0')
+                                                   : bytes.substr(0, bytes.size() / 2));
+          const std::string told = fmt::format("{}: {} {}", which, files[k].string(), left);
+          const Outcome o = shell(r.line);
+          if (o.status == 0) {
+            ++same;
+            expect_same_results(r.out, r.whole, told);
+          } else {
+            ++refused;
+            EXPECT_EQ(o.status, 2) << told << o.text;
+            EXPECT_EQ(std::ranges::count(o.text, '\n'), 1) << told << o.text;
+            EXPECT_NE(o.text.find(files[k].filename().string()), std::string::npos) << told << o.text;
+          }
+        }
+    EXPECT_GE(same, 6) << which;
+    EXPECT_LE(refused, same / 2) << which;
+  }
+}
+
+}  // namespace
+}  // namespace hosel::test
