@@ -12,24 +12,19 @@
 namespace hosel::fem {
 
 struct TractionField::Station {
-  Vec2 x;                 // in the plane
+  Vec2 x;  // in the plane
   double area = 0, pressure = 0;
-  Vec3 push, friction;    // parts of the traction, global
-  bool sliding = false;
+  Vec3 push, friction;  // parts of the traction, global
 };
 
 namespace {
 
-constexpr double kShareThatSlides = 0.01;  // of the force; below it there is no slip to speak of
-constexpr double kRidge = 0.03;              // of the ratio's slope and curvature
-constexpr int kBoundRounds = 6, kFine = 4;   // of friction within its bound; panels of the quadrature
-constexpr double kSmallestStick = 0.2;       // of the patch's radius: less cannot be told
+constexpr int kBoundRounds = 20, kFine = 3;  // of friction within its bound; panels of the quadrature
 
 /// All that touches, mirror images and turns about the axis included.
 struct Touching {
   Vec3 x, push, friction;  // x from the solid's centre
   double area, pressure;
-  bool sliding;
 };
 
 std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const Placement& placement) {
@@ -48,7 +43,7 @@ std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const 
     if (p.pressure > 0)
       for (const Mat3& image : images)
         out.push_back({image * (p.reference - placement.origin), image * p.push, image * (p.traction - p.push),
-                       p.area / double(images.size()), p.pressure, p.sliding});
+                       p.area / double(images.size()), p.pressure});
   return out;
 }
 
@@ -119,7 +114,7 @@ TractionField::TractionField(const HarmonicSolid& solid, const std::vector<Conta
   plane_.col(1) = outwards_.cross(plane_.col(0));
   std::vector<Station> stations;
   for (const Touching& t : touching)
-    stations.push_back({plane_.transpose() * t.x, t.area, t.pressure, t.push, t.friction, t.sliding});
+    stations.push_back({plane_.transpose() * t.x, t.area, t.pressure, t.push, t.friction});
   fit_pressure(stations);
   fit_friction(stations);
 }
@@ -156,115 +151,41 @@ void TractionField::fit_pressure(const std::vector<Station>& stations) {
   push_ = Mat3(normal).completeOrthogonalDecomposition().solve(Mat3(right.transpose())).transpose();
 }
 
-TractionField::Vec2 TractionField::sliding_ratio(const Vec2& x) const {
-  // As long as the law has it where the direction is clear; the directions' mean passes through zero where they oppose.
-  const Vec2 r = ratio_ * monomials(patch_.unit(x));
-  return limit_ / std::max(r.norm(), 0.5 * limit_) * r;
-}
-
 void TractionField::fit_friction(const std::vector<Station>& stations) {
   Vec3 inwards = Vec3::Zero();
-  double force = 0;
   for (const Station& s : stations) {
     inwards += s.area * s.push;
-    force += s.area * s.pressure;
-    if (s.friction.norm() > 0) rubbing_ = true;
+    bound_ = std::max(bound_, s.friction.norm() / s.pressure);
   }
-  if (!rubbing_) return;
+  if (bound_ == 0) return;
   inwards.normalize();
   along_.col(0) = (plane_.col(0) - plane_.col(0).dot(inwards) * inwards).normalized();
   along_.col(1) = inwards.cross(along_.col(0));
-  stick_ = patch_;
-  // Stations within what sticks may slide by what they alternate: they have no say in the next round.
-  bool bounded = false;
-  for (int round = 0; round < 3; ++round) {
-    fit_ratio(stations, force, bounded);
-    bounded = fit_stick(stations, force);
-  }
 
-  // Force and first moments are those of the stations, of the friction within its bound as well.
-  Mat3 shapes = Mat3::Zero();
-  Eigen::Matrix<double, 3, 2> target = Eigen::Matrix<double, 3, 2>::Zero();
-  const auto linear = [&](const Vec2& x) {
-    const Vec2 xi = stick_.unit(x);
-    return Vec3(1, xi.x(), xi.y());
-  };
-  for (const Station& s : stations) {
-    bound_ = std::max(bound_, s.friction.norm() / s.pressure);
-    target += s.area * linear(s.x) * (along_.transpose() * s.friction).transpose();
-  }
-  over(stick_, 1, [&](const Vec2& x, double w) { shapes += w * linear(x) * linear(x).transpose(); });
-  const Eigen::LDLT<Mat3> solver(shapes);
+  Eigen::Matrix<double, 6, 6> shapes = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 2> target = Eigen::Matrix<double, 6, 2>::Zero();
+  for (const Station& s : stations)
+    target += s.area * monomials(patch_.unit(s.x)) * (along_.transpose() * s.friction).transpose();
+  over(patch_, kFine, [&](const Vec2& x, double w) {
+    const Quadratic m = monomials(patch_.unit(x));
+    shapes += w * peak_ * m * m.transpose();
+  });
+  // Where the bound cuts the ratio, the rest of the patch takes over its share.
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(shapes);
   for (int i = 0; i < kBoundRounds; ++i) {
-    Eigen::Matrix<double, 3, 2> off = -target;
+    Eigen::Matrix<double, 6, 2> off = target;
     over(patch_, kFine, [&](const Vec2& x, double w) {
-      const double pressure = peak_ * std::sqrt(1 - patch_.unit(x).squaredNorm());
-      off += w * peak_ * linear(x) * friction(x, pressure).transpose() / pressure;
+      const Vec2 xi = patch_.unit(x);
+      off -= w * peak_ * monomials(xi) * ratio(xi).transpose();
     });
-    held_ += solver.solve(off).transpose();
+    ratio_ += solver.solve(off).transpose();
   }
 }
 
-TractionField::Vec2 TractionField::friction(const Vec2& x, double pressure) const {
-  Vec2 out = pressure * sliding_ratio(x);
-  const Vec2 xi = stick_.unit(x);
-  if (const double left = 1 - xi.squaredNorm(); left > 0) out -= std::sqrt(left) * (held_ * Vec3(1, xi.x(), xi.y()));
-  const double size = out.norm(), most = bound_ * pressure;
-  return size > most ? Vec2(most / size * out) : out;
-}
-
-void TractionField::fit_ratio(const std::vector<Station>& stations, double force, bool outside) {
-  using Six = Eigen::Matrix<double, 6, 6>;
-  Six normal = Six::Zero();
-  Eigen::Matrix<double, 6, 2> right = Eigen::Matrix<double, 6, 2>::Zero();
-  double slid = 0, size = 0;
-  for (const Station& s : stations) {
-    if (!s.sliding || (outside && stick_.unit(s.x).squaredNorm() < 1)) continue;
-    const Quadratic m = monomials(patch_.unit(s.x));
-    const double f = s.area * s.pressure;
-    slid += f;
-    size += s.area * s.friction.norm();
-    normal += f * m * m.transpose();
-    right += s.area * m * (along_.transpose() * s.friction).transpose();
-  }
-  ratio_.setZero();
-  limit_ = 1;
-  if (!(slid > kShareThatSlides * force)) return;
-  limit_ = size / slid;
-  normal.diagonal().tail<5>().array() += kRidge * slid;  // few stations do not tell a ratio that varies
-  ratio_ = normal.ldlt().solve(right).transpose();
-}
-
-bool TractionField::fit_stick(const std::vector<Station>& stations, double force) {
-  // What friction is short of sliding, and where: moments about the patch's centre.
-  const auto lacking = [&](const Station& s) -> Vec2 {
-    return s.pressure * sliding_ratio(s.x) - along_.transpose() * s.friction;
-  };
-  Vec2 sum = Vec2::Zero();
-  for (const Station& s : stations) sum += s.area * lacking(s);
-  const Vec2 direction = sum.normalized();
-  double total = 0;
-  Vec2 mean = Vec2::Zero();
-  Mat2 variance = Mat2::Zero();
-  for (const Station& s : stations) {
-    const double f = s.area * direction.dot(lacking(s));
-    const Vec2 xi = patch_.unit(s.x);
-    total += f;
-    mean += f * xi;
-    variance += f * xi * xi.transpose();
-  }
-  stick_ = patch_;
-  if (!(total > kShareThatSlides * limit_ * force) || ratio_.isZero()) return false;
-  mean /= total;
-  variance = variance / total - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat2> eigen(variance);
-  const double room = 1 - mean.norm();  // within the patch
-  if (!(room > kSmallestStick && eigen.eigenvalues().minCoeff() > 0)) return false;
-  const Vec2 axes = (5 * eigen.eigenvalues()).cwiseSqrt().cwiseMin(room).cwiseMax(kSmallestStick);
-  stick_.centre = patch_.centre + patch_.axes * mean;
-  stick_.axes = patch_.axes * eigen.eigenvectors() * axes.asDiagonal();
-  stick_.inverse = stick_.axes.inverse();
-  return true;
+TractionField::Vec2 TractionField::ratio(const Vec2& xi) const {
+  const Vec2 r = ratio_ * monomials(xi);
+  const double size = r.norm();
+  return size > bound_ ? Vec2(bound_ / size * r) : r;
 }
 
 TractionField::Value TractionField::at(const Vec3& reference) const {
@@ -276,7 +197,7 @@ TractionField::Value TractionField::at(const Vec3& reference) const {
   const double rest = 1 - xi.squaredNorm();
   if (rest <= 0) return out;
   out.pressure = peak_ * std::sqrt(rest);
-  if (rubbing_) out.tangential = along_ * friction(x, out.pressure);
+  if (bound_ > 0) out.tangential = along_ * (out.pressure * ratio(xi));
   out.traction = out.pressure * (push_ * Vec3(1, xi.x(), xi.y())) + out.tangential;
   return out;
 }

@@ -9,25 +9,24 @@
 namespace hosel::fem {
 
 /// A single station of the contact has no traction that converges: the displacement of a quadratic edge cannot follow
-/// what its four stations ask for, and their pressures alternate. Forces and their low moments do converge: they are the
-/// virtual work on smooth displacements, which the elements represent. The field is the one of a family suited to
+/// what its four stations ask for, and their pressures alternate. Forces and their low moments do converge: they are
+/// the virtual work on smooth displacements, which the elements represent. The field is the one of a family suited to
 /// contact that has the moments of the stations over the patch.
 ///
-/// - Pressure: p0 sqrt(1 - r^2) on an ellipse, r = 1 at its rim (Hertz). The six moments of degree 0 to 2 give p0, centre
+/// - Pressure: p0 sqrt(1 - r^2) on an ellipse, r = 1 at its rim (Hertz). The six moments of degree 0 to 2 give p0,
+/// centre
 ///   and axes.
-/// - Friction where the patch slides: the pressure times the ratio of the stations that slide, a polynomial of degree 2.
-///   What sticks has that less sqrt(1 - r_s^2) times a polynomial of degree 1 on an ellipse within (Cattaneo and Mindlin,
-///   where both polynomials are constant). Centre and axes follow from the second moments of the difference, the
-///   polynomial from force and first moments. Friction exceeds at no place the largest ratio of a station.
+/// - Friction: the pressure times a ratio, a vector polynomial of degree 2 cut where it exceeds the largest ratio of a
+///   station. Moments of degree 0 to 2 give it.
 ///
 /// Coordinates are those of the solid before the motion, in the plane across the direction to the centre of pressure;
 /// values are per reference area, as the stations' are. The equations stand in docs/theory.md, Contact.
 class TractionField {
  public:
   struct Value {
-    double pressure = 0;           ///< [Pa]
+    double pressure = 0;             ///< [Pa]
     Vec3 tangential = Vec3::Zero();  ///< of friction, on the solid, global [Pa]
-    Vec3 traction = Vec3::Zero();  ///< pressure and friction, on the solid, global [Pa]
+    Vec3 traction = Vec3::Zero();    ///< pressure and friction, on the solid, global [Pa]
   };
 
   /// `points` of Contact::points. Those of a half circle of angles stand for their mirror images too, those of one
@@ -44,7 +43,7 @@ class TractionField {
   using Mat2 = Eigen::Matrix2d;
   struct Ellipse {
     Vec2 centre = Vec2::Zero();
-    Mat2 axes = Mat2::Zero();     // x = centre + axes xi, |xi| = 1 at the rim
+    Mat2 axes = Mat2::Zero();  // x = centre + axes xi, |xi| = 1 at the rim
     Mat2 inverse = Mat2::Zero();
     Vec2 unit(const Vec2& x) const { return inverse * (x - centre); }
   };
@@ -59,24 +58,19 @@ class TractionField {
   Ellipse with_moments(const Vec2& mean, const Mat2& variance) const;
   void fit_pressure(const std::vector<Station>& stations);
   void fit_friction(const std::vector<Station>& stations);
-  void fit_ratio(const std::vector<Station>& stations, double force, bool outside);
-  bool fit_stick(const std::vector<Station>& stations, double force);
-  Vec2 sliding_ratio(const Vec2& x) const;
-  Vec2 friction(const Vec2& x, double pressure) const;
+  Vec2 ratio(const Vec2& xi) const;
 
   Vec3 origin_;
   double radius_ = 0;
-  bool touching_ = false, rubbing_ = false;
-  Eigen::Matrix<double, 3, 2> plane_;             // across the direction to the centre of pressure
+  bool touching_ = false;
+  Eigen::Matrix<double, 3, 2> plane_;  // across the direction to the centre of pressure
   Vec3 outwards_ = Vec3::UnitX();
-  Ellipse patch_, stick_;
+  Ellipse patch_;
   double peak_ = 0;
-  Eigen::Matrix3d push_ = Mat3::Zero();            // direction of the pressure: columns of 1, xi
-  Eigen::Matrix<double, 3, 2> along_;             // tangential directions, global
-  Eigen::Matrix<double, 2, 6> ratio_ = Eigen::Matrix<double, 2, 6>::Zero();  // of what slides: columns of monomials
-  double limit_ = 0;  // mean size of that ratio
-  double bound_ = 0;  // largest ratio of any station
-  Eigen::Matrix<double, 2, 3> held_ = Eigen::Matrix<double, 2, 3>::Zero();  // on the stick ellipse: columns of 1, xi
+  Eigen::Matrix3d push_ = Mat3::Zero();  // direction of the pressure: columns of 1, xi
+  Eigen::Matrix<double, 3, 2> along_;    // tangential directions, global
+  Eigen::Matrix<double, 2, 6> ratio_ = Eigen::Matrix<double, 2, 6>::Zero();  // friction over pressure, of monomials
+  double bound_ = 0;                                                         // largest ratio of a station
 };
 
 }  // namespace hosel::fem

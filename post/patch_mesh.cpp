@@ -5,7 +5,8 @@ namespace hosel::post {
 VtkMesh patch_mesh(const std::vector<fem::ContactPoint>& points, const fem::TractionField& field) {
   VtkMesh out;
   std::vector<Vec3> moved, traction, at_station;
-  VtkField pressure{"contact_pressure", "Pa", 1, {}}, station_pressure{"station_pressure", "Pa", 1, {}}, slip{"slip", "m", 1, {}}, sliding{"sliding", "", 1, {}};
+  VtkField pressure{"contact_pressure", "Pa", 1, {}}, station_pressure{"station_pressure", "Pa", 1, {}},
+      slip{"slip", "m", 1, {}}, sliding{"sliding", "", 1, {}};
   for (const fem::ContactPoint& p : points) {
     out.cells.push_back({CellShape::vertex, {static_cast<std::int64_t>(out.points.size())}});
     out.points.push_back(p.reference);
@@ -18,9 +19,13 @@ VtkMesh patch_mesh(const std::vector<fem::ContactPoint>& points, const fem::Trac
     slip.values.push_back(p.slip);
     sliding.values.push_back(p.sliding ? 1 : 0);
   }
-  out.point_fields = {vector_field("displacement", "m", moved), vector_field("contact_traction", "Pa", traction),
-                      std::move(pressure), vector_field("station_traction", "Pa", at_station),
-                      std::move(station_pressure), std::move(slip), std::move(sliding)};
+  out.point_fields = {vector_field("displacement", "m", moved),
+                      vector_field("contact_traction", "Pa", traction),
+                      std::move(pressure),
+                      vector_field("station_traction", "Pa", at_station),
+                      std::move(station_pressure),
+                      std::move(slip),
+                      std::move(sliding)};
   return out;
 }
 

@@ -27,9 +27,7 @@ TEST(TractionField, PressureOfASqueezedSphere) {
         const test::Pressed p = test::press({.nu = nu, .approach = approach, .mesh = of(sector)});
         ASSERT_GT(p.radius, .3);
         ASSERT_GT(p.edges, 1.5);
-        if (sector >= 3) {
-          EXPECT_LT(p.field.pressure, .03) << nu << " " << approach << " " << sector;
-        }
+        if (sector >= 3) { EXPECT_LT(p.field.pressure, .03) << nu << " " << approach << " " << sector; }
         // The test sums over 200 rings, which is good to some 2e-4.
         EXPECT_LT(p.force_off, 1e-3) << nu << " " << approach << " " << sector;
         stations = std::max(stations, p.stations.pressure);
@@ -46,7 +44,8 @@ TEST(TractionField, PressureOfASqueezedSphere) {
 
 /// Pulled half way to sliding: stick within, slip around it. The resultants are those of the stations.
 TEST(TractionField, FrictionOfAPulledSphere) {
-  const test::Pressed p = test::press({.nu = .49, .approach = .094, .mesh = of(3), .harmonics = 4, .friction = .3, .pull = .05});
+  const test::Pressed p =
+      test::press({.nu = .49, .approach = .094, .mesh = of(3), .harmonics = 4, .friction = .3, .pull = .05});
   ASSERT_GT(p.friction_ratio, .3);
   ASSERT_LT(p.friction_ratio, .9);
   EXPECT_LT(p.force_off, 1e-3);

@@ -62,7 +62,7 @@ struct TractionError {
 struct PressedSphere {
   double nu = 0.49, approach = 0.1;  ///< of each plate, over the radius
   mesh::MeridianOptions mesh;
-  int harmonics = 0;      ///< 0: pressed alone
+  int harmonics = 0;  ///< 0: pressed alone
   double friction = 0;
   double pull = 0;        ///< of the sphere's core along the plates, over the radius
   double penalty = 1000;  ///< times Young's modulus over the radius
@@ -70,12 +70,12 @@ struct PressedSphere {
 };
 
 struct Pressed {
-  double radius = 0;           ///< of the exact patch over the sphere's
-  double friction_ratio = 0;   ///< tangential over normal force over the coefficient
-  double edges = 0;            ///< of the mesh within the radius of the patch
+  double radius = 0;          ///< of the exact patch over the sphere's
+  double friction_ratio = 0;  ///< tangential over normal force over the coefficient
+  double edges = 0;           ///< of the mesh within the radius of the patch
   TractionError stations, field;
-  double force_off = 0;        ///< of the field's resultant force, over the stations'
-  double moment_off = 0;       ///< of its moment about the sphere's centre, over force times radius of the patch
+  double force_off = 0;   ///< of the field's resultant force, over the stations'
+  double moment_off = 0;  ///< of its moment about the sphere's centre, over force times radius of the patch
 };
 
 /// Against the exact pressure, and for friction against q(r) = mu (p(r) - c/a p(r a/c)), c/a = (1 - Q / mu P)^(1/3)
@@ -105,8 +105,8 @@ inline Pressed press(const PressedSphere& o) {
   const auto build = [&](Scene& scene, double friction, const fem::Vector* q) {
     auto ball = std::make_unique<fem::HarmonicSolid>(
         scene.system.dof_map, meridian, axial ? fem::axisymmetric_basis() : fem::cartesian_basis(o.harmonics),
-        fem::SolidQuadrature{axial ? fem::single_angle() : fem::half_circle(angles), 2}, std::vector<fem::Solid>{material},
-        fem::Placement{});
+        fem::SolidQuadrature{axial ? fem::single_angle() : fem::half_circle(angles), 2},
+        std::vector<fem::Solid>{material}, fem::Placement{});
     scene.ball = ball.get();
     scene.system.terms.push_back(std::move(ball));
     fem::State state = scene.system.dof_map.rest();
@@ -117,9 +117,9 @@ inline Pressed press(const PressedSphere& o) {
       carrier.attitude = side < 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(kPi, Vec3::UnitZ()).toRotationMatrix();
       fem::ContactLaws laws{o.penalty * E / R, nullptr};
       if (friction > 0) laws.friction = std::make_unique<fem::Coulomb>(friction, 0.5 * laws.normal_stiffness);
-      auto contact = std::make_unique<fem::Contact>(*scene.ball, std::make_unique<fem::FaceSurface>(Face{}), carrier,
-                                                    std::move(laws), axial ? fem::single_angle() : fem::half_circle(patch),
-                                                    symmetry, o.edge_points);
+      auto contact = std::make_unique<fem::Contact>(
+          *scene.ball, std::make_unique<fem::FaceSurface>(Face{}), carrier, std::move(laws),
+          axial ? fem::single_angle() : fem::half_circle(patch), symmetry, o.edge_points);
       contact->start(state);
       scene.plates.push_back(contact.get());
       scene.system.terms.push_back(std::move(contact));

@@ -10,12 +10,12 @@
 namespace hosel::test {
 
 struct Squeezed {
-  double force = 0, over_hertz = 0;  ///< on each plate, and over Hertz's at that approach [-]
+  double force = 0, over_hertz = 0;      ///< on each plate, and over Hertz's at that approach [-]
   std::vector<double> cosine, pressure;  ///< of the middles of equal rings that touch; per reference area
 };
 
-/// Two rigid frictionless plates come nearer to the centre of a sphere by `approach`. Radius and Young's modulus 1; small
-/// strain; the exact profile of the sphere, pressure along the axis.
+/// Two rigid frictionless plates come nearer to the centre of a sphere by `approach`. Radius and Young's modulus 1;
+/// small strain; the exact profile of the sphere, pressure along the axis.
 ///
 /// Surface displacement of degree l (U P_l radially, V dP_l/dtheta along the meridian) under a traction of the same
 /// shape: a combination of r^(l-1) (l, 1) and the solution of order r^(l+1) of Navier's equations (Love, Treatise on
