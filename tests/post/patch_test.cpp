@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "fem/traction_field.hpp"
 #include "golf/units.hpp"
 #include "post/impact_recorder.hpp"
 #include "post/patch_figure.hpp"
