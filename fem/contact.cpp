@@ -489,8 +489,10 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
   visit(s, [&](const Moved& m, const Kinematics& k) {
     const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
+    const Vec3 push = local.force + local.friction.traction;
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
-                   local.pressure, k.gap, past.slip, k.station->area, past.sliding, k.station->edge, angles_[k.angle]});
+                   m.R * in_body(k, push), local.pressure, k.gap, past.slip, k.station->area, past.sliding,
+                   k.station->edge, angles_[k.angle]});
   });
   return out;
 }

@@ -29,6 +29,7 @@ struct ContactPoint {
   Vec3 reference;       ///< material point, global, before the motion [m]
   Vec3 position;        ///< now, global [m]
   Vec3 traction;        ///< on the solid per reference area, global [Pa]
+  Vec3 push;            ///< that of it which is pressure [Pa]
   double pressure = 0;  ///< [Pa]
   double gap = 0;       ///< positive when apart [m]
   double slip = 0;      ///< path slid so far [m]

@@ -10,62 +10,6 @@
 
 namespace hosel::post {
 
-SurfaceMeans::SurfaceMeans(const fem::HarmonicSolid& ball, const std::vector<fem::ContactPoint>& points)
-    : axes_(ball.placement().axes) {
-  for (const fem::ContactPoint& p : points) {
-    if (!angles_.empty() && p.angle <= angles_.back()) break;  // the next station begins
-    angles_.push_back(p.angle);
-  }
-  const auto& edges = ball.mesh().surface;
-  means_.resize(ball.mesh().nodes.size() * angles_.size());
-  std::vector<double> area(means_.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const fem::ContactPoint& p = points[i];
-    for (const int node : edges[p.edge]) {
-      const std::size_t at = std::size_t(node) * angles_.size() + i % angles_.size();
-      means_[at].pressure += p.area * p.pressure;
-      means_[at].traction += p.area * p.traction;
-      area[at] += p.area;
-    }
-  }
-  for (std::size_t i = 0; i < means_.size(); ++i)
-    if (area[i] > 0) {
-      means_[i].pressure /= area[i];
-      means_[i].traction /= area[i];
-    }
-}
-
-SurfaceMeans::Value SurfaceMeans::at_angle(int node, std::size_t angle) const {
-  return means_[std::size_t(node) * angles_.size() + angle];
-}
-
-SurfaceMeans::Value SurfaceMeans::operator()(int node, double theta) const {
-  if (angles_.empty()) return {};
-  if (angles_.size() == 1) {  // the same all around the axis
-    Value v = at_angle(node, 0);
-    v.traction = Eigen::AngleAxisd(theta, axes_.col(0)) * v.traction;
-    return v;
-  }
-  theta = std::remainder(theta, 2 * kPi);
-  const bool half = angles_.back() < kPi, mirrored = half && theta < 0;  // a half circle, midpoints of equal parts
-  if (theta < 0) theta = half ? -theta : theta + 2 * kPi;
-  const double step = angles_[1] - angles_[0], place = (theta - angles_[0]) / step, below = std::floor(place);
-  const auto count = std::ptrdiff_t(angles_.size());
-  const auto value = [&](std::ptrdiff_t i) {
-    if (!half) return at_angle(node, std::size_t((i + count) % count));
-    // Beyond the ends lie the mirror images.
-    const bool image = i < 0 || i >= count;
-    Value v = at_angle(node, std::size_t(i < 0 ? -1 - i : i >= count ? 2 * count - 1 - i : i));
-    if (image) v.traction -= 2 * v.traction.dot(axes_.col(2)) * axes_.col(2);
-    return v;
-  };
-  const Value a = value(std::ptrdiff_t(below)), b = value(std::ptrdiff_t(below) + 1);
-  const double share = place - below;
-  Value v{std::lerp(a.pressure, b.pressure, share), (1 - share) * a.traction + share * b.traction};
-  if (mirrored) v.traction -= 2 * v.traction.dot(axes_.col(2)) * axes_.col(2);
-  return v;
-}
-
 RevolvedPoints::RevolvedPoints(const mesh::Meridian& meridian, int angles) : angles_(angles) {
   for (int i = 0; i < int(meridian.nodes.size()); ++i) {
     axial_.push_back(meridian.on_axis(i));
@@ -74,7 +18,8 @@ RevolvedPoints::RevolvedPoints(const mesh::Meridian& meridian, int angles) : ang
   }
 }
 
-VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const SurfaceMeans& acting, int angles) {
+VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const fem::TractionField& acting,
+                  int angles) {
   if (angles < 4 || angles % 2 != 0) throw std::invalid_argument("ball mesh: an even number of angles, four at least");
   const mesh::Meridian& meridian = ball.mesh();
   const RevolvedPoints numbers(meridian, angles);
@@ -92,7 +37,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
   VtkField cauchy{"cauchy_stress", "Pa", 6, {}}, mises{"von_mises", "Pa", 1, {}},
       pressure{"contact_pressure", "Pa", 1, {}};
   const auto add = [&](const Vec3& x, const Vec3& du, const Vec3& dv, const fem::Sym& s,
-                       const SurfaceMeans::Value& on) {
+                       const fem::TractionField::Value& on) {
     out.points.push_back(x);
     u.push_back(du);
     v.push_back(dv);
@@ -105,7 +50,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
     for (int a = 0; a < (numbers.axial(p) ? 1 : angles); ++a)
       add(ball.reference(p, theta[size_t(a)]), ball.vector_at(displacement, p, theta[size_t(a)]),
           ball.vector_at(velocity, p, theta[size_t(a)]), stress[size_t(p * angles + a)],
-          surface.contains(p) ? acting(p, theta[size_t(a)]) : SurfaceMeans::Value{});
+          surface.contains(p) ? acting.at(ball.reference(p, theta[size_t(a)])) : fem::TractionField::Value{});
 
   VtkField layer{"layer", "", 1, {}}, around{"angle", "rad", 1, {}};
   const auto centre = mesh::Q8::at(0, 0).value;

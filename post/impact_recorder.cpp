@@ -143,8 +143,9 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   const bool frame = step % s.options.steps_per_frame == 0, moves = s.moving.wants(step);
   if (!frame && !moves) return;
   const double time = view.state.time;
-  const VtkMesh ball =
-      ball_mesh(view.ball, view.state, SurfaceMeans(view.ball, view.contact.points(view.state)), s.options.angles);
+  const std::vector<fem::ContactPoint> points = view.contact.points(view.state);
+  const fem::TractionField acting(view.ball, points);
+  const VtkMesh ball = ball_mesh(view.ball, view.state, acting, s.options.angles);
   std::vector<double> travel;
   for (const Vec3& p : s.face_shape.points) travel.push_back(view.contact.surface_travel(view.state, p));
   const VtkMesh struck = placed(s.face_shape, *s.start, now, face.velocity, face.spin, travel),
@@ -155,7 +156,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
   if (!frame) return;
   if (s.options.vtk) {
     s.write("ball", time, ball);
-    s.write("patch", time, patch_mesh(view.contact.points(view.state)));
+    s.write("patch", time, patch_mesh(points, acting));
     s.write("face", time, struck);
     s.write("head", time, head);
     if (shaft) {

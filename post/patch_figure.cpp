@@ -93,34 +93,9 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes, const Mat3& 
   return out;
 }
 
-namespace {
-
-/// Means over an edge of the ball's mesh around every place: what the Gauss points of one edge show beside each other,
-/// the displacement of a quadratic edge cannot follow, and only their mean is a traction that has converged.
-std::vector<double> over_edges(const PatchHistory& patch, const std::vector<double>& values) {
-  constexpr std::ptrdiff_t kReach = 2;  // of the four points of an edge (models::FeImpactOptions)
-  const auto frames = std::ssize(patch.time), places = std::ssize(patch.position);
-  const auto& x = patch.position;
-  std::vector<double> out(values.size());
-  for (std::ptrdiff_t j = 0; j < places; ++j) {
-    const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, j - kReach), to = std::min(places - 1, j + kReach);
-    for (std::ptrdiff_t i = 0; i < frames; ++i) {
-      double sum = 0;
-      for (std::ptrdiff_t k = from; k < to; ++k)
-        sum += 0.5 * (values[std::size_t(k * frames + i)] + values[std::size_t((k + 1) * frames + i)]) *
-               (x[std::size_t(k + 1)] - x[std::size_t(k)]);
-      const double length = x[std::size_t(to)] - x[std::size_t(from)];
-      out[std::size_t(j * frames + i)] = length > 0 ? sum / length : values[std::size_t(j * frames + i)];
-    }
-  }
-  return out;
-}
-
-}  // namespace
-
 Figure patch_figure(const PatchHistory& patch, std::string_view model) {
   Figure figure;
-  figure.title = fmt::format("{}: the ball's surface along the line of slip, means over an edge of its mesh", model);
+  figure.title = fmt::format("{}: the ball's surface along the line of slip", model);
   figure.columns = 3;
   if (patch.time.size() < 2) return figure;
   const auto panel = [&](const char* title, const char* label, const std::vector<double>& values, double unit,
@@ -138,8 +113,8 @@ Figure patch_figure(const PatchHistory& patch, std::string_view model) {
     for (const double v : values) p.map.push_back(v / unit);
     figure.panels.push_back(std::move(p));
   };
-  panel("pressure", "[MPa]", over_edges(patch, patch.pressure), 1e6, false);
-  panel("traction along the slip", "[MPa]", over_edges(patch, patch.traction), 1e6, true);
+  panel("pressure", "[MPa]", patch.pressure, 1e6, false);
+  panel("traction along the slip", "[MPa]", patch.traction, 1e6, true);
   panel("path slid", "[mm]", patch.slip, 1e-3, false);
   return figure;
 }

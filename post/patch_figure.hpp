@@ -15,8 +15,8 @@ namespace hosel::post {
 struct PatchHistory {
   std::vector<double> time;      ///< [s]
   std::vector<double> position;  ///< arc from the first point of contact, along the slip positive [m]
-  std::vector<double> pressure;  ///< [Pa]
-  std::vector<double> traction;  ///< on the ball along the slip [Pa]
+  std::vector<double> pressure;  ///< of the field (fem::TractionField) [Pa]
+  std::vector<double> traction;  ///< of it, on the ball along the slip [Pa]
   std::vector<double> slip;      ///< path slid so far [m]
 };
 
@@ -25,7 +25,7 @@ struct PatchHistory {
 /// touch, and the next on either side.
 PatchHistory read_patch(const std::filesystem::path& vtk, const Mat3& ball_axes, const Mat3& mesh_axes);
 
-/// Pressure, traction (means over an edge of the ball's mesh) and slip as maps; no panel where nothing was seen to
+/// Pressure, traction and slip as maps; no panel where nothing was seen to
 /// touch, and none of what is zero throughout.
 Figure patch_figure(const PatchHistory& patch, std::string_view model);
 

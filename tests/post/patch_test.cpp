@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "fem/traction_field.hpp"
 #include "golf/units.hpp"
 #include "post/impact_recorder.hpp"
 #include "post/patch_figure.hpp"
@@ -24,11 +25,16 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
   const fs::path dir = fs::path(testing::TempDir()) / "hosel_patch";
   fs::remove_all(dir);
   ImpactRecorder recorder(dir, blow, {.steps_per_frame = 2, .angles = 8}, "patch");
-  std::map<double, std::vector<fem::ContactPoint>> seen;
+  struct Seen {
+    std::vector<fem::ContactPoint> points;
+    fem::TractionField field;
+  };
+  std::map<double, Seen> seen;
   const models::FeOutcome outcome =
       models::Impact(test::coarse_impact(2)).run(blow, [&](const models::ImpactView& view) {
         recorder(view);
-        seen[view.state.time] = view.contact.points(view.state);
+        const auto points = view.contact.points(view.state);
+        seen.insert({view.state.time, Seen{points, {view.ball, points}}});
       });
   ASSERT_GT(outcome.result.peak_force, 1e3);
   const Mat3& axes = outcome.frame.ball_axes;
@@ -48,11 +54,12 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
       // The contact's own point at this place: in front or behind, nearest the plane of slip.
       const Vec3 there = blow.ball.radius * (std::cos(patch.position[j] / blow.ball.radius) * axes.col(0) +
                                              std::sin(patch.position[j] / blow.ball.radius) * axes.col(1));
-      const auto& points = seen.at(patch.time[i]);
+      const auto& [points, field] = seen.at(patch.time[i]);
       const auto& nearest = *std::ranges::min_element(
           points, {}, [&](const fem::ContactPoint& p) { return (p.reference - there).norm(); });
-      EXPECT_EQ(patch.pressure[k], nearest.pressure);
-      EXPECT_NEAR(patch.traction[k], nearest.traction.dot(axes.col(1)), 1e-9 * nearest.pressure);
+      const fem::TractionField::Value there_acts = field.at(nearest.reference);
+      EXPECT_EQ(patch.pressure[k], there_acts.pressure);
+      EXPECT_NEAR(patch.traction[k], there_acts.traction.dot(axes.col(1)), 1e-9 * there_acts.pressure);
       EXPECT_EQ(patch.slip[k], nearest.slip);
       EXPECT_LE(std::abs(patch.traction[k]), blow.contact.patch.coefficient * patch.pressure[k] * (1 + 1e-9));
       EXPECT_GE(patch.slip[k], patch.slip[i > 0 ? k - 1 : k]);
@@ -62,6 +69,15 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
   }
   EXPECT_GT(pull, 1e6);
   EXPECT_LT(push, -1e6);  // the traction reverses somewhere: the grip
+  // From its largest value the pressure falls to either side, in every frame: nothing alternates from edge to edge.
+  for (std::size_t i = 0; i < frames; ++i) {
+    int turns = 0;
+    for (std::size_t j = 2; j < patch.position.size(); ++j) {
+      const auto at = [&](std::size_t n) { return patch.pressure[n * frames + i]; };
+      turns += (at(j) - at(j - 1)) * (at(j - 1) - at(j - 2)) < 0;
+    }
+    EXPECT_LE(turns, 1) << patch.time[i];
+  }
 }
 
 TEST(PatchSeries, SaysWhereNothingTouched) { EXPECT_TRUE(patch_figure({}, "").panels.empty()); }

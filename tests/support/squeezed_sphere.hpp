@@ -9,15 +9,19 @@
 
 namespace hosel::test {
 
-/// Force on each of two rigid frictionless plates that come nearer to the centre of a sphere by `approach`, over
-/// Hertz's at that approach [-]. Radius 1; small strain; the exact profile of the sphere, pressure along the axis.
+struct Squeezed {
+  double force = 0, over_hertz = 0;      ///< on each plate, and over Hertz's at that approach [-]
+  std::vector<double> cosine, pressure;  ///< of the middles of equal rings that touch; per reference area
+};
+
+/// Two rigid frictionless plates come nearer to the centre of a sphere by `approach`. Radius and Young's modulus 1;
+/// small strain; the exact profile of the sphere, pressure along the axis.
 ///
 /// Surface displacement of degree l (U P_l radially, V dP_l/dtheta along the meridian) under a traction of the same
 /// shape: a combination of r^(l-1) (l, 1) and the solution of order r^(l+1) of Navier's equations (Love, Treatise on
 /// the Mathematical Theory of Elasticity, art. 172-173). Rings of uniform axial pressure; contact where it is positive.
-inline double squeezed_over_hertz(double nu, double approach) {
+inline Squeezed squeezed(double nu, double approach, int rings = 60) {
   constexpr double pi = std::numbers::pi;
-  constexpr int rings = 60;
   const double lambda = nu / ((1 + nu) * (1 - 2 * nu)), mu = 0.5 / (1 + nu);  // E = 1
   const double outer = 1.15 * std::asin(std::sqrt(approach));
   const int degrees = 2 * static_cast<int>(2 * rings / outer);
@@ -72,10 +76,18 @@ inline double squeezed_over_hertz(double nu, double approach) {
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < active.size(); ++i)
       if (pressure[static_cast<Eigen::Index>(i)] > 0) kept.push_back(active[i]);
-    if (kept.size() == active.size())
-      return 2 * pi * pressure.dot(area(active)) * (1 - nu * nu) / (4.0 / 3 * std::pow(approach, 1.5));
+    if (kept.size() == active.size()) {
+      Squeezed out;
+      out.force = 2 * pi * pressure.dot(area(active));
+      out.over_hertz = out.force * (1 - nu * nu) / (4.0 / 3 * std::pow(approach, 1.5));
+      out.pressure.assign(pressure.begin(), pressure.end());
+      for (const Eigen::Index k : active) out.cosine.push_back(0.5 * (x[k] + x[k + 1]));
+      return out;
+    }
     active = kept;
   }
 }
+
+inline double squeezed_over_hertz(double nu, double approach) { return squeezed(nu, approach).over_hertz; }
 
 }  // namespace hosel::test

@@ -1,0 +1,210 @@
+#include "fem/traction_field.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "golf/units.hpp"
+#include "mesh/gauss.hpp"
+
+namespace hosel::fem {
+
+struct TractionField::Station {
+  Vec2 x;  // in the plane
+  double area = 0, pressure = 0;
+  Vec3 push, friction;  // parts of the traction, global
+};
+
+namespace {
+
+constexpr int kBoundRounds = 20, kFine = 3;  // of friction within its bound; panels of the quadrature
+
+/// All that touches, mirror images and turns about the axis included.
+struct Touching {
+  Vec3 x, push, friction;  // x from the solid's centre
+  double area, pressure;
+};
+
+std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const Placement& placement) {
+  constexpr int kTurns = 16;
+  std::vector<Mat3> images{Mat3::Identity()};
+  const auto [first, last] = std::ranges::minmax(points, {}, &ContactPoint::angle);
+  if (first.angle < last.angle && last.angle < kPi) {  // a half circle
+    const Vec3 across = placement.axes.col(2);
+    images.push_back(Mat3::Identity() - 2 * across * across.transpose());
+  } else if (first.angle == last.angle) {
+    for (int i = 1; i < kTurns; ++i)
+      images.push_back(Eigen::AngleAxisd(2 * kPi * i / kTurns, placement.axes.col(0)).toRotationMatrix());
+  }
+  std::vector<Touching> out;
+  for (const ContactPoint& p : points)
+    if (p.pressure > 0)
+      for (const Mat3& image : images)
+        out.push_back({image * (p.reference - placement.origin), image * p.push, image * (p.traction - p.push),
+                       p.area / double(images.size()), p.pressure});
+  return out;
+}
+
+}  // namespace
+
+TractionField::Quadratic TractionField::monomials(const Vec2& xi) {
+  return (Quadratic() << 1, xi.x(), xi.y(), xi.x() * xi.x(), xi.x() * xi.y(), xi.y() * xi.y()).finished();
+}
+
+TractionField::Ellipse TractionField::ellipse(const Vec2& centre, const Mat2& shape) {
+  const Eigen::SelfAdjointEigenSolver<Mat2> eigen(shape);
+  Ellipse e;
+  e.centre = centre;
+  e.axes = eigen.operatorSqrt();
+  e.inverse = eigen.operatorInverseSqrt();
+  return e;
+}
+
+template <class Visit>
+void TractionField::over(const Ellipse& e, int panels, Visit&& visit) const {
+  // With u = sqrt(1 - r^2), sqrt(1 - r^2) r dr = -u^2 du: one panel integrates polynomials exactly.
+  const int around = 16 * panels;
+  const double jacobian = std::abs(e.axes.determinant());
+  for (int k = 0; k < panels; ++k)
+    for (const auto& [x, w] : mesh::gauss(5)) {
+      const double u = (k + 0.5 * (1 + x)) / panels, r = std::sqrt(1 - u * u);
+      for (int i = 0; i < around; ++i) {
+        const double phi = 2 * kPi * (i + 0.5) / around;
+        const Vec2 at = e.centre + e.axes * Vec2(r * std::cos(phi), r * std::sin(phi));
+        // Of the surface against the plane; a patch does not reach round the ball.
+        const double tilt = std::sqrt(std::max(0.01, 1 - at.squaredNorm() / (radius_ * radius_)));
+        visit(at, 0.5 * w / panels * u * u * jacobian * 2 * kPi / around / tilt);
+      }
+    }
+}
+
+TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2& variance) const {
+  // On a plane the variance of sqrt(1 - r^2) is a fifth of the squared axes; the sphere's curvature is a correction.
+  Vec2 centre = mean;
+  Mat2 shape = 5 * variance;
+  Ellipse e = ellipse(centre, shape);
+  for (int i = 0; i < 8; ++i) {
+    double sum = 0;
+    Vec2 first = Vec2::Zero();
+    Mat2 second = Mat2::Zero();
+    over(e, 1, [&](const Vec2& x, double w) {
+      sum += w;
+      first += w * (x - mean);
+      second += w * (x - mean) * (x - mean).transpose();
+    });
+    centre -= first / sum;
+    shape += 5 * (variance - second / sum);
+    e = ellipse(centre, shape);
+  }
+  return e;
+}
+
+TractionField::TractionField(const HarmonicSolid& solid, const std::vector<ContactPoint>& points)
+    : origin_(solid.placement().origin), radius_(solid.mesh().radius) {
+  const Placement& placement = solid.placement();
+  const std::vector<Touching> touching = all_around(points, placement);
+  Vec3 middle = Vec3::Zero();
+  for (const Touching& t : touching) middle += t.area * t.pressure * t.x;
+  if (!(middle.norm() > 0)) return;
+  touching_ = true;
+  outwards_ = middle.normalized();
+  plane_.col(0) = (placement.axes.col(1) - placement.axes.col(1).dot(outwards_) * outwards_).normalized();
+  plane_.col(1) = outwards_.cross(plane_.col(0));
+  std::vector<Station> stations;
+  for (const Touching& t : touching)
+    stations.push_back({plane_.transpose() * t.x, t.area, t.pressure, t.push, t.friction});
+  fit_pressure(stations);
+  fit_friction(stations);
+}
+
+void TractionField::fit_pressure(const std::vector<Station>& stations) {
+  double force = 0, footprint = 0;
+  Vec2 mean = Vec2::Zero();
+  for (const Station& s : stations) {
+    const double f = s.area * s.pressure;
+    force += f;
+    footprint += f * s.area;
+    mean += f * s.x;
+  }
+  mean /= force;
+  footprint /= force;
+  Mat2 variance = Mat2::Zero();
+  for (const Station& s : stations) variance += s.area * s.pressure / force * (s.x - mean) * (s.x - mean).transpose();
+  // A patch of one or two stations is as large as they are.
+  Eigen::SelfAdjointEigenSolver<Mat2> eigen(variance);
+  const Vec2 spread = eigen.eigenvalues().cwiseMax(footprint / (5 * kPi));
+  variance = eigen.eigenvectors() * spread.asDiagonal() * eigen.eigenvectors().transpose();
+  patch_ = with_moments(mean, variance);
+  double unit = 0;
+  over(patch_, 1, [&](const Vec2&, double w) { unit += w; });
+  peak_ = force / unit;
+
+  Mat3 normal = Mat3::Zero(), right = Mat3::Zero();
+  for (const Station& s : stations) {
+    const Vec2 xi = patch_.unit(s.x);
+    const Vec3 basis(1, xi.x(), xi.y());
+    normal += s.area * s.pressure * basis * basis.transpose();
+    right += s.area * s.push * basis.transpose();
+  }
+  push_ = Mat3(normal).completeOrthogonalDecomposition().solve(Mat3(right.transpose())).transpose();
+}
+
+void TractionField::fit_friction(const std::vector<Station>& stations) {
+  Vec3 inwards = Vec3::Zero();
+  for (const Station& s : stations) {
+    inwards += s.area * s.push;
+    bound_ = std::max(bound_, s.friction.norm() / s.pressure);
+  }
+  if (bound_ == 0) return;
+  inwards.normalize();
+  along_.col(0) = (plane_.col(0) - plane_.col(0).dot(inwards) * inwards).normalized();
+  along_.col(1) = inwards.cross(along_.col(0));
+
+  Eigen::Matrix<double, 6, 6> shapes = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 2> target = Eigen::Matrix<double, 6, 2>::Zero();
+  for (const Station& s : stations)
+    target += s.area * monomials(patch_.unit(s.x)) * (along_.transpose() * s.friction).transpose();
+  over(patch_, kFine, [&](const Vec2& x, double w) {
+    const Quadratic m = monomials(patch_.unit(x));
+    shapes += w * peak_ * m * m.transpose();
+  });
+  // Where the bound cuts the ratio, the rest of the patch takes over its share.
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(shapes);
+  for (int i = 0; i < kBoundRounds; ++i) {
+    Eigen::Matrix<double, 6, 2> off = target;
+    over(patch_, kFine, [&](const Vec2& x, double w) {
+      const Vec2 xi = patch_.unit(x);
+      off -= w * peak_ * monomials(xi) * ratio(xi).transpose();
+    });
+    ratio_ += solver.solve(off).transpose();
+  }
+}
+
+TractionField::Vec2 TractionField::ratio(const Vec2& xi) const {
+  const Vec2 r = ratio_ * monomials(xi);
+  const double size = r.norm();
+  return size > bound_ ? Vec2(bound_ / size * r) : r;
+}
+
+TractionField::Value TractionField::at(const Vec3& reference) const {
+  Value out;
+  if (!touching_) return out;
+  const Vec3 from = reference - origin_;
+  if (from.dot(outwards_) <= 0) return out;
+  const Vec2 x = plane_.transpose() * from, xi = patch_.unit(x);
+  const double rest = 1 - xi.squaredNorm();
+  if (rest <= 0) return out;
+  out.pressure = peak_ * std::sqrt(rest);
+  if (bound_ > 0) out.tangential = along_ * (out.pressure * ratio(xi));
+  out.traction = out.pressure * (push_ * Vec3(1, xi.x(), xi.y())) + out.tangential;
+  return out;
+}
+
+Eigen::Vector2d TractionField::semi_axes() const {
+  if (!touching_) return Vec2::Zero();
+  return Eigen::SelfAdjointEigenSolver<Mat2>(patch_.axes).eigenvalues().reverse();
+}
+
+}  // namespace hosel::fem
