@@ -52,6 +52,18 @@ void FlightBy(benchmark::State& state) {
 }
 BENCHMARK(FlightBy)->DenseRange(0, int(models::flight_laws().size()) - 1)->Unit(benchmark::kMicrosecond);
 
+/// By equal steps of a hundredth of a second times the argument, with wind.
+void FlightInSteps(benchmark::State& state) {
+  const Launch l = drive();
+  const models::FlightConditions c = conditions(true);
+  const double step = 0.01 * double(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(models::fly_in_steps(l, {}, c, step).carry);
+  const models::Flight f = models::fly_in_steps(l, {}, c, step), exact = models::fly(l, {}, c, {.tolerance = 1e-12});
+  state.counters["flights_per_s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["carry_error_mm"] = 1e3 * (f.landing.position - exact.landing.position).norm();
+}
+BENCHMARK(FlightInSteps)->Arg(2)->Arg(5)->Arg(10)->Arg(20)->Unit(benchmark::kMicrosecond);
+
 /// A launch moved along one of its six quantities.
 Launch moved(const Launch& l, int quantity, double by) {
   double speed = l.ball_speed(), up = l.launch_angle(), right = l.azimuth();
