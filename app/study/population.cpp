@@ -21,7 +21,7 @@ constexpr std::array kShares = {0.05, 0.25, 0.5, 0.75, 0.95};
 /// Fewer rows tell no tenth of a distribution.
 constexpr std::size_t kLeastRows = 30;
 /// A cloud of more points is a blot; the lines are of all.
-constexpr std::size_t kMostMarks = 400;
+constexpr std::size_t kMostMarks = 200;
 
 /// Linear between the ordered values.
 double quantile(const std::vector<double>& ordered, double share) {
