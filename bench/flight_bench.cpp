@@ -79,7 +79,8 @@ Launch moved(const Launch& l, int quantity, double by) {
 }
 
 /// The variational equations by every law, and how far carry's gradient lies from central differences of flights at a
-/// tolerance of 1e-12: the largest component's error over the largest; speed and spins as shares of theirs, angles in radians.
+/// tolerance of 1e-12: the largest component's error over the largest; speed and spins as shares of theirs, angles in
+/// radians.
 void Jacobian(benchmark::State& state) {
   const Launch l = drive();
   models::FlightConditions c = conditions(false);

@@ -247,7 +247,8 @@ class StudyJob final : public PointJob {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
     root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "population", "optimum"});
+                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "population",
+                "optimum"});
   }
 
   void read_point(Table& root, std::size_t d) const {

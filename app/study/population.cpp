@@ -101,7 +101,8 @@ std::size_t index_of(const Table& table, std::string_view key, const std::string
   const auto at = std::ranges::find(known, name);
   if (at == known.end()) {
     const std::string near = nearest(name, known);
-    table.fail(key, fmt::format("no {} '{}'{}", what, name, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    table.fail(key,
+               fmt::format("no {} '{}'{}", what, name, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
   }
   return std::size_t(at - known.begin());
 }
@@ -133,12 +134,14 @@ StudyPopulations read_populations(Table root, const StudyTable& table) {
     const std::string where = t.text({"where", "a formula of the file's columns: rows where it is true count"}, "");
     const std::string given = t.text({"given", "column of the design of which all is seen as a function"});
     p.given = index_of(t, "given", given, table.design.columns(), "column of the design");
-    const std::string of_given = t.text({"given_measured", "a formula of the file's columns that is the same, in its unit"});
+    const std::string of_given =
+        t.text({"given_measured", "a formula of the file's columns that is the same, in its unit"});
     Table measured = t.table("measured");
     std::vector<std::pair<std::string, std::string>> formulas;
     for (const std::string& key : measured.keys()) {
       p.measured.push_back({index_of(measured, key, key, table.outputs, "output"), {}});
-      formulas.emplace_back(key, measured.text({key, "a formula of the file's columns in the output's unit", "<output>"}));
+      formulas.emplace_back(key,
+                            measured.text({key, "a formula of the file's columns in the output's unit", "<output>"}));
     }
     if (formulas.empty()) t.fail("measured", "name at least one output");
     if (!std::filesystem::exists(file)) {
@@ -146,7 +149,8 @@ StudyPopulations read_populations(Table root, const StudyTable& table) {
       continue;
     }
     const post::Sheet sheet = read_sheet(file);
-    const std::vector<double> counts = where.empty() ? std::vector<double>(sheet.rows(), 1.0) : evaluated(t, "where", where, sheet);
+    const std::vector<double> counts = where.empty() ? std::vector<double>(sheet.rows(), 1.0)
+                                                     : evaluated(t, "where", where, sheet);
     const auto kept = [&](const std::vector<double>& all) {
       std::vector<double> some;
       for (std::size_t i = 0; i < all.size(); ++i)

@@ -19,7 +19,7 @@ struct StudyPopulation {
   };
   std::string name;
   std::vector<Measured> measured;
-  std::size_t given = 0;      ///< column of the design of which both populations are seen as a function
+  std::size_t given = 0;       ///< column of the design of which both populations are seen as a function
   std::vector<double> x = {};  ///< its measured values, one a row
 };
 
