@@ -486,7 +486,8 @@ ball_speed_mps = "0.44704 * ball"
 TEST(Study, APopulationIsComparedByQuantilesAndOverItsClubSpeed) {
   const fs::path dir = fresh_directory("study_population");
   fs::create_directories(dir / "shots");
-  write(dir / "case.toml", kSampleOfClubSpeeds + kCentredBlow);
+  write(dir / "case.toml",
+        kSampleOfClubSpeeds + kCentredBlow + "[contact]\nrestitution = 0.8\nrestitution_slope_s_per_m = 0\n");
   std::string csv = "speed,ball,note\n0,999,left out\n";
   for (int i = 0; i <= 100; ++i) {
     const double v = 40 + 0.1 * i;
