@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
@@ -148,7 +150,7 @@ class BallRuleJob final : public Job {
     }
     out.tell("");
     out.show(losses);
-    compare_laws(out, summary);
+    compare_laws(out, summary, panel);
     if (!published.x.empty()) panel.series.push_back(published);
     figure.panels = {panel};
     out.write("losses.csv", csv);
@@ -158,8 +160,8 @@ class BallRuleJob final : public Job {
 
  private:
   /// The losses by more drag through every law of `beside`, each with its own ball at the limit: what the choice of the
-  /// law makes of them.
-  void compare_laws(Output& out, nlohmann::json& summary) {
+  /// law makes of them. Draws the lowest and the highest.
+  void compare_laws(Output& out, nlohmann::json& summary, post::Panel& panel) {
     if (setup_.others.empty()) return;
     post::TextTable table{.rows = {{"loss by more drag [yd]", "drag at the limit", "more drag"}},
                           .first_width = 28,
@@ -167,6 +169,13 @@ class BallRuleJob final : public Job {
                           .even = false};
     for (const Player& p : players_) table.rows[0].push_back(p.name);
     const models::FlightLaw own = setup_.conditions.law;
+    constexpr int colour = 5;
+    post::Series least{.label = "by drag, lowest and highest of all laws", .colour = colour}, most{.colour = colour};
+    for (const Player& p : players_) {
+      for (post::Series* s : {&least, &most}) s->x.push_back(p.club_speed / kMpsPerMph);
+      least.y.push_back(std::numeric_limits<double>::infinity());
+      most.y.push_back(-std::numeric_limits<double>::infinity());
+    }
     std::vector<models::FlightLaw> laws = {own};
     laws.insert(laws.end(), setup_.others.begin(), setup_.others.end());
     for (const models::FlightLaw& law : laws) {
@@ -176,10 +185,13 @@ class BallRuleJob final : public Job {
         const Change today{.drag = solve(kRemedies[0], {}, old_, reach_)},
             then{.drag = solve(kRemedies[0], today, new_, new_limit_)};
         row.insert(row.end(), {fmt::format("{:.3f}", today.drag), fmt::format("x {:.3f}", then.drag / today.drag)});
-        for (const Player& p : players_) {
+        for (std::size_t k = 0; k < players_.size(); ++k) {
+          const Player& p = players_[k];
           const double loss = (total(today, drive(p, today)) - total(then, drive(p, then))) / yard();
           row.push_back(fmt::format("{:.1f}", loss));
           summary["laws"][law.name][p.name] = loss;
+          least.y[k] = std::min(least.y[k], loss);
+          most.y[k] = std::max(most.y[k], loss);
         }
       } catch (const solvers::NonConvergence& e) {
         out.say(fmt::format("{}: {}", law.name, e.what()));
@@ -189,6 +201,9 @@ class BallRuleJob final : public Job {
     }
     setup_.conditions.law = own;
     out.show(table, "By every law");
+    if (table.rows.size() < 3) return;
+    panel.series.push_back(std::move(least));
+    panel.series.push_back(std::move(most));
   }
 
   static double yard() { return post::size(post::DistanceUnit::yards); }

@@ -21,6 +21,7 @@
 #include "app/study/history.hpp"
 #include "app/study/landing.hpp"
 #include "app/study/optimum.hpp"
+#include "app/study/population.hpp"
 #include "app/study/sliders.hpp"
 #include "app/study/statement.hpp"
 #include "app/study/table.hpp"
@@ -93,6 +94,7 @@ class StudyJob final : public PointJob {
     statements_ = read_study_statements(root, columns, table_.outputs, figures, reference_.has_value());
     figures_ = read_study_figures(root, table_, reference_.has_value());
     landing_ = read_landing(root, table_);
+    populations_ = read_populations(root, table_);
     optimum_ = read_optimum(root, table_);
     if (optimum_ && (conditions_.matched_launch || conditions_.bounce_speed))
       root.fail("optimum", "is confirmed by one point more: without matched_launch and keep_bounce");
@@ -114,7 +116,10 @@ class StudyJob final : public PointJob {
     }
   }
 
-  std::size_t size() const override { return table_.design.size() * table_.models.size(); }
+  /// Without the measured shots that its sample is compared with nothing is computed.
+  std::size_t size() const override {
+    return populations_.missing.empty() ? table_.design.size() * table_.models.size() : 0;
+  }
 
   json compute(std::size_t point, const fs::path& scratch) const override {
     const std::size_t d = point / table_.models.size();
@@ -122,6 +127,7 @@ class StudyJob final : public PointJob {
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
+    if (!populations_.missing.empty()) return out.skip(populations_.missing);
     for (const json& p : points)
       if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
     StudyTable table = table_;
@@ -155,6 +161,7 @@ class StudyJob final : public PointJob {
           report_optimum(out, table, effects, *optimum_, [&](const std::vector<std::string>& set, std::size_t m) {
             return studied_ ? answers_of_case(set, out.directory() / "optimum") : answers_at(set, m);
           });
+    if (!populations_.all.empty()) summary["populations"] = report_populations(out, table, populations_.all, draw_);
     std::vector<StudySeries> against;
     if (reference_) {
       against = references(table, *reference_);
@@ -240,7 +247,8 @@ class StudyJob final : public PointJob {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
     root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "optimum"});
+                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "population",
+                "optimum"});
   }
 
   void read_point(Table& root, std::size_t d) const {
@@ -373,6 +381,7 @@ class StudyJob final : public PointJob {
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
   std::optional<StudyLanding> landing_;
+  StudyPopulations populations_;
   std::optional<StudyOptimum> optimum_;
   double extra_mass_ = 0;  ///< of the reference's heavier head [kg]; 0: not asked
   bool draw_ = true;

@@ -30,10 +30,15 @@ void Formula::set(const std::string& name, double value) {
     if (own == name) x = value;
 }
 
-std::optional<bool> Formula::operator()() {
+std::optional<double> Formula::value() {
   for (const auto& [name, x] : values_)
     if (uses(name) && !std::isfinite(x)) return {};
-  return parser_.Eval() != 0;
+  return parser_.Eval();
+}
+
+std::optional<bool> Formula::operator()() {
+  const auto x = value();
+  return x ? std::optional(*x != 0) : std::nullopt;
 }
 
 bool Formula::uses(const std::string& name) const { return std::ranges::find(used_, name) != used_.end(); }

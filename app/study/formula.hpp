@@ -22,6 +22,8 @@ class Formula {
   /// Throws mu::Parser::exception_type on what is no formula of `names`.
   Formula(const std::string& text, const std::vector<std::string>& names);
   void set(const std::string& name, double value);
+  /// Nothing where a number that it needs is missing.
+  std::optional<double> value();
   /// Whether it is true; nothing where a number that it needs is missing.
   std::optional<bool> operator()();
   bool uses(const std::string& name) const;

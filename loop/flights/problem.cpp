@@ -19,8 +19,8 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kFewestFlights = 8;                            // training flights that can test anything
-constexpr models::FlightOptions kExactFlight = {.tolerance = 1e-8};  // differences of flights are taken
+constexpr std::size_t kFewestFlights = 8;  // training flights that can test anything
+constexpr double kFlightStep = 0.05;       // [s]: differences of flights are taken, so that they are smooth
 
 /// Steps of the differences, by ShotUnknown, then of a group's unknowns: a reading moves by far more than the
 /// integration's error and by little of what is unknown.
@@ -225,17 +225,17 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
   Eigen::VectorXd out = Eigen::VectorXd::Constant(width(), kNotMeasured);
   try {
     if (channels_.size() > case_.points.size()) {
-      const models::FlightAnswers a = models::answers(models::fly(launch, case_.ball, c, kExactFlight));
+      const models::FlightAnswers a = models::answers(models::fly_in_steps(launch, case_.ball, c, kFlightStep));
       for (int k = 0; k < width(); ++k)
         if (const int answer = readings_[std::size_t(k)].answer; answer >= 0)
           out[k] = a[answer] / channels_[std::size_t(k)].si;
     }
     if (!instants_.empty()) {
-      const auto path = models::follow(launch, case_.ball, c, instants_, kExactFlight);
+      const auto path = models::follow_in_steps(launch, case_.ball, c, instants_, kFlightStep);
       for (int k = 0; k < width(); ++k) {
         const Reading& r = readings_[std::size_t(k)];
         if (r.answer >= 0) continue;
-        const Vec3& x = path[std::size_t(std::ranges::find(instants_, r.point.time) - instants_.begin())].position;
+        const Vec3& x = path[std::size_t(std::ranges::find(instants_, r.point.time) - instants_.begin())];
         out[k] = r.point.axis == 0 ? x.x() : r.point.axis == 1 ? -x.y() : x.z();
       }
     }

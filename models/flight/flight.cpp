@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "solvers/cvode.hpp"
 #include "solvers/errors.hpp"
@@ -137,6 +138,16 @@ void check_height(const Motion<T>& motion, const T* y) {
     throw std::invalid_argument("flight: the ball does not rise to the ground on which it should land");
 }
 
+/// Where it ends.
+void land_at(const FlightPoint& p, Flight& out) {
+  out.landing = p;
+  out.time = p.time;
+  out.carry = std::hypot(p.position.x(), p.position.y());
+  out.side = 0 - p.position.y();  // no minus zero
+  out.landing_speed = p.velocity.norm();
+  out.landing_angle = std::atan2(-p.velocity.z(), std::hypot(p.velocity.x(), p.velocity.y()));
+}
+
 template <class T>
 std::array<T, kStates> state_of(const Departure<T>& start) {
   return {T(0), T(0), T(0), start.velocity[0], start.velocity[1], start.velocity[2], T(1)};
@@ -150,6 +161,49 @@ solvers::CvodeOptions solution(const FlightOptions& options, int size) {
   absolute[kSpinLeft] = options.tolerance;
   return {
       .method = solvers::CvodeMethod::adams, .relative_tolerance = options.tolerance, .absolute = std::move(absolute)};
+}
+
+using Plain = std::array<double, kStates>;
+
+/// A step of Runge and Kutta's fourth order.
+Plain stepped(const Motion<double>& motion, const Plain& y, double h) {
+  Plain k1, k2, k3, k4, at = y;
+  const auto go = [&](const Plain& k, double by) {
+    for (std::size_t i = 0; i < kStates; ++i) at[i] = y[i] + by * k[i];
+  };
+  motion.rate(y.data(), k1.data());
+  go(k1, h / 2);
+  motion.rate(at.data(), k2.data());
+  go(k2, h / 2);
+  motion.rate(at.data(), k3.data());
+  go(k3, h);
+  motion.rate(at.data(), k4.data());
+  for (std::size_t i = 0; i < kStates; ++i) at[i] = y[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+  return at;
+}
+
+/// The n-th step: those of the first whole one are halved towards the launch.
+double step_size(double whole, int n) {
+  constexpr int halvings = 6;
+  return n > halvings ? whole : std::ldexp(whole, std::max(n, 1) - 1 - halvings);
+}
+
+/// The part of a step after which `miss` is zero, and the state there: Newton's method from the step's end.
+template <class Miss, class Rate>
+std::pair<double, Plain> part_of_step(const Motion<double>& motion, const Plain& y, double h, Miss miss, Rate rate) {
+  double s = h;
+  Plain at = stepped(motion, y, s);
+  for (int pass = 0; pass < 20; ++pass) {
+    const double by = miss(at) / rate(at);
+    s -= by;
+    at = stepped(motion, y, s);
+    if (std::abs(by) < 1e-13 * h || !std::isfinite(by)) break;
+  }
+  return {s, at};
+}
+
+void check_step(double step) {
+  if (!(step > 0)) throw std::invalid_argument("flight: a step is above zero");
 }
 
 enum Event { kLanding, kTop };
@@ -169,12 +223,7 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
   const auto y0 = state_of(start);
   Flight out;
   const auto land = [&](const FlightPoint& p) {
-    out.landing = p;
-    out.time = p.time;
-    out.carry = std::hypot(p.position.x(), p.position.y());
-    out.side = 0 - p.position.y();  // no minus zero
-    out.landing_speed = p.velocity.norm();
-    out.landing_angle = std::atan2(-p.velocity.z(), std::hypot(p.velocity.x(), p.velocity.y()));
+    land_at(p, out);
     if (options.sample > 0) out.path.push_back(p);
   };
   const FlightPoint first = motion.point(0, y0.data());
@@ -251,6 +300,78 @@ std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const Fl
   };
   solver.run(times.back(), watch);
   while (out.size() < times.size()) out.push_back(motion.point(times[out.size()], solver.state().data()));
+  return out;
+}
+
+Flight fly_in_steps(const Launch& launch, const Ball& ball, const FlightConditions& conditions, double step) {
+  check(launch);
+  check_step(step);
+  const Departure<double> start = start_of(launch);
+  const Motion<double> motion(start, ball, conditions);
+  Plain y = state_of(start);
+  Flight out;
+  const FlightPoint first = motion.point(0, y.data());
+  out.reynolds = {first.reynolds, first.reynolds};
+  out.spin = {first.spin_ratio, first.spin_ratio};
+  if (grounded(motion, y.data(), conditions.ground)) return land_at(first, out), out;
+  if (y[kVelocity + 2] < 0) check_height(motion, y.data());
+  const double slope = std::tan(conditions.ground.slope);
+  double t = 0, unknown = 0;
+  while (t < kLatest) {
+    const double h = step_size(step, int(out.steps++));
+    const Plain next = stepped(motion, y, h);
+    if (y[kVelocity + 2] > 0 && next[kVelocity + 2] <= 0) {
+      const auto [s, top] = part_of_step(
+          motion, y, h, [](const Plain& at) { return at[kVelocity + 2]; },
+          [&](const Plain& at) {
+            Plain rate;
+            motion.rate(at.data(), rate.data());
+            return rate[kVelocity + 2];
+          });
+      check_height(motion, top.data());
+      if (top[kPosition + 2] > out.apex) {
+        out.apex = top[kPosition + 2];
+        out.apex_time = t + s;
+      }
+    }
+    if (motion.clearance(y.data()) >= 0 && motion.clearance(next.data()) < 0) {
+      const auto [s, down] = part_of_step(
+          motion, y, h, [&](const Plain& at) { return motion.clearance(at.data()); },
+          [&](const Plain& at) { return at[kVelocity + 2] - slope * at[kVelocity]; });
+      land_at(motion.point(t + s, down.data()), out);
+      out.outside = unknown / out.time;
+      return out;
+    }
+    y = next;
+    t += h;
+    const auto u = motion.through_air(y.data());
+    out.reynolds = {std::min(out.reynolds.low, u.reynolds), std::max(out.reynolds.high, u.reynolds)};
+    out.spin = {std::min(out.spin.low, u.spin_ratio), std::max(out.spin.high, u.spin_ratio)};
+    if (!conditions.law.holds(u.reynolds, u.spin_ratio)) unknown += h;
+  }
+  still_up();
+}
+
+std::vector<Vec3> follow_in_steps(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
+                                  std::span<const double> times, double step) {
+  check(launch);
+  check_step(step);
+  FlightConditions free = conditions;
+  free.ground = {};
+  const Departure<double> start = start_of(launch);
+  const Motion<double> motion(start, ball, free);
+  Plain y = state_of(start);
+  std::vector<Vec3> out;
+  double t = 0;
+  for (int n = 0; out.size() < times.size(); ++n) {
+    const double h = step_size(step, n);
+    while (out.size() < times.size() && times[out.size()] <= t + h) {
+      const Plain at = stepped(motion, y, std::max(0.0, times[out.size()] - t));
+      out.emplace_back(at[kPosition], at[kPosition + 1], at[kPosition + 2]);
+    }
+    y = stepped(motion, y, h);
+    t += h;
+  }
   return out;
 }
 

@@ -458,6 +458,67 @@ units = "metres"
   EXPECT_NE(said.text.find("land in the fairway, 10 m wide"), std::string::npos) << said.text;
 }
 
+constexpr const char* kSampleOfClubSpeeds = R"(kind = "study"
+models = ["rigid-eccentric"]
+outputs = ["ball_speed_mps"]
+[sample]
+points = 200
+seed = 3
+[[axis]]
+key = "delivery.club_speed_mps"
+mean = 45.0
+sd = 2.0
+[[axis]]
+key = "delivery.dynamic_loft_deg"
+mean = 14.0
+sd = 2.0
+[[population]]
+name = "made"
+file = "shots/made.csv"
+where = "speed > 0"
+given = "delivery.club_speed_mps"
+given_measured = "speed"
+[population.measured]
+ball_speed_mps = "0.44704 * ball"
+)";
+
+/// 101 shots on a line of known slope, each half a metre per second off it, and one row that does not count.
+TEST(Study, APopulationIsComparedByQuantilesAndOverItsClubSpeed) {
+  const fs::path dir = fresh_directory("study_population");
+  fs::create_directories(dir / "shots");
+  write(dir / "case.toml",
+        kSampleOfClubSpeeds + kCentredBlow + "[contact]\nrestitution = 0.8\nrestitution_slope_s_per_m = 0\n");
+  std::string csv = "speed,ball,note\n0,999,left out\n";
+  for (int i = 0; i <= 100; ++i) {
+    const double v = 40 + 0.1 * i;
+    csv += std::to_string(v) + "," + std::to_string((1.4 * v + (i % 2 ? 0.5 : -0.5)) / 0.44704) + ",text\n";
+  }
+  write(dir / "shots" / "made.csv", csv);
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto s = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  const auto &all = s["populations"]["made"]["ball_speed_mps"], &seen = all["measured"], &own = all["computed"];
+  EXPECT_EQ(seen["shots"], 101);
+  EXPECT_NEAR(seen["quantile_50"], 1.4 * 45, 0.5);
+  EXPECT_NEAR(seen["at_median"], 1.4 * 45, 0.02);  // one row more lies below the line than above: 1 / 101
+  EXPECT_NEAR(seen["slope"], 1.4, 3 * double(seen["slope_error"]));
+  EXPECT_NEAR(seen["scatter"], 1.4826 * 0.5, 0.02);
+  EXPECT_EQ(own["shots"], 200);
+  EXPECT_GT(own["quantile_95"], double(own["quantile_05"]) + 5);
+  // A rigid head of constant restitution: the ball's speed goes with the club's.
+  EXPECT_NEAR(own["slope"], double(own["at_median"]) / 45, 3 * double(own["slope_error"]));
+  EXPECT_NE(o.text.find("ball speed [m/s], measured"), std::string::npos) << o.text;
+  EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "made.gp"));
+
+  const Outcome without = command("run " + dir.string() + " --out " + (dir / "none").string() +
+                                  " --set population[1].file=not-there/made.csv");
+  EXPECT_EQ(without.status, 0) << without.text;
+  EXPECT_NE(without.text.find("SKIPPED"), std::string::npos) << without.text;
+  const Outcome wrong = command("check " + dir.string() + " --set population[1].given=delivery.club_sped_mps");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.text.find("did you mean 'delivery.club_speed_mps'"), std::string::npos) << wrong.text;
+}
+
 TEST(Study, ModelsAreComparedByPlaceAndCause) {
   const nlohmann::json s = studied("study_compare", R"(models = ["rigid-eccentric", "stick-slip", "volumetric"]
 outputs = ["ball_speed_mps", "backspin_rpm", "tangential_impulse_N_s", "contact_time_ms"]
