@@ -213,7 +213,13 @@ void conclude(const Study& study, LoopResult& result) {
     result.next = problem.next_experiment(result);
     return;
   }
-  const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous;
+  // Where the scatter is not the declared, what was held out must come as much nearer as a first effect asks for.
+  const auto foretells = [&] {
+    return s.level > 0 && deviance(problem, Part::holdout, s.chosen) + study.rules.gain <
+                              deviance(problem, Part::holdout, s.base);
+  };
+  const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous ||
+                     (result.verdict == Verdict::noise_contradicted && foretells());
   const Candidate* single = nullptr;  // the effect that is the one function
   if (named) {
     result.adopted = one.names.empty() ? s.adopted : one.names;
@@ -241,10 +247,9 @@ void conclude(const Study& study, LoopResult& result) {
     result.ties.clear();
     shown = false;
   }
-  // Structure remains, or the scatter is not the declared: what is beyond doubt is kept all the same.
+  // Structure remains: what is beyond doubt is kept all the same.
   BeyondDoubt kept;
-  if (s.level > 0 && (result.verdict == Verdict::noise_contradicted ||
-                      (result.verdict == Verdict::unexplained && (!s.clean || !without_name.empty())))) {
+  if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && !beats(kept.fit, problem.remainder(kept.fit), bare, study.rules)) kept = {};
   }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
 constexpr double kContrast = 4;      // of the density within rounding to that beside it
+constexpr double kEdge = 3;          // of it to that in the next width: scatter of the size of a coarse step has no edge
 constexpr int kLeastRows = 10;       // that hold,
 constexpr int kFurtherRows = 2;      // and more for each further column of a formula: so many agree by chance
 constexpr std::size_t kMostRelated = 300;
@@ -138,6 +139,7 @@ class Relations {
     const auto within = [&](double r) { return r <= t; };
     const auto near = [&](double r) { return r > t && r <= 5 * t; };
     if (!stands_out(count(within), count(near), int(residual.size()))) return;
+    if (count(within) < kEdge * count([&](double r) { return r > t && r <= 2 * t; })) return;
     std::set<std::vector<double>> all, held, beside;
     std::set<double> values;
     double square = 0;
