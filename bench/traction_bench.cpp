@@ -2,7 +2,6 @@
 // Every row prints relative L2 errors over the patch; --benchmark_filter picks rows.
 #include <benchmark/benchmark.h>
 
-#include "models/fe/fe_impact.hpp"
 #include "tests/support/pressed_sphere.hpp"
 
 namespace {

@@ -492,7 +492,7 @@ std::vector<ContactPoint> Contact::points(const State& s) const {
     const Vec3 push = local.force + local.friction.traction;
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),
                    m.R * in_body(k, push), local.pressure, k.gap, past.slip, k.station->area, past.sliding,
-                   k.station->edge, angles_[k.angle]});
+                   angles_[k.angle]});
   });
   return out;
 }

@@ -35,7 +35,6 @@ struct ContactPoint {
   double slip = 0;      ///< path slid so far [m]
   double area = 0;      ///< reference area that it stands for [m^2]
   bool sliding = false;
-  std::size_t edge = 0;  ///< of the solid's surface (mesh::Meridian::surface) on which it lies
   double angle = 0;      ///< theta [rad]
 };
 

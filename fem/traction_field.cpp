@@ -29,6 +29,7 @@ struct Touching {
 
 std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const Placement& placement) {
   constexpr int kTurns = 16;
+  if (points.empty()) return {};
   std::vector<Mat3> images{Mat3::Identity()};
   const auto [first, last] = std::ranges::minmax(points, {}, &ContactPoint::angle);
   if (first.angle < last.angle && last.angle < kPi) {  // a half circle
@@ -85,7 +86,8 @@ TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2&
   Vec2 centre = mean;
   Mat2 shape = 5 * variance;
   Ellipse e = ellipse(centre, shape);
-  for (int i = 0; i < 8; ++i) {
+  const double most = 1.2 * radius_;  // of a semi-axis: the patch does not reach round the ball
+  for (int i = 0; i < 24; ++i) {
     double sum = 0;
     Vec2 first = Vec2::Zero();
     Mat2 second = Mat2::Zero();
@@ -95,7 +97,11 @@ TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2&
       second += w * (x - mean) * (x - mean).transpose();
     });
     centre -= first / sum;
-    shape += 5 * (variance - second / sum);
+    // Half of what is asked for: a patch whose pressure is large at the rim asks for more than the next step gives.
+    const Eigen::SelfAdjointEigenSolver<Mat2> next(shape + 2.5 * (variance - second / sum));
+    const double least = std::pow(Eigen::SelfAdjointEigenSolver<Mat2>(e.axes).eigenvalues()[0], 2);
+    const Vec2 kept = next.eigenvalues().cwiseMax(0.25 * least).cwiseMin(most * most);
+    shape = next.eigenvectors() * kept.asDiagonal() * next.eigenvectors().transpose();
     e = ellipse(centre, shape);
   }
   return e;
@@ -195,16 +201,11 @@ TractionField::Value TractionField::at(const Vec3& reference) const {
   if (from.dot(outwards_) <= 0) return out;
   const Vec2 x = plane_.transpose() * from, xi = patch_.unit(x);
   const double rest = 1 - xi.squaredNorm();
-  if (rest <= 0) return out;
+  if (!(rest > 0)) return out;
   out.pressure = peak_ * std::sqrt(rest);
   if (bound_ > 0) out.tangential = along_ * (out.pressure * ratio(xi));
   out.traction = out.pressure * (push_ * Vec3(1, xi.x(), xi.y())) + out.tangential;
   return out;
-}
-
-Eigen::Vector2d TractionField::semi_axes() const {
-  if (!touching_) return Vec2::Zero();
-  return Eigen::SelfAdjointEigenSolver<Mat2>(patch_.axes).eigenvalues().reverse();
 }
 
 }  // namespace hosel::fem

@@ -35,8 +35,6 @@ class TractionField {
 
   /// At a point of the solid's surface before the motion, global [m]; zero off the patch.
   Value at(const Vec3& reference) const;
-  /// The rim of the patch, in the solid's tangent plane: semi-axes, the longer first [m]; zero without contact.
-  Eigen::Vector2d semi_axes() const;
 
  private:
   using Vec2 = Eigen::Vector2d;

@@ -51,8 +51,9 @@ std::vector<Location> nameless(const Study& study, const std::optional<Remainder
 
 /// Beside the chosen effects: one free function through one mechanism.
 struct OneFunction {
-  std::vector<Location> unexplained;  ///< it says more, or as much as several effects, and is none of them
-  std::vector<std::string> names;     ///< it says as much, and is these of them
+  std::vector<Location> unexplained;   ///< it says more, or as much as several effects, and is none of them
+  const Candidate* lone = nullptr;     ///< it says as much as several effects, and is this one of them
+  std::vector<std::string> same = {};  ///< every effect that such a function is
 };
 
 OneFunction one_function(const Study& study) {
@@ -60,31 +61,44 @@ OneFunction one_function(const Study& study) {
   if (s.level == 0 || !s.clean) return {};
   const std::vector<Mechanism> found = study.problem.mechanisms(s, study.rules);
   if (found.empty()) return {};
+  const Mechanism& best = found.front();
   double criterion = s.chosen.deviance + study.rules.parameter_cost * double(s.chosen.size()) + improbability(s.chosen);
   std::vector<std::string> names;
   for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k) {
     criterion += s.chosen.model.forms[k]->complexity;
     names.push_back(s.chosen.model.forms[k]->effect);
   }
-  const Mechanism& best = found.front();
   const bool more = best.criterion + study.rules.tie < criterion,
              as_much = best.criterion < criterion + study.rules.tie;
-  // A drift is slow and steady: what may be a step is none.
+  // A drift is slow and steady: one that is not likelier than a step is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
-                     best.names.empty();
-  if (!more && !(as_much && (names.size() > 1 || drift))) return {};
-  std::vector<std::string> among;
-  for (const std::string& e : names)
-    if (std::ranges::any_of(found, [&](const Mechanism& m) { return std::ranges::count(m.names, e) > 0; }))
-      among.push_back(e);
-  const bool keeps = drift ? best.criterion > criterion : !more || names.size() == 1;
-  if (keeps && !among.empty()) return {.unexplained = {}, .names = std::move(among)};
+                     best.names.empty() && best.criterion < criterion;
+  if (!more && !drift && !(as_much && names.size() > 1)) return {};
+  std::vector<std::string> same;
+  for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
+  const auto is = [&](const std::string& e) { return std::ranges::count(same, e) > 0; };
+  // A form of the library for a function of another form keeps its name.
+  if (names.size() == 1 && !drift && is(names.front())) return {};
+  if (!more)
+    for (const Candidate& c : s.candidates)
+      if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
+          !c.fit.at_bound)
+        return {.unexplained = {}, .lone = &c, .same = std::move(same)};
   return {
       .unexplained = {{study.problem.channel(best.channel).name, best.along,
                        fmt::format("one function of {}, acting through {}{}, says as much as {}", best.along, best.acts,
                                    best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
-                                   fmt::join(names, " and "))}},
-      .names = {}};
+                                   fmt::join(names, " and "))}}};
+}
+
+/// Ties of the effect that is the one function: with effects that are such a function too.
+std::vector<std::vector<std::string>> ties_of(const OneFunction& one, const Selection& s) {
+  std::vector<std::string> tie = one.lone->effects;
+  for (const auto& of_set : s.ties)
+    for (const std::string& e : of_set)
+      if (std::ranges::count(one.same, e) && !std::ranges::count(tie, e)) tie.push_back(e);
+  if (tie.size() < 2) return {};
+  return std::vector<std::vector<std::string>>{tie};
 }
 
 /// The first that applies, in the contract's order.
@@ -109,7 +123,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
   if (s.nameless) return Verdict::insufficient;
-  if (!s.ties.empty() && one.names.empty()) return Verdict::ambiguous;
+  if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
     unexplained.push_back(
@@ -220,17 +234,15 @@ void conclude(const Study& study, LoopResult& result) {
   };
   const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous ||
                      (result.verdict == Verdict::noise_contradicted && foretells());
-  const Candidate* single = nullptr;  // the effect that is the one function
   if (named) {
-    result.adopted = one.names.empty() ? s.adopted : one.names;
-    if (one.names.empty()) result.ties = s.ties;
-    for (const Candidate& c : s.candidates)
-      if (!single && c.effects == one.names) single = &c;
+    result.ties = one.lone ? ties_of(one, s) : s.ties;
+    if (!one.lone) result.adopted = s.adopted;
+    else if (result.ties.empty()) result.adopted = one.lone->effects;
   }
 
   // What was selected on some of the training data is fitted to all of them.
   const bool some = problem.density(Part::select).values < problem.density(Part::train).values;
-  const Fit& best = single ? single->fit : s.chosen;
+  const Fit& best = one.lone ? one.lone->fit : s.chosen;
   const Fit chosen = some ? fit(problem, Part::train, best.model, {best.p}, 1, true) : best;
 
   // The holdout is read here, once: what was chosen must not fail there.
@@ -242,7 +254,7 @@ void conclude(const Study& study, LoopResult& result) {
       names.push_back(chosen.model.forms[k]->effect);
     result.notes.push_back(
         fmt::format("{} explained the training data and not those held out: not adopted", fmt::join(names, " and ")));
-    result.verdict = Verdict::insufficient;
+    if (result.verdict != Verdict::noise_contradicted) result.verdict = Verdict::insufficient;
     result.adopted.clear();
     result.ties.clear();
     shown = false;

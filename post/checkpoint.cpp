@@ -19,7 +19,7 @@ using nlohmann::json;
 namespace {
 
 /// Raised whenever what follows means something else.
-constexpr std::string_view kFormat = "hosel impact checkpoint 7";
+constexpr std::string_view kFormat = "hosel impact checkpoint 8";
 
 template <class Dense>
 json numbers(const Dense& x) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestFlights = 8;  // training flights that can test anything
-constexpr double kFlightStep = 0.05;       // [s]: differences of flights are taken, so that they are smooth
+constexpr double kIntegrationStep = 0.05;  // [s]: differences of flights are taken, so that they are smooth
 
 /// Steps of the differences, by ShotUnknown, then of a group's unknowns: a reading moves by far more than the
 /// integration's error and by little of what is unknown.
@@ -225,13 +225,13 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
   Eigen::VectorXd out = Eigen::VectorXd::Constant(width(), kNotMeasured);
   try {
     if (channels_.size() > case_.points.size()) {
-      const models::FlightAnswers a = models::answers(models::fly_in_steps(launch, case_.ball, c, kFlightStep));
+      const models::FlightAnswers a = models::answers(models::fly_in_steps(launch, case_.ball, c, kIntegrationStep));
       for (int k = 0; k < width(); ++k)
         if (const int answer = readings_[std::size_t(k)].answer; answer >= 0)
           out[k] = a[answer] / channels_[std::size_t(k)].si;
     }
     if (!instants_.empty()) {
-      const auto path = models::follow_in_steps(launch, case_.ball, c, instants_, kFlightStep);
+      const auto path = models::follow_in_steps(launch, case_.ball, c, instants_, kIntegrationStep);
       for (int k = 0; k < width(); ++k) {
         const Reading& r = readings_[std::size_t(k)];
         if (r.answer >= 0) continue;

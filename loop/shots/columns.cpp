@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -296,24 +296,35 @@ void Columns::try_constants() {
 namespace {
 
 /// The rows of `j` that are members.
-Eigen::MatrixXd only(const Eigen::MatrixXd& j, const std::vector<char>& member) {
+Eigen::MatrixXd members_only(const Eigen::MatrixXd& j, const std::vector<char>& member) {
   Eigen::MatrixXd out = j;
   for (Eigen::Index i = 0; i < out.rows(); ++i)
     if (!member[std::size_t(i)]) out.row(i).setZero();
   return out;
 }
 
-/// Whether these groups too are off, each by an amount of its own: then a group is no exception.
-bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const std::vector<std::vector<char>>& groups) {
-  double sum = 0;
+/// Whether these groups differ among each other too: then a group is no exception.
+bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const solvers::Loss& loss,
+                 const std::vector<std::vector<char>>& groups) {
+  double square = 0, pull = 0, weight = 0;
+  int count = 0;
   for (const std::vector<char>& member : groups) {
     double a = 0, b = 0;
-    for (Eigen::Index i = 0; i < j.rows(); ++i)
-      if (member[std::size_t(i)] && z.row(i).allFinite()) a += j.row(i).squaredNorm(), b += j.row(i).dot(z.row(i));
-    if (a > 0) sum += b * b / a;
+    for (Eigen::Index i = 0; i < j.rows(); ++i) {
+      if (!member[std::size_t(i)] || !z.row(i).allFinite()) continue;
+      const double w = loss.weight(z.row(i).squaredNorm());
+      a += w * j.row(i).squaredNorm();
+      b += w * j.row(i).dot(z.row(i));
+    }
+    if (!(a > 0)) continue;
+    ++count;
+    square += b * b / a;
+    pull += b;
+    weight += a;
   }
-  if (groups.empty()) return false;
-  return sum > boost::math::quantile(boost::math::chi_squared(double(groups.size())), 0.999);
+  if (count < 2) return false;
+  const double about_mean = square - pull * pull / weight;
+  return about_mean > boost::math::quantile(boost::math::chi_squared(double(count - 1)), 0.999);
 }
 
 }  // namespace
@@ -364,12 +375,12 @@ void Columns::try_sizes() {
   };
   std::vector<Trial> trials;
   const Eigen::MatrixXd z = r * W.transpose();
-  struct Rows {
+  struct PartOfRows {
     std::vector<char> member;
     std::string what;
     std::vector<std::vector<char>> others;  // the other groups, where it is one
   };
-  std::vector<Rows> parts;
+  std::vector<PartOfRows> parts;
   std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
   std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
   std::ranges::stable_sort(by_order, {}, [&](Eigen::Index i) { return order_[std::size_t(i)]; });
@@ -409,21 +420,28 @@ void Columns::try_sizes() {
     consider({.finding = "offset", .column = k, .cost = 8}, J);
     const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
     consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
-    for (const Rows& part : parts) {
+    for (const PartOfRows& part : parts) {
       Slip shift{.finding = "level-shift", .column = k, .member = part.member, .what = part.what, .cost = 15};
-      shift.disputed = spread_over(z, J, part.others);
-      consider(std::move(shift), only(J, part.member));
+      shift.disputed = spread_over(z, J, loss, part.others);
+      consider(std::move(shift), members_only(J, part.member));
     }
   }
-  // What a club or a ball does from some shot on does the same to the ball speed as a reading that is off by then.
-  double physics = std::numeric_limits<double>::infinity();
-  for (double ContactLaw::*of : {&ContactLaw::restitution, &ContactLaw::tangential_restitution}) {
+  // A club or a ball that changes there moves the ball speed as a reading that is off from there on does.
+  std::map<std::string, double> physics;
+  for (const auto& [of, largest] :
+       {std::pair{&ContactLaw::restitution, 0.1}, {&ContactLaw::tangential_restitution, 0.3}}) {
     const Eigen::MatrixXd J = sensitivity(of) * W.transpose();
     if (J.norm() < 1e-12) continue;
-    for (const Rows& part : parts) physics = std::min(physics, fitted(z, only(J, part.member)).second + 15);
+    for (const PartOfRows& part : parts) {
+      const auto [size, value] = fitted(z, members_only(J, part.member));
+      if (std::abs(size) > largest) continue;
+      const auto known = physics.try_emplace(part.what, value).first;
+      known->second = std::min(known->second, value);
+    }
   }
   for (Trial& t : trials)
-    if (t.slip.finding == "level-shift" && physics < t.criterion + case_.rules.tie) t.slip.disputed = true;
+    if (const auto it = physics.find(t.slip.what); t.slip.finding == "level-shift" && it != physics.end())
+      t.slip.disputed = t.slip.disputed || it->second + t.slip.cost < t.criterion + case_.rules.tie;
   std::ranges::stable_sort(trials, {}, &Trial::criterion);
   // The best few, of different columns or kinds, about themselves.
   std::vector<Slip> kept;

@@ -84,7 +84,7 @@ Field::Basis basis(const Eigen::MatrixXd& covariance) {
 }
 
 std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                          const std::vector<int>& rows) {
+                          const std::vector<int>& rows, bool session) {
   const auto n = Eigen::Index(rows.size());
   const auto scaled = [&](const Eigen::VectorXd& x) {
     Eigen::VectorXd out(n);
@@ -114,7 +114,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
   Eigen::VectorXd toe, high;
   for (const Line& line : columns_of(shots, row_of, model)) {
     const Eigen::VectorXd x = scaled(line.x);
-    if (!x.size()) continue;
+    if (!x.size() || (line.name == "shot" && !session)) continue;
     if (const Column* c = shots.find(line.name)) {
       if (c->stem == stem(Input::impact_toe)) toe = x;
       if (c->stem == stem(Input::impact_high)) high = x;
@@ -177,8 +177,8 @@ Found likeliest(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen:
     phi << Eigen::VectorXd::Ones(n), b.phi;
     const Eigen::MatrixXd A = phi.transpose() * precision.asDiagonal() * phi;
     const Eigen::VectorXd rhs = phi.transpose() * pull;
-    for (const double level : {0.0, 0.1, 0.4, 1.6, 6.4})
-      for (const double size : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4}) {
+    for (const double level : {0.0, 0.1, 0.4, 1.6, 6.4, 25.0})
+      for (const double size : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6}) {
         // Standard deviations in noise units of a typical shot.
         Eigen::VectorXd root(terms + 1);
         root << level, size * b.variance.cwiseSqrt();
@@ -244,7 +244,8 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
 }  // namespace
 
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                                  const std::vector<int>& all, const Fit& base, const Fit& chosen, double tie) {
+                                  const std::vector<int>& all, bool session, const Fit& base, const Fit& chosen,
+                                  double tie) {
   std::vector<int> rows;
   const std::size_t count = std::min(all.size(), kMechanismRows);
   for (std::size_t k = 0; k < count; ++k) rows.push_back(all[k * all.size() / count]);
@@ -254,9 +255,13 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   const Eigen::MatrixXd z = model.whitened(rows, base.model, base.p).reshaped(width, n),
                         after = model.whitened(rows, chosen.model, chosen.p).reshaped(width, n);
   Eigen::VectorXd weight(n);
-  for (Eigen::Index i = 0; i < n; ++i) weight[i] = loss.weight(after.col(i).squaredNorm());
+  double of_chosen = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    weight[i] = loss.weight(after.col(i).squaredNorm());
+    of_chosen += loss(after.col(i).squaredNorm());
+  }
   const std::vector<Way> every = ways(model, shots);
-  const std::vector<Field> functions = fields(model, shots, row_of, rows);
+  const std::vector<Field> functions = fields(model, shots, row_of, rows, session);
   std::vector<double> order;
   for (const int i : rows) order.push_back(model.trial(i).order);
 
@@ -274,7 +279,9 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
       of_way[k].push_back({k, f, likeliest(z, columns[k], weight, functions[f])});
   });
   std::vector<Trial> trials;
-  for (auto& t : of_way) std::ranges::move(t, std::back_inserter(trials));
+  for (auto& t : of_way)
+    for (Trial& trial : t)
+      if (std::isfinite(trial.found.fall)) trials.push_back(std::move(trial));
   std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
   if (trials.size() > 12) trials.resize(12);
 
@@ -303,7 +310,8 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
     m.channel = int(most);
-    m.criterion = scale * deviance + t.found.price + kPrice;
+    // Of long sets on some rows: there the difference from the chosen effects counts, not the scatter of both.
+    m.criterion = chosen.deviance + scale * (deviance - of_chosen) + t.found.price + kPrice;
     m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
     out.push_back(std::move(m));
   }

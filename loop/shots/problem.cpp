@@ -418,10 +418,13 @@ std::optional<Remainder> ShotProblem::remainder(const Fit& fit) const {
   return loop::remainder(*model_, case_.shots, inputs_.row_of, rows_.train, group, fit);
 }
 
-/// A base that answers slowly, means of clubs and flights have no such look.
+/// A base that answers slowly, means of clubs, lofts that are found and effects that the case declares have no such
+/// look.
 std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& rules) const {
   if (!case_.direct || case_.averages || case_.loft_unknown || s.base.size() > 0) return {};
-  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, select_, s.base, s.chosen, rules.tie);
+  const Shots& shots = as_read(case_);
+  const bool session = case_.shots.has_shot_column && !sorted_by(shots) && !one_club_after_another(shots);
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, select_, session, s.base, s.chosen, rules.tie);
 }
 
 Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }

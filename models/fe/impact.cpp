@@ -172,7 +172,7 @@ solvers::GeneralizedAlphaOptions time_options(const ImpactBodies& bodies, const 
 }
 
 /// Throws solvers::NonConvergence where the energy does not add up, or where it takes far too long.
-void check_step(const solvers::Ledger& ledger, double now, double expected, bool touched) {
+void check_balance(const solvers::Ledger& ledger, double now, double expected, bool touched) {
   if (!(std::abs(ledger.closure) <= 0.05 * ledger.initial)) {
     std::ostringstream text;
     text << "at t = " << now << " s the energy of the impact is out of balance by "
@@ -243,7 +243,7 @@ FeImpactResult integrated(ImpactBodies& bodies, const FeImpactOptions& o, const 
     add_step(at, bodies, solver.state(), report, gap0, o.after);
     out.counts = before + solver.counts();
     observe(report);
-    check_step(solver.ledger(), solver.time(), bodies.contact_time, at.touched);
+    check_balance(solver.ledger(), solver.time(), bodies.contact_time, at.touched);
   }
   const fem::MeanMotion motion = bodies.ball->motion(solver.state());
   out.ball_velocity = motion.velocity;
