@@ -20,7 +20,7 @@ namespace {
 constexpr std::array kShares = {0.05, 0.25, 0.5, 0.75, 0.95};
 /// Fewer rows tell no tenth of a distribution.
 constexpr std::size_t kLeastRows = 30;
-/// A cloud of more points is a blot; the lines are of all.
+/// More points are not told apart in a picture; the lines are of all.
 constexpr std::size_t kMostMarks = 200;
 
 /// Linear between the ordered values.

@@ -77,8 +77,8 @@ std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const Fl
 
 /// Both by Runge and Kutta's fourth order in equal steps [s], the first of them halved again and again since the wind's
 /// profile begins steeply. The answers are as smooth in launch, law, air and wind as these are, where an adaptive
-/// method's choice of steps shows as jitter: for differences and fits. At 0.05 s drives lie within half a millimetre of
-/// `fly` and `follow`, slower balls by a law whose drag has a corner within a centimetre (bench/flight_bench.cpp). No
+/// method's choice of steps shows as jitter: for differences and fits. At 0.05 s flights lie within a millimetre of
+/// `fly` and `follow`, those by a law whose drag has corners within a centimetre (test InStepsIsTheSameFlight). No
 /// path. Throw as those do, and std::invalid_argument where the step is not above zero.
 Flight fly_in_steps(const Launch& launch, const Ball& ball, const FlightConditions& conditions, double step);
 std::vector<Vec3> follow_in_steps(const Launch& launch, const Ball& ball, const FlightConditions& conditions,

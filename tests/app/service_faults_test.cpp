@@ -1,7 +1,8 @@
-// What a service does to long runs: a node that is drained, a quota hit in the middle, a clock set back, a disk that
-// says it has what it has not. SECURITY.md promises what is asked here.
+// Faults of a computing service during a run: SIGTERM, a disk quota, a clock that is set back, an fsync that writes
+// nothing. SECURITY.md promises what is asked here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -19,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Words before the command: under tests/support/hard_life.cpp, with these of its variables.
-std::string hard_life(const std::string& variables, const fs::path& log) {
-  const fs::path library = fs::path(HOSEL_COMMAND).parent_path().parent_path() / "tests/libhard_life.so";
+/// Words before the command: under tests/support/injected_faults.cpp, with these of its variables.
+std::string with_faults(const std::string& variables, const fs::path& log) {
+  const fs::path library = fs::path(HOSEL_COMMAND).parent_path().parent_path() / "tests/libinjected_faults.so";
   EXPECT_TRUE(fs::exists(library)) << library;
-  return fmt::format("env LD_PRELOAD={} ASAN_OPTIONS=verify_asan_link_order=0 HARD_LOG={} {} ", library.string(),
+  return fmt::format("env LD_PRELOAD={} ASAN_OPTIONS=verify_asan_link_order=0 FAULT_LOG={} {} ", library.string(),
                      log.string(), variables);
 }
 
@@ -31,27 +32,33 @@ std::string hard_life(const std::string& variables, const fs::path& log) {
 const std::vector<std::string> kLongRuns = {"blow", "study"};
 
 void write_long_run(const fs::path& dir, const std::string& which) {
-  const std::string blow = R"(models = ["fe-free-body"]
-[delivery]
+  const std::string blow = R"([delivery]
 club_speed_mps = 45.0
 dynamic_loft_deg = 12.0
 [head]
 name = "driver-2024"
 [ball]
 model = "tour"
-[mesh]
+)";
+  const std::string elements = R"([mesh]
 harmonics = 1
 sector = 1
 rings = 1
 [time]
 steps_per_contact = 20
+[output]
+steps_per_frame = 1
 )";
-  const std::string study =
-      "kind = \"study\"\noutputs = [\"ball_speed_mps\", \"spin_rate_rpm\"]\n[[axis]]\nkey = "
-      "\"delivery.dynamic_loft_deg\"\nvalues = [8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0]\n";
-  if (which == "blow") write(dir / "case.toml", "kind = \"impact\"\n" + blow + "[output]\nsteps_per_frame = 1\n");
-  // The keys of the root stand before its tables.
-  else write(dir / "case.toml", study.substr(0, study.find("[[")) + blow + study.substr(study.find("[[")));
+  if (which == "blow") {
+    write(dir / "case.toml", "kind = \"impact\"\nmodels = [\"fe-free-body\"]\n" + blow + elements);
+    return;
+  }
+  // So many milliseconds of work on two cores that SIGTERM comes before the end.
+  std::string values;
+  for (int i = 0; i < 300; ++i) values += fmt::format("{}{:.2f}", i ? ", " : "", 8 + 0.03 * i);
+  write(dir / "case.toml",
+        "kind = \"study\"\nmodels = [\"volumetric\"]\noutputs = [\"ball_speed_mps\", \"spin_rate_rpm\"]\n" + blow +
+            "[[axis]]\nkey = \"delivery.dynamic_loft_deg\"\nvalues = [" + values + "]\n");
 }
 
 /// What a run is computed for: every file but those that say when and how.
@@ -97,6 +104,10 @@ LongRun long_run(const std::string& test, const std::string& which) {
   return r;
 }
 
+bool gone_on_from(const fs::path& file) {
+  return file.filename() == "checkpoint.cbor" || file.filename() == "points.jsonl";
+}
+
 bool at_work(const LongRun& r) {
   const fs::path points = r.out / "shards/1-of-1/points.jsonl";
   if (fs::exists(points)) {
@@ -106,30 +117,57 @@ bool at_work(const LongRun& r) {
   return fs::exists(r.out / "checkpoint.cbor");
 }
 
-/// Drains the node: SIGTERM once the run is at work. The status of its end, and how long it took.
-std::pair<int, double> drained(const LongRun& r, const std::string& before = "") {
+struct Drained {
+  bool at_work = false;  ///< had something to go on from, and had not ended
+  int status = 0;
+  double seconds = 0;  ///< from SIGTERM to the end
+};
+
+/// Leaves this process two of its cores: on all of a large machine a study would end before it is asked to.
+void keep_two_cores() {
+  cpu_set_t all, two;
+  if (sched_getaffinity(0, sizeof all, &all) != 0) return;  // more cores than the set holds
+  CPU_ZERO(&two);
+  for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&two) < 2; ++core)
+    if (CPU_ISSET(core, &all)) CPU_SET(core, &two);
+  sched_setaffinity(0, sizeof two, &two);
+}
+
+/// SIGTERM once the run is at work.
+Drained drained(const LongRun& r, const std::string& before = "") {
   const pid_t child = fork();
   if (child == 0) {
+    keep_two_cores();
     execl("/bin/sh", "sh", "-c", ("exec " + before + r.line + " >/dev/null 2>&1").c_str(), nullptr);
     _exit(127);
   }
-  int status = 0;
-  while (!at_work(r) && waitpid(child, &status, WNOHANG) == 0)
+  Drained d;
+  while (!at_work(r)) {
+    if (waitpid(child, &d.status, WNOHANG) != 0) return d;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   const auto begin = std::chrono::steady_clock::now();
+  d.at_work = waitpid(child, &d.status, WNOHANG) == 0;
+  if (!d.at_work) return d;
   kill(child, SIGTERM);
-  waitpid(child, &status, 0);
-  return {status, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+  waitpid(child, &d.status, 0);
+  d.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return d;
+}
+
+void expect_drained(const Drained& d, const std::string& which) {
+  ASSERT_TRUE(d.at_work) << which << " ended before SIGTERM, with " << d.status;
+  ASSERT_TRUE(WIFEXITED(d.status)) << which;
+  ASSERT_EQ(WEXITSTATUS(d.status), 143) << which;
 }
 
 /// Slurm sends SIGTERM and, after 30 s, SIGKILL. By then the run has ended, with all that it can go on from.
-TEST(Manners, ADrainedNodeLosesNothing) {
+TEST(ServiceFaults, ADrainedNodeLosesNothing) {
   for (const std::string& which : kLongRuns) {
     const LongRun r = long_run("drained", which);
-    const auto [status, seconds] = drained(r);
-    ASSERT_TRUE(WIFEXITED(status)) << which;
-    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
-    EXPECT_LT(seconds, 15) << which;  // half of Slurm's time: a step of a blow, the points that were being computed
+    const Drained d = drained(r);
+    ASSERT_NO_FATAL_FAILURE(expect_drained(d, which));
+    EXPECT_LT(d.seconds, 15) << which;  // half of Slurm's time: a step of a blow, the points that were being computed
     ASSERT_FALSE(fs::exists(r.out / "summary.json")) << which;
     const fs::path points = r.out / "shards/1-of-1/points.jsonl";
     const std::string kept = fs::exists(points) ? content(points) : "";
@@ -144,7 +182,7 @@ TEST(Manners, ADrainedNodeLosesNothing) {
   }
 }
 
-TEST(Manners, AQuotaHitInTheMiddleIsSaidAndTheRunGoesOn) {
+TEST(ServiceFaults, AQuotaHitInTheMiddleIsSaidAndTheRunGoesOn) {
   for (const std::string& which : kLongRuns) {
     const LongRun r = long_run("quota", which);
     std::size_t bytes = 0;
@@ -153,7 +191,7 @@ TEST(Manners, AQuotaHitInTheMiddleIsSaidAndTheRunGoesOn) {
     for (const double share : {0.05, 0.3, 0.6, 0.9}) {
       fs::remove_all(r.out);
       const fs::path log = r.dir / fmt::format("quota-{}", share);
-      const Outcome full = shell(hard_life(fmt::format("HARD_QUOTA={}", long(share * double(bytes))), log) + r.line);
+      const Outcome full = shell(with_faults(fmt::format("FAULT_QUOTA={}", long(share * double(bytes))), log) + r.line);
       if (full.status == 0) continue;  // what it wrote by other means than the command's own
       ++hit;
       ASSERT_TRUE(fs::exists(log)) << which << full.text;
@@ -170,12 +208,11 @@ TEST(Manners, AQuotaHitInTheMiddleIsSaidAndTheRunGoesOn) {
 }
 
 /// Nothing is ordered or believed by the time of day: an hour less at every reading, and an end before the beginning.
-TEST(Manners, AClockThatIsSetBackChangesNothing) {
+TEST(ServiceFaults, AClockThatIsSetBackChangesNothing) {
   for (const std::string& which : kLongRuns) {
     const LongRun r = long_run("clock", which);
-    const std::string backwards = hard_life("HARD_CLOCK=3600", r.dir / "clock");
-    const auto [status, seconds] = drained(r);
-    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
+    const std::string backwards = with_faults("FAULT_CLOCK=3600", r.dir / "clock");
+    ASSERT_NO_FATAL_FAILURE(expect_drained(drained(r), which));
     const Outcome o = shell(backwards + r.line);
     ASSERT_EQ(o.status, 0) << which << o.text;
     ASSERT_NE(content(r.dir / "clock").find('C'), std::string::npos) << "the clock was read once at most";
@@ -184,13 +221,12 @@ TEST(Manners, AClockThatIsSetBackChangesNothing) {
   }
 }
 
-/// After a cut of power a disk that lied has names without their bytes. Every file of a run that had not ended is
-/// empty, all zeros or the half of itself, one after the other: the answer is the same, or there is a sentence.
-TEST(Manners, ADiskThatLiesAboutWhatItHasMakesNoOtherAnswer) {
+/// After a cut of power names may be without their bytes, where fsync wrote nothing. One file after the other of a run
+/// that had not ended is empty, all zeros or the half of itself: the answer is the same, or there is a sentence.
+TEST(SlowServiceFaults, AnFsyncThatWritesNothingMakesNoOtherAnswer) {
   for (const std::string& which : kLongRuns) {
     const LongRun r = long_run("fsync", which);
-    const auto [status, seconds] = drained(r, hard_life("HARD_FSYNC=lies", r.dir / "fsync"));
-    ASSERT_EQ(WEXITSTATUS(status), 143) << which;
+    ASSERT_NO_FATAL_FAILURE(expect_drained(drained(r, with_faults("FAULT_FSYNC=skip", r.dir / "fsync")), which));
     ASSERT_NE(content(r.dir / "fsync").find('F'), std::string::npos) << which;
     const fs::path stopped = r.dir / "stopped";
     fs::rename(r.out, stopped);
@@ -198,20 +234,22 @@ TEST(Manners, ADiskThatLiesAboutWhatItHasMakesNoOtherAnswer) {
     for (const auto& entry : fs::recursive_directory_iterator(stopped))
       if (entry.is_regular_file() && entry.file_size() > 1) written.push_back(fs::relative(entry.path(), stopped));
     std::ranges::sort(written);
-    // Of many frames the first and the last.
+    // Of many frames the first and the last. What a run goes on from is left in each way, the others in one each.
     std::map<std::pair<std::string, std::string>, std::vector<fs::path>> alike;
     for (const fs::path& file : written)
       alike[{file.parent_path().string(), file.extension().string()}].push_back(file);
+    const std::vector<std::string> ways = {"empty", "zeros", "half"};
+    std::size_t next = 0;
     int same = 0, refused = 0;
     for (const auto& [kind, files] : alike)
       for (std::size_t k = 0; k < files.size(); k += std::max<std::size_t>(1, files.size() - 1))
-        for (const char* left : {"empty", "zeros", "half"}) {
+        for (const std::string& left : gone_on_from(files[k]) ? ways : std::vector{ways[next++ % ways.size()]}) {
           fs::remove_all(r.out);
           fs::copy(stopped, r.out, fs::copy_options::recursive);
-          const std::string bytes = content(stopped / files[k]), how = left;
-          write(r.out / files[k], how == "empty"   ? ""
-                                  : how == "zeros" ? std::string(bytes.size(), '\0')
-                                                   : bytes.substr(0, bytes.size() / 2));
+          const std::string bytes = content(stopped / files[k]);
+          write(r.out / files[k], left == "empty"   ? ""
+                                  : left == "zeros" ? std::string(bytes.size(), '\0')
+                                                    : bytes.substr(0, bytes.size() / 2));
           const std::string told = fmt::format("{}: {} {}", which, files[k].string(), left);
           const Outcome o = shell(r.line);
           if (o.status == 0) {
@@ -224,7 +262,7 @@ TEST(Manners, ADiskThatLiesAboutWhatItHasMakesNoOtherAnswer) {
             EXPECT_NE(o.text.find(files[k].filename().string()), std::string::npos) << told << o.text;
           }
         }
-    EXPECT_GE(same, 6) << which;
+    EXPECT_GE(same, 4) << which;  // a study has its case, its lock and its points
     EXPECT_LE(refused, same / 2) << which;
   }
 }

@@ -1,8 +1,8 @@
-// A machine that treats a run badly. Loaded before the command by LD_PRELOAD, asked by its environment:
-//   HARD_QUOTA=N     bytes that regular files get from this process; what is more is refused as by a disk quota
-//   HARD_FSYNC=lies  the disk says that it has what it does not have
-//   HARD_CLOCK=S     every reading of the clock is S seconds before the one before
-//   HARD_LOG=FILE    gets a letter for everything that happened: Q, F, C
+// Faults of disk and clock. Loaded before the command by LD_PRELOAD, chosen by its environment:
+//   FAULT_QUOTA=N    bytes that regular files get from this process; what is more is refused as by a disk quota
+//   FAULT_FSYNC=skip fsync succeeds and writes nothing to the disk
+//   FAULT_CLOCK=S    every reading of the clock is S seconds before the one before
+//   FAULT_LOG=FILE   gets a letter for every fault that happened: Q, F, C
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -16,7 +16,7 @@
 namespace {
 
 void happened(char what) {
-  static const char* file = std::getenv("HARD_LOG");
+  static const char* file = std::getenv("FAULT_LOG");
   if (!file) return;
   const int to = open(file, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
   if (to < 0) return;
@@ -26,7 +26,7 @@ void happened(char what) {
 
 /// Seconds by which the clock is set back now.
 long set_back() {
-  static const char* each = std::getenv("HARD_CLOCK");
+  static const char* each = std::getenv("FAULT_CLOCK");
   static std::atomic<long> readings = 0;
   if (!each) return 0;
   if (readings++ == 1) happened('C');
@@ -38,7 +38,7 @@ long set_back() {
 extern "C" {
 
 ssize_t write(int file, const void* bytes, std::size_t count) {
-  static const char* quota = std::getenv("HARD_QUOTA");
+  static const char* quota = std::getenv("FAULT_QUOTA");
   static std::atomic<long> left = quota ? std::atol(quota) : 0;
   struct stat is {};
   if (quota && fstat(file, &is) == 0 && S_ISREG(is.st_mode)) {
@@ -56,7 +56,7 @@ ssize_t write(int file, const void* bytes, std::size_t count) {
 }
 
 int fsync(int file) {
-  static const char* how = std::getenv("HARD_FSYNC");
+  static const char* how = std::getenv("FAULT_FSYNC");
   if (!how) return int(syscall(SYS_fsync, file));
   happened('F');
   return 0;
