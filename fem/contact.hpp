@@ -35,7 +35,7 @@ struct ContactPoint {
   double slip = 0;      ///< path slid so far [m]
   double area = 0;      ///< reference area that it stands for [m^2]
   bool sliding = false;
-  double angle = 0;      ///< theta [rad]
+  double angle = 0;  ///< theta [rad]
 };
 
 /// What the patch does at the last accepted state, and its largest errors so far.

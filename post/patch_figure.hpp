@@ -21,8 +21,8 @@ struct PatchHistory {
 };
 
 /// Reads the frames of a patch series (`vtk`/patch/patch_*.vtp). `ball_axes`: from the ball's centre to the first point
-/// of contact, direction of slip, across both; `mesh_axes`: those of its mesh (models::FeOutcome::mesh_axes). Positions that
-/// touch, and the next on either side.
+/// of contact, direction of slip, across both; `mesh_axes`: those of its mesh (models::FeOutcome::mesh_axes). Positions
+/// that touch, and the next on either side.
 PatchHistory read_patch(const std::filesystem::path& vtk, const Mat3& ball_axes, const Mat3& mesh_axes);
 
 /// Pressure, traction and slip as maps; no panel where nothing was seen to

@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
 constexpr double kContrast = 4;      // of the density within rounding to that beside it
-constexpr double kEdge = 3;          // of it to that in the next width: scatter of the size of a coarse step has no edge
-constexpr int kLeastRows = 10;       // that hold,
-constexpr int kFurtherRows = 2;      // and more for each further column of a formula: so many agree by chance
+constexpr double kEdge = 3;      // of it to that in the next width: scatter of the size of a coarse step has no edge
+constexpr int kLeastRows = 10;   // that hold,
+constexpr int kFurtherRows = 2;  // and more for each further column of a formula: so many agree by chance
 constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {

@@ -29,9 +29,7 @@ TEST(TractionField, PressureOfASqueezedSphere) {
         const test::Pressed p = test::press({.nu = nu, .approach = approach, .mesh = of(sector)});
         ASSERT_GT(p.radius, .3);
         ASSERT_GT(p.edges, 1.5);
-        if (sector >= 3) {
-          EXPECT_LT(p.field.pressure, .03) << nu << " " << approach << " " << sector;
-        }
+        if (sector >= 3) { EXPECT_LT(p.field.pressure, .03) << nu << " " << approach << " " << sector; }
         // The test sums over 200 rings, which is good to some 2e-4.
         EXPECT_LT(p.force_off, 1e-3) << nu << " " << approach << " " << sector;
         stations = std::max(stations, p.stations.pressure);
