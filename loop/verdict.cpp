@@ -91,6 +91,21 @@ OneFunction one_function(const Study& study) {
                                    fmt::join(names, " and "))}}};
 }
 
+/// Several names that all act through the normal restitution are one function of it, and so is what else acts through
+/// it: which of them the data cannot say.
+std::vector<std::string> through_one_restitution(const Study& study) {
+  const std::vector<std::string> through = {"restitution-law", "restitution-falloff", "face-compliance"};
+  const Selection& s = study.selection;
+  const auto& forms = s.chosen.model.forms;
+  if (s.level < 2 || !std::all_of(forms.begin() + std::ptrdiff_t(study.base.size()), forms.end(),
+                                  [&](auto* f) { return std::ranges::count(through, f->effect) > 0; }))
+    return {};
+  std::vector<std::string> tie;
+  for (const std::string& e : through)
+    if (std::ranges::any_of(study.candidates, [&](auto* f) { return f->effect == e; })) tie.push_back(e);
+  return tie;
+}
+
 /// Ties of the effect that is the one function: with effects that are such a function too.
 std::vector<std::vector<std::string>> ties_of(const OneFunction& one, const Selection& s) {
   std::vector<std::string> tie = one.lone->effects;
@@ -103,7 +118,7 @@ std::vector<std::vector<std::string>> ties_of(const OneFunction& one, const Sele
 
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
-              const OneFunction& one, std::vector<Location>& unexplained) {
+              const OneFunction& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
@@ -123,7 +138,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
   if (s.nameless) return Verdict::insufficient;
-  if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty()) return Verdict::ambiguous;
+  if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
     unexplained.push_back(
@@ -220,7 +235,8 @@ void conclude(const Study& study, LoopResult& result) {
   }
   const std::vector<Location> without_name = nameless(study, left, bare);
   const OneFunction one = one_function(study);
-  result.verdict = judge(study, result.columns, without_name, one, result.unexplained);
+  const std::vector<std::string> restitution = through_one_restitution(study);
+  result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);
@@ -236,7 +252,8 @@ void conclude(const Study& study, LoopResult& result) {
                      (result.verdict == Verdict::noise_contradicted && foretells());
   if (named) {
     result.ties = one.lone ? ties_of(one, s) : s.ties;
-    if (!one.lone) result.adopted = s.adopted;
+    if (!one.lone && !restitution.empty()) result.ties = {restitution};
+    else if (!one.lone) result.adopted = s.adopted;
     else if (result.ties.empty()) result.adopted = one.lone->effects;
   }
 

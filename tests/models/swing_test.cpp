@@ -69,7 +69,8 @@ TEST(Swing, EquilibriumByNewtonKinsolAndAHold) {
 }
 
 TEST(Swing, IdaAgrees) {
-  // The downswing, 10 elements, both integrators at tight tolerances: 0.2 % of the peak deflection.
+  // The downswing, 10 elements, both integrators at tight tolerances: 0.2 % of the peak deflection. IDA's steps are
+  // bounded: what it chooses itself hangs on the machine's last digits, and erred by 0.08 to 0.4 %.
   const double begin = -0.3;
   Swing s(driver_club(), {.elements = 10, .step = 2.5e-4}, {.motion = motion()});
   const fem::State from = s.start(begin, s.equilibrium(begin));
@@ -79,15 +80,15 @@ TEST(Swing, IdaAgrees) {
   EXPECT_GT(scale, 0.05);
   std::size_t i = 0;
   double worst = 0, wrench = 0, pull = 0;
-  Swing other(driver_club(), {.integrator = SwingIntegrator::ida, .elements = 10, .step = 1e-2}, {.motion = motion()});
+  Swing other(driver_club(), {.integrator = SwingIntegrator::ida, .elements = 10, .step = 1e-3}, {.motion = motion()});
   other.run(from, 0, [&](const SwingSample& x) {
-    const SwingSample& own = ours[40 * i++];
+    const SwingSample& own = ours[4 * i++];
     ASSERT_NEAR(x.time, own.time, 1e-9);
     worst = std::max({worst, std::abs(own.lead - x.lead), std::abs(own.droop - x.droop)});
     wrench = std::max(wrench, (own.force - x.force).norm());
     pull = std::max(pull, own.force.norm());
   });
-  EXPECT_EQ(i, 31u);
+  EXPECT_EQ(i, 301u);
   EXPECT_LT(worst, 0.002 * scale);
   EXPECT_GT(pull, 200);
   EXPECT_LT(wrench, 0.01 * pull);  // accelerations are a derivative rougher than places
