@@ -167,6 +167,8 @@ BeyondDoubt beyond_doubt(const Study& study) {
   }
   if (kept.empty()) return {};
   const Kept& best = *std::ranges::min_element(kept, {}, &Kept::criterion);
+  // Two together follow many a form that neither is: where structure remains, most such pairs are wrong.
+  if (best.effects.size() > 1) return {};
   BeyondDoubt out{.adopted = {}, .ties = {}, .fit = best.fit};
   const auto has = [](const Kept& k, const std::string& e) { return std::ranges::count(k.effects, e) > 0; };
   for (const std::string& e : best.effects) {

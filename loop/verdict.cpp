@@ -243,7 +243,8 @@ void conclude(const Study& study, LoopResult& result) {
     result.next = problem.next_experiment(result);
     return;
   }
-  // Where the scatter is not the declared, what was held out must come as much nearer as a first effect asks for.
+  // Where the scatter is not the declared, one effect alone is told, and what was held out must come as much nearer as
+  // a first effect asks for.
   const auto foretells = [&] {
     return s.level > 0 &&
            deviance(problem, Part::holdout, s.chosen) + study.rules.gain < deviance(problem, Part::holdout, s.base);
