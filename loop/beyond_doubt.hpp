@@ -16,7 +16,7 @@ struct BeyondDoubt {
 /// `Rules::stand_in` of the same, those effects are kept that, at no bound, have one size: every parameter within
 /// `Rules::steady` of it, or two errors, in both halves of the rows by every input, in every quarter of the session and
 /// on the holdout, and there in each of them by `Rules::present` standard errors; also when what is not kept is taken
-/// out. Of three effects nothing is kept: their sum follows any smooth form. Together they must let the held-out
+/// out. Of two that pass, or of three effects, nothing is kept: their sum follows many a form. It must let the held-out
 /// deviance fall by more than a first effect must bring, and make no channel worse there by more than `Rules::worse`.
 /// Where several sets keep something, the likeliest counts, and what differs is told as a tie.
 BeyondDoubt beyond_doubt(const Study& study);

@@ -246,7 +246,7 @@ void conclude(const Study& study, LoopResult& result) {
   // Where the scatter is not the declared, one effect alone is told, and what was held out must come as much nearer as
   // a first effect asks for.
   const auto foretells = [&] {
-    return s.level > 0 &&
+    return s.level == 1 &&
            deviance(problem, Part::holdout, s.chosen) + study.rules.gain < deviance(problem, Part::holdout, s.base);
   };
   const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous ||
