@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "golf/vector.hpp"
 #include "loop/median.hpp"
@@ -82,8 +84,17 @@ class Relations {
       scalars(y);
       directions(y);
     }
-    std::ranges::stable_sort(found_, std::ranges::greater{},
-                             [&](const Relation& r) { return std::pair(r.score(), -rank(r.target)); });
+    // Solved for another of its columns a relation holds on a row more or less, as these are rounded: what an instrument
+    // is likely to compute decides between them, not a unit.
+    std::map<std::set<int>, double> best;
+    for (const Relation& r : found_) {
+      const auto known = best.try_emplace(r.columns(), r.score()).first;
+      known->second = std::max(known->second, r.score());
+    }
+    std::ranges::stable_sort(found_, std::ranges::greater{}, [&](const Relation& r) {
+      const double most = best.at(r.columns());
+      return std::tuple(most, r.score() > 0.8 * most, -rank(r.target), r.score());
+    });
     return found_;
   }
   const std::string& header(int k) const { return sources_[std::size_t(k)].column->name; }
