@@ -84,8 +84,8 @@ class Relations {
       scalars(y);
       directions(y);
     }
-    // Solved for another of its columns a relation holds on a row more or less, as these are rounded: what an instrument
-    // is likely to compute decides between them, not a unit.
+    // Solved for another of its columns a relation holds on a row more or less, as these are rounded: what an
+    // instrument is likely to compute decides between them, not a unit.
     std::map<std::set<int>, double> best;
     for (const Relation& r : found_) {
       const auto known = best.try_emplace(r.columns(), r.score()).first;
