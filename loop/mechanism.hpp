@@ -10,7 +10,7 @@ struct Mechanism {
   std::string acts;                ///< through what, in words
   std::string along;               ///< the column that it is a function of; "shot": of the place in the session
   int channel = 0;                 ///< that it moves most, in noise units
-  double criterion = 0;            ///< deviance with it - 2 log evidence's price of the function
+  double criterion = 0;            ///< deviance with it, and what the freedom of the function costs
   std::vector<std::string> names;  ///< effects that such a function is; none: it has no name
 };
 
