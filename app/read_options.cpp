@@ -9,6 +9,7 @@
 #include "app/read_plate.hpp"
 #include "app/read_solid.hpp"
 #include "app/read_swing.hpp"
+#include "fem/contact_method/methods.hpp"
 
 namespace hosel::app {
 namespace {
@@ -42,6 +43,12 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
                        {0, 5}),
         contact.quantity({"face_slip_distance", "slip over which friction falls from static to sliding by 1 - 1/e"},
                          "um", Range::positive())};
+  std::vector<std::string> methods;
+  for (const fem::NamedContactMethod& method : fem::contact_methods()) methods.push_back(method.name);
+  o.method = contact.choice({"method", "how ball and face are kept apart"}, methods, o.method);
+  if (fem::contact_method(o.method)->reaches_penetration)
+    o.penetration = contact.number({"penetration", "that a time step may leave, over the ball's radius"}, {1e-9, 1e-2},
+                                   o.penetration);
   o.penalty = contact.number(
       {"penalty", "contact stiffness per area, times the ball's radius over its Young's modulus"}, {1, 1e6}, o.penalty);
   o.tangential_penalty = contact.number({"tangential_penalty", "stiffness of sticking over that of contact"},

@@ -20,7 +20,8 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
       symmetry_(symmetry),
       own_(surface_->unknowns()),
       angles_(angles.theta) {
-  if (!(laws_.normal_stiffness > 0)) throw std::invalid_argument("contact: state a positive normal stiffness");
+  if (!laws_.method) throw std::invalid_argument("contact: state a method");
+  if (const auto faults = laws_.method->faults(); !faults.empty()) throw std::invalid_argument(faults.front());
   if (laws_.friction)
     if (const auto faults = laws_.friction->faults(); !faults.empty()) throw std::invalid_argument(faults.front());
   if (carrier_.translation.has_value() != carrier_.rotation.has_value())
@@ -67,6 +68,7 @@ Contact::Contact(const HarmonicSolid& solid, std::unique_ptr<const ContactSurfac
     }
   }
   past_.resize(stations_.size() * angles_.size());
+  multipliers_.resize(past_.size());
   reference_.resize(3, static_cast<Index>(past_.size()));
   Index point = 0;
   for (const Station& station : stations_)
@@ -127,7 +129,7 @@ struct Contact::Scratch {
 
 std::vector<std::size_t> Contact::within_reach(const Moved& m, const State& s) const {
   const Index K = solid_.unknowns(), angles = static_cast<Index>(angles_.size());
-  const double reach = m.node.dot(m.R.col(0)) + carrier_.centre.x() + surface_->reach(m.own);
+  const double reach = m.node.dot(m.R.col(0)) + carrier_.centre.x() + surface_->reach(m.own) + beyond();
   Eigen::MatrixXd lift(angles, K);  // along the surface's first axis, by each function
   for (Index a = 0; a < angles; ++a) lift.row(a).noalias() = m.R.col(0).transpose() * functions_.middleRows<3>(3 * a);
   Eigen::Matrix<double, Eigen::Dynamic, 3> U = Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(K, 3);
@@ -182,7 +184,8 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
     k.arm.noalias() = m.to_body * t.arms.col(static_cast<Index>(k.angle));
     k.place = place(m, k.arm);
     k.gap = surface_->gap(k.place);
-    if (k.gap < 0) {  // elsewhere nothing acts
+    k.pressed = normal(k.number, k.gap).depth > 0;
+    if (k.pressed) {  // elsewhere nothing acts
       k.relative.noalias() = m.to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
       k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
       if (own_) {
@@ -206,10 +209,10 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   Local out;
   const SurfacePoint at = surface_->at(k.place);
   const Past& past = past_[k.number];
-  const double en = laws_.normal_stiffness;
-  out.pressure = -en * at.gap;
+  const NormalSpring spring = normal(k.number, at.gap);
+  out.pressure = spring.pressure();
   out.force = out.pressure * at.slope;
-  if (derivatives) out.stiffness = en * (at.slope * at.slope.transpose() + at.gap * at.curvature);
+  if (derivatives) out.stiffness = spring.stiffness * (at.slope * at.slope.transpose() - spring.depth * at.curvature);
   if (!laws_.friction) return out;
 
   Slip slip{.pressure = out.pressure, .step = k.place - past.place, .path = past.slip};
@@ -217,15 +220,18 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   slip.velocity = slip.tangent * k.velocity;
   // A point that touches first within this step slides from where its straight path met the surface.
   const bool fresh = !past.touching && past.gap > 0;
-  const double share = fresh ? -at.gap / (past.gap - at.gap) : 1;
+  const double inside = std::min(at.gap, 0.0);  // a multiplier may press where the path has not met it
+  const double share = fresh ? -inside / (past.gap - inside) : 1;
   const Vec3 path = slip.tangent * (k.place - (fresh ? past.place : past.anchor));
   slip.stretch = share * path;
   out.friction = laws_.friction->at(slip, derivatives);
   out.force -= out.friction.traction;
   if (!derivatives) return out;
   Mat3 stretching = share * slip.tangent;  // d stretch / d place
-  if (fresh) stretching -= past.gap / ((past.gap - at.gap) * (past.gap - at.gap)) * path * at.slope.transpose();
-  out.stiffness += out.friction.by_stretch * stretching - en * out.friction.by_pressure * at.slope.transpose();
+  if (fresh && at.gap < 0)
+    stretching -= past.gap / ((past.gap - at.gap) * (past.gap - at.gap)) * path * at.slope.transpose();
+  out.stiffness += out.friction.by_stretch * stretching -
+                   spring.stiffness * out.friction.by_pressure * at.slope.transpose();
   out.damping = out.friction.by_velocity;
   return out;
 }
@@ -237,8 +243,37 @@ void Contact::start(const State& s) {
     past.place = past.anchor = k.place;
     past.gap = k.gap;
     past.touching = !(past.gap > 0);
+    multipliers_[k.number] = 0;
   });
   started_ = true;
+}
+
+double Contact::beyond() const {
+  if (!laws_.method->multipliers()) return 0;
+  // The depth at a gap of zero is the gap up to which a point is pressed. Gaps are measured along the surface's normal,
+  // within 60 degrees of its first axis.
+  double most = 0;
+  for (std::size_t i = 0; i < multipliers_.size(); ++i) most = std::max(most, 2 * normal(i, 0).depth);
+  return most;
+}
+
+void Contact::begin_step() {
+  if (!laws_.method->multipliers()) return;
+  for (std::size_t i = 0; i < past_.size(); ++i)
+    multipliers_[i] = laws_.method->next(past_[i].gap, past_[i].multiplier);
+}
+
+bool Contact::augment(const State& trial) {
+  if (!laws_.method->multipliers()) return false;
+  std::vector<double> next = multipliers_;
+  bool again = false;
+  visit(trial, [&](const Moved&, const Kinematics& k) {
+    next[k.number] = laws_.method->next(k.gap, multipliers_[k.number]);
+    again = again || laws_.method->repeats(k.gap, multipliers_[k.number]);
+  });
+  // An accepted step keeps the multipliers that it was solved with.
+  if (again) multipliers_ = std::move(next);
+  return again;
 }
 
 void Contact::pattern(std::vector<std::vector<Index>>& blocks) const {
@@ -263,7 +298,7 @@ void Contact::residual(const State& s, Vector&, Vector& force) const {
     const Station& station = stations_[near[i]];
     t.forces.setZero();
     visit_station(m, s, near[i], t, [&](const Kinematics& k) {
-      if (!(k.gap < 0)) return;
+      if (!k.pressed) return;
       push.any = true;
       const Vec3 local = station.area * evaluate(k, false).force, f = in_body(k, local);
       t.forces.col(static_cast<Index>(k.angle)).noalias() = m.R * f;
@@ -359,7 +394,7 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
     // The angles of a station share its shape functions: they are added up before these spread them over the nodes.
     Linearised at(static_cast<Index>(angles_.size()) * (own > 0 ? 5 : 3), size, size - own);
     visit_station(m, s, near[i], t, [&](const Kinematics& k) {
-      if (k.gap < 0) linearise(m, k, weights, at);
+      if (k.pressed) linearise(m, k, weights, at);
     });
     if (at.rows == 0) return;
     sums[i].noalias() = at.changes.topRows(at.rows).transpose() * at.forces.topRows(at.rows);
@@ -393,9 +428,10 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
 Energies Contact::energies(const State& s) const {
   Energies out;
   visit(s, [&](const Moved&, const Kinematics& k) {
-    if (k.gap >= 0) return;
-    out.contact += k.station->area *
-                   (0.5 * laws_.normal_stiffness * k.gap * k.gap + evaluate(k, false).friction.stored);
+    if (!k.pressed) return;
+    const NormalSpring spring = normal(k.number, k.gap);
+    out.contact += k.station->area * (0.5 * spring.stiffness * spring.depth * spring.depth +
+                                      (past_[k.number].offset + evaluate(k, false).friction.stored));
   });
   out.friction = friction_work_;
   return out;
@@ -405,16 +441,18 @@ void Contact::commit(const State& s) {
   visit(s, [&](const Moved&, const Kinematics& k) {
     Past& past = past_[k.number];
     const double area = k.station->area;
-    if (k.gap >= 0) {
+    if (!k.pressed) {
       // What the tangential spring still held is lost where a point lets go.
       friction_work_ += area * past.stored;
       past = {.place = k.place, .anchor = k.place, .gap = k.gap, .slip = past.slip};
+      multipliers_[k.number] = 0;
       return;
     }
     const Friction friction = evaluate(k, false).friction;
     const double traction = friction.traction.norm();
     friction_work_ += area * 0.5 * (past.traction + traction) * friction.slip;
     if (!friction.sliding) elastic_slip_ = std::max(elastic_slip_, friction.elastic.norm());
+    const double multiplier = multipliers_[k.number];
     past = {.place = k.place,
             .anchor = k.place - friction.elastic,
             .gap = k.gap,
@@ -422,7 +460,9 @@ void Contact::commit(const State& s) {
             .stored = friction.stored,
             .slip = past.slip + friction.slip,
             .touching = true,
-            .sliding = friction.sliding};
+            .sliding = friction.sliding,
+            .multiplier = multiplier,
+            .offset = laws_.method->offset(past.normal(), {.gap = k.gap, .multiplier = multiplier})};
     penetration_ = std::max(penetration_, -k.gap);
   });
 }
@@ -433,6 +473,7 @@ void Contact::save(std::vector<double>& out) const {
     out.insert(out.end(), p.place.begin(), p.place.end());
     out.insert(out.end(), p.anchor.begin(), p.anchor.end());
     out.insert(out.end(), {p.gap, p.traction, p.stored, p.slip, p.touching ? 1.0 : 0.0, p.sliding ? 1.0 : 0.0});
+    if (laws_.method->multipliers()) out.insert(out.end(), {p.multiplier, p.offset});
   }
 }
 
@@ -456,7 +497,11 @@ void Contact::restore(std::span<const double>& in) {
     p.slip = next();
     p.touching = next() != 0;
     p.sliding = next() != 0;
+    if (!laws_.method->multipliers()) continue;
+    p.multiplier = next();
+    p.offset = next();
   }
+  for (std::size_t i = 0; i < past_.size(); ++i) multipliers_[i] = past_[i].multiplier;
 }
 
 ContactReport Contact::report(const State& s) const {
@@ -465,7 +510,7 @@ ContactReport Contact::report(const State& s) const {
   Vec3 centre = Vec3::Zero();
   visit(s, [&](const Moved& m, const Kinematics& k) {
     out.nearest = std::min(out.nearest, k.gap);
-    if (k.gap >= 0) return;
+    if (!k.pressed) return;
     const Local local = evaluate(k, false);
     const double area = k.station->area;
     out.force += area * (m.R * in_body(k, local.force));
@@ -487,7 +532,7 @@ ContactReport Contact::report(const State& s) const {
 std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
   visit(s, [&](const Moved& m, const Kinematics& k) {
-    const Local local = k.gap < 0 ? evaluate(k, false) : Local{};
+    const Local local = k.pressed ? evaluate(k, false) : Local{};
     const Past& past = past_[k.number];
     const Vec3 push = local.force + local.friction.traction;
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),

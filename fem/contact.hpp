@@ -5,15 +5,16 @@
 #include <memory>
 #include <vector>
 
+#include "fem/contact_method/method.hpp"
 #include "fem/contact_surface.hpp"
 #include "fem/friction/law.hpp"
 #include "fem/harmonic_solid.hpp"
 
 namespace hosel::fem {
 
-/// What acts at a point. With gap g < 0 the pressure is p = -normal_stiffness g.
+/// What acts at a point.
 struct ContactLaws {
-  double normal_stiffness = 0;                  ///< penalty per reference area [N/m^3]
+  std::unique_ptr<const ContactMethod> method;  ///< along the normal
   std::unique_ptr<const FrictionLaw> friction;  ///< none: frictionless
 };
 
@@ -68,6 +69,8 @@ class Contact final : public Term {
   void residual(const State& trial, Vector& inertia, Vector& force) const override;
   void tangent(const State& trial, const Weights& weights, TangentSink& sink) const override;
   bool abrupt() const override { return true; }
+  void begin_step() override;
+  bool augment(const State& trial) override;
   Energies energies(const State& accepted) const override;
   void commit(const State& accepted) override;
   void save(std::vector<double>& history) const override;
@@ -100,6 +103,8 @@ class Contact final : public Term {
     Vec3 anchor = Vec3::Zero();  // of the tangential path
     double gap = 0, traction = 0, stored = 0, slip = 0;
     bool touching = false, sliding = false;
+    double multiplier = 0, offset = 0;  // see NormalState
+    NormalState normal() const { return {gap, multiplier, offset}; }
   };
   struct Moved {                                                   // what holds for all points of a state
     Vec3 node, node_velocity = Vec3::Zero(), spin = Vec3::Zero();  // spin in the body frame
@@ -112,7 +117,8 @@ class Contact final : public Term {
     Vec3 arm;    // body frame, from the node
     Vec3 place;  // in the surface's axes, as if it had not moved
     double gap = 0;
-    // Where the gap is negative:
+    bool pressed = false;
+    // Where it is:
     Vec3 relative;  // R^T (velocity of the point - of the node)
     Vec3 rate;      // of the arm
     Vec3 velocity;  // of the place
@@ -135,6 +141,8 @@ class Contact final : public Term {
   Mat3 free_rotation(const Mat3& R) const;
   Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
   Local evaluate(const Kinematics& k, bool derivatives) const;
+  /// What the method makes of a point at a gap with the multiplier of the step at hand.
+  NormalSpring normal(std::size_t number, double gap) const { return laws_.method->at(gap, multipliers_[number]); }
   /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point,
   /// of the place, and where the surface has unknowns two more, of how these tilt it there; columns are the solid's
   /// functions, carrier and own unknowns.
@@ -152,8 +160,10 @@ class Contact final : public Term {
     Directions moment;                                // and its rows
   };
   void linearise(const Moved& m, const Kinematics& k, const Weights& weights, Linearised& out) const;
+  /// How far from the surface a multiplier may still press a point [m].
+  double beyond() const;
   struct Scratch;  // of a station's work
-  /// Numbers of the stations with a point that the surface reaches.
+  /// Numbers of the stations with a point that the surface, or a pressure beyond it, reaches.
   std::vector<std::size_t> within_reach(const Moved& m, const State& s) const;
   /// So many stations may be worked on at once, each on its own: what they find is put together in their order.
   template <class Work>
@@ -178,6 +188,7 @@ class Contact final : public Term {
   Eigen::MatrixXd functions_;  // 3 x K at each angle, one below the other, global
   Directions reference_;       // of each point, global
   std::vector<Past> past_;
+  std::vector<double> multipliers_;  // of the step at hand [Pa]
   bool started_ = false;
   double friction_work_ = 0, penetration_ = 0, elastic_slip_ = 0;
 };

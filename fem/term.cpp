@@ -11,4 +11,14 @@ void TangentSink::add_all(const std::vector<std::vector<Index>>& equations,
 
 double Term::step_limit(const State&) const { return std::numeric_limits<double>::infinity(); }
 
+void begin_step(const System& system) {
+  for (const auto& term : system.terms) term->begin_step();
+}
+
+bool augment(const System& system, const State& trial) {
+  bool again = false;
+  for (const auto& term : system.terms) again = term->augment(trial) || again;
+  return again;
+}
+
 }  // namespace hosel::fem

@@ -58,6 +58,13 @@ class Term {
   /// Equations, appended, that the others feel little through this term's stiffness and not at all through its mass:
   /// factors that a solver iterates with may leave their coupling out.
   virtual void weakly_coupled(std::vector<Index>& equations) const { (void)equations; }
+  /// A step is attempted from the last accepted state: multipliers become those that it begins with.
+  virtual void begin_step() {}
+  /// The step has been solved at `trial`: whether multipliers have changed, so that it is to be solved again.
+  virtual bool augment(const State& trial) {
+    (void)trial;
+    return false;
+  }
   /// At the accepted state (cumulative figures as of the last commit()).
   virtual Energies energies(const State& accepted) const = 0;
   /// The step from the last accepted state to this one is accepted: history moves, work accumulates.
@@ -84,5 +91,9 @@ struct System {
   std::vector<std::unique_ptr<Term>> terms;
   std::vector<std::unique_ptr<Prescribed>> prescribed;
 };
+
+/// Term::begin_step() and Term::augment() of all terms.
+void begin_step(const System& system);
+bool augment(const System& system, const State& trial);
 
 }  // namespace hosel::fem

@@ -155,21 +155,29 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
     newton_.forget();
     contact_newton_.forget();
   }
+  fem::begin_step(system_);
+  const auto solve = [&] {
+    if (!contact_)
+      return newton_.solve({[&](double& scale) { return residual(scale); }, [&] { return assemble(1); }, advance});
+    return contact_newton_.solve({[&](double& scale, Vector& abrupt) { return residual(scale, &abrupt); }, assemble,
+                                  [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
+                                  [&](DenseTangent& sink) {
+                                    abrupt_tangent(system_, trial_, {1, to_v, to_a}, sink);
+                                  },
+                                  advance});
+  };
   NewtonReport report;
-  if (contact_) {
-    report = contact_newton_.solve({[&](double& scale, Vector& abrupt) { return residual(scale, &abrupt); }, assemble,
-                                    [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
-                                    [&](DenseTangent& sink) {
-                                      abrupt_tangent(system_, trial_, {1, to_v, to_a}, sink);
-                                    },
-                                    advance});
-  } else {
-    report = newton_.solve({[&](double& scale) { return residual(scale); }, [&] { return assemble(1); }, advance});
+  for (int solutions = 0; solutions == 0 || fem::augment(system_, trial_); ++solutions) {
+    report = solve();
+    counts_.iterations += report.iterations;
+    counts_.factorisations += report.factorisations;
+    counts_.dense_factorisations += report.dense_factorisations;
+    if (report.converged && solutions == options_.newton.max_iterations) {
+      report.converged = false;
+      report.reason = "the multipliers of the contact do not settle";
+    }
+    if (!report.converged) return report;
   }
-  counts_.iterations += report.iterations;
-  counts_.factorisations += report.factorisations;
-  counts_.dense_factorisations += report.dense_factorisations;
-  if (!report.converged) return report;
 
   trial_auxiliary_ = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
   // O. C. Zienkiewicz, Y. M. Xie, Earthquake Eng. Struct. Dyn. 20 (1991): local error of Newmark's family.

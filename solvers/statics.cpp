@@ -33,9 +33,10 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
   out.state = start;
   for (const auto& p : system.prescribed) p->impose(out.state);
   double scale0 = 0;
+  fem::begin_step(system);
   const Vector r0 = tangent.gather(residual_of(system, out.state, &scale0));
   double done = 0, step = 1.0 / std::max(1, options.load_steps);
-  int bisections = 0;
+  int bisections = 0, augmented = 0;
   fem::State trial = out.state;
   while (done < 1) {
     double next = done + step;
@@ -76,7 +77,11 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
                                         advance})
                 : newton.solve({residual, assemble, advance});
     out.iterations += report.iterations;
-    if (report.converged) {
+    if (report.converged && next == 1 && fem::augment(system, trial)) {
+      out.state = trial;
+      if (++augmented > options.newton.max_iterations)
+        throw NonConvergence("no static equilibrium found: the multipliers of the contact do not settle");
+    } else if (report.converged) {
       out.state = trial;
       done = next;
       ++out.load_steps;

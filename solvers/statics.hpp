@@ -19,7 +19,8 @@ struct StaticsReport {
 
 /// Equilibrium at `start.time`, from `start.q`, with v and a as in `start` (zero for statics; a steady
 /// rotation may be given). The load is what is out of balance at the start, r0: step k solves
-/// r(q) = (1 - k/n) r0, so every term takes part without knowing it. The terms' history is not moved.
+/// r(q) = (1 - k/n) r0, so every term takes part without knowing it. The terms' history is not moved, but
+/// multipliers are those of the equilibrium.
 /// Throws NonConvergence.
 StaticsReport solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options);
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fem/contact_method/methods.hpp"
 #include "fem/friction/coulomb.hpp"
 #include "fem/friction/regularised.hpp"
 #include "fem/friction/slip_weakening.hpp"
@@ -51,8 +52,9 @@ void add_contact(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o, 
   auto ball = std::make_unique<fem::HarmonicSolid>(
       out.system.dof_map, std::move(meshed_ball.mesh), basis, fem::SolidQuadrature{rule(angles), 2},
       std::move(meshed_ball.materials), fem::Placement{Vec3::Zero(), out.mesh_axes});
-  fem::ContactLaws laws{o.penalty * young / blow.ball.radius, nullptr};
-  if (!axial) laws.friction = friction_law(blow.contact.patch, o.tangential_penalty * laws.normal_stiffness);
+  const double radius = blow.ball.radius, stiffness = o.penalty * young / radius;
+  fem::ContactLaws laws{fem::contact_method(o.method)->make(stiffness, o.penetration * radius), nullptr};
+  if (!axial) laws.friction = friction_law(blow.contact.patch, o.tangential_penalty * stiffness);
   FaceInSystem struck = face->add(out.system, {blow, carrier, axial, planar ? mirror : Mirror::none});
   const fem::Symmetry symmetry = axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none;
   auto contact = std::make_unique<fem::Contact>(*ball, std::move(struck.surface), carrier, std::move(laws), rule(patch),
@@ -294,6 +296,8 @@ std::vector<std::string> FeImpactOptions::faults() const {
   if (angles < 0 || (angles > 0 && angles < 2 * harmonics + 1))
     out.emplace_back("angles must be at least 2 N + 1 (0 chooses)");
   if (contact_angles < 0) out.emplace_back("contact_angles must not be negative");
+  if (!fem::contact_method(method)) out.emplace_back("there is no contact method " + method);
+  if (!(penetration > 0)) out.emplace_back("penetration must be positive");
   if (!(penalty > 0)) out.emplace_back("penalty must be positive");
   if (!(tangential_penalty > 0)) out.emplace_back("tangential_penalty must be positive");
   if (!(rho_inf >= 0 && rho_inf <= 1)) out.emplace_back("rho_inf must lie in [0, 1]");

@@ -66,6 +66,18 @@ TEST(Command, MissingFileNamesTheNearestCase) {
   EXPECT_NE(o.text.find("did you mean 'iron7-trackman'"), std::string::npos) << o.text;
 }
 
+TEST(Command, ContactMethodsAreNamed) {
+  const std::string run = "check " HOSEL_SOURCE_DIR "/cases/driver-toe --set contact.method=";
+  EXPECT_EQ(command(run + "augmented-lagrangian").status, 0);
+  EXPECT_EQ(command(run + "augmented-lagrangian --set contact.penetration=1e-6").status, 0);
+  const Outcome wrong = command(run + "augmented-lagrangean"),
+                idle = command(run + "penalty --set contact.penetration=1e-6");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.text.find("did you mean 'augmented-lagrangian'"), std::string::npos) << wrong.text;
+  EXPECT_EQ(idle.status, 2);  // a penalty reaches none
+  EXPECT_NE(idle.text.find("penetration"), std::string::npos) << idle.text;
+}
+
 TEST(Command, FinishedRunIsNotOverwrittenUnlessTold) {
   const fs::path dir = fresh_directory("finished");
   std::ofstream(dir / "case.toml") << kEccentricBlow;

@@ -5,6 +5,8 @@
 #include <array>
 #include <optional>
 
+#include "fem/contact_method/augmented_lagrangian.hpp"
+#include "fem/contact_method/methods.hpp"
 #include "fem/face_surface.hpp"
 #include "fem/friction/coulomb.hpp"
 #include "fem/friction/regularised.hpp"
@@ -20,7 +22,7 @@ namespace {
 constexpr double kRadius = 0.021335;
 
 /// A ball pressed some way into a curved face that moves across it, with a frictional patch that partly
-/// sticks and partly slides.
+/// sticks and partly slides. Multipliers, where the method has them, are those of a step solved again.
 struct Scene {
   System system;
   HarmonicSolid* ball = nullptr;
@@ -31,7 +33,7 @@ struct Scene {
   Vec3 centre;
 
   Scene(bool symmetric, std::unique_ptr<const FrictionLaw> friction,
-        const std::optional<FaceCompliance>& compliance = std::nullopt) {
+        const std::optional<FaceCompliance>& compliance = std::nullopt, const std::string& method = "penalty") {
     const FourierBasis basis = symmetric ? cartesian_basis(2) : cartesian_basis(2, 1);
     const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
     const Mat3 R = symmetric ? Mat3(Mat3::Identity())
@@ -54,9 +56,10 @@ struct Scene {
       travel = system.dof_map.add_vector(1);
       surface = std::make_unique<YieldingFace>(face, *compliance, *travel);
     }
-    contact = std::make_unique<Contact>(
-        *ball, std::move(surface), SurfaceCarrier{x, r, centre}, ContactLaws{1e11, std::move(friction)},
-        symmetric ? half_circle(8) : full_circle(14), symmetric ? Symmetry::plane : Symmetry::none, 3);
+    contact = std::make_unique<Contact>(*ball, std::move(surface), SurfaceCarrier{x, r, centre},
+                                        ContactLaws{contact_method(method)->make(1e11, 1e-7), std::move(friction)},
+                                        symmetric ? half_circle(8) : full_circle(14),
+                                        symmetric ? Symmetry::plane : Symmetry::none, 3);
     s = system.dof_map.rest();
     set_rotation(s, r, Eigen::Quaterniond(R));
     const Vec3 spot = face.point(symmetric ? 0 : 0.01, symmetric ? 0 : -0.015);
@@ -67,6 +70,9 @@ struct Scene {
       s.q.segment<3>(x.q) += R * Vec3(2e-4, symmetric ? 0 : 3e-6, -4e-6 * i);
       s.time += 1e-5;
       if (travel) s.q[travel->q] += 4e-5;
+      contact->begin_step();
+      const bool again = contact->augment(s);
+      EXPECT_EQ(again, method != "penalty");
       if (i < 4) contact->commit(s);
     }
     s.v = test::random_vector(system.dof_map.size(), 8, 3);
@@ -87,15 +93,16 @@ constexpr std::array<MakeLaw, 4> kLaws = {
 const FaceCompliance kYielding{.mass = 0.01, .stiffness = 1e7, .half_width = 0.03, .half_height = 0.025};
 
 TEST(Contact, Tangent) {
-  for (const bool yields : {false, true})
-    for (const MakeLaw law : kLaws) {
-      Scene scene(false, law(), yields ? std::optional(kYielding) : std::nullopt);
-      const ContactReport report = scene.contact->report(scene.s);
-      ASSERT_GT(report.points, 20);
-      ASSERT_GT(report.normal_force, 10);
-      // The curvature of the gap function is taken to first order: relative size gap / face radius.
-      test::check_tangent(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3, 1e-5);
-    }
+  for (const NamedContactMethod& method : contact_methods())
+    for (const bool yields : {false, true})
+      for (const MakeLaw law : kLaws) {
+        Scene scene(false, law(), yields ? std::optional(kYielding) : std::nullopt, method.name);
+        const ContactReport report = scene.contact->report(scene.s);
+        ASSERT_GT(report.points, 20);
+        ASSERT_GT(report.normal_force, 10);
+        // The curvature of the gap function is taken to first order: relative size gap / face radius.
+        test::check_tangent(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3, 1e-5);
+      }
 }
 
 /// Static friction until the point has slid; a third of what it has beyond sliding friction is left after the distance.
@@ -111,13 +118,56 @@ TEST(Contact, FrictionFallsWithThePathThatAPointHasSlid) {
   EXPECT_FALSE(SlipWeakening(0.1, {0.4, 0}, 1e12).faults().empty());
 }
 
-/// Pressure is the gradient of the penalty's energy, by the surface's own unknown as by all others.
+/// Pressure is the gradient of the method's energy, by the surface's own unknown as by all others.
 TEST(Contact, ForceIsTheGradientOfTheEnergy) {
-  for (const bool yields : {false, true}) {
-    Scene scene(false, nullptr, yields ? std::optional(kYielding) : std::nullopt);
-    ASSERT_GT(scene.contact->energies(scene.s).contact, 1e-4);
-    test::check_gradient(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3);
+  for (const NamedContactMethod& method : contact_methods())
+    for (const bool yields : {false, true}) {
+      Scene scene(false, nullptr, yields ? std::optional(kYielding) : std::nullopt, method.name);
+      ASSERT_GT(scene.contact->energies(scene.s).contact, 1e-4);
+      test::check_gradient(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3);
+    }
+}
+
+/// A spring K pressed by d against the surface: gap g and pressure p = K (d + g). With the multiplier l the solution is
+/// g = (l - K d) / (K + k), and each augmentation leaves K / (K + k) of the gap.
+TEST(Contact, MultiplierTakesThePressureOver) {
+  constexpr double k = 1e10, K = 4e9, d = 1e-4, allowed = 1e-9;
+  const AugmentedLagrangian method(k, allowed);
+  double l = 0, gap = -K * d / (K + k);
+  int again = 0;
+  EXPECT_DOUBLE_EQ(method.at(gap, l).pressure(), K * (d + gap));
+  while (method.repeats(gap, l)) {
+    l = method.next(gap, l);
+    const double before = gap;
+    gap = (l - K * d) / (K + k);
+    EXPECT_NEAR(gap, K / (K + k) * before, 1e-12 * d);
+    EXPECT_NEAR(method.at(gap, l).pressure(), K * (d + gap), 1e-9 * K * d);
+    ++again;
   }
+  EXPECT_EQ(again, 9);  // of 29 um, (2 / 7)^9 leaves 0.4 nm
+  EXPECT_LT(std::abs(gap), allowed);
+  EXPECT_EQ(method.next(2 * l / k, l), 0);  // a point that the multiplier no longer reaches
+  EXPECT_FALSE(AugmentedLagrangian(k, 0).faults().empty());
+  EXPECT_FALSE(AugmentedLagrangian(0, allowed).faults().empty());
+  EXPECT_TRUE(method.faults().empty());
+}
+
+/// A point stores the trapezoidal work of its pressure from where it met the surface.
+TEST(Contact, AMultipliersWorkIsStored) {
+  constexpr double k = 1e10;
+  const AugmentedLagrangian method(k, 1e-9);
+  NormalState was{.gap = 1e-5};
+  double work = 0, pressure = 0, gap = 0;
+  for (const auto& [g, l] : {std::pair{-1e-6, 0.0}, {-2e-6, 1e4}, {-1e-6, 5e4}, {1e-6, 4e4}}) {
+    NormalState now{.gap = g, .multiplier = l};
+    now.offset = method.offset(was, now);
+    const NormalSpring spring = method.at(g, l);
+    ASSERT_GT(spring.depth, 0);
+    work -= 0.5 * (pressure + spring.pressure()) * (g - gap);
+    EXPECT_NEAR(0.5 * spring.stiffness * spring.depth * spring.depth + now.offset, work, 1e-12 * k * 1e-12);
+    pressure = spring.pressure(), gap = g, was = now;
+  }
+  EXPECT_NE(work, 0);
 }
 
 /// What lies beyond the reach of a surface does not touch it, whether it gives or stands out; what does touch comes

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <iostream>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -255,10 +257,60 @@ TEST(FeImpact, OneThreadAndTwoGiveTheSameBytes) {
   EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(double)), 0);
 }
 
+FeImpactOptions by_method(const std::string& method) {
+  FeImpactOptions o;
+  o.resolve(Accuracy::look);
+  o.method = method;
+  return o;
+}
+
+Blow rubbing_iron() {
+  Blow blow = iron_blow();
+  blow.contact.patch.coefficient = 0.3;
+  return blow;
+}
+
+TEST(FeImpact, ContactMethodsAgree) {
+  const FeOutcome penalty = Impact(by_method("penalty")).run(rubbing_iron()),
+                  other = Impact(by_method("augmented-lagrangian")).run(rubbing_iron());
+  for (const FeOutcome* o : {&penalty, &other})
+    std::cout << o->launch.velocity.transpose() << " | " << o->launch.spin.transpose() << " | penetration "
+              << o->result.penetration << " compression " << o->result.compression << " closure "
+              << o->result.ledger.closure / o->result.ledger.initial << " contact " << o->result.ledger.contact
+              << " steps " << o->result.counts.steps << " iterations " << o->result.counts.iterations << " rejected "
+              << o->result.counts.rejected << " peak " << o->result.peak_force << " time " << o->result.contact_time
+              << "\n";
+}
+
+TEST(FeImpact, MultipliersGoOnFromACheckpointToTheSameBits) {
+  const Impact impact(by_method("augmented-lagrangian"));
+  std::optional<ImpactCheckpoint> half;
+  int steps = 0;
+  const FeOutcome whole = impact.run(rubbing_iron(), [&](const ImpactView& view) {
+    if (++steps == 20) half = view.checkpoint();
+  });
+  ASSERT_GT(steps, 30);
+  ASSERT_TRUE(half && half->touched && !half->over);
+  const FeOutcome rest = impact.run(rubbing_iron(), {}, &*half);
+  EXPECT_EQ(rest.launch.velocity, whole.launch.velocity);
+  EXPECT_EQ(rest.launch.spin, whole.launch.spin);
+  EXPECT_EQ(rest.launch.head_spin, whole.launch.head_spin);
+  EXPECT_EQ(rest.result.penetration, whole.result.penetration);
+  EXPECT_EQ(rest.result.last.q, whole.result.last.q);
+  EXPECT_EQ(rest.result.ledger.contact, whole.result.ledger.contact);
+  EXPECT_EQ(rest.result.ledger.friction, whole.result.ledger.friction);
+  EXPECT_EQ(rest.result.ledger.closure, whole.result.ledger.closure);
+  // The other method remembers less at a point: not gone on from.
+  EXPECT_ANY_THROW(Impact(by_method("penalty")).run(rubbing_iron(), {}, &*half));
+}
+
 TEST(FeImpact, RefusesWhatItCannotDo) {
   EXPECT_THROW(Impact(coarse(0)).run(iron_blow()), std::invalid_argument);
   FeImpactOptions o = coarse(2);
   o.penalty = 0;
+  EXPECT_THROW(Impact{o}, std::invalid_argument);
+  o = coarse(2);
+  o.method = "mortar";
   EXPECT_THROW(Impact{o}, std::invalid_argument);
   Blow away = wall_blow(20);
   away.delivery.dynamic_loft = radians(80);

@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 
+#include "fem/contact_method/methods.hpp"
 #include "fem/face_surface.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "fem/materials/linear_elastic.hpp"
@@ -20,8 +21,14 @@ double plane_modulus(double young, double nu) { return young / (1 - nu * nu); }
 /// A ball between two plates that come nearer by `approach` each; harmonic 0.
 class Squeeze {
  public:
-  Squeeze(fem::Solid material, const mesh::MeridianOptions& mesh, double penalty)
-      : meridian_(mesh::sphere_meridian({kHertzRadius}, mesh)), material_(std::move(material)), penalty_(penalty) {}
+  /// `penetration` that the method reaches, over the approach, where it reaches one.
+  Squeeze(fem::Solid material, const mesh::MeridianOptions& mesh, double penalty, std::string method = "penalty",
+          double penetration = 1)
+      : meridian_(mesh::sphere_meridian({kHertzRadius}, mesh)),
+        material_(std::move(material)),
+        penalty_(penalty),
+        method_(std::move(method)),
+        penetration_(penetration) {}
 
   /// Force on each plate [N] at rest `after` the last call [s]; the material's history moves.
   double force(double approach, double after = 0) {
@@ -36,14 +43,17 @@ class Squeeze {
     std::span<const double> history = history_;
     if (!history_.empty()) solid->restore(history);
     fem::Contact* plate = nullptr;
+    const auto method = [&] {
+      return fem::contact_method(method_)->make(penalty_ * material_.instant_shear() / kHertzRadius,
+                                                penetration_ * approach);
+    };
     for (const double side : {1.0, -1.0}) {
       fem::SurfaceCarrier carrier;
       carrier.position = Vec3(side * (kHertzRadius - approach), 0, 0);
       carrier.attitude = side < 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(kPi, Vec3::UnitZ()).toRotationMatrix();
-      auto contact =
-          std::make_unique<fem::Contact>(*solid, std::make_unique<fem::FaceSurface>(Face{}), carrier,
-                                         fem::ContactLaws{penalty_ * material_.instant_shear() / kHertzRadius, nullptr},
-                                         fem::single_angle(), fem::Symmetry::axis);
+      auto contact = std::make_unique<fem::Contact>(*solid, std::make_unique<fem::FaceSurface>(Face{}), carrier,
+                                                    fem::ContactLaws{method(), nullptr}, fem::single_angle(),
+                                                    fem::Symmetry::axis);
       contact->start(state);
       plate = contact.get();
       system.terms.push_back(std::move(contact));
@@ -58,15 +68,21 @@ class Squeeze {
     q_ = found.state.q;
     history_.clear();
     solid->save(history_);
+    points_ = plate->points(found.state);
     return plate->report(found.state).normal_force;
   }
+  /// Of the plate that the last call pressed last.
+  const std::vector<fem::ContactPoint>& points() const { return points_; }
 
  private:
   mesh::Meridian meridian_;
   fem::Solid material_;
-  double penalty_, time_ = 0;
+  double penalty_;
+  std::string method_;
+  double penetration_, time_ = 0;
   Eigen::VectorXd q_;
   std::vector<double> history_;
+  std::vector<fem::ContactPoint> points_;
 };
 
 fem::Solid linear(double nu) {
@@ -122,6 +138,49 @@ TEST(Hertz, LimitOfASmallContact) {
     EXPECT_GT(fit[1], 0.2);
     EXPECT_LT(fit[1], 0.9);
   }
+}
+
+/// Largest penetration of a plate's points, and their pressure's relative L2 error on a patch of radius a (Hertz).
+struct Patch {
+  double penetration = 0, pressure = 0;
+  Patch(const std::vector<fem::ContactPoint>& points, double force, double nu) {
+    const double a = std::cbrt(0.75 * force * kHertzRadius / plane_modulus(100e6, nu)),
+                 highest = 1.5 * force / (kPi * a * a);
+    double off = 0, all = 0;
+    for (const fem::ContactPoint& p : points) {
+      const double r = std::hypot(p.reference.y(), p.reference.z()) / a,
+                   exact = r < 1 ? highest * std::sqrt(1 - r * r) : 0;
+      penetration = std::max(penetration, -p.gap);
+      off += p.area * (p.pressure - exact) * (p.pressure - exact);
+      all += p.area * exact * exact;
+    }
+    pressure = std::sqrt(off / all);
+  }
+};
+
+/// With the stiffness of a penalty that sinks in by several per cent of the approach, multipliers leave a tenth of
+/// that and less, and the force is that of an exact surface: a penalty a hundred times as stiff.
+TEST(Hertz, MultipliersLeaveATenthOfThePenetration) {
+  constexpr double nu = .3, d = 1e-4, soft = 1000;
+  const mesh::MeridianOptions mesh{
+      .sector = 12, .rings = 8, .pole = 0.06, .far = 2.5, .both_poles = true, .skin = 0.06, .core = 0.4};
+  Squeeze penalty(linear(nu), mesh, soft), stiff(linear(nu), mesh, 100 * soft),
+      multipliers(linear(nu), mesh, soft, "augmented-lagrangian", 1e-3);
+  const double yielding = penalty.force(d), exact = stiff.force(d), augmented = multipliers.force(d);
+  const Patch before(penalty.points(), yielding, nu), after(multipliers.points(), augmented, nu),
+      reference(stiff.points(), exact, nu);
+  ASSERT_GT(before.penetration, 0.02 * d);
+  EXPECT_LT(after.penetration, 0.1 * before.penetration);
+  EXPECT_LE(after.penetration, 1e-3 * d * (1 + 1e-9));
+  EXPECT_NEAR(augmented / exact, 1, 1e-3);
+  EXPECT_LT(std::abs(augmented / exact - 1), 0.1 * std::abs(yielding / exact - 1));
+  EXPECT_NEAR(augmented / (4.0 / 3 * plane_modulus(100e6, nu) * std::sqrt(kHertzRadius) * std::pow(d, 1.5)),
+              test::squeezed_over_hertz(nu, d / kHertzRadius), 5e-3);
+  for (const auto& [name, patch] : {std::pair{"penalty", before}, {"stiff", reference}, {"multipliers", after}})
+    std::cout << name << ": penetration / approach " << patch.penetration / d << ", pressure off " << patch.pressure
+              << "\n";
+  std::cout << "force over the stiff one's: penalty " << yielding / exact << ", multipliers " << augmented / exact
+            << "\n";
 }
 
 FeImpactOptions normal(fem::Solid material, double pole) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fem/contact_method/penalty.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "fem/materials/linear_elastic.hpp"
 #include "fem/rigid_body.hpp"
@@ -51,9 +52,10 @@ Outcome finite_elements(const FaceCompliance& face, int steps) {
   auto head = std::make_unique<fem::RigidBody>("head", x, r,
                                                fem::RigidBodyProperties{kHead, 3e-4 * Mat3::Identity(), Vec3::Zero()});
   auto spring = std::make_unique<fem::FaceSpring>(fem::ReducedFace::lumped(face), carrier, w);
-  auto contact = std::make_unique<fem::Contact>(*ball, std::make_unique<fem::YieldingFace>(Face{}, face, w), carrier,
-                                                fem::ContactLaws{kSpring / area, nullptr}, fem::single_angle(),
-                                                fem::Symmetry::axis);
+  auto contact =
+      std::make_unique<fem::Contact>(*ball, std::make_unique<fem::YieldingFace>(Face{}, face, w), carrier,
+                                     fem::ContactLaws{std::make_unique<fem::Penalty>(kSpring / area), nullptr},
+                                     fem::single_angle(), fem::Symmetry::axis);
   const fem::HarmonicSolid& b = *ball;
   const fem::RigidBody& h = *head;
   const fem::FaceSpring& f = *spring;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fem/contact_method/penalty.hpp"
 #include "fem/face_surface.hpp"
 #include "fem/friction/coulomb.hpp"
 #include "fem/materials/linear_elastic.hpp"
@@ -115,8 +116,9 @@ inline Pressed press(const PressedSphere& o) {
       fem::SurfaceCarrier carrier;
       carrier.position = Vec3(side * R * (1 - o.approach), 0, 0);
       carrier.attitude = side < 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(kPi, Vec3::UnitZ()).toRotationMatrix();
-      fem::ContactLaws laws{o.penalty * E / R, nullptr};
-      if (friction > 0) laws.friction = std::make_unique<fem::Coulomb>(friction, 0.5 * laws.normal_stiffness);
+      const double stiffness = o.penalty * E / R;
+      fem::ContactLaws laws{std::make_unique<fem::Penalty>(stiffness), nullptr};
+      if (friction > 0) laws.friction = std::make_unique<fem::Coulomb>(friction, 0.5 * stiffness);
       auto contact = std::make_unique<fem::Contact>(
           *scene.ball, std::make_unique<fem::FaceSurface>(Face{}), carrier, std::move(laws),
           axial ? fem::single_angle() : fem::half_circle(patch), symmetry, o.edge_points);
