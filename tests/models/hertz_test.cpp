@@ -177,10 +177,7 @@ TEST(Hertz, MultipliersLeaveATenthOfThePenetration) {
   EXPECT_NEAR(augmented / (4.0 / 3 * plane_modulus(100e6, nu) * std::sqrt(kHertzRadius) * std::pow(d, 1.5)),
               test::squeezed_over_hertz(nu, d / kHertzRadius), 5e-3);
   for (const auto& [name, patch] : {std::pair{"penalty", before}, {"stiff", reference}, {"multipliers", after}})
-    std::cout << name << ": penetration / approach " << patch.penetration / d << ", pressure off " << patch.pressure
-              << "\n";
-  std::cout << "force over the stiff one's: penalty " << yielding / exact << ", multipliers " << augmented / exact
-            << "\n";
+    RecordProperty(std::string("pressure_off_") + name, std::to_string(patch.pressure));
 }
 
 FeImpactOptions normal(fem::Solid material, double pole) {
