@@ -73,6 +73,7 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
                        basis_[static_cast<std::size_t>(k)].at(theta).dot(basis_[static_cast<std::size_t>(l)].at(theta));
   const AngularRule& angles = quadrature_.angles;
   const auto n = static_cast<Index>(angles.theta.size());
+  padded_ = (n + kLanes - 1) / kLanes * kLanes;
   for (int c = 0; c < 3; ++c) {
     Direction& d = directions_[static_cast<std::size_t>(c)];
     for (Index k = 0; k < K; ++k) {
@@ -80,8 +81,8 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
       if (f.cosine[c] != 0 || f.sine[c] != 0) d.functions.push_back(k);
     }
     const auto active = static_cast<Index>(d.functions.size());
-    d.value.resize(n, active);
-    d.derivative.resize(n, active);
+    d.value.setZero(padded_, active);
+    d.derivative.setZero(padded_, active);
     for (Index k = 0; k < active; ++k)
       for (Index j = 0; j < n; ++j) {
         const AngularFunction& f = basis_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
@@ -102,7 +103,11 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
           for (Index l = 0; l < b.value.cols(); ++l)
             for (Index k = 0; k < a.value.cols(); ++k)
               q.product[J][L].row(k + l * a.value.cols()) =
-                  (J ? a.derivative : a.value).col(k).cwiseProduct((L ? b.derivative : b.value).col(l)).transpose();
+                  (J ? a.derivative : a.value)
+                      .col(k)
+                      .head(n)
+                      .cwiseProduct((L ? b.derivative : b.value).col(l).head(n))
+                      .transpose();
         }
     }
   for (double theta : angles.theta) {
@@ -110,9 +115,12 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
     frames_.push_back(frame);
   }
+  frame_components_.resize(padded_, 9);
+  for (Index j = 0; j < padded_; ++j)  // beyond the angles an undeformed point
+    frame_components_.row(j) = frames_[static_cast<std::size_t>(std::min(j, n - 1))].reshaped().transpose();
 
   const auto rule = mesh::gauss(quadrature_.points);
-  std::size_t start = 0;
+  std::size_t start = 0, step_start = 0;
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
     for (const auto& [y, wy] : rule)
@@ -122,10 +130,14 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
         points_.push_back(p);
         history_start_.push_back(start);
         start += static_cast<std::size_t>(material.history_size() * n);
+        start_of_point_.push_back(step_start);
+        step_start += static_cast<std::size_t>(material.start_size() * padded_);
       }
     element_mass_.push_back(element_mass(mesh_, e, material.density));
   }
   history_.assign(start, 0);
+  starts_.assign(step_start, 0);
+  starts_of_.assign(mesh_.elements.size(), NAN);
   const std::size_t per = points_per_element();
   gradients_.resize(8, 3 * static_cast<Index>(points_.size()));
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -139,6 +151,8 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     const auto size = static_cast<std::size_t>(material.history_size());
     for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
       material.start(std::span(history_).subspan(history_start_[p] + j * size, size));
+    for (Index j = n; j < padded_ && size > 0; ++j)
+      start_step(material, 0, history_at(p, 0), starts_.data() + start_of_point_[p] + j, padded_);
   }
 
   if (corotated_) {
@@ -230,8 +244,8 @@ struct HarmonicSolid::Scratch {
   explicit Scratch(const HarmonicSolid& solid)
       : angles(static_cast<Index>(solid.frames_.size())), points(static_cast<Index>(solid.points_per_element())) {
     for (std::size_t c = 0; c < 3; ++c) {
-      gradient[c].resize(angles, 3 * points);
-      stress[c].resize(angles, 3 * points);
+      gradient[c].resize(solid.padded_, 3 * points);
+      stress[c].setZero(solid.padded_, 3 * points);
     }
   }
   Index angles, points;
@@ -253,14 +267,11 @@ void HarmonicSolid::over_elements(const Work& work) const {
 }
 
 std::span<const double> HarmonicSolid::history_at(std::size_t point, Index angle) const {
-  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[point / points_per_element()])];
-  const auto size = static_cast<std::size_t>(material.history_size());
+  const auto size = static_cast<std::size_t>(material(point / points_per_element()).history_size());
   return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(angle) * size, size);
 }
 
-/// Calls visit(point of the element, angle, F, frame) with F at every point; F in the placement's axes.
-template <class Visit>
-void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e, Scratch& t, Visit&& visit) const {
+void HarmonicSolid::find_gradients(const State& s, std::size_t e, Scratch& t) const {
   const Eigen::MatrixXd U = element_fields(s.q, block_.q - block_.v, e);
   const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -270,6 +281,12 @@ void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e
     t.gradient[c].leftCols(2 * t.points).noalias() = d.value * t.spread.leftCols(2 * t.points);
     t.gradient[c].rightCols(t.points).noalias() = d.derivative * t.spread.rightCols(t.points);
   }
+}
+
+/// Calls visit(point of the element, angle, F, frame) with F at every point; F in the placement's axes.
+template <class Visit>
+void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e, Scratch& t, Visit&& visit) const {
+  find_gradients(s, e, t);
   Mat3 F;
   for (Index p = 0; p < t.points; ++p)
     for (Index j = 0; j < t.angles; ++j) {
@@ -280,6 +297,32 @@ void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e
     }
 }
 
+template <class Visit>
+void HarmonicSolid::visit_lanes(const State& s, std::size_t e, Scratch& t, Visit&& visit) const {
+  find_gradients(s, e, t);
+  const std::size_t first = e * points_per_element();
+  const double dt = s.time - time_;
+  const bool known = dt == starts_of_[e];
+  starts_of_[e] = dt;
+  Mat3Lanes F;
+  for (Index p = 0; p < t.points; ++p) {
+    const std::size_t point = first + static_cast<std::size_t>(p);
+    double* starts = starts_.data() + start_of_point_[point];
+    for (Index j = 0; j < t.angles && !known; ++j)
+      start_step(material(e), dt, history_at(point, j), starts + j, padded_);
+    for (Index j = 0; j < t.angles; j += kLanes) {
+      for (Index J = 0; J < 3; ++J)
+        for (Index c = 0; c < 3; ++c) {
+          Lanes gradient, frame;
+          load(gradient, &t.gradient[static_cast<std::size_t>(c)](j, t.column(p, J)));
+          load(frame, &frame_components_(j, c + 3 * J));
+          F[static_cast<std::size_t>(c + 3 * J)] = gradient + frame;
+        }
+      visit(p, j, F, starts + j);
+    }
+  }
+}
+
 void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) const {
   const Index K = unknowns();
   const std::size_t elements = mesh_.elements.size();
@@ -288,17 +331,30 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
   std::vector<Eigen::MatrixXd> forces(elements), inertias(elements);
   std::vector<Mat3> twists(corotated_ ? elements : 0);  // integrals of P F^T in Cartesian components
   over_elements([&](std::size_t e, Scratch& t) {
-    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+    const Solid& solid = material(e);
     Mat3 twist = Mat3::Zero();
-    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-      const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      evaluate(material, F, frame, dt, history_at(point, j), false, t.response);
-      const double weight = points_[point].weight;
-      for (int J = 0; J < 3; ++J)
-        for (int c = 0; c < 3; ++c)
-          t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)) = weight * t.response.stress(c, J);
-      if (corotated_) twist += weight * t.response.stress * F.transpose();
-    });
+    if (solid.in_lanes()) {
+      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+        Mat3Lanes stress;
+        Lanes energy;
+        evaluate(solid, F, starts, padded_, stress, energy);
+        const double weight = points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+        for (Index J = 0; J < 3; ++J)
+          for (Index c = 0; c < 3; ++c)
+            store(&t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)),
+                  weight * stress[static_cast<std::size_t>(c + 3 * J)]);
+      });
+    } else {
+      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+        const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+        evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
+        const double weight = points_[point].weight;
+        for (int J = 0; J < 3; ++J)
+          for (int c = 0; c < 3; ++c)
+            t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)) = weight * t.response.stress(c, J);
+        if (corotated_) twist += weight * t.response.stress * F.transpose();
+      });
+    }
     if (corotated_) twists[e] = twist;
     const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
     Eigen::MatrixXd& fe = forces[e];
@@ -341,7 +397,7 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
 void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t e, Scratch& t,
                                   Eigen::MatrixXd& ke) const {
   const Index K = unknowns(), P = t.points;
-  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+  const Solid& solid = material(e);
   const double dt = s.time - time_;
   // dP_cJ / dF_dL of two directions c, d: a column for each point and pair (J, L), grouped by what it multiplies.
   const auto column = [P](Index p, Index J, Index L) {
@@ -351,7 +407,7 @@ void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mea
   for (auto& m : slopes) m.resize(t.angles, 9 * P);
   visit_points(s, mean, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
     const std::size_t point = e * static_cast<std::size_t>(P) + static_cast<std::size_t>(p);
-    evaluate(material, F, frame, dt, history_at(point, j), true, t.response);
+    evaluate(solid, F, frame, dt, history_at(point, j), true, t.response);
     const double weight = factor * points_[point].weight;
     for (std::size_t q = 0; q < 6; ++q)
       for (Index J = 0; J < 3; ++J)
@@ -425,11 +481,23 @@ std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
   const double dt = s.time - time_;
   const Mat3 R = mean_rotation(s);
   over_elements([&](std::size_t e, Scratch& t) {
+    const Solid& solid = material(e);
+    const auto weight = [&](Index p) {
+      return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+    };
+    if (solid.in_lanes()) {
+      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+        Mat3Lanes stress;
+        Lanes energy;
+        evaluate(solid, F, starts, padded_, stress, energy);
+        for (int l = 0; l < std::min<Index>(kLanes, t.angles - j); ++l) found[e] += weight(p) * energy[l];
+      });
+      return;
+    }
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-               t.response);
-      found[e] += points_[point].weight * t.response.energy;
+      evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
+      found[e] += weight(p) * t.response.energy;
     });
   });
   for (std::size_t e = 0; e < found.size(); ++e) out[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
@@ -442,15 +510,27 @@ void HarmonicSolid::commit(const State& s) {
     std::vector<double> found(mesh_.elements.size(), 0);
     const Mat3 R = mean_rotation(s);
     over_elements([&](std::size_t e, Scratch& t) {
-      const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
-      const auto size = static_cast<std::size_t>(material.history_size());
-      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
+      const Solid& solid = material(e);
+      const auto size = static_cast<std::size_t>(solid.history_size());
+      const auto history = [&](Index p, Index j) {
         const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-        const std::size_t at = history_start_[point] + static_cast<std::size_t>(j) * size;
-        found[e] += points_[point].weight *
-                    update_internal_variables(material, F, dt, std::span(history_).subspan(at, size));
+        return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(j) * size);
+      };
+      const auto weight = [&](Index p) {
+        return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+      };
+      if (solid.in_lanes()) {
+        visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+          const int count = static_cast<int>(std::min<Index>(kLanes, t.angles - j));
+          found[e] += weight(p) * update_internal_variables(solid, F, starts, padded_, dt, count, history(p, j));
+        });
+        return;
+      }
+      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
+        found[e] += weight(p) * update_internal_variables(solid, F, dt, history(p, j).first(size));
       });
     });
+    std::ranges::fill(starts_of_, NAN);
     for (std::size_t e = 0; e < found.size(); ++e) dissipated_[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
   }
   time_ = s.time;
@@ -471,6 +551,7 @@ void HarmonicSolid::restore(std::span<const double>& in) {
   take({&time_, 1});
   take(dissipated_);
   take(history_);
+  std::ranges::fill(starts_of_, NAN);
 }
 
 Eigen::MatrixXd HarmonicSolid::displacement_fields(const State& s) const {
@@ -516,8 +597,7 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   over_elements([&](std::size_t e, Scratch& t) {
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * per + static_cast<std::size_t>(p);
-      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-               t.response);
+      evaluate(material(e), F, frame, dt, history_at(point, j), false, t.response);
       // In the cylindrical frame, so that an axisymmetric state is constant over theta.
       const Mat3& Q = frames_[static_cast<std::size_t>(j)];
       const Mat3 sigma = t.response.stress * F.transpose() / F.determinant();

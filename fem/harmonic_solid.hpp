@@ -102,7 +102,7 @@ class HarmonicSolid final : public Term {
   static Eigen::Matrix<double, 8, 8> element_mass(const mesh::Meridian& mesh, std::size_t element, double density);
   struct Direction {  // the functions with a component along one Cartesian axis
     std::vector<Index> functions;
-    Eigen::MatrixXd value, derivative;  // that component at each angle: angles x functions
+    Eigen::MatrixXd value, derivative;  // that component at each angle, zero beyond them: padded angles x functions
   };
   struct Coupling {  // of the functions of two directions: (k + l x count) x angles, products of value or derivative
     std::size_t left = 0, right = 0;
@@ -112,11 +112,19 @@ class HarmonicSolid final : public Term {
   /// Elements may be worked on at once, each on its own: what they find is put together in their order.
   template <class Work>
   void over_elements(const Work& work) const;
+  void find_gradients(const State& s, std::size_t element, Scratch& scratch) const;
   template <class Visit>
   void visit_points(const State& s, const Mat3& mean, std::size_t element, Scratch& scratch, Visit&& visit) const;
+  /// The same for several angles at a time, of a material that answers so; visit(point of the element, first angle,
+  /// Mat3Lanes F, what the step from the history starts from).
+  template <class Visit>
+  void visit_lanes(const State& s, std::size_t element, Scratch& scratch, Visit&& visit) const;
   void add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t element, Scratch& scratch,
                      Eigen::MatrixXd& ke) const;
   std::size_t points_per_element() const { return points_.size() / mesh_.elements.size(); }
+  const Solid& material(std::size_t element) const {
+    return materials_[static_cast<std::size_t>(mesh_.layer[element])];
+  }
   std::span<const double> history_at(std::size_t point, Index angle) const;
   Eigen::MatrixXd element_fields(const Vector& numbers, Index offset, std::size_t element) const;
   Mat3 mean_rotation(const State& s) const;
@@ -137,6 +145,8 @@ class HarmonicSolid final : public Term {
   std::array<Direction, 3> directions_;
   std::vector<Coupling> couplings_;  // of each pair of directions, once
   std::vector<Mat3> frames_;         // columns e_s, e_rho, e_theta at each angle
+  Index padded_ = 0;                 // angles, filled up to whole lanes
+  Eigen::MatrixXd frame_components_;  // the same, component (c, J) in column c + 3 J: padded angles x 9
   Eigen::MatrixXd gram_;             // integral of f_k . f_l over theta
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
@@ -145,6 +155,10 @@ class HarmonicSolid final : public Term {
   std::vector<std::size_t> history_start_;  // of each meridian point
   std::vector<double> history_;
   std::vector<double> dissipated_;
+  /// What the step under way starts from, as start_step() makes it of the history: worked out by the first residual of
+  /// a step for all that follow. Point by point, padded angles side by side; and the step of each element.
+  mutable std::vector<double> starts_, starts_of_;
+  std::vector<std::size_t> start_of_point_;  // place in `starts_` of each meridian point
 };
 
 }  // namespace hosel::fem
