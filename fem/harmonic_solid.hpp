@@ -71,9 +71,10 @@ class HarmonicSolid final : public Term {
   /// Meridian fields U (nodes x unknowns) of the state's displacement [m], velocity [m/s].
   Eigen::MatrixXd displacement_fields(const State& s) const;
   Eigen::MatrixXd velocity_fields(const State& s) const;
-  /// Reference position, displacement from it and velocity of a node at an angle, global.
+  /// Reference position of a node at an angle, global.
   Vec3 reference(int node, double theta) const;
-  Vec3 vector_at(const Eigen::MatrixXd& fields, int node, double theta) const;
+  /// The angular functions there, global: the vector of a row of fields is this times the row.
+  Eigen::Matrix3Xd functions_at(double theta) const;
 
   /// Cauchy stress, extrapolated to the nodes and averaged over the elements that meet there: at each
   /// node and angle of `theta` a symmetric tensor in global axes [Pa], node by node (first all angles).
@@ -126,7 +127,7 @@ class HarmonicSolid final : public Term {
     return materials_[static_cast<std::size_t>(mesh_.layer[element])];
   }
   std::span<const double> history_at(std::size_t point, Index angle) const;
-  Eigen::MatrixXd element_fields(const Vector& numbers, Index offset, std::size_t element) const;
+  void element_fields(const Vector& numbers, Index offset, std::size_t element, Eigen::MatrixXd& fields) const;
   Mat3 mean_rotation(const State& s) const;
 
   std::string body_;
@@ -147,7 +148,7 @@ class HarmonicSolid final : public Term {
   std::vector<Mat3> frames_;         // columns e_s, e_rho, e_theta at each angle
   Index padded_ = 0;                 // angles, filled up to whole lanes
   Eigen::MatrixXd frame_components_;  // the same, component (c, J) in column c + 3 J: padded angles x 9
-  Eigen::MatrixXd gram_;             // integral of f_k . f_l over theta
+  Vector norms_;                     // integral of f_k . f_k over theta; of different functions it is zero
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
 
@@ -158,6 +159,13 @@ class HarmonicSolid final : public Term {
   /// What the step under way starts from, as start_step() makes it of the history: worked out by the first residual of
   /// a step for all that follow. Point by point, padded angles side by side; and the step of each element.
   mutable std::vector<double> starts_, starts_of_;
+  /// What each element found last: storage that is not asked for anew in every iteration.
+  struct Found {
+    Eigen::MatrixXd force, inertia;
+    Mat3 twist;  // integral of P F^T in Cartesian components
+  };
+  mutable std::vector<Found> found_;
+  mutable std::vector<Eigen::MatrixXd> stiffness_;
   std::vector<std::size_t> start_of_point_;  // place in `starts_` of each meridian point
 };
 
