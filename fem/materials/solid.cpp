@@ -168,6 +168,7 @@ double update_internal_variables(const Solid& solid, const Mat3& F, double dt, s
 
 double update_internal_variables(const Solid& solid, const Mat3Lanes& F, const double* starts, std::ptrdiff_t stride,
                                  double dt, int count, std::span<double> history) {
+  if (solid.branches.empty()) return 0;
   const auto size = static_cast<std::size_t>(solid.history_size());
   SymLanes C1 = metric(F);
   Lanes p;
