@@ -141,11 +141,9 @@ std::optional<Kept> keep(const Study& study, const Fit& start) {
     return {};
   const Eigen::VectorXd before = held_out(problem, base), after = held_out(problem, out.fit);
   if (!(after.array() <= (1 + study.rules.worse) * before.array()).all()) return {};
-  out.criterion = out.fit.deviance + study.rules.parameter_cost * double(out.fit.size()) + improbability(out.fit);
-  for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k) {
+  out.criterion = criterion(out.fit, study.rules);
+  for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k)
     out.effects.push_back(out.fit.model.forms[k]->effect);
-    out.criterion += out.fit.model.forms[k]->complexity;
-  }
   return out;
 }
 

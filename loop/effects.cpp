@@ -6,19 +6,24 @@ namespace hosel::loop {
 namespace {
 
 using namespace forms;
+using Through = OneFunction::Through;
+using Of = OneFunction::Of;
 constexpr std::array kEffects = {
     EffectEntry{"ball-tangential-compliance",
                 "tangential energy stored in the ball and given back: more spin than rolling",
-                "slip at the end of contact (high-speed video of the ball's markings)", ball_tangential_compliance},
+                "slip at the end of contact (high-speed video of the ball's markings)", ball_tangential_compliance, nullptr,
+                {Through::tangential_restitution, Of::blow}},
     EffectEntry{"friction-limit", "the ball slides throughout at high obliquity: spin below rolling",
                 "friction coefficient of face and cover", friction_limit},
     EffectEntry{"restitution-law", "level or speed dependence of the normal coefficient of restitution",
-                "head speed after impact", restitution_law},
+                "head speed after impact", restitution_law, nullptr, {Through::normal_restitution, Of::blow}},
     EffectEntry{"restitution-falloff", "restitution drops away from the face centre",
-                "normal restitution of the bare face at several points", restitution_falloff},
+                "normal restitution of the bare face at several points", restitution_falloff, nullptr,
+                {Through::normal_restitution, Of::place}},
     EffectEntry{"face-compliance",
                 "the face yields under the ball: restitution above that of a rigid face, falling towards the edge",
-                "characteristic time of the face (pendulum test) at several points", face_compliance},
+                "characteristic time of the face (pendulum test) at several points", face_compliance, nullptr,
+                {Through::normal_restitution, Of::place}},
     EffectEntry{"head-rotation", "a free head turns under an off-centre blow (gear effect)",
                 "angular velocity of the head after impact", head_rotation},
     EffectEntry{"head-mass", "effective head mass differs from the declared one", "head speed after impact", head_mass},
@@ -36,7 +41,7 @@ constexpr std::array kEffects = {
     EffectEntry{"normal-force-offset", "the resultant normal force does not pass through the ball's centre",
                 "contact patch over time (pressure film, high-speed video)", normal_force_offset},
     EffectEntry{"loft-bias", "the recorded loft is not the loft that the ball met",
-                "loft by a second instrument (camera at impact)", loft_bias},
+                "loft by a second instrument (camera at impact)", loft_bias, nullptr, {Through::recorded_loft, Of::blow}},
     EffectEntry{"monitor-misalignment", "the launch monitor's axes are turned against the target frame",
                 "the monitor's axes against a surveyed line", monitor_misalignment},
     EffectEntry{"session-drift", "something drifts slowly and steadily with the shot number",
