@@ -66,8 +66,7 @@ Rival one_function(const Study& study) {
   std::vector<std::string> names;
   for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k)
     names.push_back(s.chosen.model.forms[k]->effect);
-  const bool more = best.criterion + study.rules.tie < of_names,
-             as_much = best.criterion < of_names + study.rules.tie;
+  const bool more = best.criterion + study.rules.tie < of_names, as_much = best.criterion < of_names + study.rules.tie;
   // A drift is slow and steady: one that is not likelier than a step is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
                      best.names.empty() && best.criterion < of_names;
@@ -82,12 +81,11 @@ Rival one_function(const Study& study) {
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)
         return {.unexplained = {}, .lone = &c, .same = std::move(same)};
-  return {
-      .unexplained = {{study.problem.channel(best.channel).name, best.along,
-                       fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
-                                   best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
-                                   names.empty() ? ""
-                                                 : fmt::format(", says as much as {}", fmt::join(names, " and ")))}}};
+  return {.unexplained = {
+              {study.problem.channel(best.channel).name, best.along,
+               fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
+                           best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
+                           names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and ")))}}};
 }
 
 /// Several names that all act through the normal restitution are one function of it, and so is what else acts through
@@ -98,7 +96,8 @@ std::vector<std::string> through_one_restitution(const Study& study) {
     return e && e->function.through == OneFunction::Through::normal_restitution;
   };
   const auto& forms = study.selection.chosen.model.forms;
-  if (study.selection.level < 2 || !std::all_of(forms.begin() + std::ptrdiff_t(study.base.size()), forms.end(), through))
+  if (study.selection.level < 2 ||
+      !std::all_of(forms.begin() + std::ptrdiff_t(study.base.size()), forms.end(), through))
     return {};
   std::vector<std::string> tie;
   for (const Parametrisation* f : study.candidates)
