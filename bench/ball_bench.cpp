@@ -89,7 +89,7 @@ void Shares(benchmark::State& state) {
     const double stock = seconds(5, [&] { benchmark::DoNotOptimize(impact.ball->energies(peak)); });
     const fem::Vector right = smooth.gather(internal);
     const double solve = seconds(20, [&] {
-      const fem::Vector half = factors.eliminate(right);
+      const Eigen::VectorXf half = factors.eliminate(right);
       benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
     });
     const auto n = double(result.counts.iterations), f = double(result.counts.factorisations),

@@ -65,14 +65,18 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
   }
 
   const AngularRule circle = full_circle(2 * largest_order(basis_) + 3);
-  gram_ = Eigen::MatrixXd::Zero(K, K);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(K, K);
   for (double theta : circle.theta)
     for (Index k = 0; k < K; ++k)
       for (Index l = 0; l < K; ++l)
-        gram_(k, l) += circle.weight *
-                       basis_[static_cast<std::size_t>(k)].at(theta).dot(basis_[static_cast<std::size_t>(l)].at(theta));
+        gram(k, l) += circle.weight *
+                      basis_[static_cast<std::size_t>(k)].at(theta).dot(basis_[static_cast<std::size_t>(l)].at(theta));
+  norms_ = gram.diagonal();
+  gram.diagonal().setZero();
+  if (!gram.isZero(1e-12)) throw std::invalid_argument("harmonic solid: the angular functions must be orthogonal");
   const AngularRule& angles = quadrature_.angles;
   const auto n = static_cast<Index>(angles.theta.size());
+  padded_ = (n + kLanes - 1) / kLanes * kLanes;
   for (int c = 0; c < 3; ++c) {
     Direction& d = directions_[static_cast<std::size_t>(c)];
     for (Index k = 0; k < K; ++k) {
@@ -80,8 +84,8 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
       if (f.cosine[c] != 0 || f.sine[c] != 0) d.functions.push_back(k);
     }
     const auto active = static_cast<Index>(d.functions.size());
-    d.value.resize(n, active);
-    d.derivative.resize(n, active);
+    d.value.setZero(padded_, active);
+    d.derivative.setZero(padded_, active);
     for (Index k = 0; k < active; ++k)
       for (Index j = 0; j < n; ++j) {
         const AngularFunction& f = basis_[static_cast<std::size_t>(d.functions[static_cast<std::size_t>(k)])];
@@ -102,7 +106,11 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
           for (Index l = 0; l < b.value.cols(); ++l)
             for (Index k = 0; k < a.value.cols(); ++k)
               q.product[J][L].row(k + l * a.value.cols()) =
-                  (J ? a.derivative : a.value).col(k).cwiseProduct((L ? b.derivative : b.value).col(l)).transpose();
+                  (J ? a.derivative : a.value)
+                      .col(k)
+                      .head(n)
+                      .cwiseProduct((L ? b.derivative : b.value).col(l).head(n))
+                      .transpose();
         }
     }
   for (double theta : angles.theta) {
@@ -110,9 +118,12 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
     frames_.push_back(frame);
   }
+  frame_components_.resize(padded_, 9);
+  for (Index j = 0; j < padded_; ++j)  // beyond the angles an undeformed point
+    frame_components_.row(j) = frames_[static_cast<std::size_t>(std::min(j, n - 1))].reshaped().transpose();
 
   const auto rule = mesh::gauss(quadrature_.points);
-  std::size_t start = 0;
+  std::size_t start = 0, step_start = 0;
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
     for (const auto& [y, wy] : rule)
@@ -122,10 +133,16 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
         points_.push_back(p);
         history_start_.push_back(start);
         start += static_cast<std::size_t>(material.history_size() * n);
+        start_of_point_.push_back(step_start);
+        step_start += static_cast<std::size_t>(material.start_size() * padded_);
       }
     element_mass_.push_back(element_mass(mesh_, e, material.density));
   }
   history_.assign(start, 0);
+  starts_.assign(step_start, 0);
+  starts_of_.assign(mesh_.elements.size(), NAN);
+  found_.resize(mesh_.elements.size());
+  stiffness_.resize(mesh_.elements.size());
   const std::size_t per = points_per_element();
   gradients_.resize(8, 3 * static_cast<Index>(points_.size()));
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -139,6 +156,8 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     const auto size = static_cast<std::size_t>(material.history_size());
     for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
       material.start(std::span(history_).subspan(history_start_[p] + j * size, size));
+    for (Index j = n; j < padded_ && size > 0; ++j)
+      start_step(material, 0, history_at(p, 0), starts_.data() + start_of_point_[p] + j, padded_);
   }
 
   if (corotated_) {
@@ -209,13 +228,12 @@ void HarmonicSolid::weakly_coupled(std::vector<Index>& equations) const {
     if (dof_[i] >= 0 && basis_[i % basis_.size()].odd()) equations.push_back(dof_[i]);
 }
 
-Eigen::MatrixXd HarmonicSolid::element_fields(const Vector& numbers, Index shift, std::size_t e) const {
+void HarmonicSolid::element_fields(const Vector& numbers, Index shift, std::size_t e, Eigen::MatrixXd& out) const {
   const Index K = unknowns();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(8, K);
+  out.setZero(8, K);
   const auto& dofs = element_equations_[e];
   const auto& places = element_dofs_[e];
   for (std::size_t i = 0; i < dofs.size(); ++i) out(places[i] / K, places[i] % K) = numbers[dofs[i] + shift];
-  return out;
 }
 
 Mat3 HarmonicSolid::mean_rotation(const State& s) const {
@@ -230,11 +248,12 @@ struct HarmonicSolid::Scratch {
   explicit Scratch(const HarmonicSolid& solid)
       : angles(static_cast<Index>(solid.frames_.size())), points(static_cast<Index>(solid.points_per_element())) {
     for (std::size_t c = 0; c < 3; ++c) {
-      gradient[c].resize(angles, 3 * points);
-      stress[c].resize(angles, 3 * points);
+      gradient[c].resize(solid.padded_, 3 * points);
+      stress[c].setZero(solid.padded_, 3 * points);
     }
   }
   Index angles, points;
+  Eigen::MatrixXd fields, stiffness;                // of the element
   Eigen::MatrixXd own, spread;                      // one direction's fields; by the derivatives at the points
   std::array<Eigen::MatrixXd, 3> gradient, stress;  // component by component, angles x as HarmonicSolid::gradients_
   PointResponse response;
@@ -253,23 +272,26 @@ void HarmonicSolid::over_elements(const Work& work) const {
 }
 
 std::span<const double> HarmonicSolid::history_at(std::size_t point, Index angle) const {
-  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[point / points_per_element()])];
-  const auto size = static_cast<std::size_t>(material.history_size());
+  const auto size = static_cast<std::size_t>(material(point / points_per_element()).history_size());
   return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(angle) * size, size);
+}
+
+void HarmonicSolid::find_gradients(const State& s, std::size_t e, Scratch& t) const {
+  element_fields(s.q, block_.q - block_.v, e, t.fields);
+  const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Direction& d = directions_[c];
+    t.own = t.fields(Eigen::all, d.functions);
+    t.spread.noalias() = t.own.transpose().lazyProduct(B);
+    t.gradient[c].leftCols(2 * t.points).noalias() = d.value.lazyProduct(t.spread.leftCols(2 * t.points));
+    t.gradient[c].rightCols(t.points).noalias() = d.derivative.lazyProduct(t.spread.rightCols(t.points));
+  }
 }
 
 /// Calls visit(point of the element, angle, F, frame) with F at every point; F in the placement's axes.
 template <class Visit>
 void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e, Scratch& t, Visit&& visit) const {
-  const Eigen::MatrixXd U = element_fields(s.q, block_.q - block_.v, e);
-  const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Direction& d = directions_[c];
-    t.own = U(Eigen::all, d.functions);
-    t.spread.noalias() = t.own.transpose() * B;
-    t.gradient[c].leftCols(2 * t.points).noalias() = d.value * t.spread.leftCols(2 * t.points);
-    t.gradient[c].rightCols(t.points).noalias() = d.derivative * t.spread.rightCols(t.points);
-  }
+  find_gradients(s, e, t);
   Mat3 F;
   for (Index p = 0; p < t.points; ++p)
     for (Index j = 0; j < t.angles; ++j) {
@@ -280,48 +302,86 @@ void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e
     }
 }
 
+template <class Visit>
+void HarmonicSolid::visit_lanes(const State& s, std::size_t e, Scratch& t, Visit&& visit) const {
+  find_gradients(s, e, t);
+  const std::size_t first = e * points_per_element();
+  const double dt = s.time - time_;
+  const bool known = dt == starts_of_[e];
+  starts_of_[e] = dt;
+  Mat3Lanes F;
+  for (Index p = 0; p < t.points; ++p) {
+    const std::size_t point = first + static_cast<std::size_t>(p);
+    double* starts = starts_.data() + start_of_point_[point];
+    for (Index j = 0; j < t.angles && !known; ++j)
+      start_step(material(e), dt, history_at(point, j), starts + j, padded_);
+    for (Index j = 0; j < t.angles; j += kLanes) {
+      for (Index J = 0; J < 3; ++J)
+        for (Index c = 0; c < 3; ++c) {
+          Lanes gradient, frame;
+          load(gradient, &t.gradient[static_cast<std::size_t>(c)](j, t.column(p, J)));
+          load(frame, &frame_components_(j, c + 3 * J));
+          F[static_cast<std::size_t>(c + 3 * J)] = gradient + frame;
+        }
+      visit(p, j, F, starts + j);
+    }
+  }
+}
+
 void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) const {
   const Index K = unknowns();
   const std::size_t elements = mesh_.elements.size();
   const double dt = s.time - time_;
   const Mat3 R = mean_rotation(s);
-  std::vector<Eigen::MatrixXd> forces(elements), inertias(elements);
-  std::vector<Mat3> twists(corotated_ ? elements : 0);  // integrals of P F^T in Cartesian components
   over_elements([&](std::size_t e, Scratch& t) {
-    const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
-    Mat3 twist = Mat3::Zero();
-    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-      const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      evaluate(material, F, frame, dt, history_at(point, j), false, t.response);
-      const double weight = points_[point].weight;
-      for (int J = 0; J < 3; ++J)
-        for (int c = 0; c < 3; ++c)
-          t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)) = weight * t.response.stress(c, J);
-      if (corotated_) twist += weight * t.response.stress * F.transpose();
-    });
-    if (corotated_) twists[e] = twist;
+    const Solid& solid = material(e);
+    Found& found = found_[e];
+    found.twist.setZero();
+    if (solid.in_lanes()) {
+      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+        Mat3Lanes stress;
+        Lanes energy;
+        evaluate(solid, F, starts, padded_, stress, energy);
+        const double weight = points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+        for (Index J = 0; J < 3; ++J)
+          for (Index c = 0; c < 3; ++c)
+            store(&t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)),
+                  weight * stress[static_cast<std::size_t>(c + 3 * J)]);
+      });
+    } else {
+      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
+        const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+        evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
+        const double weight = points_[point].weight;
+        for (int J = 0; J < 3; ++J)
+          for (int c = 0; c < 3; ++c)
+            t.stress[static_cast<std::size_t>(c)](j, t.column(p, J)) = weight * t.response.stress(c, J);
+        if (corotated_) found.twist += weight * t.response.stress * F.transpose();
+      });
+    }
     const auto B = gradients_.middleCols(3 * t.points * static_cast<Index>(e), 3 * t.points);
-    Eigen::MatrixXd& fe = forces[e];
-    fe.setZero(8, K);
+    found.force.setZero(8, K);
     for (std::size_t c = 0; c < 3; ++c) {
       const Direction& d = directions_[c];
       t.spread.resize(d.value.cols(), 3 * t.points);
       t.spread.leftCols(2 * t.points).noalias() = d.value.transpose() * t.stress[c].leftCols(2 * t.points);
       t.spread.rightCols(t.points).noalias() = d.derivative.transpose() * t.stress[c].rightCols(t.points);
       t.own.noalias() = B * t.spread.transpose();
-      for (std::size_t k = 0; k < d.functions.size(); ++k) fe.col(d.functions[k]) += t.own.col(static_cast<Index>(k));
+      for (std::size_t k = 0; k < d.functions.size(); ++k) found.force.col(d.functions[k]) += t.own.col(static_cast<Index>(k));
     }
-    inertias[e] = element_mass_[e] * element_fields(s.a, 0, e) * gram_;
+    element_fields(s.a, 0, e, t.fields);
+    found.inertia.noalias() = element_mass_[e] * t.fields;
+    found.inertia *= norms_.asDiagonal();
   });
   Mat3 twist = Mat3::Zero();
   for (std::size_t e = 0; e < elements; ++e) {
     const auto& dofs = element_equations_[e];
     const auto& places = element_dofs_[e];
     for (std::size_t i = 0; i < dofs.size(); ++i) {
-      force[dofs[i]] += forces[e](places[i] / K, places[i] % K);
-      inertia[dofs[i]] += inertias[e](places[i] / K, places[i] % K);
+      force[dofs[i]] += found_[e].force(places[i] / K, places[i] % K);
+      inertia[dofs[i]] += found_[e].inertia(places[i] / K, places[i] % K);
     }
-    if (corotated_) twist += twists[e];
+    twist += found_[e].twist;
   }
   if (!corotated_) return;
   // The mean rotation R follows the unknowns: dR = R [w], (tr U - U) w = axial(R^T dF - dF^T R) of the
@@ -341,7 +401,7 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
 void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t e, Scratch& t,
                                   Eigen::MatrixXd& ke) const {
   const Index K = unknowns(), P = t.points;
-  const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
+  const Solid& solid = material(e);
   const double dt = s.time - time_;
   // dP_cJ / dF_dL of two directions c, d: a column for each point and pair (J, L), grouped by what it multiplies.
   const auto column = [P](Index p, Index J, Index L) {
@@ -351,7 +411,7 @@ void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mea
   for (auto& m : slopes) m.resize(t.angles, 9 * P);
   visit_points(s, mean, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
     const std::size_t point = e * static_cast<std::size_t>(P) + static_cast<std::size_t>(p);
-    evaluate(material, F, frame, dt, history_at(point, j), true, t.response);
+    evaluate(solid, F, frame, dt, history_at(point, j), true, t.response);
     const double weight = factor * points_[point].weight;
     for (std::size_t q = 0; q < 6; ++q)
       for (Index J = 0; J < 3; ++J)
@@ -393,27 +453,28 @@ void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mea
 
 void HarmonicSolid::tangent(const State& s, const Weights& weights, TangentSink& sink) const {
   const Index K = unknowns();
-  const std::size_t elements = mesh_.elements.size();
   const Mat3 R = mean_rotation(s);
-  std::vector<Eigen::MatrixXd> stiffness(elements);
   over_elements([&](std::size_t e, Scratch& t) {
-    Eigen::MatrixXd ke = Eigen::MatrixXd::Zero(8 * K, 8 * K);
+    const auto& places = element_dofs_[e];
+    const bool whole = static_cast<Index>(places.size()) == 8 * K;
+    Eigen::MatrixXd& ke = whole ? stiffness_[e] : t.stiffness;
+    ke.setZero(8 * K, 8 * K);
     if (weights.stiffness != 0) add_stiffness(s, weights.stiffness, R, e, t, ke);
     if (weights.mass != 0)
       for (int i = 0; i < 8; ++i)
-        for (int j = 0; j < 8; ++j) ke.block(i * K, j * K, K, K) += weights.mass * element_mass_[e](i, j) * gram_;
-    const auto& places = element_dofs_[e];
-    if (static_cast<Index>(places.size()) == 8 * K) stiffness[e] = std::move(ke);
-    else stiffness[e] = ke(places, places);
+        for (int j = 0; j < 8; ++j)
+          ke.block(i * K, j * K, K, K).diagonal() += weights.mass * element_mass_[e](i, j) * norms_;
+    if (!whole) stiffness_[e] = ke(places, places);
   });
-  sink.add_all(element_equations_, stiffness);
+  sink.add_all(element_equations_, stiffness_);
 }
 
 Energies HarmonicSolid::energies(const State& s) const {
   Energies out;
+  Eigen::MatrixXd V;
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
-    const Eigen::MatrixXd V = element_fields(s.v, 0, e);
-    out.kinetic += 0.5 * (V.transpose() * element_mass_[e] * V * gram_).trace();
+    element_fields(s.v, 0, e, V);
+    out.kinetic += 0.5 * (V.cwiseProduct(element_mass_[e] * V) * norms_).sum();
   }
   for (double w : strain_by_layer(s)) out.strain += w;
   for (double d : dissipated_) out.viscous += d;
@@ -425,11 +486,23 @@ std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
   const double dt = s.time - time_;
   const Mat3 R = mean_rotation(s);
   over_elements([&](std::size_t e, Scratch& t) {
+    const Solid& solid = material(e);
+    const auto weight = [&](Index p) {
+      return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+    };
+    if (solid.in_lanes()) {
+      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+        Mat3Lanes stress;
+        Lanes energy;
+        evaluate(solid, F, starts, padded_, stress, energy);
+        for (int l = 0; l < std::min<Index>(kLanes, t.angles - j); ++l) found[e] += weight(p) * energy[l];
+      });
+      return;
+    }
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-               t.response);
-      found[e] += points_[point].weight * t.response.energy;
+      evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
+      found[e] += weight(p) * t.response.energy;
     });
   });
   for (std::size_t e = 0; e < found.size(); ++e) out[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
@@ -442,15 +515,27 @@ void HarmonicSolid::commit(const State& s) {
     std::vector<double> found(mesh_.elements.size(), 0);
     const Mat3 R = mean_rotation(s);
     over_elements([&](std::size_t e, Scratch& t) {
-      const Solid& material = materials_[static_cast<std::size_t>(mesh_.layer[e])];
-      const auto size = static_cast<std::size_t>(material.history_size());
-      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
+      const Solid& solid = material(e);
+      const auto size = static_cast<std::size_t>(solid.history_size());
+      const auto history = [&](Index p, Index j) {
         const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
-        const std::size_t at = history_start_[point] + static_cast<std::size_t>(j) * size;
-        found[e] += points_[point].weight *
-                    update_internal_variables(material, F, dt, std::span(history_).subspan(at, size));
+        return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(j) * size);
+      };
+      const auto weight = [&](Index p) {
+        return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+      };
+      if (solid.in_lanes()) {
+        visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+          const int count = static_cast<int>(std::min<Index>(kLanes, t.angles - j));
+          found[e] += weight(p) * update_internal_variables(solid, F, starts, padded_, dt, count, history(p, j));
+        });
+        return;
+      }
+      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
+        found[e] += weight(p) * update_internal_variables(solid, F, dt, history(p, j).first(size));
       });
     });
+    std::ranges::fill(starts_of_, NAN);
     for (std::size_t e = 0; e < found.size(); ++e) dissipated_[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
   }
   time_ = s.time;
@@ -471,6 +556,7 @@ void HarmonicSolid::restore(std::span<const double>& in) {
   take({&time_, 1});
   take(dissipated_);
   take(history_);
+  std::ranges::fill(starts_of_, NAN);
 }
 
 Eigen::MatrixXd HarmonicSolid::displacement_fields(const State& s) const {
@@ -498,10 +584,10 @@ Vec3 HarmonicSolid::reference(int node, double theta) const {
   return placement_.origin + placement_.axes * Vec3(x.x(), x.y() * std::cos(theta), x.y() * std::sin(theta));
 }
 
-Vec3 HarmonicSolid::vector_at(const Eigen::MatrixXd& fields, int node, double theta) const {
-  Vec3 v = Vec3::Zero();
-  for (Index k = 0; k < unknowns(); ++k) v += fields(node, k) * basis_[static_cast<std::size_t>(k)].at(theta);
-  return placement_.axes * v;
+Eigen::Matrix3Xd HarmonicSolid::functions_at(double theta) const {
+  Eigen::Matrix3Xd out(3, unknowns());
+  for (Index k = 0; k < unknowns(); ++k) out.col(k) = placement_.axes * basis_[static_cast<std::size_t>(k)].at(theta);
+  return out;
 }
 
 std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vector<double>& theta) const {
@@ -516,8 +602,7 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   over_elements([&](std::size_t e, Scratch& t) {
     visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
       const std::size_t point = e * per + static_cast<std::size_t>(p);
-      evaluate(materials_[static_cast<std::size_t>(mesh_.layer[e])], F, frame, dt, history_at(point, j), false,
-               t.response);
+      evaluate(material(e), F, frame, dt, history_at(point, j), false, t.response);
       // In the cylindrical frame, so that an axisymmetric state is constant over theta.
       const Mat3& Q = frames_[static_cast<std::size_t>(j)];
       const Mat3 sigma = t.response.stress * F.transpose() / F.determinant();
@@ -525,21 +610,26 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
     });
   });
   const std::size_t angles = theta.size(), nodes = mesh_.nodes.size();
-  // Nearest angle of the rule, or its mirror image where the rule covers half the circle.
-  const auto sample = [&](std::size_t p, double t) -> Sym {
-    if (n == 1) return at_points[p].col(0);
-    double best = INFINITY;
+  // Nearest angle of the rule to each, or its mirror image where the rule covers half the circle.
+  struct Sample {
     Index at = 0;
     bool mirrored = false;
+  };
+  std::vector<Sample> samples;
+  for (double t : theta) {
+    double best = n == 1 ? 0 : INFINITY;
     const bool half = quadrature_.angles.theta.front() > 0;
+    Sample& nearest = samples.emplace_back();
     for (Index j = 0; j < n; ++j)
       for (int mirror = 0; mirror < (half ? 2 : 1); ++mirror) {
         const double a = (mirror ? -1 : 1) * quadrature_.angles.theta[static_cast<std::size_t>(j)];
-        const double distance = std::abs(std::remainder(t - a, 2 * M_PI));
-        if (distance < best) best = distance, at = j, mirrored = mirror;
+        if (const double distance = std::abs(std::remainder(t - a, 2 * M_PI)); distance < best)
+          best = distance, nearest = {j, mirror != 0};
       }
-    Sym out = at_points[p].col(at);
-    if (mirrored) out[4] = -out[4], out[5] = -out[5];
+  }
+  const auto sample = [&](std::size_t p, const Sample& from) -> Sym {
+    Sym out = at_points[p].col(from.at);
+    if (from.mirrored) out[4] = -out[4], out[5] = -out[5];
     return out;
   };
   std::vector<Sym> out(nodes * angles, Sym::Zero());
@@ -553,13 +643,17 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
       const double w[4] = {0.25 * (1 - x) * (1 - y), 0.25 * (1 + x) * (1 - y), 0.25 * (1 - x) * (1 + y),
                            0.25 * (1 + x) * (1 + y)};
       for (std::size_t t = 0; t < angles; ++t)
-        for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * sample(e * per + p, theta[t]);
+        for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * sample(e * per + p, samples[t]);
     }
+  std::vector<Mat3> turns;  // from the cylindrical frame
+  for (double t : theta) {
+    Mat3 frame;
+    frame << 1, 0, 0, 0, std::cos(t), -std::sin(t), 0, std::sin(t), std::cos(t);
+    turns.emplace_back(placement_.axes * frame);
+  }
   for (std::size_t node = 0; node < nodes; ++node)
     for (std::size_t t = 0; t < angles; ++t) {
-      Mat3 frame;
-      frame << 1, 0, 0, 0, std::cos(theta[t]), -std::sin(theta[t]), 0, std::sin(theta[t]), std::cos(theta[t]);
-      const Mat3 Q = placement_.axes * frame;
+      const Mat3& Q = turns[t];
       Sym& sym = out[node * angles + t];
       sym = to_sym(Q * to_matrix(sym / count[node]) * Q.transpose());
     }
@@ -575,7 +669,7 @@ void HarmonicSolid::set_velocity(State& s, const Vec3& linear, const Vec3& angul
   for (double theta : circle.theta) {
     const Vec3 radial(0, std::cos(theta), std::sin(theta));
     for (Index k = 0; k < K; ++k) {
-      const Vec3 f = circle.weight / gram_(k, k) * basis_[static_cast<std::size_t>(k)].at(theta);
+      const Vec3 f = circle.weight / norms_[k] * basis_[static_cast<std::size_t>(k)].at(theta);
       part(0, k) += f.dot(v);
       part(1, k) += f.dot(w.cross(Vec3::UnitX()));
       part(2, k) += f.dot(w.cross(radial));
@@ -601,12 +695,13 @@ MeanMotion HarmonicSolid::motion(const State& s) const {
   Eigen::MatrixXd second = Eigen::MatrixXd::Zero(K + 2, K + 2), cross = Eigen::MatrixXd::Zero(K + 2, K);
   Eigen::VectorXd sum_x = Eigen::VectorXd::Zero(K + 2), sum_v = Eigen::VectorXd::Zero(K);
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
-    Eigen::MatrixXd X(8, K + 2);
-    X.leftCols(K) = element_fields(s.q, block_.q - block_.v, e);
+    Eigen::MatrixXd X(8, K + 2), U, V;
+    element_fields(s.q, block_.q - block_.v, e, U);
+    X.leftCols(K) = U;
     for (int i = 0; i < 8; ++i)
       X.row(i).tail<2>() =
           mesh_.nodes[static_cast<std::size_t>(mesh_.elements[e][static_cast<std::size_t>(i)])].transpose();
-    const Eigen::MatrixXd V = element_fields(s.v, 0, e);
+    element_fields(s.v, 0, e, V);
     const auto& m = element_mass_[e];
     mass += 2 * M_PI * m.sum();
     sum_x += X.transpose() * m.rowwise().sum();

@@ -71,9 +71,10 @@ class HarmonicSolid final : public Term {
   /// Meridian fields U (nodes x unknowns) of the state's displacement [m], velocity [m/s].
   Eigen::MatrixXd displacement_fields(const State& s) const;
   Eigen::MatrixXd velocity_fields(const State& s) const;
-  /// Reference position, displacement from it and velocity of a node at an angle, global.
+  /// Reference position of a node at an angle, global.
   Vec3 reference(int node, double theta) const;
-  Vec3 vector_at(const Eigen::MatrixXd& fields, int node, double theta) const;
+  /// The angular functions there, global: the vector of a row of fields is this times the row.
+  Eigen::Matrix3Xd functions_at(double theta) const;
 
   /// Cauchy stress, extrapolated to the nodes and averaged over the elements that meet there: at each
   /// node and angle of `theta` a symmetric tensor in global axes [Pa], node by node (first all angles).
@@ -102,7 +103,7 @@ class HarmonicSolid final : public Term {
   static Eigen::Matrix<double, 8, 8> element_mass(const mesh::Meridian& mesh, std::size_t element, double density);
   struct Direction {  // the functions with a component along one Cartesian axis
     std::vector<Index> functions;
-    Eigen::MatrixXd value, derivative;  // that component at each angle: angles x functions
+    Eigen::MatrixXd value, derivative;  // that component at each angle, zero beyond them: padded angles x functions
   };
   struct Coupling {  // of the functions of two directions: (k + l x count) x angles, products of value or derivative
     std::size_t left = 0, right = 0;
@@ -112,13 +113,21 @@ class HarmonicSolid final : public Term {
   /// Elements may be worked on at once, each on its own: what they find is put together in their order.
   template <class Work>
   void over_elements(const Work& work) const;
+  void find_gradients(const State& s, std::size_t element, Scratch& scratch) const;
   template <class Visit>
   void visit_points(const State& s, const Mat3& mean, std::size_t element, Scratch& scratch, Visit&& visit) const;
+  /// The same for several angles at a time, of a material that answers so; visit(point of the element, first angle,
+  /// Mat3Lanes F, what the step from the history starts from).
+  template <class Visit>
+  void visit_lanes(const State& s, std::size_t element, Scratch& scratch, Visit&& visit) const;
   void add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t element, Scratch& scratch,
                      Eigen::MatrixXd& ke) const;
   std::size_t points_per_element() const { return points_.size() / mesh_.elements.size(); }
+  const Solid& material(std::size_t element) const {
+    return materials_[static_cast<std::size_t>(mesh_.layer[element])];
+  }
   std::span<const double> history_at(std::size_t point, Index angle) const;
-  Eigen::MatrixXd element_fields(const Vector& numbers, Index offset, std::size_t element) const;
+  void element_fields(const Vector& numbers, Index offset, std::size_t element, Eigen::MatrixXd& fields) const;
   Mat3 mean_rotation(const State& s) const;
 
   std::string body_;
@@ -137,7 +146,9 @@ class HarmonicSolid final : public Term {
   std::array<Direction, 3> directions_;
   std::vector<Coupling> couplings_;  // of each pair of directions, once
   std::vector<Mat3> frames_;         // columns e_s, e_rho, e_theta at each angle
-  Eigen::MatrixXd gram_;             // integral of f_k . f_l over theta
+  Index padded_ = 0;                 // angles, filled up to whole lanes
+  Eigen::MatrixXd frame_components_;  // the same, component (c, J) in column c + 3 J: padded angles x 9
+  Vector norms_;                     // integral of f_k . f_k over theta; of different functions it is zero
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
 
@@ -145,6 +156,17 @@ class HarmonicSolid final : public Term {
   std::vector<std::size_t> history_start_;  // of each meridian point
   std::vector<double> history_;
   std::vector<double> dissipated_;
+  /// What the step under way starts from, as start_step() makes it of the history: worked out by the first residual of
+  /// a step for all that follow. Point by point, padded angles side by side; and the step of each element.
+  mutable std::vector<double> starts_, starts_of_;
+  /// What each element found last: storage that is not asked for anew in every iteration.
+  struct Found {
+    Eigen::MatrixXd force, inertia;
+    Mat3 twist;  // integral of P F^T in Cartesian components
+  };
+  mutable std::vector<Found> found_;
+  mutable std::vector<Eigen::MatrixXd> stiffness_;
+  std::vector<std::size_t> start_of_point_;  // place in `starts_` of each meridian point
 };
 
 }  // namespace hosel::fem

@@ -141,11 +141,9 @@ std::optional<Kept> keep(const Study& study, const Fit& start) {
     return {};
   const Eigen::VectorXd before = held_out(problem, base), after = held_out(problem, out.fit);
   if (!(after.array() <= (1 + study.rules.worse) * before.array()).all()) return {};
-  out.criterion = out.fit.deviance + study.rules.parameter_cost * double(out.fit.size()) + improbability(out.fit);
-  for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k) {
+  out.criterion = criterion(out.fit, study.rules);
+  for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k)
     out.effects.push_back(out.fit.model.forms[k]->effect);
-    out.criterion += out.fit.model.forms[k]->complexity;
-  }
   return out;
 }
 
@@ -170,15 +168,12 @@ BeyondDoubt beyond_doubt(const Study& study) {
   // Two together follow many a form that neither is: where structure remains, most such pairs are wrong.
   if (best.effects.size() > 1) return {};
   BeyondDoubt out{.adopted = {}, .ties = {}, .fit = best.fit};
-  const auto has = [](const Kept& k, const std::string& e) { return std::ranges::count(k.effects, e) > 0; };
-  for (const std::string& e : best.effects) {
-    std::vector<std::string> tie = {e};
-    for (const Kept& k : kept)
-      for (const std::string& other : k.effects)
-        if (!has(k, e) && !has(best, other) && !std::ranges::count(tie, other)) tie.push_back(other);
-    if (tie.size() > 1) out.ties.push_back(std::move(tie));
-    else out.adopted.push_back(e);
-  }
+  std::vector<std::string> tie = best.effects;
+  for (const Kept& k : kept)
+    for (const std::string& other : k.effects)
+      if (!std::ranges::count(k.effects, tie.front()) && !std::ranges::count(tie, other)) tie.push_back(other);
+  if (tie.size() > 1) out.ties.push_back(std::move(tie));
+  else out.adopted = std::move(tie);
   return out;
 }
 

@@ -88,6 +88,14 @@ struct Setting {
   bool thin_face = false;         ///< the head is a driver's: models::wants_yielding_face
 };
 
+/// What an effect on shots is where it is one free function through one mechanism, whatever its form.
+struct OneFunction {
+  enum class Through { several, normal_restitution, tangential_restitution, recorded_loft } through = Through::several;
+  enum class Of { blow, place } of = Of::blow;  ///< speed, loft, attack angle; or the place of impact
+
+  bool operator==(const OneFunction&) const = default;
+};
+
 struct EffectEntry {
   std::string_view name;
   std::string_view what;    ///< what a model without it lacks
@@ -95,6 +103,7 @@ struct EffectEntry {
   /// Its forms on shots and on records of a club test; they return none where it cannot act on this base.
   std::vector<Parametrisation> (*on_shots)(const Setting&) = nullptr;
   std::vector<Parametrisation> (*on_tests)(const HistorySetting&) = nullptr;
+  OneFunction function = {};
 };
 
 /// Every effect, in the order in which reports name them.

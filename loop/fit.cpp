@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loop/rules.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -82,6 +84,12 @@ double improbability(const Fit& f) {
   Eigen::Index k = 0;
   for (const Parameter* q : f.model.parameters())
     sum += (freedom + 1) * std::log1p(std::pow(f.p[k++] / q->usual, 2) / freedom);
+  return sum;
+}
+
+double criterion(const Fit& f, const Rules& rules) {
+  double sum = f.deviance + rules.parameter_cost * f.size() + improbability(f);
+  for (const Parametrisation* form : f.model.forms) sum += form->complexity;
   return sum;
 }
 

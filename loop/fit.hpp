@@ -35,6 +35,9 @@ double known(const Fit& fit);
 /// density with four degrees of freedom, whose tails bear a size that is rare.
 double improbability(const Fit& fit);
 
+/// What candidates compare by: the deviance, and what the parameters, the complexity of the forms and the sizes cost.
+double criterion(const Fit& fit, const Rules& rules);
+
 /// Covariance of the parameters [SI] on the selection's data; infinite along null vectors. Where the noise of a channel
 /// is not known, by the scatter of the scores.
 Eigen::MatrixXd covariance(const Problem& problem, const Fit& fit);

@@ -118,6 +118,7 @@ std::string bars(const std::vector<ChannelResult>& channels) {
         picture.rows.back().bars.push_back({style, e->holdout_rmse / c.noise,
                                             e->holdout > 2 ? 1.96 / std::sqrt(2.0 * e->holdout) : 0,
                                             fmt::format("{:.4g}", e->holdout_rmse)});
+    if (picture.rows.back().bars.empty()) picture.rows.pop_back();  // nothing of it is held out
   }
   return svg(picture);
 }

@@ -132,6 +132,7 @@ class Problem {
   /// What of it follows the inputs and has no name, learnt from the training rows alone. Absent: not looked for.
   virtual std::optional<Remainder> remainder(const Fit& /*fit*/) const { return {}; }
   /// One free function through one mechanism in place of the chosen effects: the likeliest, and what is as likely.
+  /// Where none is chosen, on what was held out too.
   virtual std::vector<Mechanism> mechanisms(const Selection& /*selection*/, const Rules& /*rules*/) const { return {}; }
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;

@@ -33,6 +33,13 @@ struct Rules {
     r.remaining_signal = std::numeric_limits<double>::infinity();
     return r;
   }
+
+  /// Flights: six forms are looked at, not seventy, for the same level of chance.
+  static Rules of_flights() {
+    Rules r;
+    r.gain = 16;
+    return r;
+  }
 };
 
 }  // namespace hosel::loop

@@ -265,8 +265,7 @@ Eigen::VectorXd Search::optimum(const Parametrisation* form) const {
 
 Candidate Search::candidate(Fit f) const {
   Candidate c{.effects = {}, .fit = std::move(f)};
-  c.criterion = c.fit.deviance + rules_.parameter_cost * c.fit.size() + improbability(c.fit);
-  for (const Parametrisation* form : c.fit.model.forms) c.criterion += form->complexity;
+  c.criterion = criterion(c.fit, rules_);
   for (std::size_t k = base_forms_; k < c.fit.model.forms.size(); ++k)
     c.effects.push_back(c.fit.model.forms[k]->effect);
   std::ranges::stable_sort(c.effects, {}, order_of);

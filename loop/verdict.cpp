@@ -49,30 +49,27 @@ std::vector<Location> nameless(const Study& study, const std::optional<Remainder
   return {};
 }
 
-/// Beside the chosen effects: one free function through one mechanism.
-struct OneFunction {
+/// Beside the chosen effects, or where there are none: one free function through one mechanism.
+struct Rival {
   std::vector<Location> unexplained;   ///< it says more, or as much as several effects, and is none of them
   const Candidate* lone = nullptr;     ///< it says as much as several effects, and is this one of them
   std::vector<std::string> same = {};  ///< every effect that such a function is
 };
 
-OneFunction one_function(const Study& study) {
+Rival one_function(const Study& study) {
   const Selection& s = study.selection;
-  if (s.level == 0 || !s.clean) return {};
+  if (!s.clean || study.problem.too_few()) return {};
   const std::vector<Mechanism> found = study.problem.mechanisms(s, study.rules);
   if (found.empty()) return {};
   const Mechanism& best = found.front();
-  double criterion = s.chosen.deviance + study.rules.parameter_cost * double(s.chosen.size()) + improbability(s.chosen);
+  const double of_names = criterion(s.chosen, study.rules);
   std::vector<std::string> names;
-  for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k) {
-    criterion += s.chosen.model.forms[k]->complexity;
+  for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k)
     names.push_back(s.chosen.model.forms[k]->effect);
-  }
-  const bool more = best.criterion + study.rules.tie < criterion,
-             as_much = best.criterion < criterion + study.rules.tie;
+  const bool more = best.criterion + study.rules.tie < of_names, as_much = best.criterion < of_names + study.rules.tie;
   // A drift is slow and steady: one that is not likelier than a step is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
-                     best.names.empty() && best.criterion < criterion;
+                     best.names.empty() && best.criterion < of_names;
   if (!more && !drift && !(as_much && names.size() > 1)) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
@@ -84,30 +81,32 @@ OneFunction one_function(const Study& study) {
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)
         return {.unexplained = {}, .lone = &c, .same = std::move(same)};
-  return {
-      .unexplained = {{study.problem.channel(best.channel).name, best.along,
-                       fmt::format("one function of {}, acting through {}{}, says as much as {}", best.along, best.acts,
-                                   best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
-                                   fmt::join(names, " and "))}}};
+  return {.unexplained = {
+              {study.problem.channel(best.channel).name, best.along,
+               fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
+                           best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
+                           names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and ")))}}};
 }
 
 /// Several names that all act through the normal restitution are one function of it, and so is what else acts through
 /// it: which of them the data cannot say.
 std::vector<std::string> through_one_restitution(const Study& study) {
-  const std::vector<std::string> through = {"restitution-law", "restitution-falloff", "face-compliance"};
-  const Selection& s = study.selection;
-  const auto& forms = s.chosen.model.forms;
-  if (s.level < 2 || !std::all_of(forms.begin() + std::ptrdiff_t(study.base.size()), forms.end(),
-                                  [&](auto* f) { return std::ranges::count(through, f->effect) > 0; }))
+  const auto through = [](const Parametrisation* f) {
+    const EffectEntry* e = find_effect(f->effect);
+    return e && e->function.through == OneFunction::Through::normal_restitution;
+  };
+  const auto& forms = study.selection.chosen.model.forms;
+  if (study.selection.level < 2 ||
+      !std::all_of(forms.begin() + std::ptrdiff_t(study.base.size()), forms.end(), through))
     return {};
   std::vector<std::string> tie;
-  for (const std::string& e : through)
-    if (std::ranges::any_of(study.candidates, [&](auto* f) { return f->effect == e; })) tie.push_back(e);
+  for (const Parametrisation* f : study.candidates)
+    if (through(f) && !std::ranges::count(tie, f->effect)) tie.push_back(f->effect);
   return tie;
 }
 
 /// Ties of the effect that is the one function: with effects that are such a function too.
-std::vector<std::vector<std::string>> ties_of(const OneFunction& one, const Selection& s) {
+std::vector<std::vector<std::string>> ties_of(const Rival& one, const Selection& s) {
   std::vector<std::string> tie = one.lone->effects;
   for (const auto& of_set : s.ties)
     for (const std::string& e : of_set)
@@ -118,7 +117,7 @@ std::vector<std::vector<std::string>> ties_of(const OneFunction& one, const Sele
 
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
-              const OneFunction& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
+              const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
@@ -234,7 +233,7 @@ void conclude(const Study& study, LoopResult& result) {
     bare = s.level > 0 ? problem.remainder(s.base) : left;
   }
   const std::vector<Location> without_name = nameless(study, left, bare);
-  const OneFunction one = one_function(study);
+  const Rival one = one_function(study);
   const std::vector<std::string> restitution = through_one_restitution(study);
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);

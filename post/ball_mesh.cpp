@@ -25,9 +25,16 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
   const RevolvedPoints numbers(meridian, angles);
   const int nodes = int(meridian.nodes.size());
   std::vector<double> theta;
-  for (int i = 0; i < angles; ++i) theta.push_back(2 * kPi * i / angles);
+  std::vector<Eigen::Matrix3Xd> functions;
+  for (int i = 0; i < angles; ++i) {
+    theta.push_back(2 * kPi * i / angles);
+    functions.push_back(ball.functions_at(theta.back()));
+  }
 
   const auto displacement = ball.displacement_fields(state), velocity = ball.velocity_fields(state);
+  const auto vector_at = [&](const Eigen::MatrixXd& fields, int node, int angle) -> Vec3 {
+    return functions[size_t(angle)] * fields.row(node).transpose();
+  };
   const auto stress = ball.cauchy_at_nodes(state, theta);
   std::unordered_set<int> surface;
   for (const auto& edge : meridian.surface) surface.insert(edge.begin(), edge.end());
@@ -48,8 +55,7 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
   };
   for (int p = 0; p < nodes; ++p)
     for (int a = 0; a < (numbers.axial(p) ? 1 : angles); ++a)
-      add(ball.reference(p, theta[size_t(a)]), ball.vector_at(displacement, p, theta[size_t(a)]),
-          ball.vector_at(velocity, p, theta[size_t(a)]), stress[size_t(p * angles + a)],
+      add(ball.reference(p, theta[size_t(a)]), vector_at(displacement, p, a), vector_at(velocity, p, a), stress[size_t(p * angles + a)],
           surface.contains(p) ? acting.at(ball.reference(p, theta[size_t(a)])) : fem::TractionField::Value{});
 
   VtkField layer{"layer", "", 1, {}}, around{"angle", "rad", 1, {}};
@@ -69,10 +75,10 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
       fem::Sym s = fem::Sym::Zero();
       for (std::size_t i = 0; i < 8; ++i) {
         const int node = meridian.elements[e][i];
-        const double share = centre[Eigen::Index(i)], angle = theta[size_t(a)];
-        x += share * ball.reference(node, angle);
-        du += share * ball.vector_at(displacement, node, angle);
-        dv += share * ball.vector_at(velocity, node, angle);
+        const double share = centre[Eigen::Index(i)];
+        x += share * ball.reference(node, theta[size_t(a)]);
+        du += share * vector_at(displacement, node, a);
+        dv += share * vector_at(velocity, node, a);
         s += share * stress[size_t(node * angles + a)];
       }
       add(x, du, dv, s, {});

@@ -45,13 +45,15 @@ BallSection ball_section(const models::ImpactView& view, const Face& face) {
   const int nodes = int(meridian.nodes.size());
   std::vector<Vec3> place;
   Vec3 sum = Vec3::Zero();
-  for (int side = 0; side < 2; ++side)
+  for (int side = 0; side < 2; ++side) {
+    const double angle = theta[std::size_t(side)];
+    const Eigen::Matrix3Xd functions = ball.functions_at(angle);
     for (int n = 0; n < nodes; ++n) {
-      place.push_back(ball.reference(n, theta[std::size_t(side)]) +
-                      ball.vector_at(displacement, n, theta[std::size_t(side)]));
+      place.push_back(ball.reference(n, angle) + functions * displacement.row(n).transpose());
       s.von_mises.push_back(fem::von_mises(stress[std::size_t(2 * n + side)]));
       sum += place.back();
     }
+  }
   const Vec3 middle = sum / double(place.size());
   for (const Vec3& x : place) s.points.emplace_back((x - middle).dot(right), (x - middle).dot(up));
 

@@ -133,6 +133,8 @@ class Part {
       throw NonConvergence("not enough memory to factorise the tangent matrix");
     if (common_.status != CHOLMOD_OK) return false;
     read_root();
+    const auto* values = static_cast<const double*>(factor_->x);
+    single_.assign(values, values + factor_->xsize);
     return true;
   }
 
@@ -141,18 +143,28 @@ class Part {
   Index kept() const { return kept_; }
   const Eigen::MatrixXd& root() const { return root_; }  ///< the factor's last rows and columns
 
-  /// Half of a solution, in place and in the order of the pivots.
-  void half_solve(int system, Eigen::Ref<Vector> x) const {
-    cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = static_cast<std::size_t>(x.size());
-    b.ncol = 1;
-    b.x = x.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    auto* shared = const_cast<cholmod_common*>(&common_);  // holds workspace and counts
-    cholmod_dense* found = cholmod_solve(system, factor_, &b, shared);
-    x = Eigen::Map<const Vector>(static_cast<const double*>(found->x), x.size());
-    cholmod_free_dense(&found, shared);
+  /// Half of a solution, in place and in the order of the pivots: L x = b.
+  void solve_lower(Eigen::Ref<Eigen::VectorXf> x) const {
+    Eigen::VectorXf below;
+    for (std::size_t s = 0; s < factor_->nsuper; ++s) {
+      const auto front = this->front(s);
+      auto own = x.segment(front.first, front.columns);
+      front.values.topRows(front.columns).template triangularView<Eigen::Lower>().solveInPlace(own);
+      below.noalias() = front.values.bottomRows(front.values.rows() - front.columns) * own;
+      for (Index i = 0; i < below.size(); ++i) x[front.rows[front.columns + i]] -= below[i];
+    }
+  }
+  /// The other: L^T x = b.
+  void solve_upper(Eigen::Ref<Eigen::VectorXf> x) const {
+    Eigen::VectorXf below;
+    for (std::size_t s = factor_->nsuper; s-- > 0;) {
+      const auto front = this->front(s);
+      auto own = x.segment(front.first, front.columns);
+      below.resize(front.values.rows() - front.columns);
+      for (Index i = 0; i < below.size(); ++i) below[i] = x[front.rows[front.columns + i]];
+      own.noalias() -= front.values.bottomRows(below.size()).transpose() * below;
+      front.values.topRows(front.columns).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    }
   }
 
  private:
@@ -179,6 +191,19 @@ class Part {
     p[n] = static_cast<int>(place_.size());
   }
 
+  /// Columns of the factor with one pattern.
+  struct Front {
+    Index first, columns;
+    const int* rows;  // of the columns themselves, then those below
+    Eigen::Map<const Eigen::MatrixXf> values;
+  };
+  Front front(std::size_t s) const {
+    const auto *super = static_cast<const int*>(factor_->super), *pi = static_cast<const int*>(factor_->pi),
+               *px = static_cast<const int*>(factor_->px), *rows = static_cast<const int*>(factor_->s);
+    const Index columns = super[s + 1] - super[s];
+    return {super[s], columns, rows + pi[s], {single_.data() + px[s], pi[s + 1] - pi[s], columns}};
+  }
+
   void read_root() {
     const auto n = static_cast<int>(factor_->n), m = static_cast<int>(kept_);
     root_.setZero(m, m);
@@ -199,6 +224,7 @@ class Part {
   std::vector<int> order_, place_;  // place: entry of the tangent's values of each entry of `lower`
   Index kept_ = 0;
   Eigen::MatrixXd root_;
+  std::vector<float> single_;  // the factor's values: solves wait for memory, and half as much comes twice as fast
 };
 
 }  // namespace
@@ -280,31 +306,34 @@ bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector
   return good;
 }
 
-Vector CondensedFactorisation::eliminate(const Vector& right) const {
-  Vector y(right.size());
+Eigen::VectorXf CondensedFactorisation::eliminate(const Vector& right) const {
+  Eigen::VectorXf y(right.size());
   state_->each([&](const Part& part, Index row, Index) {
     auto own = y.segment(row, part.size());
-    for (Index i = 0; i < own.size(); ++i) own[i] = right[part.order()[static_cast<std::size_t>(i)]];
-    part.half_solve(CHOLMOD_L, own);
+    for (Index i = 0; i < own.size(); ++i)
+      own[i] = static_cast<float>(right[part.order()[static_cast<std::size_t>(i)]]);
+    part.solve_lower(own);
   });
   return y;
 }
 
-Vector CondensedFactorisation::condensed(const Vector& eliminated) const {
+Vector CondensedFactorisation::condensed(const Eigen::VectorXf& eliminated) const {
   Vector out(static_cast<Index>(state_->kept.size()));
   state_->each([&](const Part& part, Index row, Index at) {
-    out.segment(at, part.kept()) = part.root().triangularView<Eigen::Lower>() *
-                                   eliminated.segment(row + part.size() - part.kept(), part.kept());
+    out.segment(at, part.kept()) =
+        part.root().triangularView<Eigen::Lower>() *
+        eliminated.segment(row + part.size() - part.kept(), part.kept()).cast<double>();
   });
   return out;
 }
 
-Vector CondensedFactorisation::recover(Vector eliminated, const Vector& kept) const {
+Vector CondensedFactorisation::recover(Eigen::VectorXf eliminated, const Vector& kept) const {
   Vector x(eliminated.size());
   state_->each([&](const Part& part, Index row, Index at) {
     auto own = eliminated.segment(row, part.size());
-    own.tail(part.kept()) = part.root().triangularView<Eigen::Lower>().transpose() * kept.segment(at, part.kept());
-    part.half_solve(CHOLMOD_Lt, own);
+    const Vector root = part.root().triangularView<Eigen::Lower>().transpose() * kept.segment(at, part.kept());
+    own.tail(part.kept()) = root.cast<float>();
+    part.solve_upper(own);
     for (Index i = 0; i < own.size(); ++i) x[part.order()[static_cast<std::size_t>(i)]] = own[i];
   });
   if (!x.allFinite()) throw NonConvergence("the tangent matrix gave no finite solution");

@@ -51,12 +51,13 @@ class CondensedFactorisation {
   const std::vector<int>& places() const;
   const Eigen::MatrixXd& schur() const;  ///< complement on the kept rows
 
-  /// First half of a solution: what recover() goes on from.
-  Vector eliminate(const Vector& right) const;
+  /// First half of a solution: what recover() goes on from. Solutions are in single precision, a Newton method's
+  /// increments; the factors and the complement are made in double.
+  Eigen::VectorXf eliminate(const Vector& right) const;
   /// The right side of the dense problem.
-  Vector condensed(const Vector& eliminated) const;
+  Vector condensed(const Eigen::VectorXf& eliminated) const;
   /// The whole solution from that of the dense problem. Throws NonConvergence where it is not finite.
-  Vector recover(Vector eliminated, const Vector& kept) const;
+  Vector recover(Eigen::VectorXf eliminated, const Vector& kept) const;
 
  private:
   struct State;

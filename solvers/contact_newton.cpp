@@ -96,7 +96,7 @@ bool ContactNewton::covered(const Vector& abrupt) const {
 
 Vector ContactNewton::increment(const ContactProblem& problem, const Vector& r, const Vector& abrupt, double tolerance,
                                 NewtonReport& report) {
-  const Vector eliminated = factors_.eliminate(-r);
+  const Eigen::VectorXf eliminated = factors_.eliminate(-r);
   const Vector start = factors_.condensed(eliminated);
   const auto kept = factors_.kept();
   const auto m = static_cast<Index>(kept.size());

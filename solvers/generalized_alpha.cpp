@@ -65,14 +65,10 @@ GeneralizedAlpha::GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions 
   impose(state_);
   evaluate(state_, trial_inertia_, trial_force_);
   if (tangent_.size() > 0) {
-    tangent_.assemble(system_, state_, {0, 0, 1});
     const Vector right = -tangent_.gather(trial_inertia_ + trial_force_);
-    if (contact_) {
-      CondensedFactorisation mass;
-      if (!mass.factorise(tangent_, {}, weakly_coupled(system, tangent_)))
-        throw NonConvergence("the mass matrix is singular: some body weighs nothing");
-      tangent_.scatter(mass.recover(mass.eliminate(right), {}), state_.a);
-    } else {
+    // A residual that Newton's method would leave needs no acceleration: what starts unloaded.
+    if (right.norm() > options_.newton.residual_absolute) {
+      tangent_.assemble(system_, state_, {0, 0, 1});
       Factorisation mass;
       mass.factorise(tangent_);
       tangent_.scatter(mass.solve(right), state_.a);

@@ -200,7 +200,13 @@ class LoopFlightJob final : public Job {
     if (what == "ends") return;
     case_.position_noise = data.model.noise;
     std::vector<double> instants;
-    for (double t = every; t <= 8; t += every) instants.push_back(t);
+    const auto seen = [&](double t) {
+      return std::ranges::any_of(data.flights, [&](const RadarFlight& f) {
+        return std::ranges::any_of(f.path.times, [&](double at) { return std::abs(at - t) < 1e-6; });
+      });
+    };
+    for (double t = every; t <= 8; t += every)
+      if (seen(t)) instants.push_back(t);
     for (const double t : instants)
       for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
     case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(data.flights.size()), Eigen::Index(case_.points.size()),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/materials/lanes.hpp"
 #include "fem/materials/symmetric.hpp"
 
 namespace hosel::fem {
@@ -17,6 +18,16 @@ struct Response {
   double energy = 0;  ///< [J/m^3]
   Sym stress = Sym::Zero();
   Mat6 tangent = Mat6::Zero();
+};
+
+/// The right Cauchy-Green tensor at several points, none of them inverted.
+struct MetricLanes {
+  SymLanes C, inverse;
+  Lanes J, p;  ///< volume ratio, J^(-2/3)
+};
+struct ResponseLanes {
+  Lanes energy{};
+  SymLanes stress{};
 };
 
 /// What a material says at a point. F has rows in the global and columns in the local reference frame.
@@ -42,6 +53,12 @@ concept MetricLaw = NamedModuli<L> && requires(const L& law, const Sym& C, Respo
   law.add(C, true, out);
 };
 
+/// A MetricLaw that answers at several points at once, energy and stress alone. The others are asked point by point.
+template <class L>
+concept LaneLaw = requires(const L& law, const MetricLanes& at, ResponseLanes& out) {
+  law.add_stress(at.C, at.inverse, at.J, at.p, out.energy, out.stress);
+};
+
 /// A law of small strain in the body's mean attitude Q: sets all of the point's response.
 template <class L>
 concept CorotatedLaw = NamedModuli<L> && requires(const L& law, const Mat3& F, const Mat3& Q, PointResponse& out) {
@@ -65,6 +82,7 @@ class Elastic {
 
   /// Of a MetricLaw.
   void add(const Sym& C, bool tangent, Response& out) const { self_->add(C, tangent, out); }
+  void add(const MetricLanes& at, ResponseLanes& out) const { self_->add(at, out); }
   /// Of a CorotatedLaw.
   void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const {
     self_->evaluate(F, frame, tangent, out);
@@ -86,6 +104,7 @@ class Elastic {
     virtual std::vector<std::string> faults() const = 0;
     virtual Elastic stiffened(double factor) const = 0;
     virtual void add(const Sym& C, bool tangent, Response& out) const = 0;
+    virtual void add(const MetricLanes& at, ResponseLanes& out) const = 0;
     virtual void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const = 0;
     bool corotated, inversion;
   };
@@ -107,6 +126,20 @@ class Elastic {
     void add(const Sym& C, bool tangent, Response& out) const override {
       if constexpr (MetricLaw<Law>) law.add(C, tangent, out);
       else throw std::logic_error("a law of small strain has no answer to C");
+    }
+    void add(const MetricLanes& at, ResponseLanes& out) const override {
+      if constexpr (LaneLaw<Law>) {
+        law.add_stress(at.C, at.inverse, at.J, at.p, out.energy, out.stress);
+      } else {
+        for (int l = 0; l < kLanes; ++l) {
+          Sym C;
+          for (int i = 0; i < 6; ++i) C[i] = at.C[static_cast<std::size_t>(i)][l];
+          Response one;
+          add(C, false, one);
+          out.energy[l] += one.energy;
+          for (int i = 0; i < 6; ++i) out.stress[static_cast<std::size_t>(i)][l] += one.stress[i];
+        }
+      }
     }
     void evaluate(const Mat3& F, const Mat3& frame, bool tangent, PointResponse& out) const override {
       if constexpr (CorotatedLaw<Law>) law.evaluate(F, frame, tangent, out);

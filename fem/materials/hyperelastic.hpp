@@ -5,6 +5,7 @@
 
 #include "fem/materials/elastic_law.hpp"
 #include "fem/materials/lame.hpp"
+#include "fem/materials/lanes.hpp"
 
 namespace hosel::fem {
 
@@ -23,25 +24,30 @@ struct Hyperelastic {
   }
   std::vector<std::string> faults() const { return {}; }
 
+  /// Adds energy and stress at C, with Ci = C^-1, J, p = J^(-2/3). Of one point (S: Sym, T: double) or several.
+  template <class S, class T>
+  void add_stress(const S& C, const S& Ci, const T& J, const T& p, T& energy, S& stress) const {
+    const T I1 = C[0] + C[1] + C[2], x = p * I1 - 3.0;
+    const T W1 = 2.0 * p * (c10 + x * (2.0 * c20 + 3.0 * c30 * x));
+    const T by_inverse = bulk * (J - 1.0) * J - W1 * I1 / 3.0;
+    energy += x * (c10 + x * (c20 + x * c30)) + 0.5 * bulk * (J - 1.0) * (J - 1.0);
+    for (int i = 0; i < 3; ++i) stress[i] += W1;
+    for (int i = 0; i < 6; ++i) stress[i] += by_inverse * Ci[i];
+    if (c01 == 0) return;
+    const T I2 = 0.5 * (I1 * I1 - contract(C, C)), W2 = 2.0 * c01 * p * p;
+    energy += c01 * (p * p * I2 - 3.0);
+    for (int i = 0; i < 6; ++i) stress[i] += W2 * ((i < 3 ? I1 : T{}) - C[i] - (2.0 / 3) * I2 * Ci[i]);
+  }
+
   void add(const Sym& C, bool tangent, Response& out) const {
     const double det = determinant(C), J = std::sqrt(det);  // NaN for an inverted point: no step accepts it
     const Sym Ci = inverse(C, det);
-    const double p = 1 / std::cbrt(det);  // J^(-2/3)
-    const double I1 = C[0] + C[1] + C[2];
-    const double x = p * I1 - 3;
+    const double p = inverse_cbrt(det);  // J^(-2/3)
+    add_stress(C, Ci, J, p, out.energy, out.stress);
+    if (!tangent) return;
+    const double I1 = C[0] + C[1] + C[2], x = p * I1 - 3;
     const double W1 = c10 + x * (2 * c20 + 3 * c30 * x), W11 = 2 * c20 + 6 * c30 * x;
     const Sym D1 = p * (sym_identity() - (I1 / 3) * Ci);
-    out.energy += x * (c10 + x * (c20 + x * c30)) + 0.5 * bulk * (J - 1) * (J - 1);
-    out.stress += 2 * W1 * D1 + bulk * (J - 1) * J * Ci;
-    double I2 = 0;
-    Sym G;
-    if (c01 != 0) {
-      I2 = 0.5 * (I1 * I1 - contract(C, C));
-      G = I1 * sym_identity() - C;
-      out.energy += c01 * (p * p * I2 - 3);
-      out.stress += 2 * c01 * p * p * (G - (2 * I2 / 3) * Ci);
-    }
-    if (!tangent) return;
     const Mat6 IC = symmetric_product(Ci);
     const Mat6 mixed = sym_identity() * Ci.transpose();
     Mat6& T = out.tangent;
@@ -49,6 +55,8 @@ struct Hyperelastic {
     if (W11 != 0) T += 4 * W11 * D1 * D1.transpose();
     T += bulk * J * (2 * J - 1) * Ci * Ci.transpose() - 2 * bulk * J * (J - 1) * IC;
     if (c01 != 0) {
+      const double I2 = 0.5 * (I1 * I1 - contract(C, C));
+      const Sym G = I1 * sym_identity() - C;
       const Mat6 g = G * Ci.transpose();
       Mat6 H = -(2.0 / 3) * (g + g.transpose()) + (4 * I2 / 9) * Ci * Ci.transpose() + (2 * I2 / 3) * IC +
                sym_identity() * sym_identity().transpose();

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "fem/materials/elastic_law.hpp"
+#include "fem/materials/lanes.hpp"
 
 namespace hosel::fem {
 
@@ -21,47 +23,75 @@ struct MaxwellBranch {
   double modulus = 0;  ///< mu [Pa]
   double time = 0;     ///< tau [s]
 
-  /// B after a step of dt from (B0, C0') at its start to C1' at its end; also dX/dC1' (a number).
-  Sym flow(const Sym& B0, const Sym& C0, const Sym& C1, double dt, double* gain = nullptr,
-           double* scale = nullptr) const {
-    const double c = contract(C0, inverse(B0, 1.0)) / 3;
+  /// Of a step what does not depend on its end: X = base + gain C1'.
+  struct Start {
+    Sym base;
+    double gain = 0;
+  };
+  /// Of a step of dt from (B0, C0').
+  Start start(const Sym& B0, const Sym& C0, double dt) const {
+    if (dt == 0) return {B0, 0};
+    const double c = contract(C0, adjugate(B0)) / 3;
     const double h = c * dt / time;
     const double lost = -std::expm1(-h), decay = 1 - lost;
     const double mean = h < 1e-6 ? 1 - h / 2 : lost / h;
-    const Sym X = decay * B0 + ((mean - decay) / c) * C0 + ((1 - mean) / c) * C1;
-    const double s = 1 / std::cbrt(determinant(X));
-    if (gain) *gain = (1 - mean) / c;
-    if (scale) *scale = s;
-    return s * X;
+    return {decay * B0 + ((mean - decay) / c) * C0, (1 - mean) / c};
   }
 
-  /// Energy, stress and algorithmic tangent at C (with C' = p C, p = J^(-2/3), Ci = C^-1).
-  void add(const Sym& C, const Sym& Ci, double p, const Sym& B0, const Sym& C0, double dt, bool tangent,
-           Response& out) const {
-    double gain = 0, scale = 0;
-    const Sym B = flow(B0, C0, p * C, dt, &gain, &scale);
-    const Sym A = inverse(B, 1.0);
-    const double q = contract(C, A);
-    out.energy += 0.5 * modulus * (p * q - 3);
-    out.stress += modulus * p * (A - (q / 3) * Ci);
+  /// B at the end of a step, at C1'; `scale`: B over X. Of one point (S: Sym, T: double) or several.
+  template <class S, class T>
+  static S flow(const S& base, const T& gain, const S& C1, T& scale) {
+    S X;
+    for (int i = 0; i < 6; ++i) X[i] = base[i] + gain * C1[i];
+    inverse_cbrt(determinant(X), scale);
+    for (int i = 0; i < 6; ++i) X[i] *= scale;
+    return X;
+  }
+
+  /// Adds energy and stress at C (with C' = p C, p = J^(-2/3), Ci = C^-1). Leaves B^-1 in `A`.
+  template <class S, class T>
+  void add_stress(const S& C, const S& Ci, const T& p, const S& base, const T& gain, T& energy, S& stress, S& A,
+                  T& scale) const {
+    const T by_C = gain * p;
+    A = adjugate(flow(base, by_C, C, scale));
+    const T q = contract(C, A), factor = modulus * p, third = q / 3.0;
+    energy += 0.5 * modulus * (p * q - 3.0);
+    for (int i = 0; i < 6; ++i) stress[i] += factor * (A[i] - third * Ci[i]);
+  }
+
+  /// Energy, stress and algorithmic tangent there.
+  void add(const Sym& C, const Sym& Ci, double p, const Start& from, bool tangent, Response& out) const {
+    double scale = 0;
+    Sym A;
+    add_stress(C, Ci, p, from.base, from.gain, out.energy, out.stress, A, scale);
     if (!tangent) return;
+    const double q = contract(C, A);
     const Mat6 mixed = A * Ci.transpose();
     out.tangent += 2 * modulus * p *
                    (-(mixed + mixed.transpose()) / 3 + (q / 9) * Ci * Ci.transpose() + (q / 3) * symmetric_product(Ci));
-    if (gain == 0) return;
+    if (from.gain == 0) return;
     // dS = (dS/dA) dA, dA = -(A x A - A (A:x)/3), x = scale gain p (dC - C (Ci:dC)/3). In components
     // (ab, cd) of fourth-order tensors with minor symmetry, projected on both sides.
     Mat6 H = -symmetric_product(A) + (1.0 / 3) * A * A.transpose();
     H -= (1.0 / 3) * Ci * (twice(C).transpose() * H);  // left projection
     H -= (1.0 / 3) * (H * twice(C)) * Ci.transpose();  // right projection
-    out.tangent += 2 * modulus * p * p * scale * gain * H;
+    out.tangent += 2 * modulus * p * p * scale * from.gain * H;
   }
 
   /// Rate of dissipation [W/m^3] at C' and B.
-  double dissipation(const Sym& C1, const Sym& B) const {
-    const Mat3 M = to_matrix(inverse(B, 1.0)) * to_matrix(C1);
-    const double trace = M.trace();
-    return 0.5 * modulus / time * ((M * M).trace() - trace * trace / 3);
+  template <class S>
+  auto dissipation(const S& C1, const S& B) const {
+    using T = std::decay_t<decltype(C1[0])>;
+    const S A = adjugate(B);
+    constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    T M[3][3], square{};  // B^-1 C'
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        M[i][j] = A[at[i][0]] * C1[at[0][j]] + A[at[i][1]] * C1[at[1][j]] + A[at[i][2]] * C1[at[2][j]];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) square += M[i][j] * M[j][i];
+    const T trace = M[0][0] + M[1][1] + M[2][2];
+    return T(0.5 * modulus / time * (square - trace * trace / 3.0));
   }
 };
 

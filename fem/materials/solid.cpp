@@ -73,31 +73,127 @@ void evaluate(const Solid& solid, const Mat3& F, const Mat3& frame, double dt, s
   Response r;
   solid.elastic.add(C, tangent, r);
   if (!solid.branches.empty()) {
-    const double det = determinant(C), p = 1 / std::cbrt(det);
+    const double det = determinant(C), p = inverse_cbrt(det);
     const Sym Ci = inverse(C, det);
     const Sym C0 = ConstSym(history.data());
-    for (std::size_t b = 0; b < solid.branches.size(); ++b)
-      solid.branches[b].add(C, Ci, p, ConstSym(history.data() + 6 + 7 * b), C0, dt, tangent, r);
+    for (std::size_t b = 0; b < solid.branches.size(); ++b) {
+      const MaxwellBranch& branch = solid.branches[b];
+      branch.add(C, Ci, p, branch.start(ConstSym(history.data() + 6 + 7 * b), C0, dt), tangent, r);
+    }
   }
   push(F, r, tangent, out);
+}
+
+namespace {
+
+SymLanes metric(const Mat3Lanes& F) {
+  SymLanes C;
+  for (std::size_t v = 0; v < 6; ++v) {
+    const auto a = static_cast<std::size_t>(3 * kSymRow[v]), b = static_cast<std::size_t>(3 * kSymColumn[v]);
+    C[v] = F[a] * F[b] + F[a + 1] * F[b + 1] + F[a + 2] * F[b + 2];
+  }
+  return C;
+}
+
+Lanes volume_ratio(const Mat3Lanes& F) {
+  return F[0] * (F[4] * F[8] - F[7] * F[5]) - F[3] * (F[1] * F[8] - F[7] * F[2]) + F[6] * (F[1] * F[5] - F[4] * F[2]);
+}
+
+SymLanes base_of(const double* starts, std::ptrdiff_t stride) {
+  SymLanes out;
+  for (std::size_t i = 0; i < 6; ++i) load(out[i], starts + static_cast<std::ptrdiff_t>(i) * stride);
+  return out;
+}
+
+}  // namespace
+
+void evaluate(const Solid& solid, const Mat3Lanes& F, const double* starts, std::ptrdiff_t stride, Mat3Lanes& stress,
+              Lanes& energy) {
+  MetricLanes at{metric(F), {}, volume_ratio(F), {}};
+  const Lanes det = at.J * at.J, over = 1.0 / det;
+  inverse_cbrt(det, at.p);
+  at.inverse = adjugate(at.C);
+  for (Lanes& x : at.inverse) x *= over;
+  ResponseLanes r;
+  solid.elastic.add(at, r);
+  for (std::size_t b = 0; b < solid.branches.size(); ++b) {
+    const double* own = starts + static_cast<std::ptrdiff_t>(7 * b) * stride;
+    Lanes gain, scale;
+    load(gain, own + 6 * stride);
+    SymLanes A;
+    solid.branches[b].add_stress(at.C, at.inverse, at.p, base_of(own, stride), gain, r.energy, r.stress, A, scale);
+  }
+  for (int l = 0; l < kLanes; ++l)
+    if (!(at.J[l] > 0)) r.energy[l] = NAN;
+  energy = r.energy;
+  const Lanes upright = 0.0 * energy;  // NaN where a point is inverted
+  const auto& S = r.stress;
+  for (std::size_t i = 0; i < 3; ++i) {
+    stress[i] = F[i] * S[0] + F[i + 3] * S[3] + F[i + 6] * S[5] + upright;
+    stress[i + 3] = F[i] * S[3] + F[i + 3] * S[1] + F[i + 6] * S[4] + upright;
+    stress[i + 6] = F[i] * S[5] + F[i + 3] * S[4] + F[i + 6] * S[2] + upright;
+  }
+}
+
+void start_step(const Solid& solid, double dt, std::span<const double> history, double* out, std::ptrdiff_t stride) {
+  for (std::size_t b = 0; b < solid.branches.size(); ++b) {
+    const MaxwellBranch::Start s =
+        solid.branches[b].start(ConstSym(history.data() + 6 + 7 * b), ConstSym(history.data()), dt);
+    for (Eigen::Index i = 0; i < 6; ++i, out += stride) *out = s.base[i];
+    *out = s.gain;
+    out += stride;
+  }
 }
 
 double update_internal_variables(const Solid& solid, const Mat3& F, double dt, std::span<double> history) {
   if (solid.branches.empty()) return 0;
   const Sym C = to_sym(F.transpose() * F);
-  const Sym C1 = C / std::cbrt(determinant(C));
+  const Sym C1 = inverse_cbrt(determinant(C)) * C;
   Eigen::Map<Sym> C0(history.data());
   double dissipated = 0;
   for (std::size_t b = 0; b < solid.branches.size(); ++b) {
     const MaxwellBranch& branch = solid.branches[b];
     Eigen::Map<Sym> B(history.data() + 6 + 7 * b);
     double& rate = history[12 + 7 * b];
-    B = branch.flow(B, C0, C1, dt);
+    double scale = 0;
+    const MaxwellBranch::Start from = branch.start(B, C0, dt);
+    B = MaxwellBranch::flow(from.base, from.gain, C1, scale);
     const double before = rate;
-    rate = branch.dissipation(C1, B);
+    rate = branch.dissipation(C1, Sym(B));
     dissipated += 0.5 * dt * (before + rate);
   }
   C0 = C1;
+  return dissipated;
+}
+
+double update_internal_variables(const Solid& solid, const Mat3Lanes& F, const double* starts, std::ptrdiff_t stride,
+                                 double dt, int count, std::span<double> history) {
+  if (solid.branches.empty()) return 0;
+  const auto size = static_cast<std::size_t>(solid.history_size());
+  SymLanes C1 = metric(F);
+  Lanes p;
+  inverse_cbrt(determinant(C1), p);
+  for (Lanes& x : C1) x *= p;
+  double dissipated = 0;
+  const auto keep = [&](const SymLanes& value, std::size_t at) {
+    for (int l = 0; l < count; ++l)
+      for (std::size_t i = 0; i < 6; ++i) history[static_cast<std::size_t>(l) * size + at + i] = value[i][l];
+  };
+  for (std::size_t b = 0; b < solid.branches.size(); ++b) {
+    const MaxwellBranch& branch = solid.branches[b];
+    const double* own = starts + static_cast<std::ptrdiff_t>(7 * b) * stride;
+    Lanes gain, scale;
+    load(gain, own + 6 * stride);
+    const SymLanes B = MaxwellBranch::flow(base_of(own, stride), gain, C1, scale);
+    const Lanes rates = branch.dissipation(C1, B);
+    keep(B, 6 + 7 * b);
+    for (int l = 0; l < count; ++l) {
+      double& rate = history[static_cast<std::size_t>(l) * size + 12 + 7 * b];
+      dissipated += 0.5 * dt * (rate + rates[l]);
+      rate = rates[l];
+    }
+  }
+  keep(C1, 0);
   return dissipated;
 }
 

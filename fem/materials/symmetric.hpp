@@ -1,6 +1,8 @@
 /// Symmetric tensors as six numbers (11, 22, 33, 12, 23, 13), tensor components throughout.
 #pragma once
 
+#include <type_traits>
+
 #include "golf/vector.hpp"
 
 namespace hosel::fem {
@@ -18,18 +20,30 @@ inline Mat3 to_matrix(const Sym& s) {
 inline Sym sym_identity() { return (Sym() << 1, 1, 1, 0, 0, 0).finished(); }
 /// Off-diagonals twice: twice(a).dot(b) = a : b.
 inline Sym twice(const Sym& s) { return (Sym() << s[0], s[1], s[2], 2 * s[3], 2 * s[4], 2 * s[5]).finished(); }
-inline double contract(const Sym& a, const Sym& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+/// `S`: a Sym, or one of several points (materials/lanes.hpp).
+template <class S>
+auto contract(const S& a, const S& b) {
+  return std::decay_t<decltype(a[0])>(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] +
+                                      2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]));
 }
-inline double determinant(const Sym& s) {
-  return s[0] * (s[1] * s[2] - s[4] * s[4]) - s[3] * (s[3] * s[2] - s[4] * s[5]) + s[5] * (s[3] * s[4] - s[1] * s[5]);
+template <class S>
+auto determinant(const S& s) {
+  return std::decay_t<decltype(s[0])>(s[0] * (s[1] * s[2] - s[4] * s[4]) - s[3] * (s[3] * s[2] - s[4] * s[5]) +
+                                      s[5] * (s[3] * s[4] - s[1] * s[5]));
 }
-inline Sym inverse(const Sym& s, double det) {
-  return (Sym() << s[1] * s[2] - s[4] * s[4], s[0] * s[2] - s[5] * s[5], s[0] * s[1] - s[3] * s[3],
-          s[5] * s[4] - s[3] * s[2], s[3] * s[5] - s[0] * s[4], s[3] * s[4] - s[5] * s[1])
-             .finished() /
-         det;
+/// The inverse times the determinant.
+template <class S>
+S adjugate(const S& s) {
+  S out;
+  out[0] = s[1] * s[2] - s[4] * s[4];
+  out[1] = s[0] * s[2] - s[5] * s[5];
+  out[2] = s[0] * s[1] - s[3] * s[3];
+  out[3] = s[5] * s[4] - s[3] * s[2];
+  out[4] = s[3] * s[5] - s[0] * s[4];
+  out[5] = s[3] * s[4] - s[5] * s[1];
+  return out;
 }
+inline Sym inverse(const Sym& s, double det) { return adjugate(s) / det; }
 /// a a as a symmetric tensor.
 inline Sym square(const Sym& a) {
   return (Sym() << a[0] * a[0] + a[3] * a[3] + a[5] * a[5], a[3] * a[3] + a[1] * a[1] + a[4] * a[4],

@@ -30,6 +30,7 @@ struct PathPoint {
 };
 
 struct FlightCase : Case {
+  FlightCase() { rules = Rules::of_flights(); }
   Shots shots;
   Ball ball;
   models::FlightConditions conditions;

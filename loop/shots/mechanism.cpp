@@ -222,23 +222,23 @@ bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
 std::vector<std::string> names_of(const Way& way, const Field& field, const Shots& shots, bool steady) {
   const Column* along = shots.find(field.along);
   const auto is = [&](Input i) { return along && along->stem == stem(i); };
-  const bool blow = is(Input::club_speed) || is(Input::dynamic_loft) || is(Input::attack_angle);
-  switch (way.kind) {
-    case Way::Kind::normal:
-      if (field.place || is(Input::impact_toe) || is(Input::impact_high))
-        return {"restitution-falloff", "face-compliance"};
-      if (blow) return {"restitution-law"};
-      break;
-    case Way::Kind::tangential:
-      if (blow) return {"ball-tangential-compliance"};
-      break;
-    case Way::Kind::input:
-      if (way.column == field.along && is(Input::dynamic_loft)) return {"loft-bias"};
-      break;
-    case Way::Kind::reading: break;
-  }
-  if (field.along == "shot" && steady && !field.step) return {"session-drift"};
-  return {};
+  using Through = OneFunction::Through;
+  std::optional<OneFunction> function;
+  if (field.place || is(Input::impact_toe) || is(Input::impact_high)) function.emplace().of = OneFunction::Of::place;
+  else if (is(Input::club_speed) || is(Input::dynamic_loft) || is(Input::attack_angle)) function.emplace();
+  if (function) switch (way.kind) {
+      case Way::Kind::normal: function->through = Through::normal_restitution; break;
+      case Way::Kind::tangential: function->through = Through::tangential_restitution; break;
+      case Way::Kind::input:
+        if (way.column == field.along && is(Input::dynamic_loft)) function->through = Through::recorded_loft;
+        break;
+      case Way::Kind::reading: break;
+    }
+  std::vector<std::string> names;
+  for (const EffectEntry& e : effects())
+    if (function && function->through != Through::several && e.function == *function) names.emplace_back(e.name);
+  if (names.empty() && field.along == "shot" && steady && !field.step) return {"session-drift"};
+  return names;
 }
 
 }  // namespace
@@ -286,7 +286,8 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   if (trials.size() > 12) trials.resize(12);
 
   // The deviance as fits count it: each with the weights of its own residual.
-  const double scale = double(all.size()) / double(rows.size());
+  // Against none the scatter of some rows is no evidence of the others.
+  const double scale = chosen.model.forms.empty() ? 1 : double(all.size()) / double(rows.size());
   std::vector<Mechanism> out;
   for (Trial& t : trials) {
     const Eigen::MatrixXd& j = columns[t.way];

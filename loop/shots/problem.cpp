@@ -424,7 +424,11 @@ std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& 
   if (!case_.direct || case_.averages || case_.loft_unknown || s.base.size() > 0) return {};
   const Shots& shots = as_read(case_);
   const bool session = case_.shots.has_shot_column && !sorted_by(shots) && !one_club_after_another(shots);
-  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, select_, session, s.base, s.chosen, rules.tie);
+  // Where nothing is chosen, nothing was fitted: what was held out may ask as well.
+  std::vector<int> rows = s.level == 0 ? rows_.train : select_;
+  if (s.level == 0) rows.insert(rows.end(), rows_.holdout.begin(), rows_.holdout.end());
+  std::ranges::sort(rows);
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, session, s.base, s.chosen, rules.tie);
 }
 
 Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }

@@ -14,7 +14,7 @@
 
 namespace hosel::loop {
 
-class ShotProblem final : public Problem {
+class ShotProblem : public Problem {
  public:
   /// `derived`: outputs among them are no channels. `held_rows`: the holdout, where it is not split here; none
   /// of them is screened. `doubted`: an input whose record counts for nothing. Throws DataError where the columns are

@@ -51,7 +51,7 @@ struct FeImpactOptions {
   /// may gain energy; restitution does not depend on it from 0.2 to 0.6.
   double rho_inf = 0.5;
   int steps_per_contact = 120;    ///< of the contact time of Hertz's theory
-  double newton_relative = 1e-6;  ///< residual over the size of the forces
+  double newton_relative = 1e-5;  ///< residual over the size of the forces
   double after = 0.05;            ///< time computed after contact, as a fraction of the contact time
 
   /// Sets sectors and rings of the mesh, harmonics and steps; leaves the rest.

@@ -3,11 +3,14 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "solvers/cvode.hpp"
+#include "solvers/dormand_prince.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::models {
@@ -63,17 +66,20 @@ class Motion {
     Vector<T> velocity;
     T speed, reynolds, spin_ratio;
   };
-  Stream through_air(const T* y) const {
+  Stream through_air(const T* y) const { return through_air(y, over_landing(y)); }
+  Stream through_air(const T* y, bool over_landing) const {
     const Vector<T> v(y[kVelocity], y[kVelocity + 1], y[kVelocity + 2]);
-    const Vector<T> u = v - wind_share(y) * wind_.template cast<T>();
+    const Vector<T> u = v - wind_share(y, over_landing) * wind_.template cast<T>();
     using std::sqrt;
     const T speed = sqrt(u.squaredNorm());
     return {u, speed, reynolds_ * speed, spin_rate_ * y[kSpinLeft] * ball_.radius / speed};
   }
 
-  void rate(const T* y, T* dy) const {
-    const Stream u = through_air(y);
-    const Coefficients<T> k = c_.law.at(u.reynolds, u.spin_ratio);
+  void rate(const T* y, T* dy) const { rate(y, dy, piece(y)); }
+  /// By the formulas of that piece, also beyond its edges.
+  void rate(const T* y, T* dy, long piece) const {
+    const Stream u = through_air(y, piece % 2);
+    const Coefficients<T> k = c_.law.at(u.reynolds, u.spin_ratio, piece / 2);
     const Vector<T> lift = axis_.cross(u.velocity);
     for (int i = 0; i < 3; ++i) {
       dy[kPosition + i] = y[kVelocity + i];
@@ -84,13 +90,20 @@ class Motion {
     dy[kSpinLeft] = -(decay.rate + (decay.travel / ball_.radius + decay.moment * torque_) * u.speed) * y[kSpinLeft];
   }
 
+  /// Numbers the part in which `rate` is smooth.
+  long piece(const T* y) const {
+    const bool over = over_landing(y);
+    const Stream u = through_air(y, over);
+    return 2 * c_.law.piece(value(u.reynolds), value(u.spin_ratio)) + over;
+  }
+
   /// Height of the ball over the ground on which it lands.
   T clearance(const T* y) const { return y[kPosition + 2] - c_.ground.height - slope_ * y[kPosition]; }
 
   FlightPoint point(double time, const T* y) const {
     const Stream u = through_air(y);
-    const Coefficients<T> k = c_.law.at(u.reynolds, u.spin_ratio);
-    FlightPoint p{time, {}, {}, {}, value(u.reynolds), value(u.spin_ratio), {value(k.drag), value(k.lift)}};
+    const Coefficients<double> k = c_.law.at(value(u.reynolds), value(u.spin_ratio));
+    FlightPoint p{time, {}, {}, {}, value(u.reynolds), value(u.spin_ratio), k};
     for (int i = 0; i < 3; ++i) {
       p.position[i] = value(y[kPosition + i]);
       p.velocity[i] = value(y[kVelocity + i]);
@@ -100,11 +113,13 @@ class Motion {
   }
 
  private:
-  /// Of the wind's speed, where the ball is. Heights count from the lower of the launch and the landing ground.
-  T wind_share(const T* y) const {
+  /// The wind's heights count from the lower of the launch and the landing ground: whether from this.
+  bool over_landing(const T* y) const { return c_.wind.speed != 0 && value(clearance(y)) > value(y[kPosition + 2]); }
+  /// Of the wind's speed, where the ball is.
+  T wind_share(const T* y, bool over_landing) const {
     const Wind& w = c_.wind;
     if (w.profile == WindProfile::uniform || w.speed == 0) return T(1);
-    const T z = y[kPosition + 2], over = clearance(y), height = over > z ? over : z;
+    const T height = over_landing ? clearance(y) : y[kPosition + 2];
     // Steps try the other side of the ground: smooth across it.
     using std::log;
     const T share = per_log_ * log(1.0 + (height < 0.0 ? T(-height) : height) / w.roughness);
@@ -155,15 +170,46 @@ std::array<T, kStates> state_of(const Departure<T>& start) {
 
 /// Of the state, and of its derivatives behind it where there are any. Where a component is small its error counts
 /// against 10 m, 10 m/s and the whole spin: the first metres of height need not be known to a micrometre.
-solvers::CvodeOptions solution(const FlightOptions& options, int size) {
-  std::vector<double> absolute(std::size_t(size), 0.1 * options.tolerance);
-  std::fill_n(absolute.begin(), kSpinLeft, 10 * options.tolerance);
-  absolute[kSpinLeft] = options.tolerance;
-  return {
-      .method = solvers::CvodeMethod::adams, .relative_tolerance = options.tolerance, .absolute = std::move(absolute)};
+template <std::size_t N>
+std::array<double, N> absolute_tolerance(double tolerance) {
+  std::array<double, N> absolute;
+  absolute.fill(0.1 * tolerance);
+  std::fill_n(absolute.begin(), kSpinLeft, 10 * tolerance);
+  absolute[kSpinLeft] = tolerance;
+  return absolute;
+}
+
+constexpr double kFirstStep = 2e-3;  // [s]: a wind begins steeply over the ground
+
+/// The integration of `rate(y, dy, piece)`, whose first components are the state of `motion`.
+template <std::size_t N, class Rate>
+auto integration(const Motion<double>& motion, Rate rate, const FlightOptions& options) {
+  const auto piece = [&motion](const std::array<double, N>& y) { return motion.piece(y.data()); };
+  return solvers::DormandPrince<N, Rate, decltype(piece)>(std::move(rate), piece, options.tolerance,
+                                                          absolute_tolerance<N>(options.tolerance));
+}
+
+/// Where f falls through zero between a and b, with f(b) <= 0; never outside (TOMS 748). A zero of a ball that takes
+/// off at `a` is not meant.
+template <class F>
+double falls(const F& f, double a, double b) {
+  double at_a = f(a), at_b = f(b);
+  for (double part = 0.5 * (b - a); at_a <= 0 && part > 1e-15 * (b - a); part /= 2) {
+    const double s = a + part, at = f(s);
+    if (at > 0) a = s, at_a = at;
+    else b = s, at_b = at;
+  }
+  if (at_a <= 0 || at_b >= 0) return b;
+  std::uintmax_t passes = 100;
+  const auto [low, high] =
+      boost::math::tools::toms748_solve(f, a, b, at_a, at_b, boost::math::tools::eps_tolerance<double>(), passes);
+  return 0.5 * (low + high);
 }
 
 using Plain = std::array<double, kStates>;
+
+/// Of the tolerance: the errors of a flight's steps add up to some ten times that of one.
+constexpr double kOfDerivative = 0.1;
 
 /// A step of Runge and Kutta's fourth order.
 Plain stepped(const Motion<double>& motion, const Plain& y, double h) {
@@ -188,28 +234,41 @@ double step_size(double whole, int n) {
   return n > halvings ? whole : std::ldexp(whole, std::max(n, 1) - 1 - halvings);
 }
 
-/// The part of a step after which `miss` is zero, and the state there: Newton's method from the step's end.
-template <class Miss, class Rate>
-std::pair<double, Plain> part_of_step(const Motion<double>& motion, const Plain& y, double h, Miss miss, Rate rate) {
-  double s = h;
-  Plain at = stepped(motion, y, s);
-  for (int pass = 0; pass < 20; ++pass) {
-    const double by = miss(at) / rate(at);
-    s -= by;
-    at = stepped(motion, y, s);
-    if (std::abs(by) < 1e-13 * h || !std::isfinite(by)) break;
-  }
-  return {s, at};
+/// The part of a step after which `miss` has fallen to zero, and the state there.
+template <class Miss>
+std::pair<double, Plain> part_of_step(const Motion<double>& motion, const Plain& y, double h, Miss miss) {
+  const double s = falls([&](double part) { return miss(stepped(motion, y, part)); }, 0, h);
+  return {s, stepped(motion, y, s)};
 }
 
 void check_step(double step) {
   if (!(step > 0)) throw std::invalid_argument("flight: a step is above zero");
 }
 
-enum Event { kLanding, kTop };
-
 void check(const Launch& launch) {
   if (!(launch.ball_speed() > 0)) throw std::invalid_argument("flight: the ball has no speed");
+}
+
+/// Whether the last step met the ground; it then ends there. The time in between is right to the order of what lies
+/// between steps, the step up to it to that of steps: once more, by its own miss.
+template <class Solver>
+bool land_on(const Motion<double>& motion, const Ground& ground, Solver& solver) {
+  const auto clearance = [&](const auto& y) { return motion.clearance(y.data()); };
+  if (!(clearance(solver.state_before()) >= 0 && clearance(solver.state()) < 0)) return false;
+  const double t = falls([&](double s) { return clearance(solver.at(s)); }, solver.before(), solver.time());
+  solver.retake(t);
+  const auto& y = solver.state();
+  const double late = clearance(y) / (y[kVelocity + 2] - std::tan(ground.slope) * y[kVelocity]);
+  if (std::abs(late) < 0.1 * (t - solver.before())) solver.retake(t - late);
+  return true;
+}
+
+/// When the last step went over the top; none: it did not.
+template <class Solver>
+std::optional<double> topped(const Solver& solver) {
+  constexpr int climb = kVelocity + 2;
+  if (!(solver.state_before()[climb] > 0 && solver.state()[climb] <= 0)) return {};
+  return falls([&](double t) { return solver.at(t)[climb]; }, solver.before(), solver.time());
 }
 
 [[noreturn]] void still_up() { throw solvers::NonConvergence("flight: the ball is still in the air after a minute"); }
@@ -232,45 +291,43 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
   if (grounded(motion, y0.data(), conditions.ground)) return land(first), out;
   if (y0[kVelocity + 2] < 0) check_height(motion, y0.data());
 
-  solvers::Cvode solver(
-      kStates, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 2,
-      [&](double, const double* y, double* g) {
-        g[kLanding] = motion.clearance(y);
-        g[kTop] = y[kVelocity + 2];
-      },
-      solution(options, kStates));
-  double before = 0, unknown = 0;
-  const auto watch = [&](double t, const double* y) {
-    const auto u = motion.through_air(y);
-    out.reynolds = {std::min(out.reynolds.low, u.reynolds), std::max(out.reynolds.high, u.reynolds)};
-    out.spin = {std::min(out.spin.low, u.spin_ratio), std::max(out.spin.high, u.spin_ratio)};
-    if (!conditions.law.holds(u.reynolds, u.spin_ratio)) unknown += t - before;
-    before = t;
-    if (!(options.sample > 0)) return;
-    for (double next; (next = options.sample * double(out.path.size())) < t;) {
-      std::array<double, kStates> between;
-      solver.interpolate(next, between);
-      out.path.push_back(motion.point(next, between.data()));
+  auto solver = integration<kStates>(
+      motion, [&](const Plain& y, Plain& dy, long piece) { motion.rate(y.data(), dy.data(), piece); }, options);
+  double unknown = 0;
+  // What it goes through, at the ends of quarter steps.
+  const auto watch = [&](double from, double to) {
+    constexpr int parts = 4;
+    for (int k = 1; k <= parts; ++k) {
+      const auto u = motion.through_air(solver.at(from + k * (to - from) / parts).data());
+      out.reynolds = {std::min(out.reynolds.low, u.reynolds), std::max(out.reynolds.high, u.reynolds)};
+      out.spin = {std::min(out.spin.low, u.spin_ratio), std::max(out.spin.high, u.spin_ratio)};
+      if (!conditions.law.holds(u.reynolds, u.spin_ratio)) unknown += (to - from) / parts;
     }
+    if (!(options.sample > 0)) return;
+    for (double next; (next = options.sample * double(out.path.size())) < to;)
+      out.path.push_back(motion.point(next, solver.at(next).data()));
   };
   if (options.sample > 0) out.path.push_back(first);
-  solver.start(0, y0);
-  for (;;) {
-    const solvers::Cvode::Stop stop = solver.run(kLatest, watch);
-    if (!stop.event) still_up();
-    const double* y = solver.state().data();
-    if (stop.event == kTop) {
-      check_height(motion, y);
-      if (y[kPosition + 2] <= out.apex) continue;
-      out.apex = y[kPosition + 2];
-      out.apex_time = stop.time;
-      continue;
+  solver.start(0, y0, kFirstStep);
+  while (solver.time() < kLatest) {
+    solver.step(kLatest);
+    const bool landed = land_on(motion, conditions.ground, solver);
+    if (const auto top = topped(solver)) {
+      const Plain y = solver.at(*top);
+      check_height(motion, y.data());
+      if (y[kPosition + 2] > out.apex) {
+        out.apex = y[kPosition + 2];
+        out.apex_time = *top;
+      }
     }
-    land(motion.point(stop.time, y));
+    watch(solver.before(), solver.time());
+    if (!landed) continue;
+    land(motion.point(solver.time(), solver.state().data()));
     out.outside = unknown / out.time;
-    out.steps = solver.statistics().steps;
+    out.steps = solver.steps;
     return out;
   }
+  still_up();
 }
 
 std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
@@ -283,23 +340,15 @@ std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const Fl
   const auto y0 = state_of(start);
   std::vector<FlightPoint> out;
   if (times.empty()) return out;
-  solvers::Cvode solver(
-      kStates, [&](double, const double* y, double* dy) { motion.rate(y, dy); }, 1,
-      [](double, const double*, double* g) {
-        g[0] = 1; /* nothing stops it */
-      },
-      solution(options, kStates));
+  auto solver = integration<kStates>(
+      motion, [&](const Plain& y, Plain& dy, long piece) { motion.rate(y.data(), dy.data(), piece); }, options);
   while (out.size() < times.size() && times[out.size()] <= 0) out.push_back(motion.point(times[out.size()], y0.data()));
-  solver.start(0, y0);
-  const auto watch = [&](double t, const double*) {
-    for (; out.size() < times.size() && times[out.size()] <= t;) {
-      std::array<double, kStates> between;
-      solver.interpolate(times[out.size()], between);
-      out.push_back(motion.point(times[out.size()], between.data()));
-    }
-  };
-  solver.run(times.back(), watch);
-  while (out.size() < times.size()) out.push_back(motion.point(times[out.size()], solver.state().data()));
+  solver.start(0, y0, kFirstStep);
+  while (out.size() < times.size()) {
+    solver.step(times.back());
+    for (; out.size() < times.size() && times[out.size()] <= solver.time();)
+      out.push_back(motion.point(times[out.size()], solver.at(times[out.size()]).data()));
+  }
   return out;
 }
 
@@ -315,19 +364,12 @@ Flight fly_in_steps(const Launch& launch, const Ball& ball, const FlightConditio
   out.spin = {first.spin_ratio, first.spin_ratio};
   if (grounded(motion, y.data(), conditions.ground)) return land_at(first, out), out;
   if (y[kVelocity + 2] < 0) check_height(motion, y.data());
-  const double slope = std::tan(conditions.ground.slope);
   double t = 0, unknown = 0;
   while (t < kLatest) {
     const double h = step_size(step, int(out.steps++));
     const Plain next = stepped(motion, y, h);
     if (y[kVelocity + 2] > 0 && next[kVelocity + 2] <= 0) {
-      const auto [s, top] = part_of_step(
-          motion, y, h, [](const Plain& at) { return at[kVelocity + 2]; },
-          [&](const Plain& at) {
-            Plain rate;
-            motion.rate(at.data(), rate.data());
-            return rate[kVelocity + 2];
-          });
+      const auto [s, top] = part_of_step(motion, y, h, [](const Plain& at) { return at[kVelocity + 2]; });
       check_height(motion, top.data());
       if (top[kPosition + 2] > out.apex) {
         out.apex = top[kPosition + 2];
@@ -335,9 +377,7 @@ Flight fly_in_steps(const Launch& launch, const Ball& ball, const FlightConditio
       }
     }
     if (motion.clearance(y.data()) >= 0 && motion.clearance(next.data()) < 0) {
-      const auto [s, down] = part_of_step(
-          motion, y, h, [&](const Plain& at) { return motion.clearance(at.data()); },
-          [&](const Plain& at) { return at[kVelocity + 2] - slope * at[kVelocity]; });
+      const auto [s, down] = part_of_step(motion, y, h, [&](const Plain& at) { return motion.clearance(at.data()); });
       land_at(motion.point(t + s, down.data()), out);
       out.outside = unknown / out.time;
       return out;
@@ -404,42 +444,40 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
     }
     return y;
   };
-  solvers::Cvode solver(
-      kDual,
-      [&](double, const double* flat, double* rate) {
-        const State y = unpack(flat);
-        State dy;
-        motion.rate(y.data(), dy.data());
-        pack(dy, rate);
-      },
-      2,
-      [&](double, const double* flat, double* g) {
-        g[kLanding] = value(motion.clearance(unpack(flat).data()));
-        g[kTop] = flat[kVelocity + 2];
-      },
-      solution(options, kDual));
-  std::array<double, kDual> flat0;
+  const Motion<double> path(start_of(launch), ball, conditions);
+  using Flat = std::array<double, kDual>;
+  const auto rate = [&](const Flat& flat, Flat& of_flat, long piece) {
+    const State y = unpack(flat.data());
+    State dy;
+    motion.rate(y.data(), dy.data(), piece);
+    pack(dy, of_flat.data());
+  };
+  auto solver = integration<kDual>(path, rate, {.tolerance = kOfDerivative * options.tolerance});
+  Flat flat0;
   pack(first, flat0.data());
-  solver.start(0, flat0);
+  solver.start(0, flat0, kFirstStep);
   double apex = 0;
-  for (;;) {
-    const solvers::Cvode::Stop stop = solver.run(kLatest);
-    if (!stop.event) still_up();
+  while (solver.time() < kLatest) {
+    solver.step(kLatest);
+    const bool landed = land_on(path, conditions.ground, solver);
+    if (const auto top = topped(solver)) {
+      const Flat at = solver.at(*top);
+      check_height(path, at.data());
+      if (at[kPosition + 2] > apex) {
+        // The height is stationary in time there: the event's motion adds nothing.
+        apex = at[kPosition + 2];
+        out.row(kApex) = unpack(at.data())[kPosition + 2].v.transpose();
+      }
+    }
+    if (!landed) continue;
     State y = unpack(solver.state().data());
     State dy;
     motion.rate(y.data(), dy.data());
-    if (stop.event == kTop) check_height(motion, y.data());
-    if (stop.event == kTop && y[kPosition + 2].a > apex) {
-      // The height is stationary in time there: the event's motion adds nothing.
-      apex = y[kPosition + 2].a;
-      out.row(kApex) = y[kPosition + 2].v.transpose();
-    }
-    if (stop.event != kLanding) continue;
     // A launch that differs lands at another time: g(y(t)) = 0 makes t a dual number, too.
     const Jet miss = motion.clearance(y.data());
     const double fall = y[kVelocity + 2].a - std::tan(conditions.ground.slope) * y[kVelocity].a;
-    const Jet time = Jet(stop.time) - (miss - miss.a) / fall;
-    const Jet late = time - stop.time;
+    const Jet time = Jet(solver.time()) - (miss - miss.a) / fall;
+    const Jet late = time - solver.time();
     for (int i = 0; i < kStates; ++i) y[std::size_t(i)] += dy[std::size_t(i)].a * late;
     const Jet across = sqrt(y[0] * y[0] + y[1] * y[1]), level = sqrt(y[3] * y[3] + y[4] * y[4]);
     out.row(kCarry) = across.v.transpose();
@@ -448,6 +486,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
     out.row(kLandingAngle) = atan2(-y[5], level).v.transpose();
     return out;
   }
+  still_up();
 }
 
 }  // namespace hosel::models

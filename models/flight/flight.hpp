@@ -35,7 +35,7 @@ struct FlightConditions {
 };
 
 struct FlightOptions {
-  /// Relative tolerance of CVODE's steps. 1e-5 keeps the landing within two millimetres, in wind as in calm air
+  /// Relative tolerance of a step. 1e-5 keeps the landing within two millimetres, in wind as in calm air
   /// (bench/flight_bench.cpp); the answers follow the tolerance down to 1e-12.
   double tolerance = 1e-5;
   double sample = 0;  ///< interval of the points in `path` [s]; 0: no path

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,13 +20,17 @@ struct Coefficients {
   T drag, lift;
 };
 
+// A law has corners where its formula changes. `piece` numbers the parts of the plane between them; `at` with a piece
+// is that part's formula, also beyond its edges, so that a step up to a corner sees none.
+
 /// C_D = d0 + d1 S + d2 S^2 + e1 Re + e2 Re^2 and C_L = l0 + l1 S + l2 S^2.
 struct PolynomialLaw {
   std::array<double, 3> drag{}, lift{};
   std::array<double, 2> drag_reynolds{};
 
+  static long piece(double, double) { return 0; }
   template <class T>
-  Coefficients<T> at(const T& reynolds, const T& spin) const {
+  Coefficients<T> at(const T& reynolds, const T& spin, long) const {
     return {drag[0] + spin * (drag[1] + spin * drag[2]) + reynolds * (drag_reynolds[0] + reynolds * drag_reynolds[1]),
             lift[0] + spin * (lift[1] + spin * lift[2])};
   }
@@ -35,10 +40,10 @@ struct PolynomialLaw {
 struct QuadraticLift {
   double linear, quadratic, level_from;
 
+  long piece(double spin) const { return spin > level_from; }
   template <class T>
-  T at(const T& spin) const {
-    return spin > level_from ? T((linear + quadratic * level_from) * level_from)
-                             : T((linear + quadratic * spin) * spin);
+  T at(const T& spin, long piece) const {
+    return piece ? T((linear + quadratic * level_from) * level_from) : T((linear + quadratic * spin) * spin);
   }
 };
 
@@ -46,8 +51,9 @@ struct QuadraticLift {
 struct PowerLift {
   double factor, power;
 
+  static long piece(double) { return 0; }
   template <class T>
-  T at(const T& spin) const {
+  T at(const T& spin, long) const {
     using std::pow;
     return factor * pow(spin, power);
   }
@@ -57,8 +63,9 @@ struct PowerLift {
 struct SaturatingLift {
   double most, gain;
 
+  static long piece(double) { return 0; }
   template <class T>
-  T at(const T& spin) const {
+  T at(const T& spin, long) const {
     return most * gain * spin / (1.0 + gain * spin);
   }
 };
@@ -68,11 +75,12 @@ struct SineLaw {
   double drag, drag_spin, drag_wave, start, span;
   PowerLift lift;
 
+  static long piece(double, double) { return 0; }
   template <class T>
-  Coefficients<T> at(const T& reynolds, const T& spin) const {
+  Coefficients<T> at(const T& reynolds, const T& spin, long) const {
     using std::sin;
     return {drag + drag_spin * spin + drag_wave * sin(3.14159265358979323846 * (reynolds - start) / span),
-            lift.at(spin)};
+            lift.at(spin, 0)};
   }
 };
 
@@ -81,11 +89,19 @@ struct RampLaw {
   double slow, fast, from, to, drag_spin;
   std::variant<QuadraticLift, PowerLift, SaturatingLift> lift;
 
+  static constexpr long kPieces = 6;  ///< below, on and above the ramp, each with two of the lift
+  long piece(double reynolds, double spin) const {
+    return 2 * (reynolds <= from ? 0
+                : reynolds >= to ? 2
+                                 : 1) +
+           std::visit([&](const auto& law) { return law.piece(spin); }, lift);
+  }
   template <class T>
-  Coefficients<T> at(const T& reynolds, const T& spin) const {
-    const T share = reynolds <= from ? T(0.0) : reynolds >= to ? T(1.0) : T((reynolds - from) / (to - from));
+  Coefficients<T> at(const T& reynolds, const T& spin, long piece) const {
+    const long of_ramp = piece / 2;
+    const T share = of_ramp == 0 ? T(0.0) : of_ramp == 2 ? T(1.0) : T((reynolds - from) / (to - from));
     return {slow + (fast - slow) * share + drag_spin * spin,
-            std::visit([&](const auto& law) { return law.at(spin); }, lift)};
+            std::visit([&](const auto& law) { return law.at(spin, piece % 2); }, lift)};
   }
 };
 
@@ -99,6 +115,8 @@ struct SurfaceLaw {
   struct Window {
     double none_below, from, to, none_above;
 
+    /// 2: inside; 1 and 3: the margins; 0 and 4: beyond them.
+    long piece(double at) const { return (at > none_below) + (at >= from) + (at > to) + (at >= none_above); }
     template <class T>
     T share(const T& at) const {
       if (at <= none_below || at >= none_above) return T(0.0);
@@ -117,18 +135,24 @@ struct SurfaceLaw {
   Window reynolds, spin;
   RampLaw outside;
 
+  long piece(double re, double s) const {
+    const long a = reynolds.piece(re), b = spin.piece(s);
+    return (5 * a + b) * RampLaw::kPieces + (a == 2 && b == 2 ? 0 : outside.piece(re, s));
+  }
   template <class T>
-  Coefficients<T> at(const T& re, const T& s) const {
-    const T share = reynolds.share(re) * spin.share(s);
-    if (share <= 0.0) return outside.at(re, s);
+  Coefficients<T> at(const T& re, const T& s, long piece) const {
+    const long of_windows = piece / RampLaw::kPieces, a = of_windows / 5, b = of_windows % 5;
+    const auto published = [&] { return outside.at(re, s, piece % RampLaw::kPieces); };
+    if (a == 0 || a == 4 || b == 0 || b == 4) return published();
     using std::log;
     const T x = log(re / kReynolds), y = log(s / kSpin);
     const auto surface = [&](const Terms& c) {
       return T(c[0] + y * (c[1] + c[2] * y + c[5] * x) + x * (c[3] + c[4] * x));
     };
     const Coefficients<T> in = {surface(drag), surface(lift)};
-    if (share >= 1.0) return in;
-    const Coefficients<T> out = outside.at(re, s);
+    if (a == 2 && b == 2) return in;
+    const T share = reynolds.share(re) * spin.share(s);
+    const Coefficients<T> out = published();
     return {out.drag + share * (in.drag - out.drag), out.lift + share * (in.lift - out.lift)};
   }
 };
@@ -142,29 +166,45 @@ struct TableLaw {
   };
   std::vector<Row> rows;  ///< Reynolds numbers rise
 
+  /// The cell: how many Reynolds numbers lie below, and how many spin ratios of the rows on either side.
+  long piece(double reynolds, double spin) const {
+    long row = 0;
+    for (const Row& r : rows) row += reynolds > r.reynolds;
+    const auto place = [&](std::size_t i) {
+      long n = 0;
+      for (const double x : rows[i].spin) n += spin > x;
+      return n;
+    };
+    const auto [low, high] = rows_beside(row);
+    return (row * kMost + place(low)) * kMost + place(high);
+  }
   template <class T>
-  Coefficients<T> at(const T& reynolds, const T& spin) const {
-    const auto along = [](const std::vector<double>& x, const std::vector<double>& y, const T& where) {
-      if (where <= x.front()) return T(y.front());
-      if (where >= x.back()) return T(y.back());
-      std::size_t i = 1;
-      while (where > x[i]) ++i;
-      return T(y[i - 1] + (y[i] - y[i - 1]) / (x[i] - x[i - 1]) * (where - x[i - 1]));
+  Coefficients<T> at(const T& reynolds, const T& spin, long piece) const {
+    const auto row = [&](const Row& r, std::size_t i) {
+      if (i == 0) return Coefficients<T>{T(r.drag.front()), T(r.lift.front())};
+      if (i == r.spin.size()) return Coefficients<T>{T(r.drag.back()), T(r.lift.back())};
+      const T share = (spin - r.spin[i - 1]) / (r.spin[i] - r.spin[i - 1]);
+      return Coefficients<T>{r.drag[i - 1] + share * (r.drag[i] - r.drag[i - 1]),
+                             r.lift[i - 1] + share * (r.lift[i] - r.lift[i - 1])};
     };
-    const auto row = [&](const Row& r) {
-      return Coefficients<T>{along(r.spin, r.drag, spin), along(r.spin, r.lift, spin)};
-    };
-    if (reynolds <= rows.front().reynolds) return row(rows.front());
-    if (reynolds >= rows.back().reynolds) return row(rows.back());
-    std::size_t i = 1;
-    while (reynolds > rows[i].reynolds) ++i;
-    const Coefficients<T> low = row(rows[i - 1]), high = row(rows[i]);
-    const T share = (reynolds - rows[i - 1].reynolds) / (rows[i].reynolds - rows[i - 1].reynolds);
+    const auto [below, above] = rows_beside(piece / (kMost * kMost));
+    const Coefficients<T> low = row(rows[below], std::size_t(piece / kMost % kMost));
+    if (below == above) return low;
+    const Coefficients<T> high = row(rows[above], std::size_t(piece % kMost));
+    const T share = (reynolds - rows[below].reynolds) / (rows[above].reynolds - rows[below].reynolds);
     return {low.drag + share * (high.drag - low.drag), low.lift + share * (high.lift - low.lift)};
   }
   bool holds(double reynolds, double spin) const;  ///< inside what was measured
   /// Sentences on what is wrong with the table; empty where all is well.
   std::vector<std::string> faults() const;
+
+ private:
+  static constexpr long kMost = 1 << 16;  ///< more than a row has spin ratios
+  /// The two rows between which a Reynolds number lies that `below` of them are under; twice the same at the ends.
+  std::pair<std::size_t, std::size_t> rows_beside(long below) const {
+    const auto n = std::size_t(below), last = rows.size() - 1;
+    return {n == 0 ? 0 : n - 1, n > last ? last : n};
+  }
 };
 
 /// spin' = -(rate + travel v / r + rho A d r v moment / (2 I)) spin; a published law uses one of the three.
@@ -187,13 +227,17 @@ struct FlightLaw {
   std::vector<double> covariance = {};
 
   bool holds(double re, double s) const;  ///< inside what the source has measured
+  long piece(double re, double s) const {
+    return std::visit([&](const auto& law) { return law.piece(re, s); }, form);
+  }
   template <class T>
-  Coefficients<T> at(const T& re, const T& s) const {
-    Coefficients<T> c = std::visit([&](const auto& law) { return law.at(re, s); }, form);
+  Coefficients<T> at(const T& re, const T& s, long piece) const {
+    Coefficients<T> c = std::visit([&](const auto& law) { return law.at(re, s, piece); }, form);
     c.drag *= drag_scale;
     c.lift *= lift_scale;
     return c;
   }
+  Coefficients<double> at(double re, double s) const { return at(re, s, piece(re, s)); }
 };
 
 /// Drag's six terms, lift's six, then the decay of spin per radius of path.

@@ -14,6 +14,7 @@ except ImportError:
 import flights
 import generate
 import grade
+import reach
 
 
 def one(nature, up=0.2, tilt=0.1, wind=(0.0, 0.0), dt=0.02, **more):
@@ -72,6 +73,25 @@ class Sets(unittest.TestCase):
             self.assertEqual(right is None, moved.max() < 1e-12, kind)
             if right and not kind.endswith("-form"):
                 self.assertGreater(moved.max(), 0.8, kind)
+
+
+class Reach(unittest.TestCase):
+    def test_grows_with_the_square(self):
+        """Nothing undeclared is worth nothing; twice a small effect four times as much; an unknown wind takes from it."""
+        def worth(axis, wind):
+            s = generate.Session(np.random.default_rng(1), 0, "spin-axis-bias")
+            few = slice(0, 60, 10)  # six drives on five holes
+            s.n = 6
+            for name in ("hole", "speed", "up", "azimuth", "spin", "tilt", "along", "right"):
+                setattr(s, name, getattr(s, name)[few])
+            s.nature.axis, s.wind = axis, wind
+            return reach.reach(s)
+
+        self.assertEqual(worth(0.0, 1.5), 0)
+        small = worth(0.002, 1.5)
+        self.assertGreater(small, 0)
+        self.assertAlmostEqual(worth(0.004, 1.5) / small, 4, delta=0.05)
+        self.assertGreater(worth(0.002, 0.01), 1.5 * small)
 
 
 class Grades(unittest.TestCase):

@@ -300,6 +300,62 @@ TEST(Solid, DissipationIsNeverNegative) {
   }
 }
 
+/// Several points at once are the same points one by one: a step of each, its stress, its energy, its history after.
+TEST(Solid, LanesAreThePointsOneByOne) {
+  std::mt19937 g(11);
+  int laws = 0;
+  for (const auto& [name, solid] : materials()) {
+    if (!solid.in_lanes()) continue;
+    ++laws;
+    for (const double dt : {0.0, 4e-6, 2e-4}) {
+      const auto size = static_cast<std::size_t>(solid.history_size());
+      std::vector<double> history(kLanes * size), starts(static_cast<std::size_t>(kLanes * solid.start_size()));
+      Mat3 F[kLanes];
+      Mat3Lanes all;
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        const auto own = std::span(history).subspan(l * size, size);
+        solid.start(own);
+        for (int i = 0; i < 2; ++i) update_internal_variables(solid, random_gradient(g, 0.2), 3e-5, own);
+        start_step(solid, dt, own, starts.data() + l, kLanes);
+        F[l] = random_gradient(g, 0.2);
+        for (std::size_t i = 0; i < 9; ++i) all[i][static_cast<int>(l)] = F[l].data()[i];
+      }
+      Mat3Lanes stress;
+      Lanes energy;
+      evaluate(solid, all, starts.data(), kLanes, stress, energy);
+      std::vector<double> moved = history;
+      // The last point is not there: its history stays.
+      const double sum = update_internal_variables(solid, all, starts.data(), kLanes, dt, kLanes - 1, moved);
+      double expected = 0;
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        const int lane = static_cast<int>(l);
+        const auto own = std::span(history).subspan(l * size, size);
+        PointResponse at;
+        evaluate(solid, F[l], Mat3::Identity(), dt, own, false, at);
+        // Of large parts that cancel (pressure against shear) some ten last digits differ by the order of the sums.
+        EXPECT_NEAR(energy[lane], at.energy, 1e-12 * (at.energy + solid.bulk())) << name;
+        for (std::size_t i = 0; i < 9; ++i)
+          EXPECT_NEAR(stress[i][lane], at.stress.data()[i], 1e-12 * (at.stress.norm() + solid.bulk())) << name;
+        if (l + 1 < kLanes) expected += update_internal_variables(solid, F[l], dt, own);
+      }
+      EXPECT_NEAR(sum, expected, 1e-12 * expected) << name;
+      for (std::size_t i = 0; i < history.size(); ++i)
+        EXPECT_NEAR(moved[i], history[i], 1e-12 * (1 + std::abs(history[i]))) << name << ' ' << i;
+    }
+  }
+  EXPECT_GE(laws, 8);
+
+  // A point turned inside out spoils itself alone.
+  const Solid solid = materials()[2].solid;
+  Mat3Lanes all{};
+  for (const std::size_t i : {0U, 4U, 8U}) all[i] = Lanes{} + 1.0;
+  all[0][1] = -1;
+  Mat3Lanes stress;
+  Lanes energy;
+  evaluate(solid, all, nullptr, 0, stress, energy);
+  for (int l = 0; l < kLanes; ++l) EXPECT_EQ(std::isfinite(energy[l]) && std::isfinite(stress[4][l]), l != 1);
+}
+
 /// Work of the stress = stored + dissipated over a strain path, to second order in the step.
 TEST(Solid, EnergyBalanceClosesAtSecondOrder) {
   const Solid solid = materials()[6].solid;

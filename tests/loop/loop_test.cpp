@@ -17,6 +17,7 @@
 #include "loop/shots/problem.hpp"
 #include "loop/shots/run.hpp"
 #include "loop/study.hpp"
+#include "loop/verdict.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "models/registry.hpp"
 
@@ -362,6 +363,67 @@ TEST_F(Loop, AFunctionIsFoundByHowTheChannelsMoveTogether) {
   // Noise alone: no function pays for itself.
   ShotCase nothing = case_of(csv({}));
   for (const Mechanism& m : one_function(nothing, base)) EXPECT_GT(m.criterion, base - Rules{}.tie);
+}
+
+/// Four players' shots in turn, each with a hidden loft of his own [deg] and his name before the row.
+std::string of_players(const std::array<double, 4>& loft, int each) {
+  std::array<std::istringstream, 4> of;
+  for (unsigned k = 0; k < 4; ++k) of[k].str(csv({.shots = each, .loft = loft[k], .seed = k + 1}));
+  std::string text, line;
+  for (int i = -1; i < each; ++i)
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::getline(of[k], line);
+      if (i >= 0) text += fmt::format("p{},{}{}\n", k, 4 * i + int(k) + 1, line.substr(line.find(',')));
+      else if (k == 0) text += "player," + line + "\n";
+    }
+  return text;
+}
+
+TEST_F(Loop, WhatNoNameTakesUpIsAskedOfOneFunctionOnAllRows) {
+  // No channel alone follows the player beyond chance; together they do, as an error of the loft moves them.
+  const LoopResult r = run(case_of(of_players({-0.33, -0.11, 0.11, 0.33}, 15)));
+  ASSERT_EQ(r.selection.level, 0) << sentence(r);
+  ASSERT_FALSE(r.selection.structured) << sentence(r);
+  EXPECT_EQ(name(r.verdict), "unexplained") << sentence(r);
+  ASSERT_FALSE(r.unexplained.empty());
+  EXPECT_EQ(r.unexplained.front().regressor, "player");
+  EXPECT_NE(r.unexplained.front().detail.find("an error of dynamic_loft_deg"), std::string::npos);
+  EXPECT_TRUE(r.adopted.empty());
+  // The same players without an error.
+  const LoopResult nothing = run(case_of(of_players({}, 15)));
+  EXPECT_EQ(name(nothing.verdict), "no-residual") << sentence(nothing);
+}
+
+/// Shots beside which one function is by so much worse than the chosen names, and is one of them.
+struct WithRival : ShotProblem {
+  using ShotProblem::ShotProblem;
+  double worse = 0;
+  std::vector<Mechanism> mechanisms(const Selection& s, const Rules& rules) const override {
+    return {{.acts = "the tangential restitution",
+             .along = "club_speed_mps",
+             .channel = 0,
+             .criterion = criterion(s.chosen, rules) + worse,
+             .names = {"ball-tangential-compliance"}}};
+  }
+};
+
+TEST_F(Loop, OneNameStandsAloneWhereItsFunctionSaysAsMuchAsSeveral) {
+  const ShotCase c = case_of(csv({.tangential = 0.05, .drift = 3}));
+  const auto with = [&](double worse) {
+    WithRival problem(c, {}, {}, {});
+    problem.worse = worse;
+    LoopResult r;
+    r.forms = problem.forms();
+    const Study study(problem, r.forms, {}, c.rules);
+    EXPECT_EQ(study.selection.level, 2);
+    conclude(study, r);
+    return std::pair{std::string(name(r.verdict)), r.adopted};
+  };
+  using Names = std::vector<std::string>;
+  const double tie = Rules{}.tie;
+  EXPECT_EQ(with(tie + 1), (std::pair{std::string("explained"), Names{"ball-tangential-compliance", "session-drift"}}));
+  EXPECT_EQ(with(tie - 1), (std::pair{std::string("explained"), Names{"ball-tangential-compliance"}}));
+  EXPECT_EQ(with(-tie - 1).first, "unexplained");
 }
 
 TEST_F(Loop, TwoNamesOfOneRestitutionAreATie) {

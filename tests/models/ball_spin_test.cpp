@@ -47,7 +47,7 @@ struct Spinning {
         double sum = 0, norm = 0;
         for (const double theta : circle.theta) {
           const Vec3 f = basis[static_cast<std::size_t>(k)].at(theta);
-          Vec3 x = ball->vector_at(U, static_cast<int>(i), theta);
+          Vec3 x = ball->functions_at(theta) * U.row(static_cast<Eigen::Index>(i)).transpose();
           if (with_reference) x += ball->reference(static_cast<int>(i), theta);
           sum += f.dot(Vec3(0, 0, omega).cross(x));
           norm += f.squaredNorm();

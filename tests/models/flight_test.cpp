@@ -198,7 +198,7 @@ TEST(Flight, AgreesWithAnIndependentIntegrator) {
   }
 }
 
-/// CVODE chooses its order: what is proved is that the error falls with the tolerance, over eight decades.
+/// The error falls with the tolerance, over eight decades.
 TEST(Flight, ErrorFollowsTheTolerance) {
   double time = 0;
   const auto y = landing(kDrive, {}, time);
@@ -279,8 +279,9 @@ TEST_P(FlightJacobianBy, IsTheDerivative) {
   }
 }
 
-/// By equal steps and by CVODE: one flight. What they differ by is the steps' error: at 0.05 s below a millimetre by a
-/// smooth law, some millimetres where a law's drag has a corner in the Reynolds number, which a step then straddles.
+/// By equal steps and by steps of a tolerance: one flight. What they differ by is the steps' error: at 0.05 s below a
+/// millimetre by a smooth law, some millimetres where a law's drag has a corner in the Reynolds number, which a step
+/// then straddles.
 TEST(Flight, InStepsIsTheSameFlight) {
   for (const auto& entry : models::flight_laws())
     for (const Launch& l : {kDrive, launch_of(52, 17, 6900, -700, 3)})
@@ -320,6 +321,42 @@ TEST(Flight, InStepsIsOfFourthOrder) {
   FlightConditions raised;
   raised.ground.height = 100;
   EXPECT_THROW(models::fly_in_steps(kDrive, {}, raised, 0.05), std::invalid_argument);
+}
+
+/// A ball struck downwards from a bank whose lift turns it up again just below the ground: within the step that meets
+/// the ground the height falls through zero and rises. Newton's method from the step's end leaves the step.
+TEST(Flight, InStepsLandsInsideTheStepThatMeetsTheGround) {
+  FlightConditions c;
+  c.ground = {.height = -1.3389276982971714, .slope = 0.036555157238375366};
+  const Launch l = launch_of(75.231509725164614, degrees(-0.071560585061742801), rpm(899.869320602622));
+  const Flight f = models::fly_in_steps(l, {}, c, 0.22609571528151837), fine = models::fly_in_steps(l, {}, c, 1e-3);
+  EXPECT_NEAR(f.landing.position.z(), c.ground.height + std::tan(c.ground.slope) * f.landing.position.x(), 1e-9);
+  ASSERT_LT(fine.time, 1);  // it does come down there, and at a flat angle: the long step misses by decimetres
+  EXPECT_NEAR(f.time, fine.time, 0.05);
+}
+
+/// By default every law's landing lies within two millimetres, in calm air and in wind, and carry's gradient within
+/// 1e-5 of its largest component.
+TEST(Flight, DefaultToleranceByEveryLaw) {
+  for (const auto& entry : models::flight_laws())
+    for (const bool wind : {false, true})
+      for (const Launch& l : {kDrive, launch_of(52, 17, 6900, -700, 3), launch_of(40, 28, 9000)}) {
+        FlightConditions c = wind ? windy() : FlightConditions{};
+        c.law = entry.make();
+        const Flight f = models::fly(l, {}, c), exact = models::fly(l, {}, c, {.tolerance = 1e-12});
+        ASSERT_GT(exact.carry, 60) << entry.name;
+        EXPECT_LT((f.landing.position - exact.landing.position).norm(), 2e-3) << entry.name << wind;
+        EXPECT_NEAR(f.apex, exact.apex, 2e-3) << entry.name << wind;
+        const auto by = models::flight_jacobian(l, {}, c),
+                   true_by = models::flight_jacobian(l, {}, c, {.tolerance = 1e-12});
+        // Shares of speed and spin, angles in radians.
+        Eigen::Matrix<double, 1, models::kLaunchQuantities> size;
+        size << l.ball_speed(), 1, 1, l.spin_rate(), l.spin_rate(), l.spin_rate();
+        const Eigen::Matrix<double, 1, models::kLaunchQuantities> is = by.row(models::kCarry).cwiseProduct(size),
+                                                                  should =
+                                                                      true_by.row(models::kCarry).cwiseProduct(size);
+        EXPECT_LT((is - should).cwiseAbs().maxCoeff(), 1e-5 * should.cwiseAbs().maxCoeff()) << entry.name << wind;
+      }
 }
 
 TEST(Flight, WithoutSpinHasNoDerivativeByIt) {
@@ -364,6 +401,34 @@ TEST(FlightLaw, PublishedCoefficients) {
   EXPECT_TRUE(table.holds(1.512e5, 0.1559));
   EXPECT_FALSE(table.holds(1.512e5, 0.3));  // measured at that spin ratio, but of slower balls only
   EXPECT_TRUE(table.holds(8e4, 0.3));
+}
+
+/// Where drag or lift has a corner, along lines through the plane of Reynolds number and spin ratio, the piece changes.
+TEST(FlightLaw, CornersLieBetweenPieces) {
+  for (const auto& entry : models::flight_laws()) {
+    const auto law = entry.make();
+    int corners = 0;
+    for (const double turn : {-0.7, 0.0, 0.9}) {
+      constexpr int n = 4000;
+      const auto re = [&](int i) { return 4e4 + 2.2e5 * i / n; };
+      const auto s = [&](int i) { return 0.16 + 0.14 * turn * (2.0 * i / n - 1); };
+      const auto bend = [&](int i) {
+        const auto low = law.at(re(i - 1), s(i - 1)), at = law.at(re(i), s(i)), high = law.at(re(i + 1), s(i + 1));
+        return std::max(std::abs(high.drag - 2 * at.drag + low.drag), std::abs(high.lift - 2 * at.lift + low.lift));
+      };
+      for (int i = 3; i < n - 2; ++i) {
+        // A jump of slope stands out of the curvature on either side.
+        if (bend(i) < 1e-7 + 3 * std::max(bend(i - 2), bend(i + 2)) || bend(i) < std::max(bend(i - 1), bend(i + 1)))
+          continue;
+        ++corners;
+        EXPECT_NE(law.piece(re(i - 1), s(i - 1)), law.piece(re(i + 1), s(i + 1)))
+            << entry.name << " at Re " << re(i) << ", S " << s(i);
+      }
+    }
+    const bool smooth = std::holds_alternative<models::PolynomialLaw>(law.form) ||
+                        std::holds_alternative<models::SineLaw>(law.form);
+    EXPECT_EQ(corners == 0, smooth) << entry.name;
+  }
 }
 
 TEST(FlightLaw, RampsAndLiftsOfTheSpreadsheets) {
@@ -457,9 +522,9 @@ TEST(FlightLaw, ARadarsDriveByEveryLaw) {
     EXPECT_NEAR(fine.carry, std::hypot(y[0], y[1]), 5e-5) << entry.name;
     EXPECT_NEAR(fine.time, time, 1e-6) << entry.name;
     EXPECT_NEAR(std::abs(fine.landing.velocity.z()), std::abs(y[5]), 1e-5) << entry.name;
-    // As flown by default: a ten-thousandth where the law has corners, which a long step passes over.
-    EXPECT_NEAR(f.carry, fine.carry, 2e-4 * fine.carry) << entry.name;
-    EXPECT_NEAR(f.apex, fine.apex, 2e-4 * fine.apex) << entry.name;
+    // As flown by default.
+    EXPECT_NEAR(f.carry, fine.carry, 2e-3) << entry.name;
+    EXPECT_NEAR(f.apex, fine.apex, 2e-3) << entry.name;
     const bool met = std::abs(f.carry / kYard - 283.8) < 3 && std::abs(f.apex / kYard - 34.0) < 1.5 &&
                      std::abs(f.time - 6.4) < 0.2;
     EXPECT_FALSE(met) << entry.name << " meets the radar: say so in cases/radar-drive";

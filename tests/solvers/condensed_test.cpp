@@ -41,11 +41,12 @@ TEST(Condensed, SolvesWhatItFactorised) {
     for (const bool split : {false, true}) {
       CondensedFactorisation factors;
       ASSERT_TRUE(factors.factorise(tangent, kept, split ? apart : none));
-      const Vector half = factors.eliminate(right);
+      const Eigen::VectorXf half = factors.eliminate(right);
       const Vector x =
           factors.recover(half, kept.empty() ? Vector() : Vector(factors.schur().llt().solve(factors.condensed(half))));
-      EXPECT_LT(((split ? blocks : whole) * x - right).norm(), 1e-9 * right.norm());
-      EXPECT_GT(((split ? whole : blocks) * x - right).norm(), 1e-5 * right.norm());
+      // Solutions are in single precision, 6e-8; these are of matrices whose condition costs a factor of ten.
+      EXPECT_LT(((split ? blocks : whole) * x - right).norm(), 2e-6 * right.norm());
+      EXPECT_GT(((split ? whole : blocks) * x - right).norm(), 1e-2 * right.norm());
     }
 }
 
