@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -176,19 +177,42 @@ Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
   return entry;
 }
 
-/// Names and files of a shelf, nothing read.
+/// Names and files of one folder in the order of names, nothing read. A folder is listed again when it has changed: a
+/// study asks for its entries at every point.
+std::vector<LibraryEntry> in_folder(const fs::path& folder, bool shipped) {
+  using Time = fs::file_time_type;
+  static std::mutex mutex;
+  static std::map<fs::path, std::pair<Time, std::vector<LibraryEntry>>> listed;
+  std::error_code none;
+  const Time changed = fs::last_write_time(folder, none);
+  if (none) return {};
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto it = listed.find(folder); it != listed.end() && it->second.first == changed)
+      return it->second.second;
+  }
+  std::vector<LibraryEntry> here;
+  for (const auto& file : fs::directory_iterator(folder, none))
+    if (file.path().extension() == ".toml" && file.is_regular_file())
+      here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
+  std::ranges::sort(here, {}, &LibraryEntry::name);
+  // A change in the same tick of the file system's clock would not be seen.
+  if (Time::clock::now() - changed > std::chrono::seconds(1)) {
+    const std::lock_guard lock(mutex);
+    listed.insert_or_assign(folder, std::pair{changed, here});
+  }
+  return here;
+}
+
+/// Names and files of a shelf.
 std::vector<LibraryEntry> on_shelf(Shelf shelf) {
+  static const fs::path of_hosel = shipped_library();
   std::vector<LibraryEntry> all;
   for (const bool shipped : {true, false}) {
-    const fs::path home = shipped ? shipped_library() : user_library();
+    const fs::path home = shipped ? of_hosel : user_library();
     std::error_code none;
-    if (!shipped && fs::equivalent(home, shipped_library(), none)) continue;  // whoever ships entries makes them so
-    std::vector<LibraryEntry> here;
-    if (!home.empty())
-      for (const auto& file : fs::directory_iterator(home / name(shelf), none))
-        if (file.path().extension() == ".toml" && file.is_regular_file())
-          here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
-    std::ranges::sort(here, {}, &LibraryEntry::name);
+    if (home.empty() || (!shipped && fs::equivalent(home, of_hosel, none))) continue;  // who ships entries makes them
+    const std::vector<LibraryEntry> here = in_folder(home / name(shelf), shipped);
     all.insert(all.end(), here.begin(), here.end());
   }
   return all;

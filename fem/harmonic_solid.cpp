@@ -367,7 +367,8 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
       t.spread.leftCols(2 * t.points).noalias() = d.value.transpose() * t.stress[c].leftCols(2 * t.points);
       t.spread.rightCols(t.points).noalias() = d.derivative.transpose() * t.stress[c].rightCols(t.points);
       t.own.noalias() = B * t.spread.transpose();
-      for (std::size_t k = 0; k < d.functions.size(); ++k) found.force.col(d.functions[k]) += t.own.col(static_cast<Index>(k));
+      for (std::size_t k = 0; k < d.functions.size(); ++k)
+        found.force.col(d.functions[k]) += t.own.col(static_cast<Index>(k));
     }
     element_fields(s.a, 0, e, t.fields);
     found.inertia.noalias() = element_mass_[e] * t.fields;

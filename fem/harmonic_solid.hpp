@@ -144,11 +144,11 @@ class HarmonicSolid final : public Term {
   std::vector<Eigen::Matrix<double, 8, 8>> element_mass_;  // density included, angular part not
   Eigen::MatrixXd gradients_;  // element by element 8 x 3 points: ds and drho point by point, then value / rho
   std::array<Direction, 3> directions_;
-  std::vector<Coupling> couplings_;  // of each pair of directions, once
-  std::vector<Mat3> frames_;         // columns e_s, e_rho, e_theta at each angle
-  Index padded_ = 0;                 // angles, filled up to whole lanes
+  std::vector<Coupling> couplings_;   // of each pair of directions, once
+  std::vector<Mat3> frames_;          // columns e_s, e_rho, e_theta at each angle
+  Index padded_ = 0;                  // angles, filled up to whole lanes
   Eigen::MatrixXd frame_components_;  // the same, component (c, J) in column c + 3 J: padded angles x 9
-  Vector norms_;                     // integral of f_k . f_k over theta; of different functions it is zero
+  Vector norms_;                      // integral of f_k . f_k over theta; of different functions it is zero
   bool corotated_ = false;
   Eigen::MatrixXd mean_gradient_;  // 9 x equations: volume mean of F - 1
 

@@ -55,7 +55,8 @@ VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const
   };
   for (int p = 0; p < nodes; ++p)
     for (int a = 0; a < (numbers.axial(p) ? 1 : angles); ++a)
-      add(ball.reference(p, theta[size_t(a)]), vector_at(displacement, p, a), vector_at(velocity, p, a), stress[size_t(p * angles + a)],
+      add(ball.reference(p, theta[size_t(a)]), vector_at(displacement, p, a), vector_at(velocity, p, a),
+          stress[size_t(p * angles + a)],
           surface.contains(p) ? acting.at(ball.reference(p, theta[size_t(a)])) : fem::TractionField::Value{});
 
   VtkField layer{"layer", "", 1, {}}, around{"angle", "rad", 1, {}};

@@ -320,9 +320,8 @@ Eigen::VectorXf CondensedFactorisation::eliminate(const Vector& right) const {
 Vector CondensedFactorisation::condensed(const Eigen::VectorXf& eliminated) const {
   Vector out(static_cast<Index>(state_->kept.size()));
   state_->each([&](const Part& part, Index row, Index at) {
-    out.segment(at, part.kept()) =
-        part.root().triangularView<Eigen::Lower>() *
-        eliminated.segment(row + part.size() - part.kept(), part.kept()).cast<double>();
+    out.segment(at, part.kept()) = part.root().triangularView<Eigen::Lower>() *
+                                   eliminated.segment(row + part.size() - part.kept(), part.kept()).cast<double>();
   });
   return out;
 }

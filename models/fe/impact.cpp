@@ -267,7 +267,8 @@ void FeImpactOptions::resolve(Accuracy accuracy) {
   struct Level {
     int sector, harmonics, antisymmetric, steps;
   };
-  // Of the ball's motion little is across the plane of the slip: one harmonic less there moves speed, angles and spin by 0.02 %.
+  // Of the ball's motion little is across the plane of the slip: one harmonic less there moves speed, angles and spin
+  // by 0.02 %.
   const auto [sector, order, across, steps] = accuracy == Accuracy::look       ? Level{2, 2, 2, 30}
                                               : accuracy == Accuracy::standard ? Level{3, 4, 3, 60}
                                                                                : Level{4, 6, 5, 120};
