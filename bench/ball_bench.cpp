@@ -177,6 +177,29 @@ void TwoCores(benchmark::State& state) {
 }
 BENCHMARK(TwoCores)->Arg(0)->Arg(1)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
 
+/// An augmented Lagrangian of `contact` against the penalty, by the penetration that it may leave [1e-5 of the radius].
+void Multipliers(benchmark::State& state) {
+  FeImpactOptions penalty, other;
+  penalty.resolve(Accuracy::standard);
+  other = penalty;
+  other.method = "augmented-lagrangian";
+  other.penetration = 1e-5 * double(state.range(0));
+  for (auto _ : state) {
+    FeOutcome out[2];
+    double cpu[2];
+    for (int i = 0; i < 2; ++i) cpu[i] = seconds(1, [&] { out[i] = Impact(i ? other : penalty).run(iron7()); });
+    state.counters["penetration_um"] = 1e6 * out[1].result.penetration;
+    state.counters["penetration_of_the_penalty_um"] = 1e6 * out[0].result.penetration;
+    const auto over = [&](auto of) { return 100 * (of(out[1].launch) / of(out[0].launch) - 1); };
+    state.counters["ball_speed_over_penalty_%"] = over([](const Launch& l) { return l.ball_speed(); });
+    state.counters["spin_over_penalty_%"] = over([](const Launch& l) { return l.spin.norm(); });
+    state.counters["time_over_penalty"] = cpu[1] / cpu[0];
+    state.counters["iterations_over_penalty"] =
+        double(out[1].result.counts.iterations) / double(out[0].result.counts.iterations);
+  }
+}
+BENCHMARK(Multipliers)->Arg(20)->Arg(10)->Arg(5)->ArgName("penetration")->Iterations(1)->Unit(benchmark::kSecond);
+
 /// What a face that yields costs: drives 15 mm off the middle on both, in turn; CPU time, since other work may run.
 void YieldingFace(benchmark::State& state) {
   Blow blow;
