@@ -194,8 +194,8 @@ void Multipliers(benchmark::State& state) {
     state.counters["ball_speed_over_penalty_%"] = over([](const Launch& l) { return l.ball_speed(); });
     state.counters["spin_over_penalty_%"] = over([](const Launch& l) { return l.spin.norm(); });
     state.counters["time_over_penalty"] = cpu[1] / cpu[0];
-    state.counters["iterations_over_penalty"] =
-        double(out[1].result.counts.iterations) / double(out[0].result.counts.iterations);
+    state.counters["iterations_over_penalty"] = double(out[1].result.counts.iterations) /
+                                                double(out[0].result.counts.iterations);
   }
 }
 BENCHMARK(Multipliers)->Arg(20)->Arg(10)->Arg(5)->ArgName("penetration")->Iterations(1)->Unit(benchmark::kSecond);

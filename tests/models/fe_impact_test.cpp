@@ -269,7 +269,7 @@ Blow rubbing_iron() {
   return blow;
 }
 
-/// The same launch within the numerical error of `look`, some 3 %, and a quarter of the penetration.
+/// The same launch within the numerical error of `look`, some 3 %, and less than a third of the penetration.
 TEST(FeImpact, ContactMethodsAgree) {
   const FeImpactOptions options = by_method("augmented-lagrangian");
   const FeOutcome penalty = Impact(by_method("penalty")).run(rubbing_iron()),
@@ -279,7 +279,7 @@ TEST(FeImpact, ContactMethodsAgree) {
   EXPECT_NEAR(other.launch.ball_speed() / penalty.launch.ball_speed(), 1, 0.03);
   EXPECT_NEAR(other.launch.velocity.z() / penalty.launch.velocity.z(), 1, 0.03);
   EXPECT_NEAR(other.launch.spin.norm() / penalty.launch.spin.norm(), 1, 0.03);
-  EXPECT_LT(other.result.penetration, 0.25 * penalty.result.penetration);
+  EXPECT_LT(3 * other.result.penetration, penalty.result.penetration);
   EXPECT_LE(other.result.penetration, options.penetration * rubbing_iron().ball.radius * (1 + 1e-9));
   EXPECT_LT(std::abs(other.result.ledger.closure), 5e-3 * other.result.ledger.initial);
   EXPECT_EQ(other.result.ledger.contact, 0);
