@@ -282,7 +282,7 @@ std::optional<FeImpactOptions> FeImpactOptions::coarser() const {
   if (mesh.sector < 2 || mesh.rings < 2 || harmonics < 4 || antisymmetric < 3 || steps_per_contact < 40) return {};
   FeImpactOptions out = *this;
   --out.mesh.sector, --out.mesh.rings;
-  out.harmonics -= 2, out.antisymmetric -= 2;
+  out.harmonics -= 2, --out.antisymmetric;
   if (angles > 0) out.angles -= 4;
   if (contact_angles > 0) out.contact_angles = std::max(contact_angles - 6, 1);
   out.steps_per_contact /= 2;

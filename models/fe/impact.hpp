@@ -58,8 +58,8 @@ struct FeImpactOptions {
 
   /// Sets sectors and rings of the mesh, harmonics and steps; leaves the rest.
   void resolve(Accuracy accuracy);
-  /// A sector and a ring less, two harmonics less, half the steps: what a run changes by against these bounds its
-  /// error. Nothing where there is no less.
+  /// A sector and a ring less, two harmonics less (across the plane of the slip one), half the steps: what a run
+  /// changes by against these bounds its error. Nothing where there is no less.
   std::optional<FeImpactOptions> coarser() const;
 
   /// Sentences naming what cannot be; empty if all is well.

@@ -247,7 +247,7 @@ TEST(ImpactCase, TheErrorOfEveryNumberIsTheDistanceToACoarserRun) {
     EXPECT_EQ(o.status, 0) << o.text;
     return nlohmann::json::parse(content(out / "summary.json")).at("models").at("fe-free-body");
   };
-  const auto fine = run("fine", 2, 4, 3, 40, true), coarse = run("coarse", 1, 2, 1, 20, false);
+  const auto fine = run("fine", 2, 4, 3, 40, true), coarse = run("coarse", 1, 2, 2, 20, false);
   EXPECT_FALSE(coarse.contains("numerical_error"));
   for (const char* key : {"ball_speed_mps", "launch_angle_deg", "spin_rate_rpm"}) {
     const double error = fine.at("numerical_error").at(key);
