@@ -63,9 +63,9 @@ struct Checkpoint {
 
 class GeneralizedAlpha {
  public:
-  /// `system` must outlive this. Imposed motions overwrite the initial state; State::a is ignored and
-  /// solved for. Throws std::invalid_argument on bad options, NonConvergence where the mass matrix is
-  /// singular.
+  /// `system` must outlive this. Imposed motions overwrite the initial state; State::a is ignored: zero where the start
+  /// is balanced to the absolute tolerance of Newton, solved for else. Throws std::invalid_argument on bad options,
+  /// NonConvergence where a mass matrix that is asked is singular.
   GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions options, fem::State initial);
 
   /// One accepted step, no further than `end`; shortened on failure of Newton, on too large an error,

@@ -19,7 +19,7 @@ inline void load(Lanes& to, const double* from) { std::memcpy(&to, from, sizeof 
 inline void store(double* to, const Lanes& from) { std::memcpy(to, &from, sizeof from); }
 
 inline double inverse_cbrt(double x) { return 1 / std::cbrt(x); }
-/// x^(-1/3) for x > 0, to 4 units in the last place: a third of the exponent, then three steps of fourth order.
+/// x^(-1/3) for x > 0, to a unit in the last place: a third of the exponent, then three steps of fourth order.
 inline void inverse_cbrt(const Lanes& x, Lanes& out) {
   for (int l = 0; l < kLanes; ++l)
     out[l] = std::bit_cast<double>(0x553ef0ff289dd796 - std::bit_cast<std::uint64_t>(x[l]) / 3);  // within 4 %
