@@ -59,6 +59,8 @@ struct Parametrisation {
   double complexity = 0;
   /// Further starting points [SI].
   std::vector<std::vector<double>> starts;
+  /// It acts in proportion to the shot's place in the session.
+  bool of_order = false;
   /// Nothing happens below some size: the gradient at zero vanishes, and the starts are probes that stand for it.
   bool threshold = false;
   /// Shot: changes the blow before the model answers.
@@ -74,6 +76,9 @@ struct Parametrisation {
   /// Club test: changes club, clamp or sensors.
   std::function<void(std::span<const double>, TestSetup&)> setup;
 };
+
+/// The same on every shot of the session: what a form `of_order` is where the session does not matter.
+Parametrisation at_every_shot(const Parametrisation& form);
 
 /// What the forms of an effect on shots depend on.
 struct Setting {

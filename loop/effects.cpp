@@ -1,4 +1,5 @@
 #include <array>
+#include <utility>
 
 #include "loop/effects/all.hpp"
 
@@ -100,6 +101,25 @@ constexpr std::array kEffects = {
 }  // namespace
 
 std::span<const EffectEntry> effects() { return kEffects; }
+
+Parametrisation at_every_shot(const Parametrisation& form) {
+  static constexpr double last = 1;
+  Parametrisation same = form;
+  same.of_order = false;
+  if (form.before)
+    same.before = [before = form.before](std::span<const double> p, Shot& s) {
+      const double place = std::exchange(s.order, last);
+      before(p, s);
+      s.order = place;
+    };
+  if (form.reading)
+    same.reading = [reading = form.reading](std::span<const double> p, const Shot& s, Output of, double value) {
+      Shot at = s;
+      at.order = last;
+      return reading(p, at, of, value);
+    };
+  return same;
+}
 
 std::vector<EffectEntry> effects_with(std::span<const EffectEntry> own) {
   std::vector<EffectEntry> all(kEffects.begin(), kEffects.end());

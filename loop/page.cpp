@@ -168,13 +168,16 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "<h2>Before and after</h2>";
   if (!r.channels.empty()) s += "<figure class='wide'>" + bars(r.channels) + "</figure>";
   const bool smooth = r.remainder && !r.remainder->places.empty();
-  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS before<th>RMS after";
+  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS by noise<th>RMS "
+       "before<th>RMS "
+       "after";
   s += smooth ? "<th>RMS after, remainder taken away" : "";
   s += "<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)
-    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}{}<td>{}<td>{}</tr>",
+    s += fmt::format("<tr><td>{}<td>{} <small>{}</small><td>{}<td>{}<td>{}<td>{}{}<td>{}<td>{}</tr>",
                      escape_html(post::label(c.name)), number(c.noise), c.noise_source, number(c.scatter),
-                     rms(c.before.holdout_rmse, c.before.holdout), rms(c.after.holdout_rmse, c.after.holdout),
+                     number(c.expected), rms(c.before.holdout_rmse, c.before.holdout),
+                     rms(c.after.holdout_rmse, c.after.holdout),
                      smooth ? "<td>" + rms(c.with_remainder.holdout_rmse, c.with_remainder.holdout) : "",
                      number(c.before.holdout_bias), number(c.after.holdout_bias));
   s += "</table></div>";
@@ -183,7 +186,8 @@ std::string page(const LoopResult& r, const Shots& table) {
       "readings' "
       "own spread, or (repeats) from the rows whose mean a reading is. Scatter / noise: the scatter about the fit, "
       "divided by that noise; it is 1 where both are right. Held out: "
-      "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers. "
+      "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers; by "
+      "noise: what the noise of readings and of inputs makes of it about the right model. "
       "Bias: their mean.");
   if (smooth) s += without_name(r);
   if (r.corrected && !r.corrected->rows.empty()) {

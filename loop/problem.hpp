@@ -120,6 +120,9 @@ class Problem {
   /// changed that effects must be selected anew.
   virtual bool screen(const Selection& selection) = 0;
   virtual Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const = 0;
+  /// Standard deviation of a reading about the right model, header's unit: by the instrument, and by what is not known
+  /// of the inputs. `row`: Row::index.
+  virtual double sigma(int /*row*/, int channel) const { return this->channel(channel).noise; }
   /// Measures noise that is not known, about the selected model or the one that fits best whatever it takes. Returns
   /// the largest relative change.
   virtual double update_noise(const Fit& selected, const Fit& richest) = 0;

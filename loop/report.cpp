@@ -64,6 +64,7 @@ json to_json(const LoopResult& r) {
                                {"noise_source", c.noise_source == "declared" ? "declared" : "estimated"},
                                {"noise_from_repeats", c.noise_source == "repeats"},
                                {"scatter_over_noise", value(c.scatter)},
+                               {"expected_holdout_rmse", value(c.expected)},
                                {"before", errors(c.before)},
                                {"after", errors(c.after)},
                                {"with_remainder", errors(c.with_remainder)}});
@@ -209,19 +210,20 @@ std::string residuals_csv(const LoopResult& r, const Shots& table) {
 
 namespace {
 
-/// The held-out error of the channel that is farthest above its noise, as numbers; in words only where none is farther
-/// than the data's own scatter may be from a declared noise.
+/// The held-out error of the channel that is farthest above what instrument and inputs make of it, as numbers; in words
+/// only where none is farther than the data's own scatter may be from a declared noise.
 std::string beside_noise(const LoopResult& r) {
   const ChannelResult* worst = nullptr;
-  const auto ratio = [](const ChannelResult& c) { return c.after.holdout_rmse / c.noise; };
+  const auto ratio = [](const ChannelResult& c) { return c.after.holdout_rmse / c.expected; };
   for (const ChannelResult& c : r.channels)
-    if (c.noise > 0 && std::isfinite(c.after.holdout_rmse) && (!worst || ratio(c) > ratio(*worst))) worst = &c;
+    if (c.expected > 0 && std::isfinite(c.after.holdout_rmse) && (!worst || ratio(c) > ratio(*worst))) worst = &c;
   if (!worst) return "";
   if (ratio(*worst) <= Rules{}.scatter_ratio) return "The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
   const std::string unit = name.unit ? " " + std::string(name.unit->suffix) : "";
-  return fmt::format("Held out, {} is off by {:.3g}{} (RMS), its noise is {:.3g}{}: {:.1f} times.", name.stem,
-                     worst->after.holdout_rmse, unit, worst->noise, unit, ratio(*worst));
+  return fmt::format(
+      "Held out, {} is off by {:.3g}{} (RMS), the noise of readings and inputs makes {:.3g}{}: {:.1f} times.",
+      name.stem, worst->after.holdout_rmse, unit, worst->expected, unit, ratio(*worst));
 }
 
 }  // namespace

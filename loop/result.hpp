@@ -29,6 +29,8 @@ struct ChannelResult {
   std::string noise_source;       ///< declared, repeats (of which a reading is the mean), estimated
   std::optional<double> refuted;  ///< what was declared, where the data's own scatter contradicts it
   double scatter = 0;             ///< what the residual of the final model shows, over `noise`
+  /// RMS of the held-out rows about the right model: by the instrument, and by what is not known of the inputs.
+  double expected = 0;
   Errors before, after;
   Errors with_remainder;  ///< after, and the remainder taken away
 

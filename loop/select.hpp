@@ -17,6 +17,9 @@ struct Selection {
   bool structured = false;  ///< the gate
   bool clean = true;        ///< nothing remains after `chosen`
   bool nameless = false;    ///< many sets of effects tie and no name is common to them
+  /// What acts in proportion to the place in the session does as well without it, in words; empty: it does not, or
+  /// nothing chosen acts so.
+  std::string at_every_shot;
   StructureMap before, after;
   std::vector<std::string> silent;  ///< effects without influence on these channels at these inputs
 };

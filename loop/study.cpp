@@ -23,8 +23,60 @@ Study::Study(Problem& data, const std::vector<Parametrisation>& forms, const std
 }
 
 void Study::select(bool deep) {
-  selection = loop::select(problem, base, candidates, rules, deep, told_);
+  std::vector<const Parametrisation*> forms = candidates;
+  if (even_) std::erase_if(forms, [](const Parametrisation* f) { return f->of_order; });
+  selection = loop::select(problem, base, forms, rules, deep, told_);
   if (!std::isfinite(selection.base.deviance)) throw DataError("the model has no answer for these data");
+  if (even_) return beside_drift();
+  if (const Parametrisation* drift = likelier_at_every_shot()) {
+    even_ = drift;
+    select(deep);
+  }
+}
+
+double Study::likeliest(const Model& model) const {
+  return criterion(fit(problem, Part::select, model, starts(model), problem.effort().starts), rules);
+}
+
+/// What is told as a drift must drift: the one among the chosen that is no likelier than the same on every shot. One
+/// that is not much likelier is none either, and is told so.
+const Parametrisation* Study::likelier_at_every_shot() {
+  const auto& chosen = selection.chosen.model.forms;
+  std::vector<Parametrisation> same(chosen.size());
+  Model model;
+  const Parametrisation* drift = nullptr;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const bool drifts = k >= base.size() && chosen[k]->of_order;
+    if (drifts) same[k] = at_every_shot(*(drift = chosen[k]));
+    model = model.with(drifts ? &same[k] : chosen[k]);
+  }
+  if (!drift) return nullptr;
+  const double beyond = likeliest(model) - criterion(selection.chosen, rules);
+  if (beyond < 0) return drift;
+  if (beyond < rules.tie) selection.at_every_shot = no_drift(*drift);
+  return nullptr;
+}
+
+std::string Study::no_drift(const Parametrisation& drift) const {
+  return fmt::format("{} ({}) says no more than the same on every shot", drift.effect, drift.what);
+}
+
+/// What settles early is nearer to the same on every shot than to a drift: where the drift is as likely as what was
+/// chosen without it, it ties with one name, and leaves several in doubt.
+void Study::beside_drift() {
+  if (selection.level == 0) return;
+  Model model;
+  for (const Parametrisation* f : base) model = model.with(f);
+  if (likeliest(model.with(even_)) > criterion(selection.chosen, rules) + rules.tie) return;
+  if (selection.level > 1 || !selection.clean) {
+    selection.at_every_shot = no_drift(*even_);
+    return;
+  }
+  std::vector<std::string> tie = selection.adopted;
+  for (const auto& names : selection.ties) tie.insert(tie.end(), names.begin(), names.end());
+  tie.push_back(even_->effect);
+  selection.adopted.clear();
+  selection.ties = {std::move(tie)};
 }
 
 void Study::settle() {

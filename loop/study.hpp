@@ -18,7 +18,14 @@ struct Study {
 
  private:
   const Told told_;
+  /// What was chosen in proportion to the place in the session, though the same on every shot is likelier: nothing that
+  /// acts so is a candidate then.
+  const Parametrisation* even_ = nullptr;
   void select(bool deep);
+  double likeliest(const Model& model) const;
+  const Parametrisation* likelier_at_every_shot();
+  std::string no_drift(const Parametrisation& drift) const;
+  void beside_drift();
   void settle();
   void refute_noise();
 };

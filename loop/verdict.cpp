@@ -133,6 +133,10 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
+  if (!s.at_every_shot.empty()) {
+    unexplained.push_back({"", "", s.at_every_shot});
+    return Verdict::unexplained;
+  }
   if (s.structured && s.level == 0) return Verdict::insufficient;
   for (int c = 0; c < problem.width(); ++c)
     if (problem.channel(c).refuted) return Verdict::noise_contradicted;
@@ -160,6 +164,12 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
     }
     result.rows.push_back(std::move(u));
   }
+  const auto expected = [&](int c) {
+    double variance = 0, rows = 0;
+    for (const Problem::Row& row : problem.rows())
+      if (row.holdout && std::isfinite(ra(row.index, c))) variance += std::pow(problem.sigma(row.index, c), 2), ++rows;
+    return std::sqrt(variance / rows);
+  };
   for (int c = 0; c < problem.width(); ++c) {
     const Channel& ch = problem.channel(c);
     result.channels.push_back({.name = ch.name,
@@ -169,6 +179,7 @@ void tell_errors(const Problem& problem, const Fit& base, const Fit& after, Loop
                                                              : "declared",
                                .refuted = ch.refuted ? ch.declared : std::nullopt,
                                .scatter = problem.scatter(c, ra, after.size()).ratio,
+                               .expected = expected(c),
                                .before = errors(result.rows, &UsedRow::before, std::size_t(c)),
                                .after = errors(result.rows, &UsedRow::after, std::size_t(c)),
                                .with_remainder = errors(result.rows, &UsedRow::with_remainder, std::size_t(c))});

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "loop/median.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
@@ -128,18 +129,15 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     spread[std::size_t(k)] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
     if (const auto it = noise.find(c->name); it != noise.end()) sigma[std::size_t(k)] = it->second;
     for (std::size_t i = 0; i < n; ++i)
-      if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) {
-        set(in.trials[i].blow, Input(k), centre[std::size_t(k)]);
-        ++filled[std::size_t(k)];
-      }
+      if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) ++filled[std::size_t(k)];
     any = any || sigma[std::size_t(k)] > 0 || filled[std::size_t(k)] > 0;
   }
   for (int k = 0; k < kInputs; ++k)
     if (filled[std::size_t(k)])
-      in.notes.push_back(
-          fmt::format("{}: {} missing values are the mean of the recorded ones; these shots count as uncertain by the "
-                      "spread of those",
-                      column[std::size_t(k)]->name, filled[std::size_t(k)]));
+      in.notes.push_back(fmt::format(
+          "{}: {} missing values are inferred from the row's other inputs; these shots count as uncertain by what "
+          "those leave open",
+          column[std::size_t(k)]->name, filled[std::size_t(k)]));
   if (!any) return in;
 
   // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.
@@ -164,7 +162,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     total.setZero();
     for (int k = 0; k < kInputs; ++k) total(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)];
   }
-  // Only inputs with noise are drawn towards their expectation; the others are known and inform it.
+  // Only inputs with noise, or missing, are set to their expectation; the others are known and inform it.
   const Eigen::MatrixXd noise_cov = Eigen::Map<const Eigen::VectorXd>(sigma.data(), kInputs).cwiseAbs2().asDiagonal();
   Eigen::VectorXd unit(kInputs);
   for (int k = 0; k < kInputs; ++k) unit[k] = spread[std::size_t(k)] > 0 ? spread[std::size_t(k)] : 1;
@@ -174,35 +172,42 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled_total - scaled_noise);
   const Eigen::MatrixXd truth = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() *
                                 eigen.eigenvectors().transpose();
-  const Eigen::MatrixXd gain = truth *
-                               (truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs)).inverse();
-  const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * truth) * unit.asDiagonal();
-
   in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
+  std::map<std::vector<int>, std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>
+      known;  // of such a record: gain, what it leaves
   for (std::size_t i = 0; i < n; ++i) {
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(kInputs);
-    bool complete = true;
+    std::vector<int> recorded;
+    const auto value = [&](int k) { return column[std::size_t(k)]->value[std::size_t(in.row_of[i])]; };
     for (int k = 0; k < kInputs; ++k)
-      if (const Column* c = column[std::size_t(k)]; c && spread[std::size_t(k)] > 0) {
-        const double x = c->value[std::size_t(in.row_of[i])];
-        if (std::isfinite(x)) d[k] = (x - centre[std::size_t(k)]) / unit[k];
-        else complete = false;
-      }
-    const Eigen::VectorXd best = gain * d;
-    Eigen::MatrixXd& cov = in.covariance[i];
-    for (int k = 0; k < kInputs; ++k) {
-      const Column* c = column[std::size_t(k)];
-      if (!c) continue;
-      const bool known = std::isfinite(c->value[std::size_t(in.row_of[i])]);
-      if (known && sigma[std::size_t(k)] > 0 && complete)
-        set(in.trials[i].blow, Input(k), centre[std::size_t(k)] + unit[k] * best[k]);
-      if (!known && k != int(Input::head_mass))
-        cov(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)] + noise_cov(k, k);
-      if (known && sigma[std::size_t(k)] > 0 && !complete) cov(k, k) = noise_cov(k, k);
+      if (column[std::size_t(k)] && spread[std::size_t(k)] > 0 && std::isfinite(value(k))) recorded.push_back(k);
+    const auto m = std::ptrdiff_t(recorded.size());
+    auto at = known.find(recorded);
+    if (at == known.end()) {
+      const Eigen::MatrixXd shared = truth(Eigen::all, recorded);
+      const Eigen::MatrixXd record = truth(recorded, recorded) + scaled_noise(recorded, recorded) +
+                                     1e-12 * Eigen::MatrixXd::Identity(m, m);
+      const Eigen::MatrixXd gain = shared * record.inverse();
+      const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * shared.transpose()) *
+                                   unit.asDiagonal();
+      at = known.emplace(recorded, std::pair(gain, left)).first;
     }
-    for (int a = 0; complete && a < kInputs; ++a)
+    const auto& [gain, left] = at->second;
+    Eigen::VectorXd d(m);
+    for (std::ptrdiff_t j = 0; j < m; ++j) {
+      const auto k = std::size_t(recorded[std::size_t(j)]);
+      d[j] = (value(int(k)) - centre[k]) / spread[k];
+    }
+    const Eigen::VectorXd best = gain * d;
+    const auto uncertain = [&](int k) {
+      const bool missing = column[std::size_t(k)] && k != int(Input::head_mass) && !std::isfinite(value(k));
+      return missing || sigma[std::size_t(k)] > 0;
+    };
+    for (int a = 0; a < kInputs; ++a) {
+      if (!column[std::size_t(a)] || !uncertain(a)) continue;
+      set(in.trials[i].blow, Input(a), centre[std::size_t(a)] + unit[a] * best[a]);
       for (int b = 0; b < kInputs; ++b)
-        if (sigma[std::size_t(a)] > 0 && sigma[std::size_t(b)] > 0) cov(a, b) = left(a, b);
+        if (column[std::size_t(b)] && uncertain(b)) in.covariance[i](a, b) = left(a, b);
+    }
   }
   return in;
 }

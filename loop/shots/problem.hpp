@@ -49,6 +49,7 @@ class ShotProblem : public Problem {
 
   bool screen(const Selection& selection) override;
   Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
+  double sigma(int row, int channel) const override { return model_->sigma(row, channel); }
   double update_noise(const Fit& selected, const Fit& richest) override;
 
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,

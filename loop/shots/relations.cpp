@@ -17,10 +17,9 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
-constexpr double kContrast = 4;      // of the density within rounding to that beside it
-constexpr double kEdge = 3;      // of it to that in the next width: scatter of the size of a coarse step has no edge
-constexpr int kLeastRows = 10;   // that hold,
-constexpr int kFurtherRows = 2;  // and more for each further column of a formula: so many agree by chance
+// The logarithm of how much likelier a formula must be than scatter without an edge, beyond that of the number of
+// formulas that were tried: by chance in one set of a thousand.
+constexpr double kBeyondChance = 6.9;
 constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {
@@ -38,6 +37,7 @@ struct Relation {
   std::string text;
   double residual = 0;
   int rows = 0, held = 0;
+  double evidence = 0;  ///< log-likelihood beyond that of scatter alone
   double score() const { return held - 3.0 * double(from.size()); }
   std::set<int> columns() const {
     std::set<int> all(from.begin(), from.end());
@@ -51,6 +51,49 @@ Vec3 direction(double up, double right) {
 }
 double up(const Vec3& v) { return std::asin(v.z() / v.norm()); }
 double right(const Vec3& v) { return std::atan2(-v.y(), v.x()); }
+
+/// Student's density with four degrees of freedom.
+double student(double r, double scale) { return 0.375 / scale * std::pow(1 + r * r / (4 * scale * scale), -2.5); }
+
+/// How much likelier the residuals are where a share of them is nothing but rounding, within t, than where all are
+/// scatter: the difference of the two log-likelihoods at their most likely shares and scales. What computes a column
+/// leaves an edge at its last digit; scatter of the size of that digit has none.
+double edge_evidence(const std::vector<double>& residual, double t) {
+  std::vector<double> own(residual.size(), 1.0);  // probability that a row is scatter
+  const auto scale_of = [&](double scale) {
+    for (int pass = 0; pass < 25; ++pass) {
+      double sum = 0, count = 0;
+      for (std::size_t i = 0; i < residual.size(); ++i) {
+        const double r = residual[i];
+        sum += own[i] * 5 / (4 + r * r / (scale * scale)) * r * r;
+        count += own[i];
+      }
+      if (!(sum > 0)) return t;
+      scale = std::max(std::sqrt(sum / count), 1e-3 * t);
+    }
+    return scale;
+  };
+  double rms = 0;
+  for (const double r : residual) rms += r * r / double(residual.size());
+  double scatter = scale_of(std::sqrt(rms)), alone = 0;
+  for (const double r : residual) alone += std::log(student(r, scatter));
+  double share = 0.5, both = 0;
+  const double most = 1 - 0.5 / double(residual.size());
+  for (int pass = 0; pass < 40; ++pass) {
+    double held = 0;
+    both = 0;
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+      const double r = residual[i], rounding = std::abs(r) <= t ? share / (2 * t) : 0,
+                   rest = (1 - share) * student(r, scatter);
+      both += std::log(rounding + rest);
+      held += rounding / (rounding + rest);
+      own[i] = rest / (rounding + rest);
+    }
+    share = std::clamp(held / double(residual.size()), 0.01, most);
+    scatter = std::max(scale_of(scatter), t);
+  }
+  return both - alone;
+}
 
 class Relations {
  public:
@@ -84,6 +127,9 @@ class Relations {
       scalars(y);
       directions(y);
     }
+    // A number that most rows agree on is sought at the ends of all of them.
+    const double chance = std::log(double(tried_ + 1)) + std::log(double(2 * rows() + 1));
+    std::erase_if(found_, [&](const Relation& r) { return r.evidence < kBeyondChance + chance; });
     // Solved for another of its columns a relation holds on a row more or less, as these are rounded: what an
     // instrument is likely to compute decides between them, not a unit.
     std::map<std::set<int>, double> best;
@@ -104,6 +150,7 @@ class Relations {
  private:
   std::vector<RelationSource> sources_;
   std::vector<Relation> found_;
+  long tried_ = 0;  ///< formulas
 
   int count() const { return int(sources_.size()); }
   double x(int k, std::size_t row) const { return sources_[std::size_t(k)].x[row]; }
@@ -136,39 +183,31 @@ class Relations {
     std::size_t row;
     double value;
   };
-  /// Do more of the residuals lie within rounding than beside it? Rows that repeat (one value per cluster, zeros where
-  /// nothing was read) count once.
-  void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual,
-             int least = kLeastRows) {
+  /// Do so many of the residuals lie within rounding that scatter would not? Rows that repeat (one value per cluster,
+  /// zeros where nothing was read) count once.
+  void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
+    ++tried_;
     const double t = 0.5 * sources_[std::size_t(y)].step * 1.02 + 1e-9 * sources_[std::size_t(y)].spread;
-    const auto count = [&](auto&& inside) {
-      return int(std::ranges::count_if(residual, [&](const Residual& r) { return inside(std::abs(r.value)); }));
-    };
-    const auto stands_out = [least](int held, int beside, int n) {
-      return n >= 20 && held >= least && held >= kLeastHeld * n && held >= kContrast * (beside / 4.0 + 1);
-    };
-    const auto within = [&](double r) { return r <= t; };
-    const auto near = [&](double r) { return r > t && r <= 5 * t; };
-    if (!stands_out(count(within), count(near), int(residual.size()))) return;
-    if (count(within) < kEdge * count([&](double r) { return r > t && r <= 2 * t; })) return;
-    std::set<std::vector<double>> all, held, beside;
+    const auto within = [&](const Residual& r) { return std::abs(r.value) <= t; };
+    const int rows = int(std::ranges::count_if(residual, within));
+    if (residual.size() < 20 || rows < kLeastHeld * double(residual.size())) return;
+    std::set<std::vector<double>> seen;
     std::set<double> values;
+    std::vector<double> distinct;
     double square = 0;
     for (const Residual& r : residual) {
+      if (within(r)) {
+        square += r.value * r.value;
+        values.insert(x(y, r.row));
+      }
       std::vector<double> key{x(y, r.row)};
       for (const int k : from) key.push_back(x(k, r.row));
-      all.insert(key);
-      if (within(std::abs(r.value))) {
-        square += r.value * r.value;
-        values.insert(key[0]);
-        held.insert(key);
-      } else if (near(std::abs(r.value))) {
-        beside.insert(key);
-      }
+      if (seen.insert(std::move(key)).second) distinct.push_back(r.value);
     }
-    if (values.size() < 8 || !stands_out(int(held.size()), int(beside.size()), int(all.size()))) return;
-    const int rows = count(within);
-    found_.push_back({y, from, text, std::sqrt(square / rows), int(residual.size()), rows});
+    if (values.size() < 8 || distinct.size() < 20) return;
+    const double evidence = edge_evidence(distinct, t);
+    if (evidence > kBeyondChance)
+      found_.push_back({y, from, text, std::sqrt(square / rows), int(residual.size()), rows, evidence});
   }
 
   /// y = u + k v: the number that most rows agree on, to rounding.
@@ -208,7 +247,7 @@ class Relations {
     }
     std::vector<Residual> residual;
     for (const auto& [row, a, b] : parts) residual.push_back({row, a - k * b});
-    judge(y, from, text(k), residual, kLeastRows + kFurtherRows * int(from.size() - 1));
+    judge(y, from, text(k), residual);
   }
 
   void scalars(int y) {
