@@ -143,15 +143,18 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(kInputs, kInputs);
   double count = 0;
+  const auto value = [&](std::size_t i, std::size_t k) { return column[k]->value[std::size_t(in.row_of[i])]; };
+  const auto outside = [&](std::size_t i, std::size_t k) {
+    return std::abs(value(i, k) - centre[k]) > 5 * spread[k];  // no: missing
+  };
+  const auto varies = [&](std::size_t k) { return column[k] && spread[k] > 0; };
   for (std::size_t i = 0; i < n; ++i) {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(kInputs);
     bool inside = true;
-    for (int k = 0; k < kInputs && inside; ++k) {
-      const Column* c = column[std::size_t(k)];
-      if (!c || !(spread[std::size_t(k)] > 0)) continue;
-      const double x = c->value[std::size_t(in.row_of[i])];
-      inside = std::isfinite(x) && std::abs(x - centre[std::size_t(k)]) <= 5 * spread[std::size_t(k)];
-      if (inside) d[k] = x - centre[std::size_t(k)];
+    for (std::size_t k = 0; k < kInputs && inside; ++k) {
+      if (!varies(k)) continue;
+      inside = std::isfinite(value(i, k)) && !outside(i, k);
+      if (inside) d[Eigen::Index(k)] = value(i, k) - centre[k];
     }
     if (!inside) continue;
     total += d * d.transpose();
@@ -176,10 +179,12 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   std::map<std::vector<int>, std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>
       known;  // of such a record: gain, what it leaves
   for (std::size_t i = 0; i < n; ++i) {
+    // Beside the others' spread their moments say nothing: such a record stands as it is, what it lacks is their mean.
+    bool beside = false;
+    for (std::size_t k = 0; k < kInputs && !beside; ++k) beside = varies(k) && outside(i, k);
     std::vector<int> recorded;
-    const auto value = [&](int k) { return column[std::size_t(k)]->value[std::size_t(in.row_of[i])]; };
-    for (int k = 0; k < kInputs; ++k)
-      if (column[std::size_t(k)] && spread[std::size_t(k)] > 0 && std::isfinite(value(k))) recorded.push_back(k);
+    for (std::size_t k = 0; k < kInputs && !beside; ++k)
+      if (varies(k) && std::isfinite(value(i, k))) recorded.push_back(int(k));
     const auto m = std::ptrdiff_t(recorded.size());
     auto at = known.find(recorded);
     if (at == known.end()) {
@@ -195,18 +200,21 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     Eigen::VectorXd d(m);
     for (std::ptrdiff_t j = 0; j < m; ++j) {
       const auto k = std::size_t(recorded[std::size_t(j)]);
-      d[j] = (value(int(k)) - centre[k]) / spread[k];
+      d[j] = (value(i, k) - centre[k]) / spread[k];
     }
     const Eigen::VectorXd best = gain * d;
-    const auto uncertain = [&](int k) {
-      const bool missing = column[std::size_t(k)] && k != int(Input::head_mass) && !std::isfinite(value(k));
-      return missing || sigma[std::size_t(k)] > 0;
-    };
-    for (int a = 0; a < kInputs; ++a) {
-      if (!column[std::size_t(a)] || !uncertain(a)) continue;
-      set(in.trials[i].blow, Input(a), centre[std::size_t(a)] + unit[a] * best[a]);
-      for (int b = 0; b < kInputs; ++b)
-        if (column[std::size_t(b)] && uncertain(b)) in.covariance[i](a, b) = left(a, b);
+    const auto missing = [&](std::size_t k) { return k != int(Input::head_mass) && !std::isfinite(value(i, k)); };
+    for (std::size_t a = 0; a < kInputs; ++a) {
+      if (!column[a] || !(missing(a) || sigma[a] > 0)) continue;
+      const auto row = Eigen::Index(a);
+      if (beside && !missing(a)) {
+        in.covariance[i](row, row) = noise_cov(row, row);
+        continue;
+      }
+      set(in.trials[i].blow, Input(int(a)), centre[a] + unit[row] * best[row]);
+      for (std::size_t b = 0; b < kInputs; ++b)
+        if (column[b] && (missing(b) || (sigma[b] > 0 && !beside)))
+          in.covariance[i](row, Eigen::Index(b)) = left(row, Eigen::Index(b));
     }
   }
   return in;
