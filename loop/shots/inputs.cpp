@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "loop/median.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
 
@@ -171,11 +171,10 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const Eigen::MatrixXd scaled_total = unit.cwiseInverse().asDiagonal() * total * unit.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
   // True spread = total - noise, kept positive: where the noise is all there is, the record says nothing.
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled_total - scaled_noise);
-  const Eigen::MatrixXd truth = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() *
-                                eigen.eigenvectors().transpose();
-  const Eigen::MatrixXd gain = truth *
-                               (truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs)).inverse();
+  const auto [values, vectors, converged] = dense::eigenpairs(scaled_total - scaled_noise);
+  const Eigen::MatrixXd truth = vectors * values.cwiseMax(1e-9).asDiagonal() * vectors.transpose();
+  const Eigen::MatrixXd gain =
+      truth * dense::inverse(truth + scaled_noise + 1e-12 * Eigen::MatrixXd::Identity(kInputs, kInputs));
   const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * truth) * unit.asDiagonal();
 
   in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
