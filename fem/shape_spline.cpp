@@ -1,11 +1,10 @@
 #include "fem/shape_spline.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
-
-#include "golf/dense.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -18,7 +17,7 @@ Eigen::MatrixXd interpolation(int points) {
   A.block<1, 3>(0, 0) << 1, -2, 1;
   A.block<1, 3>(n - 1, n - 3) << 1, -2, 1;
   for (int i = 0; i < points; ++i) A.block<1, 3>(i + 1, i) << 1.0 / 6, 4.0 / 6, 1.0 / 6;
-  return dense::inverse(A).middleCols(1, points);
+  return A.inverse().middleCols(1, points);
 }
 
 struct Weights4 {
