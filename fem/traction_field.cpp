@@ -1,11 +1,9 @@
 #include "fem/traction_field.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "golf/units.hpp"
 #include "mesh/gauss.hpp"
 
@@ -48,6 +46,19 @@ std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const 
   return out;
 }
 
+/// Of a symmetric matrix in the plane: what it is along its principal axes.
+struct Principal {
+  Eigen::Vector2d values;
+  Eigen::Matrix2d axes;
+  explicit Principal(const Eigen::Matrix2d& m) {
+    const dense::Eigenpairs of = dense::eigenpairs(m);
+    values = of.values;
+    axes = of.vectors;
+  }
+  /// The symmetric matrix of the same axes with other values.
+  Eigen::Matrix2d with(const Eigen::Vector2d& other) const { return axes * other.asDiagonal() * axes.transpose(); }
+};
+
 }  // namespace
 
 TractionField::Quadratic TractionField::monomials(const Vec2& xi) {
@@ -55,11 +66,11 @@ TractionField::Quadratic TractionField::monomials(const Vec2& xi) {
 }
 
 TractionField::Ellipse TractionField::ellipse(const Vec2& centre, const Mat2& shape) {
-  const Eigen::SelfAdjointEigenSolver<Mat2> eigen(shape);
+  const Principal of(shape);
   Ellipse e;
   e.centre = centre;
-  e.axes = eigen.operatorSqrt();
-  e.inverse = eigen.operatorInverseSqrt();
+  e.axes = of.with(of.values.cwiseSqrt());
+  e.inverse = of.with(of.values.cwiseSqrt().cwiseInverse());
   return e;
 }
 
@@ -98,10 +109,9 @@ TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2&
     });
     centre -= first / sum;
     // Half of what is asked for: a patch whose pressure is large at the rim asks for more than the next step gives.
-    const Eigen::SelfAdjointEigenSolver<Mat2> next(shape + 2.5 * (variance - second / sum));
-    const double least = std::pow(Eigen::SelfAdjointEigenSolver<Mat2>(e.axes).eigenvalues()[0], 2);
-    const Vec2 kept = next.eigenvalues().cwiseMax(0.25 * least).cwiseMin(most * most);
-    shape = next.eigenvectors() * kept.asDiagonal() * next.eigenvectors().transpose();
+    const Principal next(shape + 2.5 * (variance - second / sum));
+    const double least = std::pow(Principal(e.axes).values[0], 2);
+    shape = next.with(next.values.cwiseMax(0.25 * least).cwiseMin(most * most));
     e = ellipse(centre, shape);
   }
   return e;
@@ -139,9 +149,8 @@ void TractionField::fit_pressure(const std::vector<Station>& stations) {
   Mat2 variance = Mat2::Zero();
   for (const Station& s : stations) variance += s.area * s.pressure / force * (s.x - mean) * (s.x - mean).transpose();
   // A patch of one or two stations is as large as they are.
-  Eigen::SelfAdjointEigenSolver<Mat2> eigen(variance);
-  const Vec2 spread = eigen.eigenvalues().cwiseMax(footprint / (5 * kPi));
-  variance = eigen.eigenvectors() * spread.asDiagonal() * eigen.eigenvectors().transpose();
+  const Principal own(variance);
+  variance = own.with(own.values.cwiseMax(footprint / (5 * kPi)));
   patch_ = with_moments(mean, variance);
   double unit = 0;
   over(patch_, 1, [&](const Vec2&, double w) { unit += w; });
@@ -154,7 +163,7 @@ void TractionField::fit_pressure(const std::vector<Station>& stations) {
     normal += s.area * s.pressure * basis * basis.transpose();
     right += s.area * s.push * basis.transpose();
   }
-  push_ = Mat3(normal).completeOrthogonalDecomposition().solve(Mat3(right.transpose())).transpose();
+  push_ = dense::minimum_norm(normal, Eigen::MatrixXd(right.transpose())).transpose();
 }
 
 void TractionField::fit_friction(const std::vector<Station>& stations) {
@@ -177,14 +186,13 @@ void TractionField::fit_friction(const std::vector<Station>& stations) {
     shapes += w * peak_ * m * m.transpose();
   });
   // Where the bound cuts the ratio, the rest of the patch takes over its share.
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(shapes);
   for (int i = 0; i < kBoundRounds; ++i) {
     Eigen::Matrix<double, 6, 2> off = target;
     over(patch_, kFine, [&](const Vec2& x, double w) {
       const Vec2 xi = patch_.unit(x);
       off -= w * peak_ * monomials(xi) * ratio(xi).transpose();
     });
-    ratio_ += solver.solve(off).transpose();
+    ratio_ += dense::solve_ldlt(shapes, Eigen::MatrixXd(off)).transpose();
   }
 }
 

@@ -1,9 +1,10 @@
 #include "loop/beyond_doubt.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "golf/dense.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -41,8 +42,7 @@ class Scores {
       scores += score * score.transpose();
       g += score;
     }
-    const Eigen::LDLT<Eigen::MatrixXd> solver(A);
-    const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(count, count));
+    const Eigen::MatrixXd inverse = dense::solve_ldlt(A, Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
     return {at_.segment(first, count) - inverse * g, (inverse * scores * inverse.transpose()).diagonal().cwiseSqrt()};
   }
 

@@ -1,9 +1,9 @@
 #include "loop/fit.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {
@@ -208,9 +208,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd scaled = columns;
   for (Eigen::Index k = 0; k < scaled.cols(); ++k)
     if (const double norm = scaled.col(k).norm(); norm > 0) scaled.col(k) /= norm;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  qr.setThreshold(1e-8);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+  return dense::PivotedQr(scaled, 1e-8).basis();
 }
 
 }  // namespace hosel::loop

@@ -1,8 +1,9 @@
 #include "post/scatter.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
+
+#include "golf/dense.hpp"
 
 namespace hosel::post {
 namespace {
@@ -21,9 +22,10 @@ Scatter::Scatter(std::vector<Vector2d> points) : at(std::move(points)) {
 }
 
 Series Scatter::ellipse(double share, std::string label) const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
-  const Eigen::Matrix2d root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
-                               axes.eigenvectors().transpose() * std::sqrt(squared_radius(share));
+  const dense::Eigenpairs axes = dense::eigenpairs(covariance);
+  const Eigen::Matrix2d along = axes.vectors;
+  const Vector2d spread = axes.values.cwiseMax(0).cwiseSqrt();
+  const Eigen::Matrix2d root = along * spread.asDiagonal() * along.transpose() * std::sqrt(squared_radius(share));
   Series out{.label = std::move(label), .style = "lines"};
   constexpr int corners = 90;
   for (int k = 0; k <= corners; ++k) {
@@ -36,7 +38,7 @@ Series Scatter::ellipse(double share, std::string label) const {
 }
 
 Vector2d Scatter::extent(double share) const {
-  const Vector2d v = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues();
+  const Vector2d v = dense::eigenpairs(covariance).values;
   return 2 * (v.reverse() * squared_radius(share)).cwiseMax(0).cwiseSqrt();
 }
 

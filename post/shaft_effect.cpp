@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "golf/dense.hpp"
 #include "golf/units.hpp"
 
 namespace hosel::post {
@@ -53,7 +53,7 @@ Slope slope(const FaceGrid& g, const Field& f) {
   Eigen::MatrixX3d A(Eigen::Index(g.size()), 3);
   for (std::size_t p = 0; p < g.size(); ++p) A.row(Eigen::Index(p)) << 1, 1e3 * g.toe_at(p), 1e3 * g.high_at(p);
   const Eigen::Vector3d c =
-      A.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(f.data(), Eigen::Index(f.size())));
+      dense::PivotedQr(A).solve(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(f.data(), Eigen::Index(f.size()))));
   return {c[1], c[2]};
 }
 

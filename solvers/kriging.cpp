@@ -1,9 +1,10 @@
 #include "solvers/kriging.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "golf/dense.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -21,25 +22,30 @@ double matern(double distance) {
 /// Of so many points a plane may be asked, or a constant.
 Eigen::Index terms(Eigen::Index points, Eigen::Index inputs) { return points > 3 * (inputs + 1) ? inputs + 1 : 1; }
 
+/// Of all points with all: the nugget stands in the diagonal.
+Eigen::MatrixXd covariance(const Eigen::MatrixXd& x, const Kriging::Correlation& c) {
+  const Eigen::MatrixXd at = c.length.cwiseInverse().asDiagonal() * x.transpose();
+  const Eigen::VectorXd square = at.colwise().squaredNorm();
+  Eigen::MatrixXd k = (at.transpose() * at) * -2;
+  k.colwise() += square;
+  k.rowwise() += square.transpose();
+  k = k.unaryExpr([](double d) { return matern(std::sqrt(std::max(d, 0.0))); });
+  k.diagonal().setConstant(1 + c.nugget);
+  return k;
+}
+
 /// What follows from a correlation.
 struct Regression {
-  Eigen::LLT<Eigen::MatrixXd> factor;
+  dense::Cholesky factor;
   Eigen::MatrixXd of_trend, normal, plane, weight;
   Eigen::VectorXd variance;  // of every output
 
   Regression(const Eigen::MatrixXd& x, const Eigen::MatrixXd& trend, const Eigen::MatrixXd& y,
-             const Kriging::Correlation& c) {
-    const Eigen::MatrixXd at = c.length.cwiseInverse().asDiagonal() * x.transpose();
-    const Eigen::VectorXd square = at.colwise().squaredNorm();
-    Eigen::MatrixXd k = (at.transpose() * at) * -2;
-    k.colwise() += square;
-    k.rowwise() += square.transpose();
-    k = k.unaryExpr([](double d) { return matern(std::sqrt(std::max(d, 0.0))); });
-    k.diagonal().setConstant(1 + c.nugget);
-    factor.compute(k);
+             const Kriging::Correlation& c)
+      : factor(covariance(x, c)) {
     of_trend = factor.solve(trend);
     normal = trend.transpose() * of_trend;
-    plane = normal.llt().solve(of_trend.transpose() * y);
+    plane = dense::Cholesky(normal).solve(Eigen::MatrixXd(of_trend.transpose() * y));
     const Eigen::MatrixXd left = y - trend * plane;
     weight = factor.solve(left);
     variance = (left.array() * weight.array()).colwise().sum().transpose() / double(x.rows() - trend.cols());
@@ -47,15 +53,13 @@ struct Regression {
 
   /// Logarithm of the restricted likelihood but for a constant, outputs that vary taken as independent.
   double likelihood(Eigen::Index freedom) const {
-    if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+    if (!factor.positive()) return -std::numeric_limits<double>::infinity();
     double sum = 0;
     int outputs = 0;
     for (const double v : variance)
       if (v > std::numeric_limits<double>::min()) sum += std::log(v), ++outputs;
-    const auto determinant = [](const Eigen::LLT<Eigen::MatrixXd>& f) {
-      return 2 * f.matrixLLT().diagonal().array().log().sum();
-    };
-    return -0.5 * (outputs * (determinant(factor) + determinant(normal.llt())) + double(freedom) * sum);
+    const double determinants = factor.log_determinant() + dense::Cholesky(normal).log_determinant();
+    return -0.5 * (outputs * determinants + double(freedom) * sum);
   }
 };
 
@@ -111,10 +115,10 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
   const Regression found(x, trend, y, correlation_);
   points_ = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
   square_ = points_.colwise().squaredNorm().transpose();
-  inverse_ = found.factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
+  inverse_ = found.factor.lower_inverse();
   of_trend_ = found.of_trend;
   plane_ = found.plane;
-  plane_error_ = found.normal.llt().solve(Eigen::MatrixXd::Identity(p, p));
+  plane_error_ = dense::Cholesky(found.normal).inverse();
   weight_ = found.weight;
   process_ = weight_.transpose() * (y - trend * plane_) / double(n - p);
 }

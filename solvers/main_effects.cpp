@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "golf/dense.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::solvers {
@@ -59,7 +60,7 @@ VectorXd shares(const std::vector<Block>& blocks, const MatrixXd& all, const Vec
                 const std::vector<Eigen::Index>& kept, VectorXd& coefficients) {
   const MatrixXd x = all(kept, Eigen::all);
   const VectorXd response = y(kept);
-  coefficients = x.completeOrthogonalDecomposition().solve(response);
+  coefficients = dense::minimum_norm(x, response);
   VectorXd out(Eigen::Index(blocks.size()));
   const double whole = variance(response);
   Eigen::Index at = 1;

@@ -3,11 +3,11 @@
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/CholmodSupport>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/linear.hpp"
 
@@ -79,13 +79,12 @@ Index below(const Sparse& K, const Sparse& M, double lambda) {
 
 Pairs all_modes(const Sparse& K, const Sparse& M, double shift) {
   // Inverted, so that the lowest modes come out best: M phi = mu (K + shift M) phi.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(M),
-                                                                         Eigen::MatrixXd(K + shift * M));
-  if (solver.info() != Eigen::Success || !(solver.eigenvalues().minCoeff() > 0))
+  const dense::Eigenpairs all = dense::eigenpairs(Eigen::MatrixXd(M), Eigen::MatrixXd(K + shift * M));
+  if (!all.converged || !(all.values.minCoeff() > 0))
     throw NonConvergence("the eigenvalue problem was not solved: is there inertia everywhere?");
-  const Vector mu = solver.eigenvalues().reverse();
+  const Vector mu = all.values.reverse();
   return {mu.cwiseInverse().array() - shift,
-          solver.eigenvectors().rowwise().reverse() * mu.cwiseSqrt().cwiseInverse().asDiagonal()};
+          all.vectors.rowwise().reverse() * mu.cwiseSqrt().cwiseInverse().asDiagonal()};
 }
 
 /// Shift-and-invert Lanczos. One pass may find one mode of several at the same frequency, so it is repeated beside

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "golf/dense.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::solvers {
@@ -30,9 +31,9 @@ RobustRegression robust_regression(const Eigen::MatrixXd& given, const Eigen::Ve
   Eigen::VectorXd residual = y;
   const auto solve = [&] {
     const Eigen::VectorXd root = out.weights.cwiseSqrt();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * X);
+    const dense::PivotedQr qr(root.asDiagonal() * X);
     if (qr.rank() < X.cols()) throw NonConvergence("regression: the inputs depend on each other");
-    out.coefficients = qr.solve(root.cwiseProduct(y));
+    out.coefficients = qr.solve(Eigen::VectorXd(root.cwiseProduct(y)));
     residual = y - X * out.coefficients;
     out.scale = 1.4826 * median_size(residual);
   };
@@ -59,7 +60,7 @@ RobustRegression robust_regression(const Eigen::MatrixXd& given, const Eigen::Ve
       const double v = residual[i] / (4.685 * out.scale), w = v * v;
       slope[i] = w < 1 ? (1 - w) * (1 - 5 * w) : 0;
     }
-  const Eigen::MatrixXd bread = (X.transpose() * slope.asDiagonal() * X).inverse();
+  const Eigen::MatrixXd bread = dense::inverse(X.transpose() * slope.asDiagonal() * X);
   const Eigen::VectorXd score = out.weights.cwiseProduct(residual);
   const double rows = double(y.size()), correction = rows / (rows - double(X.cols()));
   const Eigen::MatrixXd meat = X.transpose() * score.cwiseAbs2().asDiagonal() * X;

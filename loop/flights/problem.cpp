@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "golf/data_error.hpp"
+#include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "loop/median.hpp"
 #include "solvers/errors.hpp"
@@ -351,9 +352,9 @@ std::vector<FlightProblem::Block> FlightProblem::blocks(const std::vector<int>& 
       }
       S(a, a) += std::pow(channel(c).noise, 2);
     }
-    const Eigen::LLT<Eigen::MatrixXd> llt(S);  // of its lower half
-    if (llt.info() != Eigen::Success) throw DataError("the readings' covariance is not positive: declare their noise");
-    b.factor = llt.matrixL();
+    const dense::Cholesky factors(S);  // of its lower half
+    if (!factors.positive()) throw DataError("the readings' covariance is not positive: declare their noise");
+    b.factor = factors.lower();
   });
   return all;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <numeric>
 #include <set>
 
+#include "golf/dense.hpp"
 #include "loop/median.hpp"
 #include "loop/shots/relations.hpp"
 
@@ -327,7 +327,8 @@ class Audit {
       A = A * unit.cwiseInverse().asDiagonal();
       for (int pass = 0; pass < 6; ++pass) {
         const Eigen::MatrixXd G = A.transpose() * weight.asDiagonal() * A;
-        c = (G + 1e-13 * Eigen::MatrixXd::Identity(p, p)).ldlt().solve(A.transpose() * weight.asDiagonal() * b);
+        const Eigen::VectorXd rhs = A.transpose() * weight.asDiagonal() * b;
+        c = dense::solve_ldlt(G + 1e-13 * Eigen::MatrixXd::Identity(p, p), rhs);
         // Redescending: a tenth of the rows may be bad.
         const Eigen::VectorXd r = (b - A * c).cwiseAbs();
         const double fence = 4 * std::max(median(std::vector<double>(r.data(), r.data() + n)), 1e-14);

@@ -1,9 +1,9 @@
 #include "loop/shots/balances.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "golf/first_contact.hpp"
 
 namespace hosel::loop {
@@ -53,7 +53,7 @@ Balance balance(const ShotModel& shots, const std::vector<int>& rows, const Mode
         e[c] = 0;
         WB.row(c).setZero();
       }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(WB);
+    const dense::PivotedQr qr(WB);
     const Eigen::VectorXd u = qr.solve(e);
     const double left = (e - WB * u).squaredNorm();
     const int mended = int(std::min<std::ptrdiff_t>(qr.rank(), observed));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "golf/dense.hpp"
 #include "golf/quantities.hpp"
 #include "loop/median.hpp"
 #include "loop/shots/inputs.hpp"
@@ -202,7 +202,7 @@ Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values) const {
         cov += s * s / double(some) * J.transpose() * J;
       }
   }
-  return cov.llt().matrixL().solve(Eigen::MatrixXd::Identity(cov.rows(), cov.cols()));
+  return dense::Cholesky(cov).lower_inverse();
 }
 
 double Columns::deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
@@ -171,7 +171,7 @@ class Separation {
   double dd_ = 0;
 
   static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) {
-    return std::max(0.0, dd - g.dot(G.ldlt().solve(g)));
+    return std::max(0.0, dd - g.dot(dense::solve_ldlt(G, g)));
   }
 };
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <map>
 
+#include "golf/dense.hpp"
 #include "loop/median.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
 
@@ -172,12 +172,13 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const Eigen::MatrixXd scaled_total = unit.cwiseInverse().asDiagonal() * total * unit.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
   // True spread = total - noise, kept positive: where the noise is all there is, the record says nothing.
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled_total - scaled_noise);
-  const Eigen::MatrixXd truth = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9).asDiagonal() *
-                                eigen.eigenvectors().transpose();
+  const auto [values, vectors, converged] = dense::eigenpairs(scaled_total - scaled_noise);
+  const Eigen::MatrixXd truth = vectors * values.cwiseMax(1e-9).asDiagonal() * vectors.transpose();
   in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
-  std::map<std::vector<int>, std::pair<Eigen::MatrixXd, Eigen::MatrixXd>>
-      known;  // of such a record: gain, what it leaves
+  struct Known {
+    Eigen::MatrixXd gain, left;
+  };
+  std::map<std::vector<int>, Known> of_record;  // by what is recorded
   for (std::size_t i = 0; i < n; ++i) {
     // Beside the others' spread their moments say nothing: such a record stands as it is, what it lacks is their mean.
     bool beside = false;
@@ -186,15 +187,15 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (std::size_t k = 0; k < kInputs && !beside; ++k)
       if (varies(k) && std::isfinite(value(i, k))) recorded.push_back(int(k));
     const auto m = std::ptrdiff_t(recorded.size());
-    auto at = known.find(recorded);
-    if (at == known.end()) {
+    auto at = of_record.find(recorded);
+    if (at == of_record.end()) {
       const Eigen::MatrixXd shared = truth(Eigen::all, recorded);
       const Eigen::MatrixXd record = truth(recorded, recorded) + scaled_noise(recorded, recorded) +
                                      1e-12 * Eigen::MatrixXd::Identity(m, m);
-      const Eigen::MatrixXd gain = shared * record.inverse();
+      const Eigen::MatrixXd gain = shared * dense::inverse(record);
       const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * shared.transpose()) *
                                    unit.asDiagonal();
-      at = known.emplace(recorded, std::pair(gain, left)).first;
+      at = of_record.emplace(recorded, Known{gain, left}).first;
     }
     const auto& [gain, left] = at->second;
     Eigen::VectorXd d(m);

@@ -1,10 +1,9 @@
 #include "loop/shots/mechanism.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "golf/units.hpp"
 
@@ -74,10 +73,10 @@ Field::Basis basis(const Eigen::MatrixXd& covariance) {
   centred.rowwise() -= mean.transpose();
   centred.colwise() -= mean;
   centred.array() += mean.mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred);
-  const Eigen::Index terms = std::clamp<Eigen::Index>(
-      (solver.eigenvalues().array() > 1e-6 * solver.eigenvalues().maxCoeff()).count(), 1, most);
-  Field::Basis b{solver.eigenvectors().rightCols(terms), solver.eigenvalues().tail(terms).cwiseMax(0)};
+  const dense::Eigenpairs all = dense::eigenpairs(centred);
+  const Eigen::Index terms =
+      std::clamp<Eigen::Index>((all.values.array() > 1e-6 * all.values.maxCoeff()).count(), 1, most);
+  Field::Basis b{all.vectors.rightCols(terms), all.values.tail(terms).cwiseMax(0)};
   const double whole = b.variance.sum() / double(n);
   if (whole > 0) b.variance /= whole;
   return b;
@@ -185,9 +184,9 @@ Found likeliest(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen:
         root /= std::sqrt(typical);
         const Eigen::MatrixXd M = Eigen::MatrixXd::Identity(terms + 1, terms + 1) +
                                   root.asDiagonal() * A * root.asDiagonal();
-        const Eigen::LLT<Eigen::MatrixXd> factor(M);
+        const dense::Cholesky factor(M);
         const Eigen::VectorXd scaled = root.cwiseProduct(rhs), solved = factor.solve(scaled);
-        const double determinant = 2 * factor.matrixLLT().diagonal().array().log().sum();
+        const double determinant = factor.log_determinant();
         const double fall = scaled.dot(solved) - determinant;
         falls.push_back(fall);
         if (fall > best.fall) {

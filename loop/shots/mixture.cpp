@@ -1,11 +1,11 @@
 #include "loop/shots/mixture.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "golf/dense.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -78,8 +78,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& z) {
   // The principal direction of the bulk: what is far off is drawn in.
   const Eigen::MatrixXd bulk = z.cwiseMax(-12.0).cwiseMin(12.0);
   const Eigen::MatrixXd centred = bulk.rowwise() - bulk.colwise().mean();
-  std::vector<Eigen::VectorXd> directions{
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(centred.transpose() * centred).eigenvectors().col(m - 1)};
+  std::vector<Eigen::VectorXd> directions{dense::eigenpairs(centred.transpose() * centred).vectors.col(m - 1)};
   for (Eigen::Index c = 0; c < m; ++c) directions.push_back(Eigen::VectorXd::Unit(m, c));
   std::optional<Mixture> best;
   for (const Eigen::VectorXd& d : directions) {
@@ -133,7 +132,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
       for (Eigen::Index l = 0; l < size; ++l) normal(k, l) = weighted(slope[std::size_t(k)], slope[std::size_t(l)]);
     }
     normal.diagonal() *= 1 + 1e-9;
-    p = (p - normal.ldlt().solve(gradient)).cwiseMax(low).cwiseMin(high);
+    p = (p - dense::solve_ldlt(normal, gradient)).cwiseMax(low).cwiseMin(high);
     if (!p.allFinite() || !second(p, z)) return {};
     scatter = (((z.array().square().colwise() * in) + (first.array().square().colwise() * (1 - in))).colwise().mean())
                   .sqrt()

@@ -1,12 +1,12 @@
 #include "loop/shots/model.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "golf/dense.hpp"
 #include "golf/quantities.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
 #include "solvers/errors.hpp"
@@ -470,8 +470,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
     Eigen::MatrixXd part(k, k);
     for (int a = 0; a < k; ++a)
       for (int b = 0; b < k; ++b) part(a, b) = cov(seen[std::size_t(a)], seen[std::size_t(b)]);
-    const Eigen::LLT<Eigen::MatrixXd> llt(part);
-    const Eigen::MatrixXd W = llt.matrixL().solve(Eigen::MatrixXd::Identity(k, k));
+    const Eigen::MatrixXd W = dense::Cholesky(part).lower_inverse();
     double* out = whiten_.data() + std::ptrdiff_t(i) * m * m;
     for (int a = 0; a < k; ++a)
       for (int b = 0; b <= a; ++b) out[seen[std::size_t(a)] * m + seen[std::size_t(b)]] = W(a, b);

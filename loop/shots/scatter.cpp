@@ -1,9 +1,9 @@
 #include "loop/shots/scatter.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "golf/dense.hpp"
 #include "loop/median.hpp"
 
 namespace hosel::loop {
@@ -36,7 +36,7 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
   double scale = 0;
   for (int pass = 0; pass < 12; ++pass) {
     const Eigen::MatrixXd WA = w.cwiseSqrt().asDiagonal() * A;
-    const Eigen::VectorXd b = WA.colPivHouseholderQr().solve(Eigen::VectorXd(w.cwiseSqrt().cwiseProduct(y)));
+    const Eigen::VectorXd b = dense::PivotedQr(WA).solve(Eigen::VectorXd(w.cwiseSqrt().cwiseProduct(y)));
     const Eigen::VectorXd r = y - A * b;
     std::vector<double> size;
     for (std::ptrdiff_t i = 0; i < n; ++i) size.push_back(std::abs(r[i]));

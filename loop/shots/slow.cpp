@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
 
+#include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "loop/shots/features.hpp"
 #include "loop/shots/inputs.hpp"
@@ -133,7 +133,9 @@ Doubt in_doubt(const ShotProblem& problem, const Fit& fit) {
     for (Eigen::Index k = 0; k < J.cols(); ++k) J.col(k) *= way(*parameters[std::size_t(k)]);
     covariance += J * J.transpose();
   }
-  const auto deviance = [&] { return z.dot(covariance.llt().solve(z)) * double(all.size()) / double(some.size()); };
+  const auto deviance = [&] {
+    return z.dot(dense::Cholesky(covariance).solve(z)) * double(all.size()) / double(some.size());
+  };
   Doubt out;
   out.alone = deviance();
   covariance += problem.model().surrogate_errors(some, fit.model, fit.p.data());

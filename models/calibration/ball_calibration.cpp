@@ -1,12 +1,12 @@
 #include "models/calibration/ball_calibration.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "models/fe/impact.hpp"
 #include "models/matched_launch.hpp"
@@ -274,7 +274,7 @@ class Fit {
 Eigen::VectorXd gauss_newton(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const std::vector<Eigen::Index>& rows,
                              const std::vector<Eigen::Index>& columns) {
   const Eigen::MatrixXd A = J(rows, columns);
-  return -(A.transpose() * A).ldlt().solve(A.transpose() * r(rows));
+  return -dense::solve_ldlt(A.transpose() * A, Eigen::VectorXd(A.transpose() * r(rows)));
 }
 
 /// Parameters without a shot: shared ones from all other rows, its own from its rows.

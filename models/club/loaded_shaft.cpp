@@ -1,10 +1,10 @@
 #include "models/club/loaded_shaft.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
 #include "fem/section.hpp"
+#include "golf/dense.hpp"
 #include "models/club/mounted_shaft.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/statics.hpp"
@@ -112,7 +112,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
       move(k < 3 ? unit : Vec3::Zero(), k < 3 ? Vec3::Zero() : unit, w);
       mass.col(k) = resultant() - at_rest;
     }
-    const Eigen::Matrix<double, 6, 1> acceleration = mass.partialPivLu().solve(-at_rest);
+    const Eigen::Matrix<double, 6, 1> acceleration = dense::solve_lu(mass, Eigen::VectorXd(-at_rest));
     a = acceleration.head<3>();
     alpha = acceleration.tail<3>();
     move(a, alpha, w);

@@ -1,6 +1,5 @@
 #include "models/fe/plate_face.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "fem/plate_surface.hpp"
+#include "golf/dense.hpp"
 #include "golf/units.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/linear.hpp"
@@ -209,9 +209,9 @@ CondensedPlate PlateFace::condensed(const Vector2d& place, Mirror mirror) const 
     MV.col(count++) = Mv / std::sqrt(left);
   }
   V.conservativeResize(Eigen::NoChange, count);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(Eigen::MatrixXd(V.transpose() * (stiffness_ * V)));
+  const dense::Eigenpairs ritz = dense::eigenpairs(V.transpose() * (stiffness_ * V));
   CondensedPlate out;
-  out.fields = V * ritz.eigenvectors();
+  out.fields = V * ritz.vectors;
   Eigen::MatrixXd grid = on_grid_ * out.fields;
   const Eigen::RowVectorXd scale = grid.cwiseAbs().colwise().maxCoeff().cwiseInverse();
   grid = grid * scale.asDiagonal();
@@ -224,7 +224,7 @@ CondensedPlate PlateFace::condensed(const Vector2d& place, Mirror mirror) const 
   f.mass = W.transpose() * sample_mass_;
   f.moment = sample_place_ * sample_mass_.asDiagonal() * W;
   f.transverse = W.transpose() * sample_mass_.asDiagonal() * W;
-  const Eigen::VectorXd squared = scale.cwiseAbs2().transpose(), lambda = ritz.eigenvalues();
+  const Eigen::VectorXd squared = scale.cwiseAbs2().transpose(), lambda = ritz.values;
   f.inertia = squared.asDiagonal();
   f.stiffness = squared.cwiseProduct(lambda).asDiagonal();
   f.damping = (2 * design_.damping * squared.cwiseProduct(lambda.cwiseSqrt())).asDiagonal();

@@ -1,7 +1,5 @@
 #include "models/fe/plate_strike.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "golf/dense.hpp"
 #include "golf/units.hpp"
 #include "solvers/errors.hpp"
 
@@ -52,12 +51,11 @@ PlateStrike::PlateStrike(std::shared_ptr<const PlateFace> plate, const Head& hea
     M.block(3, 6, 3, n) -= s.mass * arm.cross(Vec3::UnitX()) * shape.transpose();
   }
   M.bottomLeftCorner(n, 6) = M.topRightCorner(6, n).transpose();
-  const Eigen::LLT<Eigen::MatrixXd> factors(M);
-  if (factors.info() != Eigen::Success) throw std::invalid_argument("the face's inertia is part of the head's");
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> all(K, M);
-  rigid_ = all.eigenvectors().leftCols(6);
-  elastic_ = all.eigenvectors().rightCols(n);
-  for (Index i = 0; i < n; ++i) omega_.push_back(std::sqrt(all.eigenvalues()[6 + i]));
+  if (!dense::Cholesky(M).positive()) throw std::invalid_argument("the face's inertia is part of the head's");
+  const dense::Eigenpairs all = dense::eigenpairs(K, M);
+  rigid_ = all.vectors.leftCols(6);
+  elastic_ = all.vectors.rightCols(n);
+  for (Index i = 0; i < n; ++i) omega_.push_back(std::sqrt(all.values[6 + i]));
 }
 
 PlateStrike::Place PlateStrike::at(const Vector2d& where, double radius) const {

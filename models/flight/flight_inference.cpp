@@ -1,11 +1,11 @@
 #include "models/flight/flight_inference.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "solvers/errors.hpp"
 
@@ -121,7 +121,7 @@ class Estimate {
       l.b = l.J.transpose() * l.r;
       for (int k = 0; k < kShotUnknowns; ++k)
         if (shots_[i].sd[k] > 0) l.b[k] += u[k] / std::pow(shots_[i].sd[k], 2);
-      const double left = l.b.dot(A.llt().solve(l.b)) / std::max(1.0, sum / double(l.r.size()));
+      const double left = l.b.dot(dense::Cholesky(A).solve(l.b)) / std::max(1.0, sum / double(l.r.size()));
       done = left < kShotSettled;
       for (; !done; damping *= 4) {
         if (damping > 1e12 && left < kShotRough) {
@@ -132,7 +132,7 @@ class Estimate {
           throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle");
         Eigen::MatrixXd damped = A;
         damped.diagonal() *= 1 + damping;
-        const ShotUnknowns trial = u - damped.llt().solve(l.b);
+        const ShotUnknowns trial = u - dense::Cholesky(damped).solve(l.b);
         const Eigen::VectorXd r = residual(i, trial, wind_of(i), fit_.law);
         const double less = r.squaredNorm() + told(i, trial);
         if (std::isfinite(less) && less <= sum) {
@@ -205,7 +205,7 @@ class Estimate {
     for_all(std::size_t(0), shots_.size(), [&](std::size_t i) {
       const OwnLinear& l = own_[i];
       const Eigen::MatrixXd S = by_shared(i), C = l.J.transpose() * S;
-      follow[i] = normal(i, l).llt().solve(C);
+      follow[i] = dense::Cholesky(normal(i, l)).solve(C);
       part[i] = weight(i) * (S.transpose() * S - C.transpose() * follow[i]);
       pull[i] = weight(i) * (S.transpose() * l.r - follow[i].transpose() * l.b);
     });
@@ -214,11 +214,10 @@ class Estimate {
       g += pull[i];
     }
     add_priors(H, g);
-    const Eigen::LLT<Eigen::MatrixXd> solver(H);
-    if (solver.info() != Eigen::Success)
-      throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
+    const dense::Cholesky solver(H);
+    if (!solver.positive()) throw solvers::NonConvergence("flight paths: the normal matrix is not positive");
     const Eigen::VectorXd d = -solver.solve(g);
-    covariance_ = solver.solve(Eigen::MatrixXd::Identity(n, n));
+    covariance_ = solver.inverse();
     const double largest = d.cwiseAbs().cwiseQuotient(covariance_.diagonal().cwiseSqrt()).maxCoeff();
     const double before = loss();
     const PathFit kept = fit_;

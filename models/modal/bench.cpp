@@ -1,7 +1,5 @@
 #include "models/modal/bench.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <stdexcept>
 
 #include "fem/supports.hpp"
+#include "golf/dense.hpp"
 #include "golf/shaft_library.hpp"
 #include "models/club/swing.hpp"
 #include "solvers/linear.hpp"
@@ -110,16 +109,16 @@ MatrixXd softening(const Vec3& axis, const MatrixXd& beam_mass, double head, con
   for (std::ptrdiff_t i = 0; i < P.rows(); i += 6) P.block<3, 3>(i, i) = across;
   Eigen::Matrix<double, 3, 6> centre;
   centre << Mat3::Identity(), -skew(cg);
-  return joined(P * beam_mass * P, head * centre.transpose() * across * centre);
+  return joined(dense::congruent(beam_mass, P), head * centre.transpose() * across * centre);
 }
 
 /// Solutions of F M u = u / omega^2 with M = root root', the lowest first; M may be zero at the head.
 MatrixXd shapes(const MatrixXd& F, const MatrixXd& root, int count) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(root.transpose() * F * root);
+  const dense::Eigenpairs all = dense::eigenpairs(dense::congruent(F, root));
   MatrixXd U(F.rows(), count);
   for (int k = 0; k < count; ++k) {
     const auto at = F.rows() - 1 - k;
-    U.col(k) = F * (root * solver.eigenvectors().col(at)) / solver.eigenvalues()[at];
+    U.col(k) = F * (root * all.vectors.col(at)) / all.values[at];
   }
   return U;
 }
@@ -175,14 +174,14 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   plain.beam->place(rest);
   const MatrixXd K = tangent(plain, rest, {1, 0, 0}), Mb = tangent(plain, rest, {0, 0, 1});
   const auto nb = K.rows(), n = nb + 6;
-  const MatrixXd I = MatrixXd::Identity(nb, nb);
-  const MatrixXd whole = K.llt().solve(I), half = tangent(stiff, rest, {1, 0, 0}).llt().solve(I);
+  const MatrixXd whole = dense::Cholesky(K).inverse(),
+                 half = dense::Cholesky(tangent(stiff, rest, {1, 0, 0})).inverse();
   MatrixXd S = MatrixXd::Zero(n, nb);
   S.topRows(nb).setIdentity();
   S.bottomRightCorner<6, 6>().setIdentity();
   std::vector<MatrixXd> F(kCompliances);
-  F[kBending] = S * (2 * (whole - half)) * S.transpose();
-  F[kTorsion] = S * (2 * half - whole) * S.transpose();
+  F[kBending] = dense::congruent(2 * (whole - half), S.transpose());
+  F[kTorsion] = dense::congruent(2 * half - whole, S.transpose());
   const auto& line = plain.beam->line();
   const auto place = [&](std::ptrdiff_t node) {
     return node < nb / 6 ? line[std::size_t(node) + 1].position : line.back().position;
@@ -202,9 +201,9 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   // The basis: modes of the declared club and of clubs that differ in every way, and static responses.
   const auto rooted = [&](const Mat6& h) {
     MatrixXd root = MatrixXd::Zero(n, n);
-    root.topLeftCorner(nb, nb) = Mb.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(h);
-    root.bottomRightCorner<6, 6>() = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    root.topLeftCorner(nb, nb) = dense::Cholesky(Mb).lower();
+    const dense::Eigenpairs of_head = dense::eigenpairs(h);
+    root.bottomRightCorner(6, 6) = of_head.vectors * of_head.values.cwiseMax(0).cwiseSqrt().asDiagonal();
     return root;
   };
   const double bend = length_ / club.shaft->at(0.5 * length_).bending_stiffness_y;
@@ -252,12 +251,12 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   MatrixXd gravity = MatrixXd::Zero(n, n), turning = gravity;
   if (options.gravity.norm() > 0) {
     gravity = pulled(line, *club.shaft, options.clamped_length, head, cg, [&](double) { return -options.gravity.z(); });
-    weight_ = V.transpose() * gravity * V;
+    weight_ = dense::congruent(gravity, V);
   }
   if (options.rotation_rate != 0) {
     turning = pulled(line, *club.shaft, options.clamped_length, head, cg, [&](double s) { return options.hub + s; }) -
               softening(options.rotation_axis, Mb, head, cg);
-    spin_ = V.transpose() * turning * V;
+    spin_ = dense::congruent(turning, V);
   }
 
   // What acts on the club, in one matrix W: inertia of the basis, forces on the head, forces of the two fields.
@@ -265,7 +264,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
   MatrixXd T = MatrixXd::Zero(n, 6);
   T.bottomRows<6>().setIdentity();
   W << M * V, T, gravity * V, turning * V;
-  for (const MatrixXd& f : F) flex_.emplace_back(W.transpose() * f * W);
+  for (const MatrixXd& f : F) flex_.emplace_back(dense::congruent(f, W));
   for (int a = 0; a < kCompliances; ++a) read_.emplace_back(MatrixXd::Zero(std::ptrdiff_t(sensors.size()), W.cols()));
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const auto row = std::ptrdiff_t(k);
@@ -329,16 +328,15 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
   A = (0.5 * (A + A.transpose())).eval();
   const double turning = change.stiffening * options_.rotation_rate * options_.rotation_rate;
   const bool field = options_.gravity.norm() > 0 || turning != 0;
-  Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver;
+  dense::Eigenpairs all;
   if (!field) {
-    solver.compute(A, B);
+    all = dense::eigenpairs(A, B);
   } else {
-    MatrixXd K = B * A.llt().solve(B) + weight_ + turning * spin_;
+    MatrixXd K = B * dense::Cholesky(A).solve(B) + weight_ + turning * spin_;
     K = (0.5 * (K + K.transpose())).eval();
-    solver.compute(B, K);
+    all = dense::eigenpairs(B, K);
   }
-  if (solver.info() != Eigen::Success)
-    throw std::invalid_argument("this club cannot vibrate: its stiffness or mass is not positive");
+  if (!all.converged) throw std::invalid_argument("this club cannot vibrate: its stiffness or mass is not positive");
   const int m = std::min(count, r);
   BenchModes out;
   out.omega.resize(m);
@@ -350,9 +348,9 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
   move += head_shape_ * more.leftCols<3>();
   for (int k = 0; k < m; ++k) {
     const auto at = r - 1 - k;
-    const double inverse = solver.eigenvalues()[at];  // 1 / omega^2
+    const double inverse = all.values[at];  // 1 / omega^2
     if (!(inverse > 0)) throw std::invalid_argument("this club cannot vibrate: it buckles");
-    VectorXd a = solver.eigenvectors().col(at);
+    VectorXd a = all.vectors.col(at);
     a /= std::sqrt(a.dot(B * a));
     VectorXd force = C * a / inverse;
     if (field) {

@@ -1,12 +1,11 @@
 #include "models/reduced/shaft_impedance.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
+#include "golf/dense.hpp"
 #include "golf/units.hpp"
 
 namespace hosel::models {
@@ -80,15 +79,15 @@ Condensed condense(const MatrixXd& M, const MatrixXd& K, const std::vector<int>&
   };
   const MatrixXd Kii = pick(K, rest, rest), Kib = pick(K, rest, tip), Mii = pick(M, rest, rest),
                  Mib = pick(M, rest, tip);
-  const MatrixXd S = -Kii.ldlt().solve(Kib);  // inner motion that follows the tip at rest
+  const MatrixXd S = -dense::solve_ldlt(Kii, Kib);  // inner motion that follows the tip at rest
   Condensed out;
   out.stiffness = pick(K, tip, tip) + Kib.transpose() * S;
-  out.mass = pick(M, tip, tip) + Mib.transpose() * S + S.transpose() * Mib + S.transpose() * Mii * S;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(Kii, Mii);
+  out.mass = pick(M, tip, tip) + Mib.transpose() * S + S.transpose() * Mib + dense::congruent(Mii, S);
+  const dense::Eigenpairs modes = dense::eigenpairs(Kii, Mii);
   int kept = 0;
-  while (kept < inner && modes.eigenvalues()[kept] < std::pow(2 * kPi * highest, 2)) ++kept;
-  const MatrixXd Phi = modes.eigenvectors().leftCols(kept);
-  out.frequency2 = modes.eigenvalues().head(kept);
+  while (kept < inner && modes.values[kept] < std::pow(2 * kPi * highest, 2)) ++kept;
+  const MatrixXd Phi = modes.vectors.leftCols(kept);
+  out.frequency2 = modes.values.head(kept);
   out.coupling = (Mib + Mii * S).transpose() * Phi;
   return out;
 }

@@ -1,8 +1,8 @@
 #include "models/rigid/jointed_club.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <stdexcept>
+
+#include "golf/dense.hpp"
 
 namespace hosel::models {
 namespace {
@@ -56,7 +56,7 @@ Jointed jointed(const Blow& blow, bool hinged) {
   Mat6 head = Mat6::Zero();
   head.topLeftCorner<3, 3>() = club.head.mass * Mat3::Identity();
   head.bottomRightCorner<3, 3>() = club.head.inertia;
-  mass = B.transpose() * head * B;
+  mass = dense::congruent(head, B);
   mass.topLeftCorner(3, 3) += rod;
   return {B, mass};
 }
@@ -65,7 +65,7 @@ Jointed jointed(const Blow& blow, bool hinged) {
 
 Mat6 jointed_mobility(const Blow& blow, bool hinged) {
   const auto [B, mass] = jointed(blow, hinged);
-  const Mat6 face = B * mass.inverse() * B.transpose();
+  const Mat6 face = dense::congruent(dense::inverse(mass), B.transpose());
   Mat6 turn = Mat6::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = blow.delivery.face_to_global();
   return turn * face * turn.transpose();
@@ -81,7 +81,7 @@ double jointed_energy(const Blow& blow, bool hinged, const Vec3& velocity, const
   const Mat3 to_face = blow.delivery.face_to_global().transpose();
   Vec6 twist;
   twist << to_face * velocity, to_face * spin;
-  const Eigen::VectorXd rates = B.colPivHouseholderQr().solve(twist);
+  const Eigen::VectorXd rates = dense::PivotedQr(B).solve(Eigen::VectorXd(twist));
   return rates.dot(mass * rates) / 2;
 }
 
