@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRoundOff = 1e-13;  // of entries near 1 after some ten operations each
+constexpr double kDenseRoundOff = 1e-13;  // of entries near 1 after some ten operations each
 
 /// Symmetric and positive definite, of condition 1e2.
 MatrixXd positive() {
@@ -31,7 +31,7 @@ MatrixXd dependent() {
 void near(const MatrixXd& a, const MatrixXd& b) {
   ASSERT_EQ(a.rows(), b.rows());
   ASSERT_EQ(a.cols(), b.cols());
-  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), kRoundOff);
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), kDenseRoundOff);
 }
 
 TEST(Dense, CholeskyIsTheMatrixAgain) {
@@ -43,7 +43,7 @@ TEST(Dense, CholeskyIsTheMatrixAgain) {
   near(A * of.inverse(), I);
   near(A * of.solve(VectorXd(A.col(2) + I.col(0))), A.col(2) + I.col(0));
   near(A * of.solve(MatrixXd(2 * A + I)), 2 * A + I);
-  EXPECT_NEAR(of.log_determinant(), std::log(A.determinant()), kRoundOff);
+  EXPECT_NEAR(of.log_determinant(), std::log(A.determinant()), kDenseRoundOff);
   EXPECT_FALSE(dense::Cholesky(A - 5 * I).positive());
 }
 
