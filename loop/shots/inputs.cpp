@@ -175,10 +175,10 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const auto [values, vectors, converged] = dense::eigenpairs(scaled_total - scaled_noise);
   const Eigen::MatrixXd truth = vectors * values.cwiseMax(1e-9).asDiagonal() * vectors.transpose();
   in.covariance.assign(n, Eigen::MatrixXd::Zero(kInputs, kInputs));
-  struct Known {
+  struct Expected {
     Eigen::MatrixXd gain, left;
   };
-  std::map<std::vector<int>, Known> of_record;  // by what is recorded
+  std::map<std::vector<int>, Expected> of_record;  // by what is recorded
   for (std::size_t i = 0; i < n; ++i) {
     // Beside the others' spread their moments say nothing: such a record stands as it is, what it lacks is their mean.
     bool beside = false;
@@ -195,7 +195,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
       const Eigen::MatrixXd gain = shared * dense::inverse(record);
       const Eigen::MatrixXd left = unit.asDiagonal() * Eigen::MatrixXd(truth - gain * shared.transpose()) *
                                    unit.asDiagonal();
-      at = of_record.emplace(recorded, Known{gain, left}).first;
+      at = of_record.emplace(recorded, Expected{gain, left}).first;
     }
     const auto& [gain, left] = at->second;
     Eigen::VectorXd d(m);
