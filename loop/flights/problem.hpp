@@ -43,6 +43,8 @@ class FlightProblem final : public Problem {
 
   bool screen(const Selection& selection) override;
   Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
+  /// Everything unknown included.
+  double sigma(int trial, int channel) const override;
   double update_noise(const Fit& selected, const Fit& richest) override;
 
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
@@ -88,7 +90,6 @@ class FlightProblem final : public Problem {
   const std::vector<int>& trials(Part part) const { return part == Part::holdout ? holdout_ : train_; }
   const std::vector<Block>& blocks(Part part) const { return part == Part::holdout ? held_blocks_ : train_blocks_; }
   Eigen::VectorXd whiten(Part part, const Eigen::MatrixXd& e) const;
-  double sigma(int trial, int channel) const;  ///< of an error, everything unknown included, header's unit
   void estimate_noise(const Fit* at);
   GroupUnknowns group_sd() const;
 
