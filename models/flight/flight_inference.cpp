@@ -20,7 +20,7 @@ constexpr double kWindStep = 0.05, kLawStep = 1e-3;  // [m/s]; of a coefficient'
 
 constexpr double kShotSettled = 1e-3;  // of a shot's sum of squares (times its misfit): a step that brings less
 constexpr double kShotRough = 0.1;  // the same where no step, however short, brings anything: the integration's jitter
-constexpr int kShotSteps = 100;     // of one shot
+constexpr int kShotSteps = 400;     // of one shot: a law by a table has a corner at each of its lines
 constexpr double kSettled = 0.05;   // standard errors: a step of what is shared below that is the estimate
 constexpr int kSteps = 60;          // of what is shared
 constexpr int kFlat = 3;            // steps that brought no more than the shots' own tolerance
@@ -129,7 +129,8 @@ class Estimate {
           break;
         }
         if (n == kShotSteps || damping > 1e12)
-          throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle");
+          throw solvers::NonConvergence("flight paths: shot " + shots_[i].id + " does not settle with the law " +
+                                        fit_.law.name);
         Eigen::MatrixXd damped = A;
         damped.diagonal() *= 1 + damping;
         const ShotUnknowns trial = u - dense::Cholesky(damped).solve(l.b);
