@@ -186,13 +186,14 @@ void TractionField::fit_friction(const std::vector<Station>& stations) {
     shapes += w * peak_ * m * m.transpose();
   });
   // Where the bound cuts the ratio, the rest of the patch takes over its share.
+  const dense::Ldlt factors(shapes);
   for (int i = 0; i < kBoundRounds; ++i) {
     Eigen::Matrix<double, 6, 2> off = target;
     over(patch_, kFine, [&](const Vec2& x, double w) {
       const Vec2 xi = patch_.unit(x);
       off -= w * peak_ * monomials(xi) * ratio(xi).transpose();
     });
-    ratio_ += dense::solve_ldlt(shapes, Eigen::MatrixXd(off)).transpose();
+    ratio_ += factors.solve(Eigen::MatrixXd(off)).transpose();
   }
 }
 

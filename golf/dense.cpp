@@ -32,9 +32,13 @@ MatrixXd Cholesky::lower_inverse() const {
 
 double Cholesky::log_determinant() const { return 2 * of_.matrixLLT().diagonal().array().log().sum(); }
 
-VectorXd solve_ldlt(const MatrixXd& A, const VectorXd& b) { return A.ldlt().solve(b); }
+Ldlt::Ldlt(const MatrixXd& A) : of_(A) {}
 
-MatrixXd solve_ldlt(const MatrixXd& A, const MatrixXd& b) { return A.ldlt().solve(b); }
+VectorXd Ldlt::solve(const VectorXd& b) const { return of_.solve(b); }
+
+MatrixXd Ldlt::solve(const MatrixXd& b) const { return of_.solve(b); }
+
+MatrixXd Ldlt::inverse() const { return solve(MatrixXd(MatrixXd::Identity(of_.rows(), of_.cols()))); }
 
 VectorXd solve_lu(const MatrixXd& A, const VectorXd& b) { return A.partialPivLu().solve(b); }
 

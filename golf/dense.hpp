@@ -30,10 +30,18 @@ class Cholesky {
   Eigen::LLT<MatrixXd> of_;
 };
 
-/// x of A x = b by P A P' = L D L', for a symmetric A that round-off may leave short of positive definite. Reads the
-/// lower half of A.
-VectorXd solve_ldlt(const MatrixXd& A, const VectorXd& b);
-MatrixXd solve_ldlt(const MatrixXd& A, const MatrixXd& b);
+/// P A P' = L D L', for a symmetric A that round-off may leave short of positive definite. Reads the lower half of A.
+class Ldlt {
+ public:
+  explicit Ldlt(const MatrixXd& A);
+  /// x of A x = b.
+  VectorXd solve(const VectorXd& b) const;
+  MatrixXd solve(const MatrixXd& b) const;
+  MatrixXd inverse() const;
+
+ private:
+  Eigen::LDLT<MatrixXd> of_;
+};
 
 /// x of A x = b for a square A that has an inverse: by LU with partial pivoting.
 VectorXd solve_lu(const MatrixXd& A, const VectorXd& b);

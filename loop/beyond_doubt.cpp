@@ -42,7 +42,7 @@ class Scores {
       scores += score * score.transpose();
       g += score;
     }
-    const Eigen::MatrixXd inverse = dense::solve_ldlt(A, Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
+    const Eigen::MatrixXd inverse = dense::Ldlt(A).inverse();
     return {at_.segment(first, count) - inverse * g, (inverse * scores * inverse.transpose()).diagonal().cwiseSqrt()};
   }
 

@@ -168,9 +168,8 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "<h2>Before and after</h2>";
   if (!r.channels.empty()) s += "<figure class='wide'>" + bars(r.channels) + "</figure>";
   const bool smooth = r.remainder && !r.remainder->places.empty();
-  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise<th>held out: RMS by noise<th>RMS "
-       "before<th>RMS "
-       "after";
+  s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise";
+  s += "<th>held out: RMS by noise<th>RMS before<th>RMS after";
   s += smooth ? "<th>RMS after, remainder taken away" : "";
   s += "<th>bias before<th>bias after</tr>";
   for (const ChannelResult& c : r.channels)

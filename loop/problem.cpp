@@ -21,4 +21,10 @@ Model Model::with(const Parametrisation* more) const {
   return m;
 }
 
+std::vector<std::string> Model::effects(std::size_t first) const {
+  std::vector<std::string> names;
+  for (std::size_t k = first; k < forms.size(); ++k) names.push_back(forms[k]->effect);
+  return names;
+}
+
 }  // namespace hosel::loop

@@ -44,6 +44,7 @@ struct Model {
   int size() const;  ///< number of parameters
   std::vector<const Parameter*> parameters() const;
   Model with(const Parametrisation* more) const;
+  std::vector<std::string> effects(std::size_t first = 0) const;  ///< of its forms, from that one on
 };
 
 /// Which of the data: those that effects are selected on (not more than needed), all that train, those held out.

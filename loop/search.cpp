@@ -329,7 +329,7 @@ double Search::promise(const std::vector<std::size_t>& which, Eigen::VectorXd& p
   for (const std::size_t w : which)
     for (const Parameter& par : linear_[w].form->parameters)
       G.diagonal()[at_known++] += std::pow(par.scale / par.known, 2);
-  Eigen::VectorXd q = dense::solve_ldlt(G, b);
+  Eigen::VectorXd q = dense::Ldlt(G).solve(b);
   // Out of range: held at the edge. One pass is enough for a guess.
   p.resize(q.size());
   double cost = rules_.parameter_cost * double(q.size());

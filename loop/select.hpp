@@ -17,8 +17,8 @@ struct Selection {
   bool structured = false;  ///< the gate
   bool clean = true;        ///< nothing remains after `chosen`
   bool nameless = false;    ///< many sets of effects tie and no name is common to them
-  /// What acts in proportion to the place in the session does as well without it, in words; empty: it does not, or
-  /// nothing chosen acts so.
+  /// In words, what acts in proportion to the place in the session and does as well without it, chosen or as likely as
+  /// what was chosen; empty: none.
   std::string at_every_shot;
   StructureMap before, after;
   std::vector<std::string> silent;  ///< effects without influence on these channels at these inputs

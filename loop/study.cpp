@@ -1,6 +1,7 @@
 #include "loop/study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,23 +54,21 @@ const Parametrisation* Study::likelier_at_every_shot() {
   if (!drift) return nullptr;
   const double beyond = likeliest(model) - criterion(selection.chosen, rules);
   if (beyond < 0) return drift;
-  if (beyond < rules.tie) selection.at_every_shot = no_drift(*drift);
+  if (beyond < rules.tie)
+    selection.at_every_shot =
+        fmt::format("{} ({}) says no more than the same on every shot", drift->effect, drift->what);
   return nullptr;
-}
-
-std::string Study::no_drift(const Parametrisation& drift) const {
-  return fmt::format("{} ({}) says no more than the same on every shot", drift.effect, drift.what);
 }
 
 /// What settles early is nearer to the same on every shot than to a drift: where the drift is as likely as what was
 /// chosen without it, it ties with one name, and leaves several in doubt.
 void Study::beside_drift() {
-  if (selection.level == 0) return;
-  Model model;
-  for (const Parametrisation* f : base) model = model.with(f);
-  if (likeliest(model.with(even_)) > criterion(selection.chosen, rules) + rules.tie) return;
-  if (selection.level > 1 || !selection.clean) {
-    selection.at_every_shot = no_drift(*even_);
+  if (selection.level == 0 || !selection.clean) return;
+  if (likeliest(selection.base.model.with(even_)) > criterion(selection.chosen, rules) + rules.tie) return;
+  if (selection.level > 1) {
+    selection.at_every_shot = fmt::format("{} say no more than {} ({}), and that no more than the same on every shot",
+                                          fmt::join(selection.chosen.model.effects(base.size()), " and "),
+                                          even_->effect, even_->what);
     return;
   }
   std::vector<std::string> tie = selection.adopted;

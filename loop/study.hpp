@@ -24,7 +24,6 @@ struct Study {
   void select(bool deep);
   double likeliest(const Model& model) const;
   const Parametrisation* likelier_at_every_shot();
-  std::string no_drift(const Parametrisation& drift) const;
   void beside_drift();
   void settle();
   void refute_noise();

@@ -63,9 +63,7 @@ Rival one_function(const Study& study) {
   if (found.empty()) return {};
   const Mechanism& best = found.front();
   const double of_names = criterion(s.chosen, study.rules);
-  std::vector<std::string> names;
-  for (std::size_t k = study.base.size(); k < s.chosen.model.forms.size(); ++k)
-    names.push_back(s.chosen.model.forms[k]->effect);
+  const std::vector<std::string> names = s.chosen.model.effects(study.base.size());
   const bool more = best.criterion + study.rules.tie < of_names, as_much = best.criterion < of_names + study.rules.tie;
   // A drift is slow and steady: one that is not likelier than a step is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
@@ -277,11 +275,8 @@ void conclude(const Study& study, LoopResult& result) {
   bool shown = s.level > 0 && named;
   if (shown &&
       deviance(problem, Part::holdout, chosen) > deviance(problem, Part::holdout, s.base) + study.rules.holdout_loss) {
-    std::vector<std::string> names;
-    for (std::size_t k = study.base.size(); k < chosen.model.forms.size(); ++k)
-      names.push_back(chosen.model.forms[k]->effect);
-    result.notes.push_back(
-        fmt::format("{} explained the training data and not those held out: not adopted", fmt::join(names, " and ")));
+    result.notes.push_back(fmt::format("{} explained the training data and not those held out: not adopted",
+                                       fmt::join(chosen.model.effects(study.base.size()), " and ")));
     if (result.verdict != Verdict::noise_contradicted) result.verdict = Verdict::insufficient;
     result.adopted.clear();
     result.ties.clear();

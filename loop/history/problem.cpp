@@ -179,7 +179,7 @@ bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double 
       // A Tikhonov term: modes in two planes with one frequency look alike in one channel.
       Eigen::MatrixXd G = U.transpose() * U;
       G.diagonal().array() += 1e-8;
-      const Eigen::VectorXd u = dense::solve_ldlt(G, Eigen::VectorXd(-(U.transpose() * w)));
+      const Eigen::VectorXd u = dense::Ldlt(G).solve(Eigen::VectorXd(-(U.transpose() * w)));
       w += U * u;
       out.unknowns[r] = u.cwiseQuotient(norm);
     }

@@ -328,7 +328,7 @@ class Audit {
       for (int pass = 0; pass < 6; ++pass) {
         const Eigen::MatrixXd G = A.transpose() * weight.asDiagonal() * A;
         const Eigen::VectorXd rhs = A.transpose() * weight.asDiagonal() * b;
-        c = dense::solve_ldlt(G + 1e-13 * Eigen::MatrixXd::Identity(p, p), rhs);
+        c = dense::Ldlt(G + 1e-13 * Eigen::MatrixXd::Identity(p, p)).solve(rhs);
         // Redescending: a tenth of the rows may be bad.
         const Eigen::VectorXd r = (b - A * c).cwiseAbs();
         const double fence = 4 * std::max(median(std::vector<double>(r.data(), r.data() + n)), 1e-14);

@@ -171,7 +171,7 @@ class Separation {
   double dd_ = 0;
 
   static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) {
-    return std::max(0.0, dd - g.dot(dense::solve_ldlt(G, g)));
+    return std::max(0.0, dd - g.dot(dense::Ldlt(G).solve(g)));
   }
 };
 

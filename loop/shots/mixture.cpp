@@ -132,7 +132,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
       for (Eigen::Index l = 0; l < size; ++l) normal(k, l) = weighted(slope[std::size_t(k)], slope[std::size_t(l)]);
     }
     normal.diagonal() *= 1 + 1e-9;
-    p = (p - dense::solve_ldlt(normal, gradient)).cwiseMax(low).cwiseMin(high);
+    p = (p - dense::Ldlt(normal).solve(gradient)).cwiseMax(low).cwiseMin(high);
     if (!p.allFinite() || !second(p, z)) return {};
     scatter = (((z.array().square().colwise() * in) + (first.array().square().colwise() * (1 - in))).colwise().mean())
                   .sqrt()

@@ -274,7 +274,7 @@ class Fit {
 Eigen::VectorXd gauss_newton(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const std::vector<Eigen::Index>& rows,
                              const std::vector<Eigen::Index>& columns) {
   const Eigen::MatrixXd A = J(rows, columns);
-  return -dense::solve_ldlt(A.transpose() * A, Eigen::VectorXd(A.transpose() * r(rows)));
+  return -dense::Ldlt(A.transpose() * A).solve(Eigen::VectorXd(A.transpose() * r(rows)));
 }
 
 /// Parameters without a shot: shared ones from all other rows, its own from its rows.

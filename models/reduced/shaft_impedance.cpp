@@ -79,7 +79,7 @@ Condensed condense(const MatrixXd& M, const MatrixXd& K, const std::vector<int>&
   };
   const MatrixXd Kii = pick(K, rest, rest), Kib = pick(K, rest, tip), Mii = pick(M, rest, rest),
                  Mib = pick(M, rest, tip);
-  const MatrixXd S = -dense::solve_ldlt(Kii, Kib);  // inner motion that follows the tip at rest
+  const MatrixXd S = -dense::Ldlt(Kii).solve(Kib);  // inner motion that follows the tip at rest
   Condensed out;
   out.stiffness = pick(K, tip, tip) + Kib.transpose() * S;
   out.mass = pick(M, tip, tip) + Mib.transpose() * S + S.transpose() * Mib + dense::congruent(Mii, S);

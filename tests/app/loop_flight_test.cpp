@@ -1,6 +1,7 @@
 // Loops whose base is the flight and laws inferred from followed flights, as cases.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/read_paths.hpp"
@@ -73,6 +74,21 @@ TEST(FlightLawCase, LeavesOutPlayersByTheirName) {
   // FNV-1a of "a" is 0xe40c292c, of "b" 0xe70c2de5 (the function's published test values).
   EXPECT_FALSE(hosel::app::held_out("a"));
   EXPECT_TRUE(hosel::app::held_out("b"));
+}
+
+TEST(FlightLawCase, ReachesWhatAPointWithDragAndLiftCan) {
+  const fs::path out = fresh_directory("flight_law");
+  const Outcome o = command("run " + (fs::path(HOSEL_SOURCE_DIR) / "cases" / "radar-law").string() + " --force --out " +
+                            out.string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  if (o.text.find("SKIPPED") != std::string::npos) GTEST_SKIP() << "HOSEL_DATA names no radar_flights";
+  const auto left_out = nlohmann::json::parse(content(out / "summary.json"))["left_out"];
+  const auto &by_path = left_out["by_path"]["inferred"], &at_will = left_out["at_will"]["inferred"];
+  EXPECT_GT(at_will["shots"], 50);
+  EXPECT_GT(at_will["carry_rms_m"], 1);  // the radar's own continuation, which no law follows
+  // Axis, ball and wind of a shot leave no more than a quarter beyond drag, lift and wind at will.
+  EXPECT_LT(by_path["carry_rms_m"].get<double>(), 1.25 * at_will["carry_rms_m"].get<double>());
+  EXPECT_LT(std::abs(by_path["carry_bias_m"].get<double>()), 1.5);
 }
 
 TEST(FlightLawCase, SkipsWithoutTheData) {

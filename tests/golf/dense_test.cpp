@@ -50,8 +50,9 @@ TEST(Dense, CholeskyIsTheMatrixAgain) {
 TEST(Dense, SquareSystems) {
   const MatrixXd A = positive(), I = MatrixXd::Identity(4, 4);
   const VectorXd b = VectorXd::LinSpaced(4, -1, 2);
-  near(A * dense::solve_ldlt(A, b), b);
-  near(A * dense::solve_ldlt(A, I), I);
+  near(A * dense::Ldlt(A).solve(b), b);
+  near(A * dense::Ldlt(A).solve(I), I);
+  near(A * dense::Ldlt(A).inverse(), I);
   MatrixXd unsymmetric = A;
   unsymmetric(0, 3) = 2;
   near(unsymmetric * dense::solve_lu(unsymmetric, b), b);
