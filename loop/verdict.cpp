@@ -65,16 +65,15 @@ Rival one_function(const Study& study) {
   const double of_names = criterion(s.chosen, study.rules);
   const std::vector<std::string> names = s.chosen.model.effects(study.base.size());
   const bool more = best.criterion + study.rules.tie < of_names, as_much = best.criterion < of_names + study.rules.tie;
-  // A drift is slow and steady: one that is not likelier than a step is none.
-  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
-                     best.names.empty() && best.criterion < of_names;
+  // A drift is slow and steady: where no function is likelier than a step there is none.
+  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.step;
   if (!more && !drift && !(as_much && names.size() > 1)) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
   const auto is = [&](const std::string& e) { return std::ranges::count(same, e) > 0; };
   // A form of the library for a function of another form keeps its name.
   if (names.size() == 1 && !drift && is(names.front())) return {};
-  if (!more)
+  if (!more && !drift)
     for (const Candidate& c : s.candidates)
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)

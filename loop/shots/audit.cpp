@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -50,13 +51,22 @@ std::string term_name(const Term& f, const std::vector<Source>& s) {
   return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
 }
 
+constexpr double kOutsideEdge = 14;  // price of a row outside, as a deviance: one in a thousand may be
+
 struct Formula {
   std::string text;
   std::set<int> from;    ///< sources
   double residual = 0;   ///< root mean square on rows that were not fitted, without the worst tenth
   double tolerance = 0;  ///< what rounding of all columns allows
   int rows = 0;
-  double cost = 0;  ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
+  int beyond = 0;        ///< rows that miss by more than the column's own last digit and by no more than all rounding
+  double cost = 0;       ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
+  double direction = 0;  ///< the same between the columns that one relation may be solved for
+  std::set<int> columns(int target) const {
+    std::set<int> all = from;
+    all.insert(target);
+    return all;
+  }
 };
 
 /// What monitors and players compute from two columns, SI.
@@ -144,8 +154,7 @@ class Audit {
         Formula f;
         if (identity(target, sources_for(target, gone, false), f)) accept(target, f);
       }
-    // Then the likeliest unknown formula over all columns, again and again: a relation can be solved for any column in
-    // it.
+    // Then the likeliest unknown formula over all columns, again and again.
     std::map<int, Formula> best;
     std::set<int> stale;
     for (int k = 0; k < int(sources_.size()); ++k) stale.insert(k);
@@ -158,8 +167,14 @@ class Audit {
         if (Formula f; search(target, sources_for(target, gone, true), f)) best[target] = f;
       }
       if (best.empty()) return found;
-      const auto [target, formula] =
-          *std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
+      const auto likeliest =
+          std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
+      // A relation can be solved for any column in it.
+      const std::set<int> columns = likeliest->second.columns(likeliest->first);
+      const auto [target, formula] = *std::ranges::min_element(best, {}, [&](const auto& b) {
+        return b.second.columns(b.first) == columns ? b.second.direction + 6 * rank(b.first)
+                                                    : std::numeric_limits<double>::infinity();
+      });
       accept(target, formula);
       stale = {target};
       for (const auto& [other, f] : best)
@@ -215,7 +230,7 @@ class Audit {
       for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
       residual.push_back(y.x[i] - f(x));
     }
-    out.residual = trimmed_rms(std::move(residual));
+    out.residual = trimmed_rms(residual);
     // More than the largest tolerance below allows: most formulas end here.
     const double finer = parameters ? 12 : 6;
     if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
@@ -235,6 +250,11 @@ class Audit {
     // The typical row: a few rows next to a singularity of f must not excuse the others.
     out.tolerance = std::sqrt(median(std::move(wobbles)));
     out.from = from;
+    // The numbers of the formula are fitted: the edge is not sharper than they are.
+    const double edge = 0.5 * y.resolution + 1e-9 * y.spread +
+                        2 * out.residual * std::sqrt(parameters / double(rows.size()));
+    out.beyond = int(std::ranges::count_if(
+        residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
     return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * finer < y.spread;
   }
@@ -386,16 +406,21 @@ class Audit {
       }
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
-      // sees. Each counts as e^3 times as likely. A relation solved for another column of it than the computed one
-      // misses that column by more than its own last digit: the last term.
+      // sees. Each counts as e^3 times as likely.
       const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) {
                           return sources_[std::size_t(k)].column->role == Role::output;
                         });
       const auto composite = std::ranges::count_if(features, [](const Term& g) { return g.b >= 0; });
       const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
-      out.cost = double(judged.size()) * (std::pow(out.residual / (out.tolerance + 1e-9 * y.spread), 2) - 1 +
-                                          2 * std::log(std::max(1.0, out.residual / own))) +
-                 6 * double(p + composite - seen);
+      const double all_rounding = out.tolerance + 1e-9 * y.spread, share = std::pow(out.residual / all_rounding, 2),
+                   terms = 6 * double(p + composite - seen), n_judged = double(judged.size());
+      out.cost = n_judged * (share - 1 + 2 * std::log(std::max(1.0, out.residual / own))) + terms;
+      // Between the columns of a relation the rounding of all of them is no evidence. That one of them is missed by
+      // nothing but its own rounding is: it was computed from the others as they stand. Nor does an instrument compute
+      // what is made of the others' last digits: twice their rounding counts as one more term.
+      const double uniform = std::log(2 * std::sqrt(3.0) * own / all_rounding) - 0.5 * std::log(2 * std::numbers::pi);
+      out.direction = n_judged * (share - 1) + terms + 6 * std::log2(all_rounding / own) +
+                      std::min(0.0, n_judged * (2 * uniform - share) + kOutsideEdge * out.beyond);
       if (!found || out.cost < best.cost) best = out;
       found = true;
       return true;

@@ -96,21 +96,23 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     return Eigen::VectorXd(sd > 1e-9 * (1 + std::abs(sum / count)) ? out / (2 * sd) : Eigen::VectorXd());
   };
   std::vector<Field> all;
+  const auto covariance = [n](const std::vector<Eigen::VectorXd>& x, double length) {
+    Eigen::MatrixXd K(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) {
+        double square = 0;
+        for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
+        K(i, j) = matern(std::sqrt(square));
+      }
+    return K;
+  };
   const auto smooth = [&](std::string along, const std::vector<Eigen::VectorXd>& x, bool place) {
     Field f{.along = std::move(along), .place = place};
-    for (const double length : {0.5, 1.0, 2.0, 4.0}) {
-      Eigen::MatrixXd K(n, n);
-      for (Eigen::Index i = 0; i < n; ++i)
-        for (Eigen::Index j = 0; j < n; ++j) {
-          double square = 0;
-          for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
-          K(i, j) = matern(std::sqrt(square));
-        }
-      f.smoothness.push_back(basis(K));
-    }
+    for (const double length : {0.5, 1.0, 2.0, 4.0}) f.smoothness.push_back(basis(covariance(x, length)));
     all.push_back(std::move(f));
   };
   Eigen::VectorXd toe, high;
+  std::vector<Eigen::MatrixXd> steps;  // covariances of one step each
   for (const Line& line : columns_of(shots, row_of, model)) {
     const Eigen::VectorXd x = scaled(line.x);
     if (!x.size() || (line.name == "shot" && !session)) continue;
@@ -120,11 +122,12 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     }
     smooth(line.name, {x}, false);
     if (line.name != "shot") continue;
+    all.push_back({.along = line.name, .smoothness = {basis(x * x.transpose())}});  // a steady drift
     // A walk: steps and slow wander.
     Eigen::MatrixXd K(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j) K(i, j) = std::min(x[i], x[j]) - x.minCoeff();
-    all.back().smoothness.push_back(basis(K));
+    (all.end() - 2)->smoothness.push_back(basis(K));
     // One step, wherever it is: no drift.
     Field step{.along = line.name, .step = true};
     std::vector<double> sorted(x.begin(), x.end());
@@ -133,11 +136,19 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     for (Eigen::Index k = 1; k <= places; ++k) {
       const double from = sorted[std::size_t(k * n / (places + 1))];
       const Eigen::VectorXd after = (x.array() >= from).cast<double>();
-      step.smoothness.push_back(basis(after * after.transpose()));
+      steps.emplace_back(after * after.transpose());
+      step.smoothness.push_back(basis(steps.back()));
     }
     all.push_back(std::move(step));
   }
-  if (toe.size() && high.size()) smooth(shots.find_stem(stem(Input::impact_toe))->name, {toe, high}, true);
+  if (toe.size() && high.size()) {
+    smooth(shots.find_stem(stem(Input::impact_toe))->name, {toe, high}, true);
+    // A step that differs over the place of impact: a crack, a weight come loose.
+    Field damage{.along = "shot", .step = true};
+    const Eigen::MatrixXd even = covariance({toe, high}, 1).array() + 1;
+    for (const Eigen::MatrixXd& step : steps) damage.smoothness.push_back(basis(step.cwiseProduct(even)));
+    if (!steps.empty()) all.push_back(std::move(damage));
+  }
   for (const Column& c : shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
@@ -305,7 +316,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
       if (!again.g.size()) break;
       t.found = std::move(again);
     }
-    Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along};
+    Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along, .step = functions[t.field].step};
     const Eigen::VectorXd moved = (j * t.found.g.asDiagonal()).rowwise().squaredNorm();
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
