@@ -62,12 +62,18 @@ struct Formula {
   int beyond = 0;        ///< rows that miss by more than the column's own last digit and by no more than all rounding
   double cost = 0;       ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
   double direction = 0;  ///< the same between the columns that one relation may be solved for
-  std::set<int> columns(int target) const {
-    std::set<int> all = from;
-    all.insert(target);
-    return all;
-  }
+  /// A relation that may be solved for any of its columns is of the same form for each.
+  enum class Form { linear, powers, other } form = Form::other;
 };
+
+bool same_relation(int target, const Formula& f, int other, const Formula& g) {
+  if (target == other) return true;
+  const auto columns = [](std::set<int> from, int y) {
+    from.insert(y);
+    return from;
+  };
+  return f.form == g.form && f.form != Formula::Form::other && columns(f.from, target) == columns(g.from, other);
+}
 
 /// What monitors and players compute from two columns, SI.
 struct Identity {
@@ -169,11 +175,10 @@ class Audit {
       if (best.empty()) return found;
       const auto likeliest =
           std::ranges::min_element(best, {}, [&](const auto& b) { return b.second.cost + 6 * rank(b.first); });
-      // A relation can be solved for any column in it.
-      const std::set<int> columns = likeliest->second.columns(likeliest->first);
       const auto [target, formula] = *std::ranges::min_element(best, {}, [&](const auto& b) {
-        return b.second.columns(b.first) == columns ? b.second.direction + 6 * rank(b.first)
-                                                    : std::numeric_limits<double>::infinity();
+        return same_relation(likeliest->first, likeliest->second, b.first, b.second)
+                   ? b.second.direction + 6 * rank(b.first)
+                   : std::numeric_limits<double>::infinity();
       });
       accept(target, formula);
       stale = {target};
@@ -419,6 +424,7 @@ class Audit {
       // nothing but its own rounding is: it was computed from the others as they stand. Nor does an instrument compute
       // what is made of the others' last digits: twice their rounding counts as one more term.
       const double uniform = std::log(2 * std::sqrt(3.0) * own / all_rounding) - 0.5 * std::log(2 * std::numbers::pi);
+      out.form = composite ? Formula::Form::other : logarithmic ? Formula::Form::powers : Formula::Form::linear;
       out.direction = n_judged * (share - 1) + terms + 6 * std::log2(all_rounding / own) +
                       std::min(0.0, n_judged * (2 * uniform - share) + kOutsideEdge * out.beyond);
       if (!found || out.cost < best.cost) best = out;
