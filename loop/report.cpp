@@ -267,7 +267,10 @@ std::string sentence(const LoopResult& r) {
       std::string which;
       for (const ChannelResult& c : r.channels)
         if (c.refuted) which += (which.empty() ? "" : "; ") + c.refutation();
-      return "The declared noise is contradicted by the data's own scatter: " + which + ".";
+      std::string s = "The declared noise is contradicted by the data's own scatter: " + which + ".";
+      if (!r.adopted.empty()) s += fmt::format(" The model lacked all the same: {}.", list(r.adopted));
+      if (!r.ties.empty()) s += fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
+      return s;
     }
   }
   return "";

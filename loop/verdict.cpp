@@ -112,6 +112,16 @@ std::vector<std::vector<std::string>> ties_of(const Rival& one, const Selection&
   return std::vector<std::vector<std::string>>{tie};
 }
 
+/// The one of several chosen effects that alone takes off nearly as much as all of them; none: nullptr.
+const Candidate* nearly_alone(const Selection& s, const Study& study) {
+  const std::vector<std::string> names = s.chosen.model.effects(study.base.size());
+  for (const Candidate& c : s.candidates)
+    if (c.effects.size() == 1 && std::ranges::count(names, c.effects.front()) && !c.fit.at_bound &&
+        s.base.deviance - c.fit.deviance > study.rules.stand_in * (s.base.deviance - s.chosen.deviance))
+      return &c;
+  return nullptr;
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -241,7 +251,7 @@ void conclude(const Study& study, LoopResult& result) {
     bare = s.level > 0 ? problem.remainder(s.base) : left;
   }
   const std::vector<Location> without_name = nameless(study, left, bare);
-  const Rival one = one_function(study);
+  Rival one = one_function(study);
   const std::vector<std::string> restitution = through_one_restitution(study);
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
@@ -252,12 +262,19 @@ void conclude(const Study& study, LoopResult& result) {
   }
   // Where the scatter is not the declared, one effect alone is told, and what was held out must come as much nearer as
   // a first effect asks for.
+  const bool contradicted = result.verdict == Verdict::noise_contradicted;
+  if (contradicted && s.level > 1) one.lone = nearly_alone(s, study);
   const auto foretells = [&] {
-    return s.level == 1 &&
-           deviance(problem, Part::holdout, s.chosen) + study.rules.gain < deviance(problem, Part::holdout, s.base);
+    if (s.level != 1 && !one.lone) return false;
+    const Fit& told = one.lone ? one.lone->fit : s.chosen;
+    return deviance(problem, Part::holdout, told) + study.rules.gain < deviance(problem, Part::holdout, s.base);
   };
   const bool named = result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous ||
-                     (result.verdict == Verdict::noise_contradicted && foretells());
+                     (contradicted && foretells());
+  if (contradicted && !named && bare && bare->fall() > study.rules.gain) {  // then scatter is not all that is there
+    result.verdict = Verdict::unexplained;
+    result.unexplained = places(problem, *bare);
+  }
   if (named) {
     result.ties = one.lone ? ties_of(one, s) : s.ties;
     if (!one.lone && !restitution.empty()) result.ties = {restitution};

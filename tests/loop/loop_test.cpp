@@ -616,6 +616,16 @@ TEST_F(Loop, ClubsHitOneAfterAnotherMakeADriftLessLikely) {
   EXPECT_NEAR(cost(one) - cost(other), 10, 1e-9);
 }
 
+TEST_F(Loop, UnderRefutedNoiseTheOneOfTwoThatSaysNearlyAllIsTold) {
+  ShotCase c = case_of(csv({.shots = 120, .loft = 2, .drift = 1, .seed = 2}));
+  c.noise["azimuth_deg"] = 0.16;
+  const LoopResult r = run(c);
+  ASSERT_EQ(name(r.verdict), "noise-contradicted") << sentence(r);
+  ASSERT_EQ(r.selection.level, 2);
+  EXPECT_EQ(r.adopted, std::vector<std::string>{"loft-bias"});
+  EXPECT_NE(sentence(r).find("The model lacked all the same: loft-bias."), std::string::npos);
+}
+
 TEST_F(Loop, ScatterThatTooFewShotsCannotRefuteIsNotCalledNoise) {
   for (const double over : {1.3, 2.6}) {
     ShotCase c = case_of(csv({.shots = 30}));
