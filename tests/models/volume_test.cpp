@@ -98,7 +98,7 @@ TEST(Volume, LanesAreTheNumbers) {
   for (const double c : {1 / 0.3, 1 / 0.01, 0.0}) {
     Pack depth;
     for (int l = 0; l < kLanes; ++l) set_lane(depth, l, 0.015 * (l - 0.7));
-    const OverlapOf<Pack> four = overlap(depth, Pack(r), Pack(c));
+    const auto four = overlap(depth, Pack(r), Pack(c));
     const Pack power = powered(four.volume, 0.6);
     for (int l = 0; l < kLanes; ++l) {
       const Overlap one = overlap(lane(depth, l), r, c);
