@@ -53,7 +53,7 @@ struct Pack {
   friend Pack exp(const Pack& x) {
     return by_array(x.v, [](const auto& a) { return a.exp(); });
   }
-  /// x^exponent for x >= 0 and a positive exponent.
+  /// x^exponent for x > 0.
   friend Pack pow(const Pack& x, double exponent) {
     return exp(exponent * Pack(by_array(x.v, [](const auto& a) { return a.log(); })));
   }

@@ -60,7 +60,7 @@ T powered(const T& volume, double exponent) {
   constexpr double kReference = 1e-6;
   if (exponent == 1) return volume;
   using std::pow;
-  const T share = volume / kReference, power = pow(select(share > 0, share, T(0)), exponent);
+  const T share = volume / kReference, power = pow(select(share > 0, share, T(1)), exponent);
   return select(share > 0, kReference * power, volume);
 }
 
