@@ -33,8 +33,8 @@ class ImpactModel {
   /// Where the model is the finite-element impact: what can be watched step by step, and gone on with from where it
   /// stopped. Else nullptr.
   virtual const Impact* impact() const { return nullptr; }
-  /// launch() of every blow, in their order. An answer does not depend on the other blows. One after the other, unless the
-  /// model goes through several side by side.
+  /// launch() of every blow, in their order. An answer does not depend on the other blows. One after the other, unless
+  /// the model goes through several side by side.
   virtual std::vector<Answer> launches(std::span<const Blow> blows) const {
     std::vector<Answer> answers(blows.size());
     for (std::size_t k = 0; k < blows.size(); ++k) try {

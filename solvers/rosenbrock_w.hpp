@@ -28,8 +28,9 @@ struct RosenbrockOptions {
 /// stands for the Jacobian (a W-method), so that A need hold the stiff block alone.
 /// Source: Rang and Angermann (2005), BIT 45:761, table 4; order conditions in the tests.
 ///
-/// Several problems of one system go side by side where its scalar has lanes (golf/lanes.hpp): each lane has its own time,
-/// step and event, and a lane that has ended takes the next problem. A problem's steps do not depend on its neighbours.
+/// Several problems of one system go side by side where its scalar has lanes (golf/lanes.hpp): each lane has its own
+/// time, step and event, and a lane that has ended takes the next problem. A problem's steps do not depend on its
+/// neighbours.
 ///
 /// System offers
 ///   using Scalar;                                                // double, or Pack
@@ -161,9 +162,7 @@ class RosenbrockW {
 
   /// One problem of a system of numbers: advances `y` to the event, and returns its time. watch(t, y).
   template <class Watch>
-  double run(double* y, const RosenbrockOptions& o, Watch&& watch)
-    requires(kWidth == 1)
-  {
+  double run(double* y, const RosenbrockOptions& o, Watch&& watch) requires(kWidth == 1) {
     bool taken = false;
     double time = 0;
     const char* why = nullptr;
@@ -243,7 +242,8 @@ class RosenbrockW {
   System& s_;
   std::size_t n_;
   std::array<std::vector<Scalar>, 4> k_;
-  std::vector<Scalar> y_, stage_, work_, next_, weight_;  // weight: one over the size of a component, 0: no error control
+  std::vector<Scalar> y_, stage_, work_, next_,
+      weight_;  // weight: one over the size of a component, 0: no error control
   std::array<Lane, kWidth> lanes_;
 };
 

@@ -5,8 +5,8 @@
 
 namespace hosel::solvers {
 
-/// B := A^-1 B by L D L' without pivots, which needs no comparison: Eigen's own cannot go through lanes. Reads the lower
-/// half of A, which must be positive definite.
+/// B := A^-1 B by L D L' without pivots, which needs no comparison: Eigen's own cannot go through lanes. Reads the
+/// lower half of A, which must be positive definite.
 template <class T, int N, int Columns>
 void solve_positive(Eigen::Matrix<T, N, N> A, Eigen::Matrix<T, N, Columns>& B) {
   Eigen::Matrix<T, N, 1> inverse;  // of D

@@ -279,8 +279,7 @@ class TuneJob final : public Job {
           for (std::size_t k = 0; k < of.size(); ++k) {
             if (answers[k].failure) continue;
             std::vector<double> values(channels_.size());
-            for (std::size_t c = 0; c < values.size(); ++c)
-              values[c] = channels_[c].channel.value(answers[k].launch);
+            for (std::size_t c = 0; c < values.size(); ++c) values[c] = channels_[c].channel.value(answers[k].launch);
             out[of[k]] = std::move(values);
           }
         } catch (const std::exception&) {}

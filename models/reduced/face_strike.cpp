@@ -116,12 +116,12 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
   FaceStrike out;
   // A step of the fastest motion cannot be above a tenth of its period's inverse rate: error control sees to it.
   solvers::Peak force, travel;
-  out.contact_time = solver.run(
-      y.data(), {.first_step = 1e-7, .latest = 0.05, .tolerance = 1e-6, .event_tolerance = 1e-12},
-      [&](double t, const double* now) {
-        force.add(t, system.force(now));
-        travel.add(t, now[Strike::kTravel]);
-      });
+  out.contact_time = solver.run(y.data(),
+                                {.first_step = 1e-7, .latest = 0.05, .tolerance = 1e-6, .event_tolerance = 1e-12},
+                                [&](double t, const double* now) {
+                                  force.add(t, system.force(now));
+                                  travel.add(t, now[Strike::kTravel]);
+                                });
   out.peak_force = force.value;
   out.travel = travel.value;
   // The head's momentum is what striker and start leave it; its face may still move.

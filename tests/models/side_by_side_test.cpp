@@ -80,8 +80,8 @@ TEST(SideBySide, EachIsAsAlone) {
   }
 }
 
-/// The answers of CVODE, whose equations are of single numbers, to what tolerance and blow make of them: a step may err by the
-/// tolerance of the blow's scales, and some tens of steps add up.
+/// The answers of CVODE, whose equations are of single numbers, to what tolerance and blow make of them: a step may err
+/// by the tolerance of the blow's scales, and some tens of steps add up.
 TEST(SideBySide, AgreeWithTheReference) {
   std::vector<Blow> all = blows();
   all.resize(60);
