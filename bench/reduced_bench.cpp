@@ -7,9 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <vector>
 
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
+#include "models/reduced/shaft_coupled.hpp"
 #include "models/reduced/shaft_impedance.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "models/rigid/hertz_maw.hpp"
@@ -85,8 +87,7 @@ void HertzMaw(benchmark::State& state) {
 }
 BENCHMARK(HertzMaw)->Unit(benchmark::kMicrosecond);
 
-void ShaftCoupled(benchmark::State& state) {
-  Blow b = blow(0.014);
+Shaft tapered() {
   Shaft shaft;
   for (int i = 0; i <= 20; ++i) {
     const double x = 0.05 * i, bending = 70 - 50 * x;
@@ -101,13 +102,57 @@ void ShaftCoupled(benchmark::State& state) {
                               .rotary_inertia_z = 8e-7,
                               .outer_radius = 0.005});
   }
-  b.club.shaft = shaft;
+  return shaft;
+}
+
+void ShaftCoupled(benchmark::State& state) {
+  Blow b = blow(0.014);
+  b.club.shaft = tapered();
   const models::ShaftImpedance impedance = models::shaft_impedance(b.club);
   measure(state, [&](double tolerance) {
     return models::volumetric_impact(b, {}, {models::Integrator::rosenbrock, tolerance}, &impedance);
   });
 }
 BENCHMARK(ShaftCoupled)->DenseRange(2, 6)->Unit(benchmark::kMicrosecond);
+
+/// A thousand blows over the face, one after the other and side by side in turn: CPU microseconds a blow on one core.
+void batch(benchmark::State& state, const models::ImpactModel& model, const Blow& of) {
+  std::vector<Blow> blows(1000, of);
+  for (std::size_t k = 0; k < blows.size(); ++k) {
+    blows[k].delivery.impact_toe = -0.02 + 4e-5 * double(k);
+    blows[k].delivery.club_speed = 40 + 1.3 * double(k % 10);
+  }
+  for (auto _ : state) {
+    double alone = 0, together = 0;
+    for (int round = 0; round < 5; ++round) {
+      std::clock_t clock = std::clock();
+      for (const Blow& b : blows) benchmark::DoNotOptimize(model.launch(b));
+      alone += double(std::clock() - clock);
+      clock = std::clock();
+      benchmark::DoNotOptimize(model.launches(blows));
+      together += double(std::clock() - clock);
+    }
+    const double us = 1e6 / CLOCKS_PER_SEC / (5 * double(blows.size()));
+    state.counters["us_alone"] = us * alone;
+    state.counters["us_together"] = us * together;
+    state.counters["ratio"] = alone / together;
+  }
+}
+constexpr models::VolumetricOptions kCoarse{models::Integrator::rosenbrock, 1e-3};
+void VolumetricBatch(benchmark::State& state) { batch(state, models::Volumetric({}, kCoarse), blow(0)); }
+BENCHMARK(VolumetricBatch)->Iterations(1);
+void VolumetricOnAFaceBatch(benchmark::State& state) {
+  Blow b = blow(0);
+  b.club.head.compliance = find_face("modern-driver")->face;
+  batch(state, models::Volumetric({}, kCoarse), b);
+}
+BENCHMARK(VolumetricOnAFaceBatch)->Iterations(1);
+void ShaftCoupledBatch(benchmark::State& state) {
+  Blow b = blow(0);
+  b.club.shaft = tapered();
+  batch(state, models::ShaftCoupled({}, kCoarse), b);
+}
+BENCHMARK(ShaftCoupledBatch)->Iterations(1);
 
 /// One thread and two, in turn. Efficiency = time of one / (2 x time of two); `by_cpu` the same from the CPU time of
 /// all threads, for a machine with other work on it: but for the wait for the last batch, one in 200, that is all there

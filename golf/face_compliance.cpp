@@ -2,18 +2,20 @@
 
 #include <cmath>
 
+#include "golf/plate_shape.hpp"
+
 namespace hosel {
 
 FaceCompliance::Shape FaceCompliance::shape(double yc, double zc) const {
   const Eigen::Vector2d curvature(1 / (half_width * half_width), 1 / (half_height * half_height)), at(yc, zc);
+  const PlateShape<double> plate(curvature.x(), curvature.y(), yc, zc);
+  if (!(plate.height > 0)) return {};
   const Eigen::Vector2d slope = -2 * curvature.cwiseProduct(at);
-  const double height = 1 - curvature.dot(at.cwiseAbs2());
-  if (!(height > 0)) return {};
   Shape s;
-  s.value = height * height;
-  s.slope = 2 * height * slope;
+  s.value = plate.value;
+  s.slope = {plate.slope_y, plate.slope_z};
   s.second = 2 * slope * slope.transpose();
-  s.second.diagonal() -= 4 * height * curvature;
+  s.second.diagonal() -= 4 * plate.height * curvature;
   return s;
 }
 

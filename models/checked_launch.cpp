@@ -56,6 +56,14 @@ Launch checked_launch(const ImpactModel& model, const Blow& blow) {
   return launch;
 }
 
+std::vector<Answer> checked_launches(const ImpactModel& model, std::span<const Blow> blows) {
+  std::vector<Answer> answers = model.launches(blows);
+  for (std::size_t k = 0; k < blows.size(); ++k) try {
+      check_launch(model, blows[k], answers[k].value());
+    } catch (...) { answers[k].failure = std::current_exception(); }
+  return answers;
+}
+
 void check_launch(const ImpactModel& model, const Blow& blow, const Launch& l) {
   if (!l.velocity.allFinite() || !l.spin.allFinite() || !l.head_velocity.allFinite() || !l.head_spin.allFinite() ||
       !finite(l.contact_time) || !finite(l.peak_force) || !finite(l.peak_compression))

@@ -15,6 +15,8 @@ namespace hosel::models {
 /// with 300 N over the 3 mm of a blow do so much. Throws solvers::NonConvergence with a sentence otherwise, and what
 /// the model throws.
 Launch checked_launch(const ImpactModel& model, const Blow& blow);
+/// The same of many blows: each launch, or what checked_launch() throws on it.
+std::vector<Answer> checked_launches(const ImpactModel& model, std::span<const Blow> blows);
 /// The same of an answer that `model` has given already.
 void check_launch(const ImpactModel& model, const Blow& blow, const Launch& launch);
 

@@ -1,7 +1,10 @@
 /// The one concept that ties the house together: (delivery, club, ball) -> launch.
 #pragma once
 
+#include <exception>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "golf/blow.hpp"
 #include "golf/launch.hpp"
@@ -9,6 +12,16 @@
 namespace hosel::models {
 
 class Impact;
+
+/// One of many blows: the launch, or what ImpactModel::launch() throws on it.
+struct Answer {
+  Launch launch;
+  std::exception_ptr failure;
+  const Launch& value() const {
+    if (failure) std::rethrow_exception(failure);
+    return launch;
+  }
+};
 
 class ImpactModel {
  public:
@@ -20,6 +33,15 @@ class ImpactModel {
   /// Where the model is the finite-element impact: what can be watched step by step, and gone on with from where it
   /// stopped. Else nullptr.
   virtual const Impact* impact() const { return nullptr; }
+  /// launch() of every blow, in their order. An answer does not depend on the other blows. One after the other, unless
+  /// the model goes through several side by side.
+  virtual std::vector<Answer> launches(std::span<const Blow> blows) const {
+    std::vector<Answer> answers(blows.size());
+    for (std::size_t k = 0; k < blows.size(); ++k) try {
+        answers[k].launch = launch(blows[k]);
+      } catch (...) { answers[k].failure = std::current_exception(); }
+    return answers;
+  }
 };
 
 }  // namespace hosel::models

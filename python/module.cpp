@@ -87,20 +87,22 @@ class Model {
     std::string why;
     {
       const py::gil_scoped_release released;
-      for_all(py::ssize_t{0}, in.shape(0), [&](py::ssize_t i) {
-        Blow blow = blow_;
-        for (std::size_t c = 0; c < columns.size(); ++c)
-          set(blow, columns[c].first, in(i, py::ssize_t(c)) * columns[c].second);
-        try {
-          const Launch launch = models::checked_launch(*model_, blow);
-          for (std::size_t c = 0; c < channels.size(); ++c)
-            out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
-        } catch (const std::exception& e) {
-          const std::lock_guard lock(mutex);
-          if (i >= first) return;
-          first = i;
-          why = e.what();
-        }
+      for_all(tbb::blocked_range<py::ssize_t>(0, in.shape(0)), [&](const tbb::blocked_range<py::ssize_t>& range) {
+        std::vector<Blow> blows(std::size_t(range.size()), blow_);
+        for (py::ssize_t i = range.begin(); i < range.end(); ++i)
+          for (std::size_t c = 0; c < columns.size(); ++c)
+            set(blows[std::size_t(i - range.begin())], columns[c].first, in(i, py::ssize_t(c)) * columns[c].second);
+        const std::vector<models::Answer> launches = models::checked_launches(*model_, blows);
+        for (py::ssize_t i = range.begin(); i < range.end(); ++i) try {
+            const Launch& launch = launches[std::size_t(i - range.begin())].value();
+            for (std::size_t c = 0; c < channels.size(); ++c)
+              out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
+          } catch (const std::exception& e) {
+            const std::lock_guard lock(mutex);
+            if (i >= first) break;
+            first = i;
+            why = e.what();
+          }
       });
     }
     if (!why.empty()) throw app::InputError(fmt::format("blow {}: {}", first, why));

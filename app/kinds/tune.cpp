@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -256,19 +255,36 @@ class TuneJob final : public Job {
     return std::ranges::any_of(free_, [&](const Free& f) { return f.parameter->name == name; });
   }
 
-  /// Channel values of the model [SI], NaN where the blow cannot happen.
-  std::vector<double> predict(std::size_t row, const Eigen::VectorXd& p) const {
-    models::Options options = options_;
-    options.shaft_mount.loaded = loaded_[row];
-    Blow blow = blows_[row];
-    for (std::size_t i = 0; i < free_.size(); ++i)
-      free_[i].parameter->set(options, blow, p[static_cast<Eigen::Index>(i)]);
-    std::vector<double> out(channels_.size(), kNaN);
-    if (!blow.club.head.faults().empty() && model_ != "rigid-planar") return out;
-    try {
-      const Launch l = models::checked_launch(*models::find(model_)->make(options), blow);
-      for (std::size_t c = 0; c < channels_.size(); ++c) out[c] = channels_[c].channel.value(l);
-    } catch (const std::exception&) {}
+  /// Channel values of the model [SI] on every row, NaN where the blow cannot happen.
+  std::vector<std::vector<double>> predict(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p) const {
+    std::vector<std::vector<double>> out(rows.size(), std::vector<double>(channels_.size(), kNaN));
+    const bool own_model = options_.shaft_mount.load.has_value();  // for each row: its swing loads its shaft
+    for_all(tbb::blocked_range<std::size_t>(0, rows.size()), [&](const tbb::blocked_range<std::size_t>& range) {
+      for (std::size_t from = range.begin(), to; from < range.end(); from = to) {
+        to = own_model ? from + 1 : range.end();
+        models::Options options = options_;
+        options.shaft_mount.loaded = loaded_[rows[from]];
+        std::vector<Blow> blows;
+        std::vector<std::size_t> of;
+        for (std::size_t i = from; i < to; ++i) {
+          Blow blow = blows_[rows[i]];
+          for (std::size_t k = 0; k < free_.size(); ++k)
+            free_[k].parameter->set(options, blow, p[static_cast<Eigen::Index>(k)]);
+          if (!blow.club.head.faults().empty() && model_ != "rigid-planar") continue;
+          blows.push_back(std::move(blow));
+          of.push_back(i);
+        }
+        try {
+          const auto answers = models::checked_launches(*models::find(model_)->make(options), blows);
+          for (std::size_t k = 0; k < of.size(); ++k) {
+            if (answers[k].failure) continue;
+            std::vector<double> values(channels_.size());
+            for (std::size_t c = 0; c < values.size(); ++c) values[c] = channels_[c].channel.value(answers[k].launch);
+            out[of[k]] = std::move(values);
+          }
+        } catch (const std::exception&) {}
+      }
+    });
     return out;
   }
 
@@ -277,16 +293,15 @@ class TuneJob final : public Job {
   }
 
   bool whitened(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
-    std::atomic<bool> good = true;
+    bool good = true;
     const std::size_t width = fitted_.size();
-    for_all(std::size_t{0}, rows.size(), [&](std::size_t i) {
-      const std::vector<double> model = predict(rows[i], p);
+    const std::vector<std::vector<double>> model = predict(rows, p);
+    for (std::size_t i = 0; i < rows.size(); ++i)
       for (std::size_t k = 0; k < width; ++k) {
-        const double e = error(rows[i], fitted_[k], model) / channels_[fitted_[k]].noise;
+        const double e = error(rows[i], fitted_[k], model[i]) / channels_[fitted_[k]].noise;
         if (!std::isfinite(e)) good = false;
         r[static_cast<Eigen::Index>(i * width + k)] = e;
       }
-    });
     return good;
   }
 
@@ -387,11 +402,7 @@ class TuneJob final : public Job {
            .y_label = fmt::format("model - measured [{}]", post::symbol(split_unit(c.name).unit->suffix))});
     for (const auto& [set, rows] : {std::pair{"train", &train_}, std::pair{"test", &test_}}) {
       std::vector<std::vector<double>> before(channels_.size()), after(channels_.size());
-      std::vector<std::vector<double>> model_before(rows->size()), model_after(rows->size());
-      for_all(std::size_t{0}, rows->size(), [&](std::size_t i) {
-        model_before[i] = predict((*rows)[i], start);
-        model_after[i] = predict((*rows)[i], fit.parameters);
-      });
+      const auto model_before = predict(*rows, start), model_after = predict(*rows, fit.parameters);
       int lost = 0;
       for (std::size_t i = 0; i < rows->size(); ++i) {
         const std::size_t row = (*rows)[i];

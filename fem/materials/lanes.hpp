@@ -1,22 +1,17 @@
-/// Several points at once: arithmetic on four numbers in vector registers.
+/// Several points of a material at once.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+
+#include "golf/lanes.hpp"
 
 namespace hosel::fem {
 
-inline constexpr int kLanes = 4;
-/// One number of each of `kLanes` points. Operators work lane by lane (an extension of GCC and Clang).
-using Lanes = double __attribute__((vector_size(8 * kLanes)));
 using SymLanes = std::array<Lanes, 6>;   ///< symmetric tensors, in the order of Sym
 using Mat3Lanes = std::array<Lanes, 9>;  ///< component (i, I) at i + 3 I
-
-inline void load(Lanes& to, const double* from) { std::memcpy(&to, from, sizeof to); }
-inline void store(double* to, const Lanes& from) { std::memcpy(to, &from, sizeof from); }
 
 inline double inverse_cbrt(double x) { return 1 / std::cbrt(x); }
 /// x^(-1/3) for x > 0, to a unit in the last place: a third of the exponent, then three steps of fourth order.

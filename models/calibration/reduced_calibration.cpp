@@ -20,7 +20,7 @@ namespace {
 struct Reduced {
   std::vector<solvers::Bounds> bounds;
   std::vector<Eigen::VectorXd> starts;  // the best of what they lead to is taken
-  std::function<Launch(const Eigen::VectorXd&, const Blow&)> launch;
+  std::function<std::vector<Answer>(const Eigen::VectorXd&, const std::vector<Blow>&)> launches;
 };
 
 Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target) {
@@ -31,10 +31,11 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
                spin_sd = 0.03 * spin / n;
   const auto residuals = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r) {
     r.resize(Eigen::Index(7 * target.size()));
+    const std::vector<Answer> answers = model.launches(x, blows);
     for (std::size_t k = 0; k < target.size(); ++k) {
       Launch l;
       try {
-        l = model.launch(x, blows[k]);
+        l = answers[k].value();
       } catch (const solvers::NonConvergence&) { return false; } catch (const std::invalid_argument&) {
         return false;  // a law that no contact can have
       }
@@ -90,10 +91,9 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   };
   const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
                       {Eigen::Vector3d(0.86, -0.0029, 0.2)},
-                      [&](const Eigen::VectorXd& x, const Blow& blow) {
-                        Blow b = blow;
-                        b.contact = law(x);
-                        return RigidEccentric().launch(b);
+                      [&](const Eigen::VectorXd& x, std::vector<Blow> ruled) {
+                        for (Blow& b : ruled) b.contact = law(x);
+                        return RigidEccentric().launches(ruled);
                       }};
   out.law = law(fitted(rigid, blows, out.launches));
 
@@ -117,7 +117,7 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
       // A joint slow against the contact, and one that swings back within it: either can be the local minimum.
       {Eigen::VectorXd{{std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3}},
        Eigen::VectorXd{{std::log(9e9), 12e-3, std::log(500.0), std::log(15e-3), 1.5e-3}}},
-      [&](const Eigen::VectorXd& x, const Blow& blow) { return volumetric_impact(blow, volume(x)).launch; }};
+      [&](const Eigen::VectorXd& x, const std::vector<Blow>& all) { return Volumetric(volume(x)).launches(all); }};
   out.volume = volume(fitted(volumetric, blows, out.launches));
 
   const auto hertz = [&](const Eigen::VectorXd& x) {
@@ -126,7 +126,7 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
   const Reduced maw{
       {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
       {Eigen::Vector3d(std::log(85e6), 0.4, 6e-3)},
-      [&](const Eigen::VectorXd& x, const Blow& blow) { return hertz_maw_impact(blow, hertz(x)).launch; }};
+      [&](const Eigen::VectorXd& x, const std::vector<Blow>& all) { return HertzMaw(hertz(x)).launches(all); }};
   out.hertz = hertz(fitted(maw, blows, out.launches));
 
   std::vector<Blow> ruled = blows;

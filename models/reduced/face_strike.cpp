@@ -17,6 +17,13 @@ constexpr double kBallStiffness = 1.68e6;  // secant, of golf_ball() [N/m]
 
 /// The equations of strike() for solvers::RosenbrockW; with A = 0 its steps are explicit.
 struct Strike {
+  using Scalar = double;
+  struct Instant {
+    double depth = 0;
+    void take(const Instant& other, bool lane) {
+      if (lane) *this = other;
+    }
+  };
   enum : int { kStriker, kStrikerVelocity, kTravel, kTravelRate, kHead, kHeadVelocity, kSize };
   Striker striker;
   double head_mass;
@@ -25,13 +32,15 @@ struct Strike {
   double shape, speed;
 
   int size() const { return kSize; }
-  double gap(const double* y) const { return y[kHead] - shape * y[kTravel] - y[kStriker]; }
+  double depth(const double* y) const { return y[kHead] - shape * y[kTravel] - y[kStriker]; }
+  void at(const double* y, Instant& i) const { i.depth = depth(y); }
+  double gap(const Instant& i) const { return i.depth; }
   double force(const double* y) const {
-    const double d = gap(y), rate = y[kHeadVelocity] - shape * y[kTravelRate] - y[kStrikerVelocity];
+    const double d = depth(y), rate = y[kHeadVelocity] - shape * y[kTravelRate] - y[kStrikerVelocity];
     if (!(d > 0)) return 0;
     return std::max(0.0, striker.stiffness * std::pow(d, striker.exponent) * (1 + striker.damping * rate));
   }
-  void rate(const double* y, double* dy) const {
+  void rate(const double* y, const Instant&, double* dy) const {
     const double F = force(y), m = face.mass;
     double travel = 0, head = -F / head_mass;
     if (yields) {
@@ -47,8 +56,9 @@ struct Strike {
     dy[kHead] = y[kHeadVelocity];
     dy[kHeadVelocity] = head;
   }
-  void linearise(const double*) const {}
-  void solve(double, double*) const {}
+  void linearise(const Instant&) const {}
+  void factor(double) const {}
+  void solve(double*) const {}
   double scale(int i) const { return i % 2 == 1 ? speed : speed * 1e-4; }
 };
 
@@ -106,10 +116,12 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
   FaceStrike out;
   // A step of the fastest motion cannot be above a tenth of its period's inverse rate: error control sees to it.
   solvers::Peak force, travel;
-  out.contact_time = solver.run(y.data(), 1e-7, 0.05, 1e-6, 1e-12, [&](double t, const double* now) {
-    force.add(t, system.force(now));
-    travel.add(t, now[Strike::kTravel]);
-  });
+  out.contact_time = solver.run(y.data(),
+                                {.first_step = 1e-7, .latest = 0.05, .tolerance = 1e-6, .event_tolerance = 1e-12},
+                                [&](double t, const double* now) {
+                                  force.add(t, system.force(now));
+                                  travel.add(t, now[Strike::kTravel]);
+                                });
   out.peak_force = force.value;
   out.travel = travel.value;
   // The head's momentum is what striker and start leave it; its face may still move.

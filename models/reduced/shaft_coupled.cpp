@@ -1,5 +1,7 @@
 #include "models/reduced/shaft_coupled.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -56,6 +58,24 @@ Launch ShaftCoupled::launch(const Blow& blow) const {
   ShaftImpedance accelerating = *shaft;
   accelerating.acceleration.emplace() << loaded->head_acceleration, loaded->head_angular_acceleration;
   return volumetric_impact(blow, law_, options_, &accelerating).launch;
+}
+
+std::vector<Answer> ShaftCoupled::launches(std::span<const Blow> blows) const {
+  if (loaded()) return ImpactModel::launches(blows);
+  std::vector<Answer> answers;
+  answers.reserve(blows.size());
+  while (answers.size() < blows.size()) {
+    const std::span<const Blow> rest = blows.subspan(answers.size());
+    const std::vector<double> club = signature(rest.front().club, beam_);
+    const auto other = std::find_if(rest.begin() + 1, rest.end(),
+                                    [&](const Blow& blow) { return signature(blow.club, beam_) != club; });
+    const auto alike = rest.first(static_cast<std::size_t>(other - rest.begin()));
+    try {
+      const auto shaft = condensed(rest.front().club, beam_);
+      std::ranges::move(volumetric_launches(alike, law_, options_, shaft.get()), std::back_inserter(answers));
+    } catch (...) { answers.resize(answers.size() + alike.size(), {{}, std::current_exception()}); }  // no shaft
+  }
+  return answers;
 }
 
 }  // namespace hosel::models

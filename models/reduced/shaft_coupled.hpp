@@ -17,6 +17,9 @@ class ShaftCoupled final : public ImpactModel {
                         ShaftMount mount = {})
       : law_(law), options_(options), beam_(beam), mount_(std::move(mount)) {}
   Launch launch(const Blow& blow) const override;
+  /// Neighbours of one club go side by side. Where the swing loads the shaft one after the other: each blow then has a
+  /// shaft of its own.
+  std::vector<Answer> launches(std::span<const Blow> blows) const override;
   /// Whether the swing has loaded the shaft, whose energy then goes into the blow.
   bool loaded() const { return mount_.loaded || mount_.load; }
 

@@ -6,6 +6,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
+#include "golf/lanes.hpp"
 #include "golf/units.hpp"
 
 namespace hosel::models {
@@ -90,6 +91,24 @@ TEST(Overlap, LongFormOfTheLens) {
   const double R = 0.305, d = 6.4e-3, a = r + R - d, s = r + R - a;
   const double lens = kPi * s * s * (a * a + 2 * a * (r + R) - 3 * (r - R) * (r - R)) / (12 * a);
   EXPECT_NEAR(overlap(d, r, 1 / R).volume, lens, 1e-11 * lens);
+}
+
+/// Separate, overlapping and contained side by side, in a small and in a wide face.
+TEST(Volume, LanesAreTheNumbers) {
+  for (const double c : {1 / 0.3, 1 / 0.01, 0.0}) {
+    Pack depth;
+    for (int l = 0; l < kLanes; ++l) set_lane(depth, l, 0.015 * (l - 0.7));
+    const auto four = overlap(depth, Pack(r), Pack(c));
+    const Pack power = powered(four.volume, 0.6);
+    for (int l = 0; l < kLanes; ++l) {
+      const Overlap one = overlap(lane(depth, l), r, c);
+      EXPECT_EQ(one.volume > 0, l > 0);
+      EXPECT_DOUBLE_EQ(lane(four.volume, l), one.volume);
+      EXPECT_DOUBLE_EQ(lane(four.area, l), one.area);
+      EXPECT_DOUBLE_EQ(lane(four.centroid, l), one.centroid);
+      EXPECT_NEAR(lane(power, l), powered(one.volume, 0.6), 1e-14 * powered(one.volume, 0.6));
+    }
+  }
 }
 
 }  // namespace
