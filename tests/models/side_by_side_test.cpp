@@ -27,7 +27,7 @@ void expect_same(const Launch& a, const Launch& b) {
 }
 
 /// 500 blows of many clubs and speeds: rigid and yielding faces, walls, and heads that move away.
-std::vector<Blow> blows() {
+std::vector<Blow> random_drives_and_walls() {
   test::Random random(20261126);
   std::vector<Blow> out;
   while (out.size() < 500) {
@@ -44,7 +44,7 @@ std::vector<Blow> blows() {
 }
 
 TEST(SideBySide, EachIsAsAlone) {
-  const std::vector<Blow> all = blows();
+  const std::vector<Blow> all = random_drives_and_walls();
   const Volumetric model({}, {Integrator::rosenbrock, 1e-3});
   const std::vector<Answer> together = model.launches(all);
   ASSERT_EQ(together.size(), all.size());
@@ -83,7 +83,7 @@ TEST(SideBySide, EachIsAsAlone) {
 /// The answers of CVODE, whose equations are of single numbers, to what tolerance and blow make of them: a step may err
 /// by the tolerance of the blow's scales, and some tens of steps add up.
 TEST(SideBySide, AgreeWithTheReference) {
-  std::vector<Blow> all = blows();
+  std::vector<Blow> all = random_drives_and_walls();
   all.resize(60);
   for (const double tolerance : {1e-3, 1e-5}) {
     int compared = 0;
@@ -128,7 +128,7 @@ TEST(SideBySide, ClubsWithTheirShafts) {
 
 /// The gate and a model that goes one after the other.
 TEST(SideBySide, FailuresStayWithTheirBlow) {
-  std::vector<Blow> three(3, blows().front());
+  std::vector<Blow> three(3, random_drives_and_walls().front());
   three[1].delivery.dynamic_loft = radians(120);
   const std::vector<Answer> found = checked_launches(RigidEccentric(), three);
   expect_same(found[0].value(), RigidEccentric().launch(three[0]));
