@@ -73,7 +73,7 @@ std::string StudyTable::csv(const std::vector<json>& points) const {
   csv += ",error\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     csv += std::to_string(i);
-    if (!other) csv += "," + post::csv_cell(models[i % models.size()]);
+    if (!other) csv += "," + post::csv_cell(model_of(i));
     for (const std::string& cell : design.cells(i / models.size())) csv += "," + post::csv_cell(cell);
     const bool failed = points[i].contains("error");
     for (const std::string& o : outputs) {
