@@ -82,10 +82,10 @@ class StudyJob final : public PointJob {
       if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
-      CaseFile one(*blow_, with_own(l.set));
-      const StudyBlow asked = read_study_blow(one.root());
-      return asked.swung && !asked.swung->motion.present;
-    });
+        CaseFile one(*blow_, with_own(l.set));
+        const StudyBlow asked = read_study_blow(one.root());
+        return asked.swung && !asked.swung->motion.present;
+      });
     if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
     reference_ = read_compare(root, table_);
     parts_ = read_parts(root, table_);
@@ -256,9 +256,10 @@ class StudyJob final : public PointJob {
   static void leave_study_keys(Table root) {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
-    root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "part", "parts_over", "equivalent_mass", "statement", "figure", "figures", "landing", "population",
-                "optimum"});
+    root.leave(
+        {"kind",   "title",   "outputs",  "matched_launch", "histories", "axis",       "variant",         "rows",
+         "grid",   "sample",  "measured", "compare",        "part",      "parts_over", "equivalent_mass", "statement",
+         "figure", "figures", "landing",  "population",     "optimum"});
   }
 
   void read_point(Table& root, std::size_t d) {
@@ -326,9 +327,8 @@ class StudyJob final : public PointJob {
       const std::scoped_lock lock(swings_mutex_);
       swing = &swings_[key];
     }
-    std::call_once(swing->once, [&] {
-      swing->end = std::make_shared<const models::SwingEnd>(out.swung->swing(out.blow.club));
-    });
+    std::call_once(swing->once,
+                   [&] { swing->end = std::make_shared<const models::SwingEnd>(out.swung->swing(out.blow.club)); });
     out.end = swing->end;
     out.swung->begin(*out.end, out.blow, out.options.shaft_mount);
     return out;

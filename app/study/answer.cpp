@@ -156,7 +156,8 @@ const std::array kBlowQuantities = {
     BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
     BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
     BlowQuantity{"head_speed", Dimension::speed, [](Given a) { return MaybeNumber(a.launch.head_velocity.norm()); }},
-    BlowQuantity{"head_spin", Dimension::angular_velocity, [](Given a) { return MaybeNumber(a.launch.head_spin.norm()); }},
+    BlowQuantity{"head_spin", Dimension::angular_velocity,
+                 [](Given a) { return MaybeNumber(a.launch.head_spin.norm()); }},
     BlowQuantity{"hosel_impulse_x_N_s", {}, hosel_impulse<0>, false, true},
     BlowQuantity{"hosel_impulse_y_N_s", {}, hosel_impulse<1>, false, true},
     BlowQuantity{"hosel_impulse_z_N_s", {}, hosel_impulse<2>, false, true},
@@ -309,8 +310,7 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
-  } else if (const models::Impact* fe = made->impact();
-             fe && (conditions.histories || conditions.followed)) {
+  } else if (const models::Impact* fe = made->impact(); fe && (conditions.histories || conditions.followed)) {
     models::FaceStress stress;
     out.launch = fe->run(out.blow, [&](const models::ImpactView& v) {
                      if (v.shaft) out.hosel.add(*v.shaft, v.state);

@@ -25,8 +25,8 @@ struct StudyBlow {
   Blow blow;
   models::Options options;
   std::optional<FlightSetup> flight;
-  std::optional<models::ElasticSolid> plate;  ///< the wall, where it is not rigid
-  std::optional<SwungClub> swung;             ///< where a swing delivers the club
+  std::optional<models::ElasticSolid> plate;         ///< the wall, where it is not rigid
+  std::optional<SwungClub> swung;                    ///< where a swing delivers the club
   std::shared_ptr<const models::SwingEnd> end = {};  ///< of that, once it was swung: `blow` begins there
 };
 StudyBlow read_study_blow(Table root);
@@ -57,7 +57,7 @@ struct StudyAnswer {
   std::optional<post::ShotFlight> flight;
   std::optional<KeptBounce> bounce;
   std::vector<ForceSample> history;
-  models::HoselHistory hosel;         ///< of a finite-element club
+  models::HoselHistory hosel;                   ///< of a finite-element club
   std::shared_ptr<const models::SwingEnd> end;  ///< of the swing that delivered it
   std::optional<double> face_stress;  ///< largest von Mises stress of a face with a thickness, where it was kept [Pa]
 };
@@ -67,7 +67,7 @@ struct StudyOutput {
   std::string name;
   double si = 1;
   std::function<std::optional<double>(const StudyAnswer&)> value;  ///< SI; nothing where the answer does not have it
-  bool cause = false;   ///< of the contact itself: may explain why a launch differs
+  bool cause = false;     ///< of the contact itself: may explain why a launch differs
   bool followed = false;  ///< is there where StudyConditions::followed asks for it
 };
 /// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so.

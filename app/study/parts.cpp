@@ -95,8 +95,7 @@ class PartsReport {
       if (parts_.over) {
         j = {{"mean", s.mean}, {"low", s.low}, {"high", s.high}};
         for (std::size_t k = 0; k < of.y.size(); ++k)
-          if (std::isfinite(of.y[k]))
-            j["each"][table_.design.cells(places_.front().points[k])[*parts_.over]] = of.y[k];
+          if (std::isfinite(of.y[k])) j["each"][table_.design.cells(places_.front().points[k])[*parts_.over]] = of.y[k];
         row.insert(row.end(), {fmt::format("{:+.4g}", s.low), fmt::format("{:+.4g}", s.high)});
       }
       if (places_.size() > 1) row.push_back(where);
@@ -115,15 +114,14 @@ class PartsReport {
       }
       add(o, mean, "mean", said["mean"]);
     }
-    const std::string title = fmt::format("{}{}: {} minus {}", table_.models.size() > 1 ? table_.models[model] + ", " : "",
-                                          part.name, variant(part.of), variant(part.minus));
+    const std::string title = fmt::format("{}{}: {} minus {}",
+                                          table_.models.size() > 1 ? table_.models[model] + ", " : "", part.name,
+                                          variant(part.of), variant(part.minus));
     out_.tell(title);
     out_.show(shown, title);
   }
 
-  std::string variant(std::size_t level) const {
-    return table_.design.factors().front().levels[level].cells.front();
-  }
+  std::string variant(std::size_t level) const { return table_.design.factors().front().levels[level].cells.front(); }
 
   /// Every part over the face, and along the middle of the face with bars for the band.
   void maps(std::size_t model) const {
@@ -134,8 +132,8 @@ class PartsReport {
                       .panel_height = 215};
     post::Figure along{.title = "along the middle of the face", .columns = 2, .panel_width = 560, .panel_height = 330};
     for (std::size_t o = 0; o < table_.outputs.size(); ++o)
-      along.panels.push_back({.x_label = "heel  <-  impact toe [mm]  ->  toe",
-                              .y_label = "change of " + post::label(table_.outputs[o])});
+      along.panels.push_back(
+          {.x_label = "heel  <-  impact toe [mm]  ->  toe", .y_label = "change of " + post::label(table_.outputs[o])});
     for (const StudyParts::Part& part : parts_.all)
       for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
         std::vector<double> mean;
@@ -181,10 +179,10 @@ StudyParts read_parts(Table root, const StudyTable& table) {
   }
   if (!root.has("parts_over")) return out;
   const auto columns = table.design.columns();
-  out.over = number_of(root, "parts_over", "column",
-                       root.text({"parts_over",
-                                  "column of the design over whose values each [[part]] has mean, lowest and highest"}),
-                       columns);
+  out.over = number_of(
+      root, "parts_over", "column",
+      root.text({"parts_over", "column of the design over whose values each [[part]] has mean, lowest and highest"}),
+      columns);
   if (out.all.empty() || *out.over == 0)
     root.fail("parts_over", "a column beside the variants, of a study with a [[part]]");
   return out;

@@ -89,8 +89,8 @@ double at_centre(const std::vector<Row>& table, const std::string& key, const st
 TEST(Study, OfSwungClubsIsTheirBlowsAndItsPartsAddUp) {
   const auto dir = fresh_directory("swung_club");
   const std::string swung = std::string(HOSEL_SOURCE_DIR) + "/cases/swing-driver/grip.csv";
-  write(dir / "map" / "swings.csv", "name,motion.file,motion.turn_about_shaft_deg\nfirst," + swung + ",0\nopened," + swung +
-                                        ",-8\nrecorded,nowhere/swing.csv,0\n");
+  write(dir / "map" / "swings.csv", "name,motion.file,motion.turn_about_shaft_deg\nfirst," + swung + ",0\nopened," +
+                                        swung + ",-8\nrecorded,nowhere/swing.csv,0\n");
   write(dir / "map" / "case.toml", R"(kind = "study"
 models = ["fe-free-body"]
 outputs = ["ball_speed_mps", "backspin_rpm", "head_spin_rad_per_s", "hands_force_N"]
@@ -144,8 +144,8 @@ file = "swings.csv"
   EXPECT_EQ(points.back().at("model"), "fe-full-club");
 
   // The same blow alone.
-  write(dir / "club" / "case.toml", "kind = \"impact\"\nmodels = [\"fe-full-club\"]\n[grip]\nhold = \"forced\"\n" + club() +
-                                        "[output]\nvtk = false\n");
+  write(dir / "club" / "case.toml", "kind = \"impact\"\nmodels = [\"fe-full-club\"]\n[grip]\nhold = \"forced\"\n" +
+                                        club() + "[output]\nvtk = false\n");
   const Outcome one = command("run " + (dir / "club").string() + " --out " + (dir / "one").string());
   ASSERT_EQ(one.status, 0) << one.text;
   EXPECT_GT(rows(dir / "one" / "shaft.csv").size(), 6u);  // what its shaft carries, a row a node and step
@@ -182,8 +182,9 @@ TEST(Study, OfASwungClubRefusesWhatASwingDoesNotSay) {
   EXPECT_EQ(refused("").status, 0);
   EXPECT_NE(refused(" --set delivery.club_speed_mps=45").text.find("club_speed_mps"), std::string::npos);
   EXPECT_NE(refused(" --set grip.force_N=[0,0,300]").text.find("force_N"), std::string::npos);
-  for (const char* set : {" --set joint.kind=hinge --set grip.start=hands", " --set joint.kind=hinge --set grip.start=weightless",
-                          " --set joint.kind=none", " --set delivery.club_speed_mps=45", " --set grip.force_N=[0,0,300]"})
+  for (const char* set :
+       {" --set joint.kind=hinge --set grip.start=hands", " --set joint.kind=hinge --set grip.start=weightless",
+        " --set joint.kind=none", " --set delivery.club_speed_mps=45", " --set grip.force_N=[0,0,300]"})
     EXPECT_EQ(refused(set).status, 2) << set;
   for (const char* former : {"loaded-club", "loaded-face-map"})
     EXPECT_NE(refused(std::string(" --set kind=") + former).text.find("is now 'study'"), std::string::npos) << former;
