@@ -158,6 +158,7 @@ const std::array kBlowQuantities = {
     BlowQuantity{"head_speed", Dimension::speed, [](Given a) { return MaybeNumber(a.launch.head_velocity.norm()); }},
     BlowQuantity{"head_spin", Dimension::angular_velocity,
                  [](Given a) { return MaybeNumber(a.launch.head_spin.norm()); }},
+    BlowQuantity{"riflespin", Dimension::angular_velocity, [](Given a) { return MaybeNumber(a.launch.riflespin()); }},
     BlowQuantity{"hosel_impulse_x_N_s", {}, hosel_impulse<0>, false, true},
     BlowQuantity{"hosel_impulse_y_N_s", {}, hosel_impulse<1>, false, true},
     BlowQuantity{"hosel_impulse_z_N_s", {}, hosel_impulse<2>, false, true},
