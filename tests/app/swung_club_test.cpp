@@ -1,6 +1,7 @@
 // Blows of swung clubs: a point of a study is the blow that an impact follows there, and the parts add up.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -171,6 +172,88 @@ file = "swings.csv"
     EXPECT_NEAR(sum, std::stod(whole.at("ball_speed_mps_mean")), 1e-7);
   }
   EXPECT_EQ(places, 9u);
+}
+
+// What the kind loaded-club printed of this club before it became a study (hosel 1.0.0, last with that kind): the same
+// keys, `[volumetric] published = "driver"`, one point in the middle of the face. Columns as in `kQuantities`.
+constexpr std::array kQuantities = {"ball_speed_mps",      "backspin_rpm",        "sidespin_rpm",
+                                    "riflespin_rpm",       "head_speed_mps",      "head_spin_rad_per_s",
+                                    "hosel_impulse_x_N_s", "hosel_impulse_z_N_s", "hosel_moment_impulse_y_N_m_s"};
+struct Former {
+  const char *name, *model, *start, *hold;
+  std::array<double, 9> values;
+};
+const std::array kFormer = {
+    Former{"free body",
+           "fe-free-body",
+           "",
+           "",
+           {64.2502226, 3302.09181, -4124.06033, -192.755195, 33.3029488, 37.8549812, NAN, NAN, NAN}},
+    Former{"at rest",
+           "fe-full-club",
+           "straight",
+           "clamped",
+           {64.548214, 3303.26425, -4190.06249, -201.032782, 33.6080141, 27.7055721, 0.117078, 0.0768341, 0.00409588}},
+    Former{"no gravity",
+           "fe-full-club",
+           "weightless",
+           "forced",
+           {64.5993274, 3217.51893, -4106.39023, -202.691018, 33.5427421, 22.0104239, 0.12778, 0.122914, 0.00645911}},
+    Former{"loaded",
+           "fe-full-club",
+           "swing",
+           "forced",
+           {64.5965923, 3219.06641, -4107.53549, -202.587002, 33.541652, 22.0014589, 0.127132, 0.122515, 0.00645635}},
+    Former{"free",
+           "fe-full-club",
+           "swing",
+           "free",
+           {64.5556773, 3364.91858, -4196.2283, -213.906391, 33.542308, 21.5396353, 0.101756, 0.0700568, 0.0059442}},
+    Former{"hands",
+           "fe-full-club",
+           "hands",
+           "forced",
+           {64.59653, 3218.94542, -4107.52933, -202.462293, 33.541773, 22.0403839, 0.127055, 0.12231, 0.006437}},
+    Former{"volumetric",
+           "volumetric",
+           "",
+           "",
+           {68.1514976, 1322.89621, -1640.15975, -66.6672104, 32.7359635, 27.3964694, NAN, NAN, NAN}},
+    Former{"coupled",
+           "shaft-coupled",
+           "straight",
+           "clamped",
+           {68.4141324, 1289.90143, -1663.31307, -80.4216236, 32.959018, 24.2019701, NAN, NAN, NAN}},
+    Former{"coupled, loaded",
+           "shaft-coupled",
+           "swing",
+           "clamped",
+           {68.4813074, 1233.75277, -1614.34063, -82.3445369, 32.8232759, 24.1319116, NAN, NAN, NAN}},
+};
+
+TEST(Study, OfASwungClubSaysWhatTheKindOfLoadedClubsSaid) {
+  const auto dir = fresh_directory("swung_club_former");
+  std::string text = "kind = \"study\"\nmodels = [\"fe-free-body\"]\noutputs = [";
+  for (const char* q : kQuantities) text += '"' + std::string(q) + "\", ";
+  text += "]\n";
+  for (const Former& f : kFormer) {
+    text += "[[variant]]\nname = \"" + std::string(f.name) + "\"\nset = [\"models=['" + f.model + "']\"";
+    if (*f.start) text += ", \"grip.start=" + std::string(f.start) + "\", \"grip.hold=" + f.hold + '"';
+    text += "]\n";
+  }
+  write(dir / "case.toml", text + club() + "[volumetric]\npublished = \"driver\"\n");
+  const Outcome run = command("run " + dir.string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(run.status, 0) << run.text;
+  const auto points = rows(dir / "out" / "points.csv");
+  ASSERT_EQ(points.size(), kFormer.size());
+  for (std::size_t i = 0; i < kFormer.size(); ++i)
+    for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+      const std::string& said = points[i].at(kQuantities[q]);
+      const double former = kFormer[i].values[q];
+      if (std::isnan(former)) EXPECT_EQ(said, "") << kFormer[i].name << " " << kQuantities[q];
+      else  // six digits of an impulse were printed; Newton's and the swing's iterations end at 1e-8 and below
+        EXPECT_NEAR(std::stod(said), former, 5e-6 * std::abs(former)) << kFormer[i].name << " " << kQuantities[q];
+    }
 }
 
 TEST(Study, OfASwungClubRefusesWhatASwingDoesNotSay) {
