@@ -127,15 +127,19 @@ class PartsReport {
   void maps(std::size_t model) const {
     const post::FaceGrid& grid = *table_.design.grid();
     post::Figure face{.title = fmt::format("part by part; {}", post::kFaceView),
-                      .columns = int(table_.outputs.size()),
+                      .columns = int(parts_.all.size()),
                       .panel_width = 400,
                       .panel_height = 215};
-    post::Figure along{.title = "along the middle of the face", .columns = 2, .panel_width = 560, .panel_height = 330};
-    for (std::size_t o = 0; o < table_.outputs.size(); ++o)
-      along.panels.push_back(
-          {.x_label = "heel  <-  impact toe [mm]  ->  toe", .y_label = "change of " + post::label(table_.outputs[o])});
-    for (const StudyParts::Part& part : parts_.all)
-      for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+    post::Figure along{
+        .title = "along the middle of the face" + (parts_.over ? "; bars: over " + columns_[*parts_.over] : ""),
+        .columns = 2,
+        .panel_width = 560,
+        .panel_height = 330};
+    for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+      const std::string name = post::label(table_.outputs[o]),
+                        unit = name.substr(std::min(name.find(" ["), name.size()));
+      post::Panel panel{.x_label = "heel  <-  impact toe [mm]  ->  toe", .y_label = "change of " + name};
+      for (const StudyParts::Part& part : parts_.all) {
         std::vector<double> mean;
         post::Series line{.label = part.name, .style = "linespoints"};
         for (std::size_t p = 0; p < grid.size(); ++p) {
@@ -146,10 +150,12 @@ class PartsReport {
           line.y.push_back((s.low + s.high) / 2);
           line.error.push_back((s.high - s.low) / 2);
         }
-        const std::string name = post::label(table_.outputs[o]);
-        face.panels.push_back(post::face_panel(grid, mean, fmt::format("{}: {}", part.name, name), name, true));
-        along.panels[o].series.push_back(std::move(line));
+        const std::string what = part.name + ": " + name.substr(0, name.size() - unit.size());
+        face.panels.push_back(post::face_panel(grid, mean, what, unit, true));
+        panel.series.push_back(std::move(line));
       }
+      along.panels.push_back(std::move(panel));
+    }
     const std::string whose = table_.models.size() > 1 ? "-" + out_.file_name(table_.models[model]) : "";
     out_.draw(face, "figures/parts" + whose, false);
     out_.draw(along, "figures/along" + whose);

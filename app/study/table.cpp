@@ -65,6 +65,13 @@ void StudyTable::fill(const std::vector<json>& points) {
     }
 }
 
+bool StudyTable::one_model(std::size_t model) const {
+  if (models[model].empty()) return false;
+  for (std::size_t i = model; i < asked.size(); i += models.size())
+    if (asked[i] != models[model]) return false;
+  return true;
+}
+
 std::string StudyTable::csv(const std::vector<json>& points) const {
   const bool other = models.front().empty();
   std::string csv = other ? "point" : "point,model";
