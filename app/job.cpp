@@ -14,8 +14,6 @@
 #include "app/kinds/identify_shaft.hpp"
 #include "app/kinds/impact.hpp"
 #include "app/kinds/landing_times.hpp"
-#include "app/kinds/loaded_club.hpp"
-#include "app/kinds/loaded_face_map.hpp"
 #include "app/kinds/loop.hpp"
 #include "app/kinds/material_point.hpp"
 #include "app/kinds/modes.hpp"
@@ -56,10 +54,6 @@ constexpr std::array kKinds = {
          "How does the body ring?", read_either_modes},
     Kind{"swing", "a flexible club driven by the motion of the grip, up to impact",
          "What does the shaft do on the way to the ball, and how does the head arrive?", read_swing},
-    Kind{"loaded-club", "a swing and the blow at its end: what preload, gravity and the grip change",
-         "What do preload, gravity and the grip change in the blow?", read_loaded_club},
-    Kind{"loaded-face-map", "what the club of a swing changes over the face: shaft, preload, the hands' wrench",
-         "What does a club that is swung change over the face, and which part of it does what?", read_loaded_face_map},
     Kind{"identify-shaft", "stiffness scale and damping of a shaft from measured swings",
          "How stiff is the shaft, and how much does it damp?", read_identify_shaft},
     Kind{"material-point", "one material along a strain path: stress, work, dissipation",
@@ -92,6 +86,13 @@ constexpr std::array kFormerKinds = {
     FormerKind{"restitution-face", "[grid] is two [[axis]], face_restitution is one of the outputs"},
     FormerKind{"bounce", "the plate is a head of mass inf, the angle its club_path, balls are variants"},
     FormerKind{"curves", "[family] and [x] are an [[axis]] each, channels is outputs, history is histories"},
+    FormerKind{"loaded-club",
+               "[motion] stands for the delivery, each club is a [[variant]] with grip.start and grip.hold, [points] "
+               "are an [[axis]], a difference is a [[part]]; kind = \"impact\" follows one such blow"},
+    FormerKind{"loaded-face-map",
+               "[motion] stands for the delivery, [[swings]] are [rows], each club is a [[variant]] with grip.start "
+               "and grip.hold, parts are [[part]] over the rows, [[statements]] is [[statement]] with one formula, "
+               "[refinement] and [[assumptions]] are variants of a study of this one"},
     FormerKind{"cross-check", "[[grid]] is [[axis]], reference is [compare], outputs names the quantities"},
 };
 

@@ -377,7 +377,7 @@ std::optional<NamedContact> named_contact(Table root) {
     return *std::ranges::find(sets, wanted, &NamedContact::name);
   }
   if (sets.size() == 1) return sets.front();
-  if (root.has("delivery") && root.has("head")) {
+  if (root.has("delivery") && root.has("head") && !root.has("motion")) {
     Blow blow;
     blow.delivery = read_delivery_of(root);
     // A set that knows the case's face comes before one of the right loft alone.

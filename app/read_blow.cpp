@@ -88,6 +88,17 @@ Head read_head_values(Table table, bool whole, const std::optional<Head>& named)
   return head;
 }
 
+namespace {
+
+void read_place(Table& table, Delivery& d) {
+  d.impact_toe = table.quantity({"impact_toe", "where the ball meets the face, from its centre towards the toe"}, "mm",
+                                limits::impact_place, 0);
+  d.impact_high = table.quantity({"impact_high", "where the ball meets the face, from its centre up"}, "mm",
+                                 limits::impact_place, 0);
+}
+
+}  // namespace
+
 Delivery read_delivery(Table table, double loft) {
   Delivery d;
   d.club_speed = table.quantity({"club_speed", "speed of the head's centre of gravity at first contact"}, "mps",
@@ -99,10 +110,7 @@ Delivery read_delivery(Table table, double loft) {
       table.quantity({"dynamic_loft", "tilt of the face's normal at its centre, up"}, "deg", limits::angle, loft);
   d.face_angle = table.quantity({"face_angle", "direction of the face's normal at its centre, right of the target"},
                                 "deg", limits::angle, 0);
-  d.impact_toe = table.quantity({"impact_toe", "where the ball meets the face, from its centre towards the toe"}, "mm",
-                                limits::impact_place, 0);
-  d.impact_high = table.quantity({"impact_high", "where the ball meets the face, from its centre up"}, "mm",
-                                 limits::impact_place, 0);
+  read_place(table, d);
   d.head_angular_velocity = table.vector({"head_angular_velocity", "of the head at first contact, global frame"},
                                          "rad_per_s", limits::spin, Vec3::Zero());
   return d;
@@ -140,6 +148,12 @@ ContactLaw read_contact(Table root) {
 }
 
 Delivery read_delivery_of(Table root) {
+  if (root.has("motion")) {
+    Delivery place;
+    Table table = root.default_table("delivery");
+    read_place(table, place);
+    return place;
+  }
   double loft = 0;
   if (auto head = root.optional_table("head"))
     if (const auto name = named_entry(*head, "name", Shelf::heads)) loft = library_head(*name).loft.value_or(0);
@@ -171,7 +185,7 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   if (auto shaft = root.optional_table("shaft")) blow.club.shaft = read_shaft(*shaft);
   blow.club.geometry = read_club_geometry(root, blow.club.shaft.has_value());
   blow.contact = read_contact(root);
-  check_use(root, use_of(blow), models);
+  if (!root.has("motion")) check_use(root, use_of(blow), models);
   return blow;
 }
 

@@ -40,7 +40,8 @@ Head read_head(Table table, bool whole = true);
 Head read_head_values(Table table, bool whole, const std::optional<Head>& named);
 /// `loft` is the dynamic loft where none is stated [rad].
 Delivery read_delivery(Table table, double loft = 0);
-/// `[delivery]` of a case: without a dynamic loft that of the head that the case names.
+/// `[delivery]` of a case: without a dynamic loft that of the head that the case names. Where a `[motion]` swings the
+/// club it says the place on the face alone.
 Delivery read_delivery_of(Table root);
 /// Without a standard every value but the falloff is required.
 ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard);

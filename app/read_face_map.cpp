@@ -13,20 +13,4 @@ post::FaceGrid read_face_grid(Table root) {
   return g;
 }
 
-std::vector<post::Claim> read_statements(Table root, const std::vector<std::string>& figures) {
-  std::vector<post::Claim> out;
-  for (Table t : root.tables("statements")) {
-    post::Claim claim{t.text({"text", "a published statement that the maps may bear out or not"}), {}};
-    for (const std::string& where :
-         t.texts({"where", "comparisons of the maps' figures that bear the statement out"})) {
-      try {
-        claim.where.emplace_back(where, figures);
-      } catch (const std::invalid_argument& e) { t.fail("where", e.what()); }
-    }
-    if (claim.where.empty()) t.fail("where", "name at least one comparison that bears the statement out");
-    out.push_back(std::move(claim));
-  }
-  return out;
-}
-
 }  // namespace hosel::app

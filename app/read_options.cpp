@@ -106,7 +106,7 @@ models::Accuracy accuracy_named(std::string_view name) {
                              : models::Accuracy::reference;
 }
 
-void read_grip(Table& t, models::ShaftMount& mount) {
+void read_grip(Table& t, models::ShaftMount& mount, bool swung) {
   using models::Grip;
   const std::string hold =
       t.choice({"hold", "what happens at the grip during the blow"}, {"clamped", "free", "forced", "hands"}, "clamped");
@@ -114,8 +114,9 @@ void read_grip(Table& t, models::ShaftMount& mount) {
                : hold == "forced" ? Grip::forced
                : hold == "hands"  ? Grip::hands
                                   : Grip::clamped;
-  mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
   if (mount.grip == Grip::hands) mount.hands = read_springs(t);
+  if (swung) return;
+  mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
   if (t.has_quantity("force") || t.has_quantity("moment"))
     mount.load = models::GripLoad{
         .force = t.vector({"force", "that the hands apply at the grip at first contact, grip frame"}, "N"),
@@ -230,7 +231,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
           t->flag({"feels_rotation", "the head's rotation bends and twists the shaft"}, true);
     }
   if (asked("fe-full-club") || asked("shaft-coupled"))
-    if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount);
+    if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount, root.has("motion"));
   if (asked("fe-full-club") || asked("shaft-coupled"))
     if (auto t = root.optional_table("joint")) {
       const models::HeadJoint joint = options.shaft_mount.joint = read_head_joint(*t);

@@ -24,8 +24,9 @@ models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::
 models::Accuracy accuracy_named(std::string_view name);
 
 /// `[grip]`: what the hands do during the impact, and the wrench (`force`, `moment`, grip axes) with which they load
-/// the shaft before it; without one the shaft is straight and moves with the head.
-void read_grip(Table& table, models::ShaftMount& mount);
+/// the shaft before it; without one the shaft is straight and moves with the head. `swung`: mesh and wrench are those
+/// of a swing.
+void read_grip(Table& table, models::ShaftMount& mount, bool swung = false);
 
 /// `[output]`: what is written of a finite-element impact for ParaView.
 post::RecorderOptions read_recorder(Table root);

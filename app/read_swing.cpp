@@ -189,4 +189,60 @@ models::SwingOptions read_swing_options(Table root) {
   return o;
 }
 
+models::SwingEnd SwungClub::swing(const Club& club) const {
+  const models::GripMotion grip(motion.track, motion.smoothing);
+  const auto ended = [&](const models::SwingOptions& how, std::optional<double> lie) {
+    return models::swing_end(
+        club, how, [&](double t) { return grip.at(t); }, motion.begin, motion.end, lie);
+  };
+  models::SwingEnd end = ended(options, {});
+  if (start != Start::weightless) return end;
+  models::SwingOptions weightless = options;
+  weightless.gravity.setZero();
+  end.shaft = ended(weightless, end.lie).shaft;
+  return end;
+}
+
+void SwungClub::begin(const models::SwingEnd& end, Blow& blow, models::ShaftMount& mount) const {
+  const Delivery place = blow.delivery;
+  blow.club = end.club;
+  blow.delivery = end.delivery;
+  blow.delivery.impact_toe = place.impact_toe;
+  blow.delivery.impact_high = place.impact_high;
+  models::turn_place(end.lie, blow.delivery);
+  if (start == Start::swing || start == Start::weightless) mount.loaded = end.shaft;
+  if (start == Start::hands) mount.load = end.hands;
+}
+
+std::optional<SwungClub> read_swung_club(Table root, const std::vector<std::string>& models,
+                                         models::ShaftMount& mount) {
+  if (!root.has("motion")) return {};
+  root.table("shaft");
+  SwungClub out{.motion = read_motion(root.table("motion")), .options = read_swing_options(root)};
+  const models::HeadJoint& joint = out.options.joint;
+  const auto asked = [&](const char* model) { return std::ranges::find(models, model) != models.end(); };
+  if (joint.kind == models::HeadJoint::Kind::none) root.fail("joint", "a blow needs a head on the shaft");
+  if (asked("shaft-coupled") && joint.gives())
+    root.fail("joint", "a condensed shaft does not know how far the swing turns a joint: ask fe-full-club");
+  mount.elements = out.options.elements;
+  mount.growth = out.options.growth;
+  mount.shear = out.options.shear;
+  mount.grip_point = out.options.grip_point;
+  mount.joint = joint;
+  if (!asked("fe-full-club") && !asked("shaft-coupled")) return out;
+  Table grip = root.default_table("grip");
+  const std::string start = grip.choice({"start",
+                                         "the shaft of a swung club at first contact: straight, as the swing leaves "
+                                         "it, as one without gravity would, or as the hands' wrench demands"},
+                                        {"straight", "swing", "weightless", "hands"}, "swing");
+  using Start = SwungClub::Start;
+  out.start = start == "straight"     ? Start::straight
+              : start == "weightless" ? Start::weightless
+              : start == "hands"      ? Start::hands
+                                      : Start::swing;
+  if (joint.gives() && (out.start == Start::weightless || out.start == Start::hands))
+    grip.fail("start", "a joint that gives arrives as the swing has turned it: straight or swing");
+  return out;
+}
+
 }  // namespace hosel::app

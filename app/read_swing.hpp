@@ -5,7 +5,8 @@
 
 #include "app/reader.hpp"
 #include "models/club/grip_motion.hpp"
-#include "models/club/swing.hpp"
+#include "models/club/mounted_shaft.hpp"
+#include "models/club/swing_end.hpp"
 
 namespace hosel::app {
 
@@ -42,5 +43,26 @@ models::HeadJoint read_head_joint(Table& table);
 
 /// `[solution]` and `[joint]` of a swing.
 models::SwingOptions read_swing_options(Table root);
+
+/// A blow at the end of a swing: `[motion]`, `[solution]` and `[joint]` stand for the delivery.
+struct SwungClub {
+  /// The shaft of a whole club at first contact.
+  enum class Start {
+    straight,    ///< moving with the head as one rigid body
+    swing,       ///< bent, stressed and moving as the swing leaves it
+    weightless,  ///< likewise, of the same swing without gravity
+    hands,       ///< bent as the hands' wrench, gravity and the club's rigid acceleration demand
+  };
+  MotionInput motion;
+  models::SwingOptions options;
+  Start start = Start::straight;
+
+  /// Throws what models::swing_end throws. The shaft is that of `start`.
+  models::SwingEnd swing(const Club& club) const;
+  /// Delivery, club and loaded shaft at the end of the swing; the place on the face stays the blow's.
+  void begin(const models::SwingEnd& end, Blow& blow, models::ShaftMount& mount) const;
+};
+/// Nothing where the case has no `[motion]`. The mount takes mesh, grip point and joint of the swing.
+std::optional<SwungClub> read_swung_club(Table root, const std::vector<std::string>& models, models::ShaftMount& mount);
 
 }  // namespace hosel::app

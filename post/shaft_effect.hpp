@@ -4,10 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "post/claim.hpp"
 #include "post/face_map.hpp"
 
 namespace hosel::post {
+
+/// A named figure in the unit of its name.
+struct NamedFigure {
+  std::string name;
+  double value;
+};
 
 /// `club` against `free` over the whole grid. Differences are club minus free; positions are those of
 /// a parabola through the best grid point and its neighbours; slopes are least-squares planes over the

@@ -11,6 +11,7 @@
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
+#include "app/read_swing.hpp"
 #include "app/stop.hpp"
 #include "app/version.hpp"
 #include "golf/face_library.hpp"
@@ -24,6 +25,7 @@
 #include "post/file.hpp"
 #include "post/impact_recorder.hpp"
 #include "post/launch_table.hpp"
+#include "post/shaft_loads.hpp"
 
 namespace hosel::app {
 namespace {
@@ -35,9 +37,12 @@ class ImpactJob final : public Job {
   explicit ImpactJob(CaseFile& file) {
     Table root = file.root();
     own_ = read_side(root);
+    missing_ = own_.missing;
     matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
     record_ = read_recorder(root);
+    record_.checkpoints = !own_.swung;  // what its shaft carries is told of the whole blow
     if (auto measured = root.optional_table("measured")) read_measured(*measured);
+    if (matched_ && own_.swung) root.fail("matched_launch", "the swing says the loft");
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
     flight_ = read_optional_flight(root);
     std::vector<std::string> taken;
@@ -48,10 +53,12 @@ class ImpactJob final : public Job {
       CaseFile other(file, set);
       compared_.push_back(read_side(other.root()));
       compared_.back().name = name;
+      if (!compared_.back().missing.empty()) missing_ = compared_.back().missing;
     }
   }
 
   void run(Output& out) override {
+    if (!missing_.empty()) return out.skip(missing_);
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !own_.yields() && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
     if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
@@ -125,6 +132,8 @@ class ImpactJob final : public Job {
   /// The case itself, or one that it is compared with.
   struct Side {
     std::string name;  ///< empty: the case itself
+    bool swung = false;
+    fs::path missing;  ///< a recorded swing that is not there: the side has no models
     Blow blow;
     models::FeImpactOptions fe;
     std::vector<Entry> models;
@@ -135,7 +144,12 @@ class ImpactJob final : public Job {
     Side side;
     const std::vector<std::string> names = read_models(root);
     side.blow = read_blow(root, names);
-    const models::Options options = read_options(root, names, side.blow);
+    models::Options options = read_options(root, names, side.blow);
+    if (const auto swung = read_swung_club(root, names, options.shaft_mount)) {
+      side.swung = true;
+      if (!swung->motion.present) side.missing = swung->motion.file;
+      else swung->begin(swung->swing(side.blow.club), side.blow, options.shaft_mount);
+    }
     side.fe = options.fe;
     for (const std::string& name : names) side.models.push_back({name, models::find(name)->make(options)});
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
@@ -277,10 +291,12 @@ class ImpactJob final : public Job {
                            1e3 * from->solver.state.time));
     Progress progress = out.progress(name);
     const StopSignals stop;
+    post::ShaftLoads carried;
     const models::FeOutcome outcome = model.run(
         blow,
         [&](const models::ImpactView& view) {
           recorder(view);
+          if (own_.swung && view.shaft) carried.add(view.state.time, *view.shaft, view.state);
           stop.check();
           progress.update(
               std::min(0.99, view.state.time / view.bodies.contact_time),
@@ -289,6 +305,11 @@ class ImpactJob final : public Job {
         recorder.resume());
     progress.finish(fmt::format("{} steps", outcome.result.counts.steps));
     for (const fs::path& f : recorder.files()) files.push_back(f);
+    if (std::vector<post::Panel> along = carried.panels(1e-3); !along.empty()) {
+      post::write_file(home / "shaft.csv", carried.table());
+      out.draw({.panels = std::move(along), .columns = 3},
+               fs::relative(home / "shaft", out.directory()).lexically_normal().string());
+    }
     runs.push_back({name, home, outcome.result});
     runs.back().section = recorder.at_largest_force();
     runs.back().moving = recorder.moving();
@@ -372,6 +393,7 @@ class ImpactJob final : public Job {
 
   Side own_;
   std::vector<Side> compared_;
+  fs::path missing_;
   post::RecorderOptions record_;
   post::Measured measured_;
   post::MeasuredOblique ranges_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -21,6 +22,7 @@
 #include "app/study/history.hpp"
 #include "app/study/landing.hpp"
 #include "app/study/optimum.hpp"
+#include "app/study/parts.hpp"
 #include "app/study/population.hpp"
 #include "app/study/sliders.hpp"
 #include "app/study/statement.hpp"
@@ -78,8 +80,15 @@ class StudyJob final : public PointJob {
     const auto columns = table_.design.columns();
     for (const std::string& c : columns)
       if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
+    if (!studied_ && root.has("motion"))
+      left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
+        CaseFile one(*blow_, with_own(l.set));
+        const StudyBlow asked = read_study_blow(one.root());
+        return asked.swung && !asked.swung->motion.present;
+      });
     if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
     reference_ = read_compare(root, table_);
+    parts_ = read_parts(root, table_);
     const bool referred = reference_ && (reference_->model || reference_->variant);
     if (auto t = root.optional_table("equivalent_mass")) {
       if (!maps_face() || !referred)
@@ -99,9 +108,6 @@ class StudyJob final : public PointJob {
     if (optimum_ && (conditions_.matched_launch || conditions_.bounce_speed))
       root.fail("optimum", "is confirmed by one point more: without matched_launch and keep_bounce");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
-    if (conditions_.histories && !maps_face() &&
-        std::ranges::any_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))
-      root.fail("histories", "the loads at the hosel of finite-element clubs are kept over a [grid]");
     // What a case refuses is an error before anything is computed.
     for (std::size_t d = 0; d < table_.design.size(); ++d) {
       if (++points_read > kMostPoints)
@@ -116,9 +122,9 @@ class StudyJob final : public PointJob {
     }
   }
 
-  /// Without the measured shots that its sample is compared with nothing is computed.
+  /// Without the measured shots that its sample is compared with, or the swing of a point, nothing is computed.
   std::size_t size() const override {
-    return populations_.missing.empty() ? table_.design.size() * table_.models.size() : 0;
+    return populations_.missing.empty() && motion_.empty() ? table_.design.size() * table_.models.size() : 0;
   }
 
   json compute(std::size_t point, const fs::path& scratch) const override {
@@ -128,6 +134,8 @@ class StudyJob final : public PointJob {
 
   void report(Output& out, const std::vector<json>& points) const override {
     if (!populations_.missing.empty()) return out.skip(populations_.missing);
+    if (!motion_.empty()) return out.skip(motion_);
+    for (const std::string& row : left_out_) out.lack("left out, since its recording is not there: " + row);
     for (const json& p : points)
       if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
     StudyTable table = table_;
@@ -169,6 +177,7 @@ class StudyJob final : public PointJob {
       for (std::size_t o = 0; o < outputs_.size(); ++o) causes[o] = outputs_[o].cause;
       summary["compare"] = compare(out, table, *reference_, against, causes);
     }
+    if (!parts_.all.empty()) summary["parts"] = report_parts(out, table, parts_, draw_);
     if (!statements_.empty()) summary["statements"] = judge(out, table, statements_, against, groups(table, layers));
     if (named && draw_) draw_study(out, table, title_, figures_, effects, reference_, against);
     if (conditions_.histories) report_histories(out, table, points);
@@ -220,7 +229,7 @@ class StudyJob final : public PointJob {
     for (const std::string& name : table_.outputs) {
       if (std::ranges::count(table_.outputs, name) > 1) root.fail("outputs", fmt::format("'{}' is there twice", name));
       outputs_.push_back(find_study_output(root, "outputs", name, base.flight.has_value()));
-      conditions_.stresses = conditions_.stresses || outputs_.back().stress;
+      conditions_.followed = conditions_.followed || outputs_.back().followed;
     }
     conditions_.matched_launch =
         root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
@@ -237,8 +246,9 @@ class StudyJob final : public PointJob {
         root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
     if (conditions_.histories && conditions_.matched_launch)
       root.fail("histories", "with matched_launch there is a blow at every loft of the search");
-    if (conditions_.stresses && conditions_.matched_launch)
-      root.fail("outputs", "with matched_launch there is a blow at every loft of the search, and no one peak_stress");
+    if (conditions_.followed && conditions_.matched_launch)
+      root.fail("outputs",
+                "with matched_launch there is a blow at every loft of the search, and no one peak_stress or impulse");
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
   }
 
@@ -246,12 +256,13 @@ class StudyJob final : public PointJob {
   static void leave_study_keys(Table root) {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
-    root.leave({"kind", "title", "outputs", "matched_launch", "histories", "axis", "variant", "rows", "grid", "sample",
-                "measured", "compare", "equivalent_mass", "statement", "figure", "figures", "landing", "population",
-                "optimum"});
+    root.leave(
+        {"kind",   "title",   "outputs",  "matched_launch", "histories", "axis",       "variant",         "rows",
+         "grid",   "sample",  "measured", "compare",        "part",      "parts_over", "equivalent_mass", "statement",
+         "figure", "figures", "landing",  "population",     "optimum"});
   }
 
-  void read_point(Table& root, std::size_t d) const {
+  void read_point(Table& root, std::size_t d) {
     if (studied_) {
       CaseFile one(*studied_, overrides(d));
       read_job(one);
@@ -264,6 +275,9 @@ class StudyJob final : public PointJob {
     if (conditions_.matched_launch && !launch_angle(d))
       root.fail("matched_launch",
                 fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
+    if (asked.swung && !asked.swung->motion.present) motion_ = asked.swung->motion.file;
+    if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
+    table_.asked.insert(table_.asked.end(), asked.models.begin(), asked.models.end());
     leave_study_keys(one.root());
     one.finish();
   }
@@ -299,9 +313,31 @@ class StudyJob final : public PointJob {
     return result;
   }
 
-  StudyBlow blow(std::size_t d) const {
-    CaseFile file(*blow_, overrides(d));
-    return read_study_blow(file.root());
+  StudyBlow blow(std::size_t d) const { return blow_with(overrides(d)); }
+
+  StudyBlow blow_with(const std::vector<std::string>& set) const {
+    CaseFile file(*blow_, set);
+    StudyBlow out = read_study_blow(file.root());
+    if (!out.swung) return out;
+    std::string key;  // a swing ends alike wherever on the face the ball is struck
+    for (const std::string& s : set)
+      if (!s.starts_with("delivery.impact_")) key += s + '\n';
+    Swing* swing = nullptr;
+    {
+      const std::scoped_lock lock(swings_mutex_);
+      swing = &swings_[key];
+    }
+    std::call_once(swing->once,
+                   [&] { swing->end = std::make_shared<const models::SwingEnd>(out.swung->swing(out.blow.club)); });
+    out.end = swing->end;
+    out.swung->begin(*out.end, out.blow, out.options.shaft_mount);
+    return out;
+  }
+
+  std::vector<std::string> with_own(std::vector<std::string> set) const {
+    const auto& own = blow_->overrides();
+    set.insert(set.begin(), own.begin(), own.end());
+    return set;
   }
 
   /// The same, read once for the models that a thread asks one after another.
@@ -314,10 +350,7 @@ class StudyJob final : public PointJob {
 
   /// What a model answers to a blow beside those of the design.
   std::vector<std::optional<double>> answers_at(std::vector<std::string> set, std::size_t model) const {
-    const auto& own = blow_->overrides();
-    set.insert(set.begin(), own.begin(), own.end());
-    CaseFile file(*blow_, set);
-    const StudyBlow asked = read_study_blow(file.root());
+    const StudyBlow asked = blow_with(with_own(std::move(set)));
     return numbers(answer(asked.models[model], asked, conditions_, {}, nullptr));
   }
 
@@ -355,7 +388,7 @@ class StudyJob final : public PointJob {
     for (std::size_t o = 0; o < outputs_.size(); ++o)
       if (said[o]) result[outputs_[o].name] = *said[o];
     if (!a.history.empty()) result["history"] = stored(a.history);
-    if (!a.hosel.times.empty()) result["hosel"] = stored(a.hosel);
+    if (conditions_.histories && !a.hosel.times.empty()) result["hosel"] = stored(a.hosel);
     if (!maps_face()) return result;
     result["launch"] = stored(a.launch);
     const bool refers = reference_ && reference_->model.value_or(model) == model &&
@@ -378,6 +411,7 @@ class StudyJob final : public PointJob {
   StudyTable table_;
   std::vector<StudyOutput> outputs_;  ///< of a study of blows
   std::optional<StudyReference> reference_;
+  StudyParts parts_;
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
   std::optional<StudyLanding> landing_;
@@ -386,6 +420,14 @@ class StudyJob final : public PointJob {
   double extra_mass_ = 0;  ///< of the reference's heavier head [kg]; 0: not asked
   bool draw_ = true;
   mutable tbb::enumerable_thread_specific<std::pair<std::size_t, std::shared_ptr<const StudyBlow>>> latest_;
+  struct Swing {
+    std::once_flag once;
+    std::shared_ptr<const models::SwingEnd> end;
+  };
+  mutable std::mutex swings_mutex_;
+  mutable std::map<std::string, Swing> swings_;  ///< by what the design sets, place on the face apart
+  std::vector<std::string> left_out_;            ///< rows whose recorded swing is not there
+  fs::path motion_;                              ///< a swing that is not there and cannot be left out
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };

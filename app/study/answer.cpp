@@ -103,6 +103,20 @@ MaybeNumber spin_over_rolling(const StudyAnswer& a) {
   return spin > 0 ? MaybeNumber(a.launch.spin_rate() / spin) : MaybeNumber();
 }
 
+/// Impulse of the shaft on the head, face axes: of force 0 to 2 [N s], of moment 3 to 5 [N m s].
+template <int Part>
+MaybeNumber hosel_impulse(const StudyAnswer& a) {
+  if (a.hosel.times.empty()) return {};
+  const fem::Wrench all = a.hosel.impulse();
+  return Part < 3 ? all.force[Part % 3] : all.moment[Part % 3];
+}
+
+/// Of the swing that delivered the club.
+template <class Value>
+MaybeNumber of_swing(const StudyAnswer& a, const Value& value) {
+  return a.end ? MaybeNumber(value(*a.end)) : MaybeNumber();
+}
+
 MaybeNumber kept(const StudyAnswer& a, double KeptBounce::*value) {
   return a.bounce ? MaybeNumber((*a.bounce).*value) : MaybeNumber();
 }
@@ -112,7 +126,7 @@ struct BlowQuantity {
   std::string_view name;               ///< whole, where the table of units knows none for it
   std::optional<Dimension> dimension;  ///< of the unit behind the name
   MaybeNumber (*value)(const StudyAnswer&);
-  bool cause = false, stress = false;
+  bool cause = false, followed = false;
 };
 using Given = const StudyAnswer&;
 const std::array kBlowQuantities = {
@@ -141,6 +155,29 @@ const std::array kBlowQuantities = {
     BlowQuantity{"peak_stress", Dimension::pressure, [](Given a) { return a.face_stress; }, false, true},
     BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
     BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
+    BlowQuantity{"head_speed", Dimension::speed, [](Given a) { return MaybeNumber(a.launch.head_velocity.norm()); }},
+    BlowQuantity{"head_spin", Dimension::angular_velocity,
+                 [](Given a) { return MaybeNumber(a.launch.head_spin.norm()); }},
+    BlowQuantity{"riflespin", Dimension::angular_velocity, [](Given a) { return MaybeNumber(a.launch.riflespin()); }},
+    BlowQuantity{"hosel_impulse_x_N_s", {}, hosel_impulse<0>, false, true},
+    BlowQuantity{"hosel_impulse_y_N_s", {}, hosel_impulse<1>, false, true},
+    BlowQuantity{"hosel_impulse_z_N_s", {}, hosel_impulse<2>, false, true},
+    BlowQuantity{"hosel_moment_impulse_x_N_m_s", {}, hosel_impulse<3>, false, true},
+    BlowQuantity{"hosel_moment_impulse_y_N_m_s", {}, hosel_impulse<4>, false, true},
+    BlowQuantity{"hosel_moment_impulse_z_N_m_s", {}, hosel_impulse<5>, false, true},
+    BlowQuantity{"club_speed", Dimension::speed, [](Given a) { return MaybeNumber(a.blow.delivery.club_speed); }},
+    BlowQuantity{"attack_angle", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.attack_angle); }},
+    BlowQuantity{"club_path", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.club_path); }},
+    BlowQuantity{"face_angle", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.face_angle); }},
+    BlowQuantity{"dynamic_lie", Dimension::angle, [](Given a) { return of_swing(a, [](auto& e) { return e.lie; }); }},
+    BlowQuantity{"lead", Dimension::length, [](Given a) { return of_swing(a, [](auto& e) { return e.lead; }); }},
+    BlowQuantity{"droop", Dimension::length, [](Given a) { return of_swing(a, [](auto& e) { return e.droop; }); }},
+    BlowQuantity{"hands_force", Dimension::force,
+                 [](Given a) { return of_swing(a, [](auto& e) { return e.shaft.grip.force.norm(); }); }},
+    BlowQuantity{"hands_moment", Dimension::moment,
+                 [](Given a) { return of_swing(a, [](auto& e) { return e.shaft.grip.moment.norm(); }); }},
+    BlowQuantity{"head_acceleration", Dimension::acceleration,
+                 [](Given a) { return of_swing(a, [](auto& e) { return e.shaft.head_acceleration.norm(); }); }},
     BlowQuantity{"dynamic_loft", Dimension::angle, [](Given a) { return MaybeNumber(a.blow.delivery.dynamic_loft); }},
     BlowQuantity{"wall_restitution", {}, [](Given a) { return kept(a, &KeptBounce::restitution); }},
     BlowQuantity{"wall_contact_time", Dimension::time, [](Given a) { return kept(a, &KeptBounce::contact_time); }},
@@ -192,6 +229,7 @@ StudyBlow read_study_blow(Table root) {
   StudyBlow out{.models = read_models(root)};
   out.blow = read_blow(root, out.models);
   out.options = read_options(root, out.models, out.blow);
+  out.swung = read_swung_club(root, out.models, out.options.shaft_mount);
   out.flight = read_optional_flight(root);
   if (auto t = root.optional_table("plate")) {
     out.plate = {
@@ -233,10 +271,10 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
   }
   for (const BlowQuantity& q : kBlowQuantities) {
     if (q.dimension) {
-      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause, q.stress};
+      if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause, q.followed};
     } else {
       known.emplace_back(q.name);
-      if (name == q.name) return {name, 1, q.value, q.cause, q.stress};
+      if (name == q.name) return {name, 1, q.value, q.cause, q.followed};
     }
   }
   const std::string near = nearest(name, known);
@@ -257,6 +295,7 @@ models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
 StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
                    const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference) {
   StudyAnswer out{.blow = asked.blow, .face = asked.blow.club.head.compliance, .face_plate = asked.options.plate};
+  out.end = asked.end;
   models::Options options = asked.options;
   if (conditions.bounce_speed) {
     const models::NormalImpactPoint own = wall_bounce(asked, *conditions.bounce_speed);
@@ -272,16 +311,15 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
-  } else if (const models::Impact* fe = made->impact();
-             fe && (conditions.histories || (conditions.stresses && out.face_plate))) {
+  } else if (const models::Impact* fe = made->impact(); fe && (conditions.histories || conditions.followed)) {
     models::FaceStress stress;
     out.launch = fe->run(out.blow, [&](const models::ImpactView& v) {
-                     if (v.shaft && conditions.histories) out.hosel.add(*v.shaft, v.state);
-                     if (conditions.stresses) stress.see(v);
+                     if (v.shaft) out.hosel.add(*v.shaft, v.state);
+                     if (conditions.followed) stress.see(v);
                    }).launch;
     if (stress.peak()) out.face_stress = stress.peak()->stress;
     models::check_launch(*made, out.blow, out.launch);
-  } else if (conditions.histories) {
+  } else if (conditions.histories && (model == "hertz-maw" || model == "volumetric")) {
     out.launch = launch_with_history(model, options, out.blow, out.history);
     models::check_launch(*made, out.blow, out.launch);
   } else {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/read_flight.hpp"
+#include "app/read_swing.hpp"
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
 #include "golf/face_compliance.hpp"
@@ -24,7 +25,9 @@ struct StudyBlow {
   Blow blow;
   models::Options options;
   std::optional<FlightSetup> flight;
-  std::optional<models::ElasticSolid> plate;  ///< the wall, where it is not rigid
+  std::optional<models::ElasticSolid> plate;         ///< the wall, where it is not rigid
+  std::optional<SwungClub> swung;                    ///< where a swing delivers the club
+  std::shared_ptr<const models::SwingEnd> end = {};  ///< of that, once it was swung: `blow` begins there
 };
 StudyBlow read_study_blow(Table root);
 
@@ -33,7 +36,7 @@ struct StudyConditions {
   bool matched_launch = false;         ///< the loft is an unknown: the launch angle is the measured one
   std::optional<double> bounce_speed;  ///< moduli are scaled until the ball bounces as the first blow's does [m/s]
   bool histories = false;              ///< forces over time are kept: of the contact, of finite elements at the hosel
-  bool stresses = false;               ///< the largest of a face with a thickness is kept
+  bool followed = false;               ///< what an output needs of every step of a finite-element blow is kept
 };
 
 /// At one instant of a blow.
@@ -54,7 +57,8 @@ struct StudyAnswer {
   std::optional<post::ShotFlight> flight;
   std::optional<KeptBounce> bounce;
   std::vector<ForceSample> history;
-  models::HoselHistory hosel;         ///< of a finite-element club
+  models::HoselHistory hosel;                   ///< of a finite-element club
+  std::shared_ptr<const models::SwingEnd> end;  ///< of the swing that delivered it
   std::optional<double> face_stress;  ///< largest von Mises stress of a face with a thickness, where it was kept [Pa]
 };
 
@@ -63,8 +67,8 @@ struct StudyOutput {
   std::string name;
   double si = 1;
   std::function<std::optional<double>(const StudyAnswer&)> value;  ///< SI; nothing where the answer does not have it
-  bool cause = false;   ///< of the contact itself: may explain why a launch differs
-  bool stress = false;  ///< is there where StudyConditions::stresses asks for it
+  bool cause = false;     ///< of the contact itself: may explain why a launch differs
+  bool followed = false;  ///< is there where StudyConditions::followed asks for it
 };
 /// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so.
 StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies);

@@ -10,17 +10,14 @@
 #include "post/labels.hpp"
 
 namespace hosel::app {
-namespace {
 
-std::size_t number_of(const Table& t, std::string_view key, const std::string& name,
+std::size_t number_of(const Table& t, std::string_view key, std::string_view what, const std::string& name,
                       const std::vector<std::string>& names) {
   if (const auto at = std::ranges::find(names, name); at != names.end()) return std::size_t(at - names.begin());
   const std::string near = nearest(name, names);
   t.fail(key,
-         fmt::format("no {} '{}' in this study{}", key, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
+         fmt::format("no {} '{}' in this study{}", what, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
-
-}  // namespace
 
 std::optional<StudyReference> read_compare(Table root, const StudyTable& table) {
   bool measured = !table.measured.empty();
@@ -34,18 +31,18 @@ std::optional<StudyReference> read_compare(Table root, const StudyTable& table) 
   if (!t) return measured ? std::optional(StudyReference{.name = "measured"}) : std::nullopt;
   std::optional<std::size_t> by;
   if (t->has("by"))
-    by = number_of(*t, "by",
+    by = number_of(*t, "by", "by",
                    t->text({"by", "column of the design; the points of each of its values are compared apart"}),
                    table.design.columns());
   const std::string with = t->choice({"with", "what the answers are compared with"}, {"model", "variant", "measured"});
   if (with == "model") {
     const std::string name = t->text({"model", "with which the other models are compared"});
     if (table.models.size() < 2) t->fail("model", "a comparison of models needs at least two");
-    return StudyReference{.model = number_of(*t, "model", name, table.models), .name = name, .by = by};
+    return StudyReference{.model = number_of(*t, "model", "model", name, table.models), .name = name, .by = by};
   }
   if (with == "variant") {
     const std::string name = t->text({"variant", "with which the other variants are compared"});
-    return StudyReference{.variant = number_of(*t, "variant", name, variants), .name = name, .by = by};
+    return StudyReference{.variant = number_of(*t, "variant", "variant", name, variants), .name = name, .by = by};
   }
   if (!measured) t->fail("with", "nothing measured stands in [measured], a variant's `measured` or the rows");
   return StudyReference{.name = "measured", .by = by};

@@ -17,6 +17,10 @@ struct StudyReference {
   std::optional<std::size_t> by;       ///< column of the design whose cells are compared apart
 };
 
+/// The place of `name` among `names`, each a `what`; else an error at `key` with the nearest.
+std::size_t number_of(const Table& table, std::string_view key, std::string_view what, const std::string& name,
+                      const std::vector<std::string>& names);
+
 /// `[compare]`; without one what was measured, if anything was; else nothing.
 std::optional<StudyReference> read_compare(Table root, const StudyTable& table);
 

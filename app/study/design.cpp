@@ -128,6 +128,19 @@ void Design::add(const post::FaceGrid& grid, const Table& at) {
   add(grid_factor(grid), at, "grid");
 }
 
+std::vector<std::string> Design::leave_out_rows(const std::function<bool(const DesignLevel&)>& absent) {
+  std::vector<std::string> out;
+  const auto rows = std::ranges::find(factors_, FactorKind::rows, &DesignFactor::kind);
+  if (rows == factors_.end()) return out;
+  std::vector<DesignLevel> present;
+  for (const DesignLevel& l : rows->levels)
+    if (absent(l)) out.push_back(l.cells.front());
+    else present.push_back(l);
+  if (present.empty()) return {};
+  rows->levels = std::move(present);
+  return out;
+}
+
 const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
   std::size_t block = 1;
   for (std::size_t f = factor + 1; f < factors_.size(); ++f) block *= factors_[f].levels.size();

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -85,6 +86,8 @@ class Design {
 
   void add(DesignFactor factor, const Table& at, std::string_view key);
   void add(const post::FaceGrid& grid, const Table& at);
+  /// Leaves out the rows of `[rows]` of which `absent` says so, and names them; none where it says so of all.
+  std::vector<std::string> leave_out_rows(const std::function<bool(const DesignLevel&)>& absent);
 
  private:
   std::pair<std::size_t, std::size_t> place(std::size_t column) const;  ///< factor, column in it

@@ -236,7 +236,7 @@ post::Figure bars(const StudyTable& table, const std::string& title, const std::
   for (const std::size_t o : outputs) {
     post::Panel panel{.x_label = post::label(table.outputs[o]), .y_names = names};
     for (std::size_t m = 0; m < table.models.size(); ++m) {
-      post::Series s{.label = table.models[m].empty() ? "answer" : table.models[m], .style = "points"};
+      post::Series s{.label = table.one_model(m) ? table.models[m] : "answer", .style = "points"};
       for (std::size_t d = 0; d < names.size(); ++d)
         if (const double y = table.at(m, o).y[d]; std::isfinite(y)) s.x.push_back(y), s.y.push_back(-double(d));
       panel.series.push_back(std::move(s));

@@ -15,7 +15,32 @@ nlohmann::json stored(const std::vector<ForceSample>& history) {
   return out;
 }
 
+namespace {
+
+/// hosel.csv: force and moment of the shaft on the head at every point.
+void report_hosels(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
+  std::string csv = "point,model";
+  for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);
+  csv += ",time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].contains("hosel")) continue;
+    std::string place = fmt::format("{},{}", i, post::csv_cell(table.model_of(i)));
+    for (const std::string& cell : table.design.cells(i / table.models.size())) place += "," + post::csv_cell(cell);
+    for (const nlohmann::json& row : points[i]["hosel"]["history"]) {
+      csv += fmt::format("{},{:.6f}", place, 1e3 * row.at(0).get<double>());
+      for (const std::size_t load : {1, 2})
+        for (const nlohmann::json& x : row.at(load)) csv += fmt::format(",{:.6g}", x.get<double>());
+      csv += '\n';
+    }
+  }
+  out.write("hosel.csv", csv);
+}
+
+}  // namespace
+
 void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
+  if (!table.design.grid() && std::ranges::any_of(points, [](const auto& p) { return p.contains("hosel"); }))
+    report_hosels(out, table, points);
   if (std::ranges::none_of(points, [](const nlohmann::json& p) { return p.contains("history"); })) return;
   std::string csv = "point,model";
   for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);

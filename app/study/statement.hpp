@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/study/table.hpp"
-#include "post/claim.hpp"
+#include "post/shaft_effect.hpp"
 
 namespace hosel::app {
 

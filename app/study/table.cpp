@@ -65,6 +65,13 @@ void StudyTable::fill(const std::vector<json>& points) {
     }
 }
 
+bool StudyTable::one_model(std::size_t model) const {
+  if (models[model].empty()) return false;
+  for (std::size_t i = model; i < asked.size(); i += models.size())
+    if (asked[i] != models[model]) return false;
+  return true;
+}
+
 std::string StudyTable::csv(const std::vector<json>& points) const {
   const bool other = models.front().empty();
   std::string csv = other ? "point" : "point,model";
@@ -73,7 +80,7 @@ std::string StudyTable::csv(const std::vector<json>& points) const {
   csv += ",error\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     csv += std::to_string(i);
-    if (!other) csv += "," + post::csv_cell(models[i % models.size()]);
+    if (!other) csv += "," + post::csv_cell(model_of(i));
     for (const std::string& cell : design.cells(i / models.size())) csv += "," + post::csv_cell(cell);
     const bool failed = points[i].contains("error");
     for (const std::string& o : outputs) {

@@ -31,6 +31,7 @@ struct StudyTable {
   std::vector<std::string> outputs;     ///< names with their units, or entries of a summary
   std::vector<MeasuredRange> measured;  ///< of every point; those of a variant or row come before
   std::vector<StudySeries> series;      ///< models x outputs
+  std::vector<std::string> asked = {};  ///< of blows: the model of every point, as the design has it
 
   /// Fills `series`, and `outputs` where none is named: all numbers that the points hold.
   void fill(const std::vector<nlohmann::json>& points);
@@ -39,6 +40,11 @@ struct StudyTable {
   post::TextTable rows() const;
   /// Measured values of an output at a point, in the output's unit; nothing where it was not measured.
   std::optional<MeasuredRange> seen(std::size_t point, std::size_t output) const;
+  const std::string& model_of(std::size_t point) const {
+    return asked.empty() ? models[point % models.size()] : asked[point];
+  }
+  /// Whether that column of `models` is the same named model at every point.
+  bool one_model(std::size_t model) const;
   const StudySeries& at(std::size_t model, std::size_t output) const { return series[model * outputs.size() + output]; }
 
  private:

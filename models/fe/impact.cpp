@@ -134,7 +134,7 @@ void assemble_club(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o
   if (mount.load && mount.joint.gives())
     throw std::invalid_argument(
         "fe full club: how far a joint that gives has turned follows from the swing, not from the hands' wrench: use a "
-        "loaded-club case, or a head that is rigid on the shaft");
+        "[motion] in its case, or a head that is rigid on the shaft");
   if (mount.load && !mount.loaded)
     mount.loaded = loaded_by_grip(blow, *mount.load, mount.grip_point, mount.elements, mount.growth, mount.shear);
   const Vec3& hosel = blow.club.geometry.hosel;

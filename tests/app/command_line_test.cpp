@@ -33,7 +33,7 @@ TEST(CommandLine, CompletesCommandsOptionsAndCases) {
   EXPECT_EQ(completed("hosel run driver-t", 2), "driver-toe\n");
   EXPECT_EQ(completed("hosel run driver-toe --fo", 3), "--force\n");
   EXPECT_EQ(completed("hosel sweep run x --sh", 4), "--shard\n");
-  EXPECT_EQ(completed("hosel keys loaded-f", 2), "loaded-face-map\n");
+  EXPECT_EQ(completed("hosel keys landing-t", 2), "landing-times\n");
 }
 
 TEST(CommandLine, ManPageNamesEveryCommand) {

@@ -139,6 +139,51 @@ steps_per_contact = 20
   expect_killed_is_whole(dir, (dir / "case").string(), 16, 3, 3);
 }
 
+TEST(Study, BlowsOfSwungClubsThatAreKilledGiveTheSameTable) {
+  const fs::path dir = fresh_directory("study_killed_swung");
+  write(dir / "case/case.toml", R"(kind = "study"
+models = ["fe-free-body"]
+outputs = ["ball_speed_mps", "head_spin_rad_per_s", "hands_force_N"]
+[[variant]]
+name = "free head"
+[[variant]]
+name = "club loaded"
+set = ["models=['fe-full-club']", "grip.hold=forced"]
+[[axis]]
+key = "delivery.impact_toe_mm"
+values = [-20.0, -10.0, 0.0, 10.0, 20.0]
+[[part]]
+name = "the club"
+of = "club loaded"
+minus = "free head"
+[motion]
+begin_s = -0.25
+end_s = 0.0
+file = ")" + std::string(HOSEL_SOURCE_DIR) +
+                                    R"(/cases/swing-driver/grip.csv"
+[shaft]
+name = "composite-driver"
+[head]
+name = "driver-2024"
+[solution]
+elements = 5
+step_ms = 2.0
+grip_point_mm = 230.0
+[ball]
+model = "tour"
+reduced = "driver"
+[mesh]
+harmonics = 1
+sector = 1
+rings = 1
+[time]
+steps_per_contact = 20
+)");
+  expect_killed_is_whole(dir, (dir / "case").string(), 10, 2, 3);
+  EXPECT_EQ(content(dir / "killed" / "parts.csv"), content(dir / "whole" / "parts.csv"));
+  EXPECT_EQ(lines(dir / "whole" / "parts.csv"), 6u);
+}
+
 TEST(Study, ALineCutShortIsComputedAgain) {
   const fs::path dir = sweep_case("sweep_torn", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();

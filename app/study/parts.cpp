@@ -1,0 +1,201 @@
+#include "app/study/parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "app/study/compare.hpp"
+#include "post/csv.hpp"
+#include "post/labels.hpp"
+
+namespace hosel::app {
+namespace {
+
+using nlohmann::json;
+
+class PartsReport {
+ public:
+  PartsReport(Output& out, const StudyTable& table, const StudyParts& parts)
+      : out_(out), table_(table), parts_(parts), columns_(table.design.columns()) {
+    const Design& design = table.design;
+    block_ = design.size() / design.factors().front().levels.size();
+    for (std::size_t c = 1; c < columns_.size(); ++c)
+      if (!parts.over || !(c == *parts.over || design.tied(c, *parts.over))) where_.push_back(c);
+    std::map<std::vector<std::string>, std::size_t> known;
+    for (std::size_t p = 0; p < block_; ++p) {
+      std::vector<std::string> cells;
+      for (const std::size_t c : where_) cells.push_back(design.cells(p)[c]);
+      const auto [at, fresh] = known.try_emplace(cells, places_.size());
+      if (fresh) places_.push_back({cells, {}});
+      places_[at->second].points.push_back(p);
+    }
+  }
+
+  json report(bool draw) {
+    std::string csv = "part,model";
+    for (const std::size_t c : where_) csv += "," + post::csv_cell(columns_[c]);
+    for (const std::string& o : table_.outputs)
+      csv += parts_.over ? fmt::format(",{0}_mean,{0}_low,{0}_high", post::csv_cell(o)) : "," + post::csv_cell(o);
+    csv += '\n';
+    json summary = json::object();
+    for (std::size_t m = 0; m < table_.models.size(); ++m)
+      for (const StudyParts::Part& part : parts_.all) {
+        json& said = table_.models.size() > 1 ? summary[table_.models[m]][part.name] : summary[part.name];
+        for (const Place& place : places_) {
+          csv += post::csv_cell(part.name) + "," + post::csv_cell(table_.models[m]);
+          for (const std::string& cell : place.cells) csv += "," + post::csv_cell(cell);
+          for (std::size_t o = 0; o < table_.outputs.size(); ++o) csv += cells(difference(part, m, o, place).spread());
+          csv += '\n';
+        }
+        tell(part, m, said);
+      }
+    out_.write("parts.csv", csv);
+    if (draw && on_face())
+      for (std::size_t m = 0; m < table_.models.size(); ++m) maps(m);
+    return summary;
+  }
+
+ private:
+  struct Place {
+    std::vector<std::string> cells;
+    std::vector<std::size_t> points;  ///< one a value of the column `over`
+  };
+
+  StudySeries difference(const StudyParts::Part& part, std::size_t model, std::size_t output,
+                         const Place& place) const {
+    StudySeries out;
+    const std::vector<double>& y = table_.at(model, output).y;
+    for (const std::size_t p : place.points) out.y.push_back(y[part.of * block_ + p] - y[part.minus * block_ + p]);
+    return out;
+  }
+
+  std::string cells(const StudySeries::Spread& s) const {
+    if (!std::isfinite(s.mean)) return parts_.over ? ",,," : ",";
+    return parts_.over ? fmt::format(",{:.9g},{:.9g},{:.9g}", s.mean, s.low, s.high) : fmt::format(",{:.9g}", s.mean);
+  }
+
+  bool on_face() const { return table_.design.grid() && places_.size() == table_.design.grid()->size(); }
+
+  /// The mean over the places, and each of them where they are few.
+  void tell(const StudyParts::Part& part, std::size_t model, json& said) const {
+    constexpr std::size_t few = 9;
+    post::TextTable shown{.rows = {{"output", "mean"}}, .least_width = 10, .even = false};
+    if (parts_.over) shown.rows[0].insert(shown.rows[0].end(), {"lowest", "highest"});
+    if (places_.size() > 1) shown.rows[0].push_back("where");
+    const auto add = [&](std::size_t o, const StudySeries& of, const std::string& where, json& at) {
+      const StudySeries::Spread s = of.spread();
+      if (!std::isfinite(s.mean)) return;
+      json& j = at[table_.outputs[o]];
+      j = s.mean;
+      auto& row = shown.rows.emplace_back(std::vector{post::label(table_.outputs[o]), fmt::format("{:+.4g}", s.mean)});
+      shown.first_width = std::max(shown.first_width, row.front().size() + 1);
+      if (parts_.over) {
+        j = {{"mean", s.mean}, {"low", s.low}, {"high", s.high}};
+        for (std::size_t k = 0; k < of.y.size(); ++k)
+          if (std::isfinite(of.y[k])) j["each"][table_.design.cells(places_.front().points[k])[*parts_.over]] = of.y[k];
+        row.insert(row.end(), {fmt::format("{:+.4g}", s.low), fmt::format("{:+.4g}", s.high)});
+      }
+      if (places_.size() > 1) row.push_back(where);
+    };
+    for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+      StudySeries mean;
+      mean.y.resize(places_.front().points.size());
+      for (std::size_t k = 0; k < places_.size(); ++k) {
+        const StudySeries there = difference(part, model, o, places_[k]);
+        for (std::size_t i = 0; i < mean.y.size(); ++i) mean.y[i] += there.y[i] / double(places_.size());
+        if (places_.size() > few || places_.size() == 1) continue;
+        std::string where;
+        for (std::size_t c = 0; c < where_.size(); ++c)
+          where += (c ? ", " : "") + said_cell(columns_[where_[c]], places_[k].cells[c]);
+        add(o, there, where, said["at"][k]);
+      }
+      add(o, mean, "mean", said["mean"]);
+    }
+    const std::string title = fmt::format("{}{}: {} minus {}",
+                                          table_.models.size() > 1 ? table_.models[model] + ", " : "", part.name,
+                                          variant(part.of), variant(part.minus));
+    out_.tell(title);
+    out_.show(shown, title);
+  }
+
+  std::string variant(std::size_t level) const { return table_.design.factors().front().levels[level].cells.front(); }
+
+  /// Every part over the face, and along the middle of the face with bars for the band.
+  void maps(std::size_t model) const {
+    const post::FaceGrid& grid = *table_.design.grid();
+    post::Figure face{.title = fmt::format("part by part; {}", post::kFaceView),
+                      .columns = int(parts_.all.size()),
+                      .panel_width = 400,
+                      .panel_height = 215};
+    post::Figure along{
+        .title = "along the middle of the face" + (parts_.over ? "; bars: over " + columns_[*parts_.over] : ""),
+        .columns = 2,
+        .panel_width = 560,
+        .panel_height = 330};
+    for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+      const std::string name = post::label(table_.outputs[o]),
+                        unit = name.substr(std::min(name.find(" ["), name.size()));
+      post::Panel panel{.x_label = "heel  <-  impact toe [mm]  ->  toe", .y_label = "change of " + name};
+      for (const StudyParts::Part& part : parts_.all) {
+        std::vector<double> mean;
+        post::Series line{.label = part.name, .style = "linespoints"};
+        for (std::size_t p = 0; p < grid.size(); ++p) {
+          const StudySeries::Spread s = difference(part, model, o, places_[p]).spread();
+          mean.push_back(s.mean);
+          if (p / std::size_t(grid.columns) != std::size_t(grid.rows / 2)) continue;
+          line.x.push_back(1e3 * grid.toe_at(p));
+          line.y.push_back((s.low + s.high) / 2);
+          line.error.push_back((s.high - s.low) / 2);
+        }
+        const std::string what = part.name + ": " + name.substr(0, name.size() - unit.size());
+        face.panels.push_back(post::face_panel(grid, mean, what, unit, true));
+        panel.series.push_back(std::move(line));
+      }
+      along.panels.push_back(std::move(panel));
+    }
+    const std::string whose = table_.models.size() > 1 ? "-" + out_.file_name(table_.models[model]) : "";
+    out_.draw(face, "figures/parts" + whose, false);
+    out_.draw(along, "figures/along" + whose);
+  }
+
+  Output& out_;
+  const StudyTable& table_;
+  const StudyParts& parts_;
+  std::vector<std::string> columns_;
+  std::vector<std::size_t> where_;  ///< columns that say a place
+  std::size_t block_ = 0;           ///< points of one variant
+  std::vector<Place> places_;
+};
+
+}  // namespace
+
+StudyParts read_parts(Table root, const StudyTable& table) {
+  StudyParts out;
+  std::vector<std::string> taken;
+  const bool varies = table.design.has(DesignFactor::Kind::variants);
+  for (Table t : root.tables("part")) {
+    if (!varies) t.fail("of", "a part is one [[variant]] minus another");
+    const auto variants = table.design.levels(0);
+    const auto variant = [&](Key key) { return number_of(t, key.name, "variant", t.text(key), variants); };
+    out.all.push_back({t.name({"name", "of the part"}, taken), variant({"of", "the variant"}),
+                       variant({"minus", "the variant that is taken from it"})});
+  }
+  if (!root.has("parts_over")) return out;
+  const auto columns = table.design.columns();
+  out.over = number_of(
+      root, "parts_over", "column",
+      root.text({"parts_over", "column of the design over whose values each [[part]] has mean, lowest and highest"}),
+      columns);
+  if (out.all.empty() || *out.over == 0)
+    root.fail("parts_over", "a column beside the variants, of a study with a [[part]]");
+  return out;
+}
+
+nlohmann::json report_parts(Output& out, const StudyTable& table, const StudyParts& parts, bool draw) {
+  return PartsReport(out, table, parts).report(draw);
+}
+
+}  // namespace hosel::app
