@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/of_file.hpp"
 #include "app/reader.hpp"
 #include "app/version.hpp"
 #include "post/file.hpp"
@@ -24,7 +25,8 @@ std::string digest_of(const fs::path& file) {
 }  // namespace
 
 void Inputs::file(const fs::path& file, const fs::path& copy) {
-  const std::string digest = digest_of(file);
+  static OfFile<std::string> digests;
+  const std::string digest = digests.get(file, [&] { return digest_of(file); });
   const std::lock_guard lock(mutex_);
   const auto [it, fresh] = digests_.emplace(file, digest);
   if (!fresh && it->second != digest) refuse_changed(file);

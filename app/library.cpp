@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <map>
-#include <mutex>
+#include <memory>
 
+#include "app/of_file.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
 #include "app/read_options.hpp"
@@ -157,93 +156,78 @@ HeadEntry read_head_entry(Table root) {
 
 NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
 
-/// A file of the library, read whole: what is left over is an error. The same content is parsed once: a study asks for
-/// it at every point.
+/// A file of the library, read whole: what is left over is an error.
 template <class Entry>
 Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
-  static std::mutex mutex;
-  static std::map<fs::path, std::pair<std::string, Entry>> parsed;
-  const std::string content = post::read_file(file);
-  const std::lock_guard lock(mutex);
-  if (const auto it = parsed.find(file); it != parsed.end() && it->second.first == content) return it->second.second;
-  CaseFile text(file);
-  Table root = text.root();
-  read_origin(root);
-  Entry entry = read(root);
-  if constexpr (requires { entry.seen; }) entry.seen = read_saw(root);
-  else read_saw(root);  // of a head: for the reader
-  text.finish();
-  parsed.insert_or_assign(file, std::pair{content, entry});
-  return entry;
+  static OfFile<Entry> entries;
+  return entries.get(file, [&] {
+    CaseFile text(file);
+    Table root = text.root();
+    read_origin(root);
+    Entry entry = read(root);
+    if constexpr (requires { entry.seen; }) entry.seen = read_saw(root);
+    else read_saw(root);  // of a head: for the reader
+    text.finish();
+    return entry;
+  });
 }
 
-/// Names and files of one folder in the order of names, nothing read. A folder is listed again when it has changed: a
-/// study asks for its entries at every point.
-std::vector<LibraryEntry> in_folder(const fs::path& folder, bool shipped) {
-  using Time = fs::file_time_type;
-  static std::mutex mutex;
-  static std::map<fs::path, std::pair<Time, std::vector<LibraryEntry>>> listed;
-  std::error_code none;
-  const Time changed = fs::last_write_time(folder, none);
-  if (none) return {};
-  {
-    const std::lock_guard lock(mutex);
-    if (const auto it = listed.find(folder); it != listed.end() && it->second.first == changed)
-      return it->second.second;
-  }
-  std::vector<LibraryEntry> here;
-  for (const auto& file : fs::directory_iterator(folder, none))
-    if (file.path().extension() == ".toml" && file.is_regular_file())
-      here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
-  std::ranges::sort(here, {}, &LibraryEntry::name);
-  // A change in the same tick of the file system's clock would not be seen.
-  if (Time::clock::now() - changed > std::chrono::seconds(1)) {
-    const std::lock_guard lock(mutex);
-    listed.insert_or_assign(folder, std::pair{changed, here});
-  }
-  return here;
-}
-
-/// Names and files of a shelf.
-std::vector<LibraryEntry> on_shelf(Shelf shelf) {
-  static const fs::path of_hosel = shipped_library();
-  std::vector<LibraryEntry> all;
-  for (const bool shipped : {true, false}) {
-    const fs::path home = shipped ? of_hosel : user_library();
+/// Names and files of one folder in the order of names, nothing read.
+using Folder = std::shared_ptr<const std::vector<LibraryEntry>>;
+Folder in_folder(const fs::path& folder, bool shipped) {
+  static OfFile<Folder> folders;
+  return folders.get(folder, [&] {
+    std::vector<LibraryEntry> here;
     std::error_code none;
-    if (home.empty() || (!shipped && fs::equivalent(home, of_hosel, none))) continue;  // who ships entries makes them
-    const std::vector<LibraryEntry> here = in_folder(home / name(shelf), shipped);
-    all.insert(all.end(), here.begin(), here.end());
-  }
+    for (const auto& file : fs::directory_iterator(folder, none))
+      if (file.path().extension() == ".toml" && file.is_regular_file())
+        here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
+    std::ranges::sort(here, {}, &LibraryEntry::name);
+    return std::make_shared<const std::vector<LibraryEntry>>(std::move(here));
+  });
+}
+
+/// Names and files of a shelf, folder by folder: the shipped one first.
+std::vector<Folder> on_shelf(Shelf shelf) {
+  static const fs::path of_hosel = shipped_library();
+  std::vector<Folder> all{in_folder(of_hosel / name(shelf), true)};
+  const fs::path own = user_library();
+  std::error_code none;  // who ships entries makes them
+  if (!own.empty() && !fs::equivalent(own, of_hosel, none)) all.push_back(in_folder(own / name(shelf), false));
   return all;
 }
 
 std::vector<std::string> names_on(Shelf shelf) {
   std::vector<std::string> out;
-  for (const LibraryEntry& e : on_shelf(shelf)) out.push_back(e.name);
+  for (const Folder& folder : on_shelf(shelf))
+    for (const LibraryEntry& e : *folder) out.push_back(e.name);
   if (shelf == Shelf::faces) out.emplace_back(kRigidFace);
   return out;
 }
 
 LibraryEntry find_entry(Shelf shelf, const std::string& wanted) {
-  const auto all = on_shelf(shelf);
-  const auto it = std::ranges::find(all, wanted, &LibraryEntry::name);
-  if (it == all.end()) {
+  const LibraryEntry* found = nullptr;
+  const std::vector<Folder> folders = on_shelf(shelf);
+  for (const Folder& folder : folders)
+    if (const auto it = std::ranges::find(*folder, wanted, &LibraryEntry::name); it != folder->end()) {
+      if (found)
+        throw InputError(
+            fmt::format("{}: a shipped {} has this name: rename yours", it->file.string(), singular(shelf)));
+      found = &*it;
+    }
+  if (!found) {
     const std::string near = nearest(wanted, names_on(shelf));
     throw InputError(fmt::format("no {} '{}' in the library{}", singular(shelf), wanted,
                                  near.empty() ? "; `hosel list` shows them" : "; did you mean '" + near + "'?"));
   }
-  if (const auto other = std::find_if(std::next(it), all.end(), [&](const auto& e) { return e.name == wanted; });
-      other != all.end())
-    throw InputError(
-        fmt::format("{}: a shipped {} has this name: rename yours", other->file.string(), singular(shelf)));
-  return *it;
+  return *found;
 }
 
 }  // namespace
 
 std::vector<LibraryEntry> library(Shelf shelf) {
-  std::vector<LibraryEntry> all = on_shelf(shelf);
+  std::vector<LibraryEntry> all;
+  for (const Folder& folder : on_shelf(shelf)) all.insert(all.end(), folder->begin(), folder->end());
   for (LibraryEntry& e : all) try {
       e.what = CaseFile(e.file).root().text({"what", "one sentence for `hosel list`"});
     } catch (const InputError& error) { e.what = fmt::format("(unreadable: {})", error.what()); }

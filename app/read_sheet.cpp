@@ -4,14 +4,17 @@
 
 #include <charconv>
 #include <cmath>
+#include <memory>
 
+#include "app/of_file.hpp"
 #include "app/reader.hpp"
 
 namespace hosel::app {
 
 post::Sheet read_sheet(const std::filesystem::path& file) {
+  static OfFile<std::shared_ptr<const post::Sheet>> sheets;
   try {
-    return post::read_csv(file);
+    return *sheets.get(file, [&] { return std::make_shared<const post::Sheet>(post::read_csv(file)); });
   } catch (const DataError& e) { throw InputError(e.what()); }
 }
 

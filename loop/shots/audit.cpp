@@ -13,6 +13,7 @@
 
 #include "golf/dense.hpp"
 #include "loop/median.hpp"
+#include "loop/shots/predictable.hpp"
 #include "loop/shots/relations.hpp"
 
 namespace hosel::loop {
@@ -518,10 +519,10 @@ class Audit {
 
 }  // namespace
 
-std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball) {
+std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise) {
   std::vector<DerivedColumn> found = Audit(shots, ball).run();
-  const std::vector<DerivedColumn> partly = partly_derived(shots, found);
-  found.insert(found.end(), partly.begin(), partly.end());
+  std::ranges::move(partly_derived(shots, found), std::back_inserter(found));
+  std::ranges::move(predictable(shots, noise, found), std::back_inserter(found));
   return found;
 }
 

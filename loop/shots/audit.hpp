@@ -1,12 +1,17 @@
 /// Is it a measurement at all? Columns that are, to within their recording, functions of other columns.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
+
+/// The logarithm of how much likelier a formula must be than what measures a column, beyond that of the number of
+/// formulas that were tried: by chance in one set of a thousand.
+constexpr double kBeyondChance = 6.9;
 
 struct DerivedColumn {
   std::string column;
@@ -19,7 +24,9 @@ struct DerivedColumn {
   bool input = false;               ///< the column is an input of the models
 };
 
-/// Formulas that hold on all rows, then (relations) those that hold on many.
-std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball);
+/// Formulas that hold on all rows, then (relations) those that hold on many, then (predictable) what follows from others
+/// more closely than noise allows, whatever the formula. `noise`: declared of inputs and outputs, by header, in the
+/// header's unit.
+std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise = {});
 
 }  // namespace hosel::loop

@@ -17,9 +17,6 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
-// The logarithm of how much likelier a formula must be than scatter without an edge, beyond that of the number of
-// formulas that were tried: by chance in one set of a thousand.
-constexpr double kBeyondChance = 6.9;
 constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {

@@ -99,12 +99,14 @@ LoopResult run(const ShotCase& c) {
   rows.shots = as_read(c);
   rows.averages.reset();
   const Columns columns(rows);
-  std::vector<DerivedColumn> derived = audit(rows.shots, c.blow.ball);
+  std::map<std::string, double> noise = c.noise;
+  noise.insert(c.input_noise.begin(), c.input_noise.end());
+  std::vector<DerivedColumn> derived = audit(rows.shots, c.blow.ball, noise);
   const std::optional<std::set<int>> held = c.split.leave_one_out ? std::optional(std::set<int>{}) : std::nullopt;
   LoopResult result = pass(c, columns, derived, held);
   if (!result.flagged.empty() && !c.averages) {
     // Bad rows can hide a formula: once they are known, look again.
-    const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, result), c.blow.ball);
+    const std::vector<DerivedColumn> again = audit(without_flagged(c.shots, result), c.blow.ball, noise);
     const auto outputs = [](const std::vector<DerivedColumn>& d) {
       std::set<std::string> names;
       for (const DerivedColumn& x : d)
