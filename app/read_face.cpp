@@ -51,9 +51,4 @@ bool has_plate(Table root) {
   return own && own->has("plate");
 }
 
-FaceCompliance read_yielding_face(Table root) {
-  if (const auto face = read_club_face(root)) return *face;
-  root.table("face").fail("", "a face that yields is needed: `name`, or its mass and stiffness");
-}
-
 }  // namespace hosel::app

@@ -17,7 +17,5 @@ std::optional<FaceCompliance> read_face(Table table);
 std::optional<FaceCompliance> read_club_face(Table root);
 /// Whether `[face]` of a case is a plate.
 bool has_plate(Table root);
-/// The same where a face has to yield.
-FaceCompliance read_yielding_face(Table root);
 
 }  // namespace hosel::app

@@ -108,12 +108,9 @@ models::Accuracy accuracy_named(std::string_view name) {
 
 void read_grip(Table& t, models::ShaftMount& mount, bool swung) {
   using models::Grip;
-  const std::string hold =
-      t.choice({"hold", "what happens at the grip during the blow"}, {"clamped", "free", "forced", "hands"}, "clamped");
-  mount.grip = hold == "free"     ? Grip::free
-               : hold == "forced" ? Grip::forced
-               : hold == "hands"  ? Grip::hands
-                                  : Grip::clamped;
+  mount.grip = t.one_of<Grip>(
+      {"hold", "what happens at the grip during the blow"},
+      {{"clamped", Grip::clamped}, {"free", Grip::free}, {"forced", Grip::forced}, {"hands", Grip::hands}}, "clamped");
   if (mount.grip == Grip::hands) mount.hands = read_springs(t);
   if (swung) return;
   mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
@@ -209,11 +206,9 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
               "whose constants? `published = \"driver\"` or \"iron7\", all of them, or a ball or contact of the "
               "library that has them");
     options.volumetric = read_volumetric_law(*t, standard);
-    options.volumetric_solution.integrator =
-        t->choice({"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
-                  {"rosenbrock", "cvode"}, "rosenbrock") == "cvode"
-            ? models::Integrator::cvode
-            : models::Integrator::rosenbrock;
+    options.volumetric_solution.integrator = t->one_of<models::Integrator>(
+        {"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
+        {{"rosenbrock", models::Integrator::rosenbrock}, {"cvode", models::Integrator::cvode}}, "rosenbrock");
     options.volumetric_solution.tolerance = t->number({"tolerance", "relative tolerance of the time integration"},
                                                       {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }

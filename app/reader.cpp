@@ -136,6 +136,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
+std::string or_nearest(std::string_view word, const std::vector<std::string>& candidates, std::string_view otherwise) {
+  const std::string near = nearest(word, candidates);
+  return near.empty() ? std::string(otherwise) : fmt::format("; did you mean '{}'?", near);
+}
+
 fs::path data_directory() {
   if (const char* named = std::getenv("HOSEL_DATA")) return named;
   if (const fs::path beside = fs::path(HOSEL_SOURCE_DIR) / ".." / "shared" / "data"; fs::exists(beside))

@@ -1,4 +1,4 @@
-#include "app/kinds/plate_face.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 

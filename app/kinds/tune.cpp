@@ -1,4 +1,4 @@
-#include "app/kinds/tune.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -125,10 +125,9 @@ class TuneJob final : public Job {
     }
     rows_ = data.integer({"rows", "use so many rows, drawn at random; 0: all"}, 0, 100000000, 0);
 
-    std::optional<Table> split = root.optional_table("split");
-    train_fraction_ = split ? split->number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667)
-                            : 0.6667;
-    seed_ = static_cast<unsigned>(split ? split->integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1) : 1);
+    Table split = root.default_table("split");
+    train_fraction_ = split.number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667);
+    seed_ = unsigned(split.integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1));
 
     for (Table t : root.tables("parameters")) {
       Free f{&read_parameter(t, {"name", "the parameter that is tuned"}), 0, {}};
@@ -146,15 +145,12 @@ class TuneJob final : public Job {
     }
     if (free_.empty()) root.fail("parameters", "name at least one [[parameters]]");
 
-    std::optional<Table> search = root.optional_table("search");
-    search_.starts = static_cast<int>(
-        search ? search->integer({"starts", "of the search, the first at the defaults"}, 1, 1000, 4) : 4);
-    search_.iterations =
-        static_cast<int>(search ? search->integer({"iterations", "of each search at most"}, 1, 10000, 60) : 60);
+    Table search = root.default_table("search");
+    search_.starts = int(search.integer({"starts", "of the search, the first at the defaults"}, 1, 1000, 4));
+    search_.iterations = int(search.integer({"iterations", "of each search at most"}, 1, 10000, 60));
     search_.huber =
-        search ? search->number({"huber", "residual beyond which the loss is linear, in noise units; 0: least squares"},
-                                Range::non_negative(), 0)
-               : 0;
+        search.number({"huber", "residual beyond which the loss is linear, in noise units; 0: least squares"},
+                      Range::non_negative(), 0);
     search_.seed = seed_;
   }
 
