@@ -48,6 +48,8 @@ std::vector<Sample> samples() {
       {"radar-drive",
        {"flight.spin_decay_per_s=0.04", "flight.wind={speed_mps=3, towards_deg=0}",
         "flight.ground={height_m=0, slope_deg=0}"}},
+      {"rollback", {"launch={ball_speed_mps=70, launch_angle_deg=10, azimuth_deg=0, spin_rate_rpm=2500}"}},
+      {"rollback", {"launch={backspin_rpm=2500}"}},
       {"plate-face",
        {"face.plate.material=own", "face.plate.young_GPa=110", "face.plate.poisson=0.3",
         "face.plate.density_kg_per_m3=4500", "face.plate.outline={form='superellipse', exponent=3}",

@@ -99,17 +99,16 @@ models::Wind read_wind(Table table) {
 
 models::LaunchError read_launch_error(Table table, std::vector<std::string>& taken) {
   models::LaunchError e{.source = table.name({"source", "where these standard errors come from"}, taken)};
-  e.ball_speed =
-      table.quantity({"ball_speed", "standard error of the measured ball speed"}, "mps", Range::non_negative(), 0);
-  e.launch_angle =
-      table.quantity({"launch_angle", "standard error of the measured launch angle"}, "deg", Range::non_negative(), 0);
-  e.azimuth = table.quantity({"azimuth", "standard error of the measured direction"}, "deg", Range::non_negative(), 0);
-  e.backspin = table.quantity({"backspin", "standard error of the measured backspin"}, "rpm", Range::non_negative(), 0);
-  e.sidespin = table.quantity({"sidespin", "standard error of the measured sidespin"}, "rpm", Range::non_negative(), 0);
-  e.spin_rate =
-      table.quantity({"spin_rate", "standard error of the measured spin rate"}, "rpm", Range::non_negative(), 0);
-  e.spin_axis =
-      table.quantity({"spin_axis", "standard error of the measured spin axis"}, "deg", Range::non_negative(), 0);
+  using Error = models::LaunchError;
+  for (const auto& [key, meaning, unit, error] :
+       {std::tuple{"ball_speed", "standard error of the measured ball speed", "mps", &Error::ball_speed},
+        {"launch_angle", "standard error of the measured launch angle", "deg", &Error::launch_angle},
+        {"azimuth", "standard error of the measured direction", "deg", &Error::azimuth},
+        {"backspin", "standard error of the measured backspin", "rpm", &Error::backspin},
+        {"sidespin", "standard error of the measured sidespin", "rpm", &Error::sidespin},
+        {"spin_rate", "standard error of the measured spin rate", "rpm", &Error::spin_rate},
+        {"spin_axis", "standard error of the measured spin axis", "deg", &Error::spin_axis}})
+    e.*error = table.quantity({key, meaning}, unit, Range::non_negative(), 0);
   return e;
 }
 

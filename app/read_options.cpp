@@ -55,16 +55,11 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
                                         {1e-3, 10}, o.tangential_penalty);
 
   Table mesh = root.default_table("mesh");
-  o.mesh.sector =
-      int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
-  o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
-  o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1},
-                            o.mesh.pole);
+  read_ball_mesh(mesh, o.mesh);
   if (mesh.has("far"))
     o.mesh.far = mesh.number(
         {"far", "size of surface elements at the other pole over the ungraded ones; absent: graded by half-tangents"},
         {1, 100});
-  o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
   o.mesh.core =
       mesh.number({"core", "half-width of the core block over the first layer's radius"}, {0.1, 0.7}, o.mesh.core);
   o.harmonics = int(
@@ -86,11 +81,7 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
   o.rho_inf = time.number(
       {"rho_inf", "spectral radius of generalized-alpha at infinite frequency: 1 keeps energy, 0 damps most"},
       Range::fraction(), o.rho_inf);
-  o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
-                                         100000, o.steps_per_contact));
-  o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
-                                  {1e-14, 1e-2}, o.newton_relative);
-  o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
+  read_steps(time, o);
   std::vector<std::string> faults = o.faults();
   std::ranges::copy(friction.faults(), std::back_inserter(faults));
   if (!faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
@@ -99,6 +90,22 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
 }
 
 }  // namespace
+
+void read_ball_mesh(Table& mesh, mesh::MeridianOptions& m) {
+  m.sector = int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, m.sector));
+  m.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, m.rings));
+  m.pole =
+      mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1}, m.pole);
+  m.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, m.skin);
+}
+
+void read_steps(Table& time, models::FeImpactOptions& o) {
+  o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
+                                         100000, o.steps_per_contact));
+  o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
+                                  {1e-14, 1e-2}, o.newton_relative);
+  o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
+}
 
 models::Accuracy accuracy_named(std::string_view name) {
   return name == "look"      ? models::Accuracy::look

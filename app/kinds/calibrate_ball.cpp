@@ -11,6 +11,7 @@
 #include "app/offer.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
+#include "app/read_options.hpp"
 #include "app/read_shaft.hpp"
 #include "app/read_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
@@ -41,15 +42,7 @@ class CalibrateBallJob final : public Job {
     options.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
     check_memory(root, options);
-    if (auto time = root.optional_table("time")) {
-      options.steps_per_contact = int(time->integer(
-          {"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000, options.steps_per_contact));
-      options.newton_relative =
-          time->number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
-                       {1e-14, 1e-2}, options.newton_relative);
-      options.after =
-          time->number({"after", "time computed after contact, over the contact time"}, {0, 10}, options.after);
-    }
+    if (auto time = root.optional_table("time")) read_steps(*time, options);
     for (Table& t : root.tables("free")) problem_.free.push_back(read_free(t));
     if (problem_.free.empty()) root.fail("free", "name at least one parameter to fit: [[free]] with `what`");
     problem_.leave_one_out = root.flag(
@@ -215,12 +208,7 @@ class CalibrateBallJob final : public Job {
 
   void read_mesh(Table& mesh) {
     models::FeImpactOptions& o = problem_.options;
-    o.mesh.sector =
-        int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
-    o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
-    o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
-                              {0.01, 1}, o.mesh.pole);
-    o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
+    read_ball_mesh(mesh, o.mesh);
     if (problem_.shots.empty() && !problem_.bounce) return;
     o.harmonics = int(mesh.integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
     o.antisymmetric = int(

@@ -120,12 +120,10 @@ class LoopJob final : public Job {
       case_.input_noise = read_noise(*noise, shots, loop::Role::input, "input");
 
     if (auto split = root.optional_table("split")) {
-      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
+      case_.split.by = read_split_by(*split, shots);
       case_.split.leave_one_out = split->choice({"mode", "a held-out share, or each cluster left out in turn"},
                                                 {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
       if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
-      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
-        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
     }
     if (skipped_.empty())
       if (const auto use = use_of_shots(case_)) check_use(root, *use, {case_.base});

@@ -43,6 +43,12 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
   }
 }
 
+std::string read_split_by(Table split, const loop::Shots* shots) {
+  const std::string by = split.text({"by", "column whose values stay together in training or holdout"}, "");
+  if (!by.empty() && shots && !shots->find(by)) split.fail("by", fmt::format("no column '{}' in the shots", by));
+  return by;
+}
+
 std::map<std::string, double> read_noise(Table table, const loop::Shots* shots, loop::Role role,
                                          std::string_view what) {
   std::map<std::string, double> noise;

@@ -39,11 +39,8 @@ class LoopFlightJob final : public Job {
     } else {
       read_shots(root);
     }
-    if (auto split = root.optional_table("split")) {
-      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
-      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
-        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
-    }
+    if (auto split = root.optional_table("split"))
+      case_.split.by = read_split_by(*split, skipped_.empty() ? &case_.shots : nullptr);
   }
 
   void run(Output& out) override {

@@ -11,7 +11,6 @@
 #include "app/check_memory.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
-#include "app/read_face_map.hpp"
 #include "app/read_options.hpp"
 #include "app/stop.hpp"
 #include "app/stored_launch.hpp"

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "app/read_face_map.hpp"
+#include "app/read_face.hpp"
 #include "app/read_sheet.hpp"
 #include "post/labels.hpp"
 #include "solvers/random.hpp"
