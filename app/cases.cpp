@@ -56,10 +56,8 @@ fs::path find_case(const std::string& named) {
   if (const std::string last = fs::path(named).lexically_normal().filename().string();
       std::ranges::find(names, last) != names.end())
     throw InputError(fmt::format("{}: no such directory here; the shipped case is called '{}'", named, last));
-  const std::string near = nearest(named, names);
   throw InputError(
-      fmt::format("{}: no such case{}", named,
-                  near.empty() ? "; `hosel list` shows the shipped ones" : "; did you mean '" + near + "'?"));
+      fmt::format("{}: no such case{}", named, or_nearest(named, names, "; `hosel list` shows the shipped ones")));
 }
 
 namespace {

@@ -4,25 +4,7 @@
 
 #include <array>
 
-#include "app/kinds/ball_rule.hpp"
-#include "app/kinds/calibrate_ball.hpp"
-#include "app/kinds/calibrate_face.hpp"
-#include "app/kinds/calibrate_reduced.hpp"
-#include "app/kinds/characteristic_time.hpp"
-#include "app/kinds/flight.hpp"
-#include "app/kinds/flight_law.hpp"
-#include "app/kinds/identify_shaft.hpp"
-#include "app/kinds/impact.hpp"
-#include "app/kinds/landing_times.hpp"
-#include "app/kinds/loop.hpp"
-#include "app/kinds/material_point.hpp"
-#include "app/kinds/modes.hpp"
-#include "app/kinds/plate_face.hpp"
-#include "app/kinds/shaft_modes.hpp"
-#include "app/kinds/slopes.hpp"
-#include "app/kinds/study.hpp"
-#include "app/kinds/swing.hpp"
-#include "app/kinds/tune.hpp"
+#include "app/kinds/kinds.hpp"
 
 namespace hosel::app {
 namespace {
@@ -42,8 +24,6 @@ constexpr std::array kKinds = {
          read_flight_law},
     Kind{"landing-times", "launches at several sites with the time of their landing, and what the air makes of it",
          "Does the air's density carry what the sites differ by?", read_landing_times},
-    Kind{"ball-rule", "a ball at a distance limit under old and new test conditions, and what players lose",
-         "What must a ball at the limit give up, and who loses how much?", read_ball_rule},
     Kind{"tune", "parameters of a model against measured shots",
          "Which parameters make the model agree with the shots, and on shots it has not seen?", read_tune},
     Kind{"study", "a design of blows (axes, sample, variants, rows, places) through models or another case",
@@ -62,14 +42,10 @@ constexpr std::array kKinds = {
          "Which material makes the ball bounce as measured?", read_calibrate_ball},
     Kind{"calibrate-reduced", "parameters of the reduced models from what the finite-element ball does",
          "What do the models without a deformable ball need of this ball?", read_calibrate_reduced},
-    Kind{"characteristic-time", "the rules' pendulum test of a face that yields: contact time against speed",
-         "How long does the rules' pendulum touch this face?", read_characteristic_time},
     Kind{"plate-face", "a face with a thickness: modes, characteristic time and restitution over it, balls, stress",
          "What does a face of this thickness do?", read_plate_face},
     Kind{"calibrate-face", "a face that yields from characteristic times, restitution and mass",
          "Which face behaves as measured?", read_calibrate_face},
-    Kind{"slopes", "slopes of the launch over the face: measured by robust regression, and of models",
-         "How does the launch change with the place of impact, measured and computed?", read_slopes},
 };
 
 /// Kinds that were: what their cases say now.
@@ -93,6 +69,15 @@ constexpr std::array kFormerKinds = {
                "[motion] stands for the delivery, [[swings]] are [rows], each club is a [[variant]] with grip.start "
                "and grip.hold, parts are [[part]] over the rows, [[statements]] is [[statement]] with one formula, "
                "[refinement] and [[assumptions]] are variants of a study of this one"},
+    FormerKind{"characteristic-time",
+               "[line] is two [[axis]] over effective_mass and stiffness of [face], the tap is the outputs "
+               "characteristic_time, pendulum_slope and restitution_off_rules_line at the place of the blow"},
+    FormerKind{
+        "ball-rule",
+        "a test is a [[solve]] whose `set` states [launch], [[player]] are [rows], a way to change the ball is a "
+        "[[variant]], a loss is a [[part]]"},
+    FormerKind{"slopes",
+               "[step] is four [[variant]] and two [[part]], [data] is [regression], heads are [rows] with parts_from"},
     FormerKind{"cross-check", "[[grid]] is [[axis]], reference is [compare], outputs names the quantities"},
 };
 

@@ -48,6 +48,8 @@ std::vector<Sample> samples() {
       {"radar-drive",
        {"flight.spin_decay_per_s=0.04", "flight.wind={speed_mps=3, towards_deg=0}",
         "flight.ground={height_m=0, slope_deg=0}"}},
+      {"rollback", {"launch={ball_speed_mps=70, launch_angle_deg=10, azimuth_deg=0, spin_rate_rpm=2500}"}},
+      {"rollback", {"launch={backspin_rpm=2500}"}},
       {"plate-face",
        {"face.plate.material=own", "face.plate.young_GPa=110", "face.plate.poisson=0.3",
         "face.plate.density_kg_per_m3=4500", "face.plate.outline={form='superellipse', exponent=3}",
@@ -57,7 +59,6 @@ std::vector<Sample> samples() {
        {"face.plate.thickness={map='bulge', centre_mm=3, rim_mm=2, half_width_mm=30, half_height_mm=18}",
         "face.plate.outline={form='polygon', file='outline.csv'}"}},
       {"plate-face", {"face.plate.thickness={map='grid', file='thickness.csv'}"}},
-      {"characteristic-time", {"face={plate={thickness={value_mm=2.8}}}"}},
       {"driver-toe", {"face={plate={thickness={value_mm=2.8}}}"}},
       {"loaded-club",
        {"accuracy=look", "flight={units='metres'}", "shaft.tip={from_mm=500, bending_scale=1, torsion_scale=1}"}},
@@ -218,11 +219,9 @@ std::string keys_text(const std::vector<AcceptedKey>& keys, std::string_view of)
       out += fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", k->name, name, value_of(*k), value, default_of(*k), standard,
                          k->meaning);
   }
-  if (out.empty()) {
-    const std::string near = nearest(of, names);
-    throw InputError(fmt::format("keys: no kind and no table '{}'{}", of,
-                                 near.empty() ? "; `hosel keys` prints all" : "; did you mean '" + near + "'?"));
-  }
+  if (out.empty())
+    throw InputError(
+        fmt::format("keys: no kind and no table '{}'{}", of, or_nearest(of, names, "; `hosel keys` prints all")));
   return out;
 }
 

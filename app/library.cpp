@@ -124,18 +124,18 @@ FaceEntry read_face_entry(Table root) {
   return e;
 }
 
-HeadSpread read_spread(Table t) {
-  HeadSpread s{.source = t.text({"source", "where the standard deviations come from"})};
-  const auto one = [&](Key key, std::string_view unit, std::optional<double>& into) {
-    if (t.has_quantity(key.name)) into = t.quantity(key, unit, Range::non_negative());
+/// What heads of one kind differ by, one standard deviation: for the reader.
+void read_spread(Table t) {
+  t.text({"source", "where the standard deviations come from"});
+  const auto one = [&](Key key, std::string_view unit) {
+    if (t.has_quantity(key.name)) t.quantity(key, unit, Range::non_negative());
   };
-  one({"mass", "of the head"}, "kg", s.mass);
-  one({"bulge", "of the face's radius from heel to toe"}, "mm", s.bulge);
-  one({"roll", "of the face's radius up the face"}, "mm", s.roll);
-  one({"loft", "of the head"}, "deg", s.loft);
-  if (t.has("inertia")) s.inertia = t.number({"inertia", "of each principal moment, relative"}, {0, 1});
-  if (t.has_quantity("cg")) s.cg = t.vector({"cg", "of the centre of gravity, each way"}, "mm", Range::non_negative());
-  return s;
+  one({"mass", "of the head"}, "kg");
+  one({"bulge", "of the face's radius from heel to toe"}, "mm");
+  one({"roll", "of the face's radius up the face"}, "mm");
+  one({"loft", "of the head"}, "deg");
+  if (t.has("inertia")) t.number({"inertia", "of each principal moment, relative"}, {0, 1});
+  if (t.has_quantity("cg")) t.vector({"cg", "of the centre of gravity, each way"}, "mm", Range::non_negative());
 }
 
 HeadEntry read_head_entry(Table root) {
@@ -150,7 +150,7 @@ HeadEntry read_head_entry(Table root) {
       library_face(e.face);
     } catch (const InputError& error) { head.fail("face", error.what()); }
   if (auto t = root.optional_table("hosel")) e.hosel = read_hosel(*t, {});
-  if (auto t = root.optional_table("spread")) e.spread = read_spread(*t);
+  if (auto t = root.optional_table("spread")) read_spread(*t);
   return e;
 }
 
@@ -215,11 +215,9 @@ LibraryEntry find_entry(Shelf shelf, const std::string& wanted) {
             fmt::format("{}: a shipped {} has this name: rename yours", it->file.string(), singular(shelf)));
       found = &*it;
     }
-  if (!found) {
-    const std::string near = nearest(wanted, names_on(shelf));
+  if (!found)
     throw InputError(fmt::format("no {} '{}' in the library{}", singular(shelf), wanted,
-                                 near.empty() ? "; `hosel list` shows them" : "; did you mean '" + near + "'?"));
-  }
+                                 or_nearest(wanted, names_on(shelf), "; `hosel list` shows them")));
   return *found;
 }
 

@@ -86,19 +86,11 @@ struct FaceEntry {
   Seen seen;
 };
 
-/// What heads of one kind differ by: standard deviations.
-struct HeadSpread {
-  std::string source;
-  std::optional<double> mass, bulge, roll, loft, inertia;  ///< [kg], [m], [m], [rad], relative
-  std::optional<Vec3> cg;                                  ///< [m]
-};
-
 struct HeadEntry {
   Head head;
   std::optional<double> loft;  ///< of the face at its centre, the shaft upright [rad]
   std::string face;            ///< of the library; empty: rigid
   std::optional<HoselPlace> hosel;
-  std::optional<HeadSpread> spread;
 };
 
 /// Throw InputError with file and line of the entry, or saying which names there are.

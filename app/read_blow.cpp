@@ -167,11 +167,8 @@ std::vector<std::string> read_models(Table root) {
   if (wanted.empty()) root.fail("models", "name at least one model");
   for (const std::string& m : wanted) {
     if (std::ranges::count(wanted, m) > 1) root.fail("models", fmt::format("'{}' is there twice", m));
-    if (!models::find(m)) {
-      const std::string near = nearest(m, known);
-      root.fail("models", near.empty() ? fmt::format("no model '{}'; `hosel list` shows them", m)
-                                       : fmt::format("no model '{}'; did you mean '{}'?", m, near));
-    }
+    if (!models::find(m))
+      root.fail("models", fmt::format("no model '{}'{}", m, or_nearest(m, known, "; `hosel list` shows them")));
   }
   return wanted;
 }

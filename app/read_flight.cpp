@@ -34,9 +34,7 @@ models::FlightLaw published(Table& table, std::string_view key, const std::strin
   if (const auto* entry = models::find_flight_law(name)) return entry->make();
   std::vector<std::string> known;
   for (const auto& l : models::flight_laws()) known.emplace_back(l.name);
-  const std::string near = nearest(name, known);
-  table.fail(key, near.empty() ? fmt::format("no flight law '{}'; `hosel list` shows them", name)
-                               : fmt::format("no flight law '{}'; did you mean '{}'?", name, near));
+  table.fail(key, fmt::format("no flight law '{}'{}", name, or_nearest(name, known, "; `hosel list` shows them")));
 }
 
 models::FlightLaw read_law(Table& table) {
@@ -89,9 +87,10 @@ models::Wind read_wind(Table table) {
   w.towards =
       table.quantity({"towards", "where the wind blows to, right of the target; 0 helps, 180 deg is into the face"},
                      "deg", {-2 * kPi, 2 * kPi});
-  const std::string profile =
-      table.choice({"profile", "of the wind over height"}, {"logarithmic", "uniform"}, "logarithmic");
-  w.profile = profile == "uniform" ? models::WindProfile::uniform : models::WindProfile::logarithmic;
+  using Profile = models::WindProfile;
+  w.profile = table.one_of<Profile>({"profile", "of the wind over height"},
+                                    {{"logarithmic", Profile::logarithmic}, {"uniform", Profile::uniform}},
+                                    "logarithmic");
   if (w.profile == models::WindProfile::uniform) return w;
   w.reference = table.quantity({"height", "at which the wind's speed is given"}, "m", {0.1, 200}, w.reference);
   w.roughness = table.quantity({"roughness", "length of the logarithmic wind profile"}, "m", {1e-4, 5}, w.roughness);
@@ -100,17 +99,16 @@ models::Wind read_wind(Table table) {
 
 models::LaunchError read_launch_error(Table table, std::vector<std::string>& taken) {
   models::LaunchError e{.source = table.name({"source", "where these standard errors come from"}, taken)};
-  e.ball_speed =
-      table.quantity({"ball_speed", "standard error of the measured ball speed"}, "mps", Range::non_negative(), 0);
-  e.launch_angle =
-      table.quantity({"launch_angle", "standard error of the measured launch angle"}, "deg", Range::non_negative(), 0);
-  e.azimuth = table.quantity({"azimuth", "standard error of the measured direction"}, "deg", Range::non_negative(), 0);
-  e.backspin = table.quantity({"backspin", "standard error of the measured backspin"}, "rpm", Range::non_negative(), 0);
-  e.sidespin = table.quantity({"sidespin", "standard error of the measured sidespin"}, "rpm", Range::non_negative(), 0);
-  e.spin_rate =
-      table.quantity({"spin_rate", "standard error of the measured spin rate"}, "rpm", Range::non_negative(), 0);
-  e.spin_axis =
-      table.quantity({"spin_axis", "standard error of the measured spin axis"}, "deg", Range::non_negative(), 0);
+  using Error = models::LaunchError;
+  for (const auto& [key, meaning, unit, error] :
+       {std::tuple{"ball_speed", "standard error of the measured ball speed", "mps", &Error::ball_speed},
+        {"launch_angle", "standard error of the measured launch angle", "deg", &Error::launch_angle},
+        {"azimuth", "standard error of the measured direction", "deg", &Error::azimuth},
+        {"backspin", "standard error of the measured backspin", "rpm", &Error::backspin},
+        {"sidespin", "standard error of the measured sidespin", "rpm", &Error::sidespin},
+        {"spin_rate", "standard error of the measured spin rate", "rpm", &Error::spin_rate},
+        {"spin_axis", "standard error of the measured spin axis", "deg", &Error::spin_axis}})
+    e.*error = table.quantity({key, meaning}, unit, Range::non_negative(), 0);
   return e;
 }
 
@@ -118,9 +116,9 @@ models::LaunchError read_launch_error(Table table, std::vector<std::string>& tak
 
 FlightSetup read_flight(Table table) {
   FlightSetup s;
-  s.unit = table.choice({"units", "of distances in tables and figures"}, {"yards", "metres"}, "yards") == "yards"
-               ? post::DistanceUnit::yards
-               : post::DistanceUnit::metres;
+  using Unit = post::DistanceUnit;
+  s.unit = table.one_of<Unit>({"units", "of distances in tables and figures"},
+                              {{"yards", Unit::yards}, {"metres", Unit::metres}}, "yards");
   s.conditions.law = read_law(table);
   for (const std::string& name :
        table.texts({"beside", "further laws drawn and tabled beside the first"}, std::vector<std::string>{}))
@@ -155,6 +153,45 @@ FlightSetup read_flight(Table table) {
 std::optional<FlightSetup> read_optional_flight(Table root) {
   if (auto table = root.optional_table("flight")) return read_flight(*table);
   return {};
+}
+
+StatedLaunch read_launch(Table table, bool whole) {
+  const auto asked = [&](Key key, std::string_view unit, Range range, std::optional<double> otherwise) {
+    const bool read = whole || table.has_quantity(key.name);
+    return read ? std::optional(table.quantity(key, unit, range, otherwise)) : std::nullopt;
+  };
+  StatedLaunch l{.ball_speed = asked({"ball_speed", "of the launch"}, "mps", {0, 120, true}, {}),
+                 .launch_angle = asked({"launch_angle", "of the launch, up"}, "deg", {-kPi / 2, kPi / 2}, {}),
+                 .azimuth = asked({"azimuth", "of the launch, right of the target"}, "deg", {-kPi / 2, kPi / 2}, 0),
+                 .spin = {}};
+  if (!whole) l.speed_scale = table.number({"speed_scale", "factor on the ball's speed"}, {0.1, 10}, 1.0);
+  const bool rate = table.has_quantity("spin_rate");
+  if (!whole && !rate && !table.has_quantity("backspin")) return l;
+  double back = 0, side = 0;
+  if (rate) {
+    const double size =
+        table.quantity({"spin_rate", "of the launch; instead of backspin and sidespin"}, "rpm", Range::non_negative());
+    const double axis = table.quantity({"spin_axis", "tilt of the spin, positive for a fade"}, "deg", {-kPi, kPi}, 0);
+    back = size * std::cos(axis);
+    side = size * std::sin(axis);
+  } else {
+    back = table.quantity({"backspin", "of the launch"}, "rpm");
+    side = table.quantity({"sidespin", "of the launch, positive for a fade"}, "rpm", Range::finite(), 0);
+  }
+  l.spin = Vec3(table.quantity({"riflespin", "of the launch, about its direction"}, "rpm", Range::finite(), 0), -back,
+                -side);
+  return l;
+}
+
+Launch StatedLaunch::in_place_of(Launch launch) const {
+  if (ball_speed || launch_angle || azimuth) {
+    const double speed = ball_speed.value_or(launch.ball_speed()), up = launch_angle.value_or(launch.launch_angle()),
+                 right = azimuth.value_or(launch.azimuth());
+    launch.velocity = speed * Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
+  }
+  launch.velocity *= speed_scale;
+  if (spin) launch.spin = *spin;
+  return launch;
 }
 
 void FlightSetup::show_in(const Output& out) {

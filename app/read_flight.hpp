@@ -28,6 +28,18 @@ models::Air read_air(Table table);
 FlightSetup read_flight(Table table);
 std::optional<FlightSetup> read_optional_flight(Table root);
 
+/// What is stated of a launch; the rest is as a model has it.
+struct StatedLaunch {
+  std::optional<double> ball_speed, launch_angle, azimuth;  ///< [m/s], [rad]
+  std::optional<Vec3> spin;                                 ///< [rad/s]
+  double speed_scale = 1;                                   ///< factor on the ball's speed
+
+  Launch in_place_of(Launch launch) const;
+};
+/// The spin by its components or by rate and tilt. `whole`: speed, angle and spin are required, and what else is absent
+/// is zero.
+StatedLaunch read_launch(Table table, bool whole);
+
 /// A quantity of the launch or of the flight after it, by name.
 struct ShotChannel {
   std::string name, unit;

@@ -55,16 +55,11 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
                                         {1e-3, 10}, o.tangential_penalty);
 
   Table mesh = root.default_table("mesh");
-  o.mesh.sector =
-      int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
-  o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
-  o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1},
-                            o.mesh.pole);
+  read_ball_mesh(mesh, o.mesh);
   if (mesh.has("far"))
     o.mesh.far = mesh.number(
         {"far", "size of surface elements at the other pole over the ungraded ones; absent: graded by half-tangents"},
         {1, 100});
-  o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
   o.mesh.core =
       mesh.number({"core", "half-width of the core block over the first layer's radius"}, {0.1, 0.7}, o.mesh.core);
   o.harmonics = int(
@@ -86,11 +81,7 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
   o.rho_inf = time.number(
       {"rho_inf", "spectral radius of generalized-alpha at infinite frequency: 1 keeps energy, 0 damps most"},
       Range::fraction(), o.rho_inf);
-  o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
-                                         100000, o.steps_per_contact));
-  o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
-                                  {1e-14, 1e-2}, o.newton_relative);
-  o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
+  read_steps(time, o);
   std::vector<std::string> faults = o.faults();
   std::ranges::copy(friction.faults(), std::back_inserter(faults));
   if (!faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
@@ -100,6 +91,22 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
 
 }  // namespace
 
+void read_ball_mesh(Table& mesh, mesh::MeridianOptions& m) {
+  m.sector = int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, m.sector));
+  m.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, m.rings));
+  m.pole =
+      mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1}, m.pole);
+  m.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, m.skin);
+}
+
+void read_steps(Table& time, models::FeImpactOptions& o) {
+  o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
+                                         100000, o.steps_per_contact));
+  o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
+                                  {1e-14, 1e-2}, o.newton_relative);
+  o.after = time.number({"after", "time computed after contact, over the contact time"}, {0, 10}, o.after);
+}
+
 models::Accuracy accuracy_named(std::string_view name) {
   return name == "look"      ? models::Accuracy::look
          : name == "default" ? models::Accuracy::standard
@@ -108,12 +115,9 @@ models::Accuracy accuracy_named(std::string_view name) {
 
 void read_grip(Table& t, models::ShaftMount& mount, bool swung) {
   using models::Grip;
-  const std::string hold =
-      t.choice({"hold", "what happens at the grip during the blow"}, {"clamped", "free", "forced", "hands"}, "clamped");
-  mount.grip = hold == "free"     ? Grip::free
-               : hold == "forced" ? Grip::forced
-               : hold == "hands"  ? Grip::hands
-                                  : Grip::clamped;
+  mount.grip = t.one_of<Grip>(
+      {"hold", "what happens at the grip during the blow"},
+      {{"clamped", Grip::clamped}, {"free", Grip::free}, {"forced", Grip::forced}, {"hands", Grip::hands}}, "clamped");
   if (mount.grip == Grip::hands) mount.hands = read_springs(t);
   if (swung) return;
   mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
@@ -209,11 +213,9 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
               "whose constants? `published = \"driver\"` or \"iron7\", all of them, or a ball or contact of the "
               "library that has them");
     options.volumetric = read_volumetric_law(*t, standard);
-    options.volumetric_solution.integrator =
-        t->choice({"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
-                  {"rosenbrock", "cvode"}, "rosenbrock") == "cvode"
-            ? models::Integrator::cvode
-            : models::Integrator::rosenbrock;
+    options.volumetric_solution.integrator = t->one_of<models::Integrator>(
+        {"integrator", "own linearly implicit method, or SUNDIALS CVODE as the reference"},
+        {{"rosenbrock", models::Integrator::rosenbrock}, {"cvode", models::Integrator::cvode}}, "rosenbrock");
     options.volumetric_solution.tolerance = t->number({"tolerance", "relative tolerance of the time integration"},
                                                       {1e-12, 0.1}, options.volumetric_solution.tolerance);
   }

@@ -20,6 +20,10 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
 models::VolumetricLaw read_volumetric_law(Table table, const std::optional<models::VolumetricLaw>& standard);
 models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::HertzMawLaw>& standard);
 
+/// `[mesh]` and `[time]` of a ball by finite elements, as far as a blow on a wall has them.
+void read_ball_mesh(Table& table, mesh::MeridianOptions& mesh);
+void read_steps(Table& table, models::FeImpactOptions& options);
+
 /// "look", "default" or "reference", as a case has it.
 models::Accuracy accuracy_named(std::string_view name);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "app/read_sheet.hpp"
@@ -16,13 +15,7 @@ namespace {
 std::vector<double> values(const post::Sheet& sheet, std::size_t c, bool gaps) {
   std::vector<double> out;
   for (std::size_t r = 0; r < sheet.rows(); ++r) {
-    const std::string& cell = sheet.columns[c][r];
-    double x = kNaN;
-    if (!cell.empty()) {
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-      if (error != std::errc() || end != cell.data() + cell.size())
-        throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], sheet.names[c], cell));
-    }
+    double x = number_in(sheet, c, r);
     if (!std::isfinite(x)) {
       if (!gaps)
         throw InputError(fmt::format("{}:{}: {} may have no empty cell", sheet.file, sheet.lines[r], sheet.names[c]));

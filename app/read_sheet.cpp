@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -18,6 +17,23 @@ post::Sheet read_sheet(const std::filesystem::path& file) {
   } catch (const DataError& e) { throw InputError(e.what()); }
 }
 
+namespace {
+
+InputError no_number(const post::Sheet& sheet, std::size_t c, std::size_t r) {
+  return InputError(
+      fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], sheet.names[c], sheet.columns[c][r]));
+}
+
+}  // namespace
+
+double number_in(const post::Sheet& sheet, std::size_t c, std::size_t r) {
+  const std::string& cell = sheet.columns[c][r];
+  if (cell.empty()) return kNaN;
+  const auto x = post::number(cell);
+  if (!x || (std::isinf(*x) && cell.find_first_of("0123456789") != cell.npos)) throw no_number(sheet, c, r);
+  return *x;
+}
+
 std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension, bool unit_needed) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     SplitName split = split_unit(sheet.names[c]);
@@ -28,11 +44,8 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
           fmt::format("{}:1: column '{}' needs a unit of {}", sheet.file, sheet.names[c], name(dimension)));
     std::vector<double> out;
     for (std::size_t r = 0; r < sheet.rows(); ++r) {
-      const std::string& cell = sheet.columns[c][r];
-      double x = 0;
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
-        throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], sheet.names[c], cell));
+      const double x = number_in(sheet, c, r);
+      if (!std::isfinite(x)) throw no_number(sheet, c, r);
       out.push_back(unit_needed ? x * split.unit->si : x);
     }
     return out;
@@ -53,16 +66,7 @@ std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view 
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     if (sheet.names[c] != name) continue;
     std::vector<double> out;
-    for (std::size_t r = 0; r < sheet.rows(); ++r) {
-      const std::string& cell = sheet.columns[c][r];
-      double x = std::nan("");
-      if (!cell.empty()) {
-        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-        if (error != std::errc() || end != cell.data() + cell.size())
-          throw InputError(fmt::format("{}:{}: {} '{}' is no number", sheet.file, sheet.lines[r], name, cell));
-      }
-      out.push_back(x);
-    }
+    for (std::size_t r = 0; r < sheet.rows(); ++r) out.push_back(number_in(sheet, c, r));
     return out;
   }
   throw InputError(fmt::format("{}:1: no column '{}'", sheet.file, name));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "app/read_sheet.hpp"
@@ -109,11 +108,10 @@ GripInput read_grip_drive(Table root) {
   GripInput in;
   auto t = root.optional_table("grip");
   if (!t) return in;
-  const std::string drive =
-      t->choice({"drive", "what moves the grip: the recorded motion, the same through springs, or recorded forces"},
-                {"prescribed", "hands", "forced"}, "prescribed");
   using Kind = models::GripDrive::Kind;
-  in.kind = drive == "hands" ? Kind::hands : drive == "forced" ? Kind::forced : Kind::prescribed;
+  in.kind = t->one_of<Kind>(
+      {"drive", "what moves the grip: the recorded motion, the same through springs, or recorded forces"},
+      {{"prescribed", Kind::prescribed}, {"hands", Kind::hands}, {"forced", Kind::forced}}, "prescribed");
   if (in.kind == Kind::hands) in.hands = read_springs(*t);
   if (in.kind == Kind::forced) in.wrench = t->data_file({"wrench", "CSV of the recorded force and moment at the grip"});
   return in;
@@ -148,12 +146,10 @@ models::GripDrive make_drive(const GripInput& grip, const MotionInput& span, fem
 
 models::HeadJoint read_head_joint(Table& t) {
   using Kind = models::HeadJoint::Kind;
-  const std::string kind =
-      t.choice({"kind", "how the head is joined to the shaft"}, {"rigid", "hinge", "spring", "none"}, "rigid");
-  models::HeadJoint joint{.kind = kind == "hinge"    ? Kind::hinge
-                                  : kind == "spring" ? Kind::spring
-                                  : kind == "none"   ? Kind::none
-                                                     : Kind::rigid};
+  models::HeadJoint joint{
+      .kind = t.one_of<Kind>(
+          {"kind", "how the head is joined to the shaft"},
+          {{"rigid", Kind::rigid}, {"hinge", Kind::hinge}, {"spring", Kind::spring}, {"none", Kind::none}}, "rigid")};
   if (joint.kind == Kind::hinge) {
     const auto axis = t.numbers({"axis", "of the hinge, grip frame: YG lies across the shaft and the face's normal"}, 3,
                                 Range::finite(), std::vector<double>{0, 1, 0});
@@ -176,10 +172,10 @@ models::SwingOptions read_swing_options(Table root) {
     o.shear = t->flag({"shear", "Timoshenko (true) or shear-rigid (false)"}, o.shear);
     o.modal_damping = t->numbers({"modal_damping", "damping ratios of the first modes, besides the shaft's own"}, 0,
                                  {0, 0.999}, std::vector<double>{});
-    o.integrator = t->choice({"integrator", "own scheme with an energy ledger, or SUNDIALS IDA"},
-                             {"generalized-alpha", "ida"}, "generalized-alpha") == "ida"
-                       ? models::SwingIntegrator::ida
-                       : models::SwingIntegrator::generalized_alpha;
+    using Integrator = models::SwingIntegrator;
+    o.integrator = t->one_of<Integrator>(
+        {"integrator", "own scheme with an energy ledger, or SUNDIALS IDA"},
+        {{"generalized-alpha", Integrator::generalized_alpha}, {"ida", Integrator::ida}}, "generalized-alpha");
     o.kinsol = t->choice({"equilibrium", "how the hanging club is found: Newton, or SUNDIALS KINSOL"},
                          {"newton", "kinsol"}, "newton") == "kinsol";
     o.grip_point = t->quantity({"grip_point", "distance from the butt of the point whose motion was recorded"}, "mm",
@@ -231,15 +227,16 @@ std::optional<SwungClub> read_swung_club(Table root, const std::vector<std::stri
   mount.joint = joint;
   if (!asked("fe-full-club") && !asked("shaft-coupled")) return out;
   Table grip = root.default_table("grip");
-  const std::string start = grip.choice({"start",
-                                         "the shaft of a swung club at first contact: straight, as the swing leaves "
-                                         "it, as one without gravity would, or as the hands' wrench demands"},
-                                        {"straight", "swing", "weightless", "hands"}, "swing");
   using Start = SwungClub::Start;
-  out.start = start == "straight"     ? Start::straight
-              : start == "weightless" ? Start::weightless
-              : start == "hands"      ? Start::hands
-                                      : Start::swing;
+  out.start = grip.one_of<Start>({"start",
+                                  "the shaft of a swung club at first contact: straight, as the swing leaves it, as "
+                                  "one without gravity would, or as "
+                                  "the hands' wrench demands"},
+                                 {{"straight", Start::straight},
+                                  {"swing", Start::swing},
+                                  {"weightless", Start::weightless},
+                                  {"hands", Start::hands}},
+                                 "swing");
   if (joint.gives() && (out.start == Start::weightless || out.start == Start::hands))
     grip.fail("start", "a joint that gives arrives as the swing has turned it: straight or swing");
   return out;

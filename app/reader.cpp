@@ -136,6 +136,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
+std::string or_nearest(std::string_view word, const std::vector<std::string>& candidates, std::string_view otherwise) {
+  const std::string near = nearest(word, candidates);
+  return near.empty() ? std::string(otherwise) : fmt::format("; did you mean '{}'?", near);
+}
+
 fs::path data_directory() {
   if (const char* named = std::getenv("HOSEL_DATA")) return named;
   if (const fs::path beside = fs::path(HOSEL_SOURCE_DIR) / ".." / "shared" / "data"; fs::exists(beside))
@@ -197,11 +202,37 @@ std::optional<std::string> said(const std::optional<T>& standard, double unit = 
 
 std::string list_of(std::size_t size) { return size ? fmt::format("list of {}", size) : "list of numbers"; }
 
+toml::array as_list(const auto& values) {
+  toml::array out;
+  for (const auto& x : values) out.push_back(x);
+  return out;
+}
+
 double read_number(const Table& t, std::string_view key, const toml::node& node) {
   const auto x = node.value<double>();
   if (!x || node.is_boolean()) t.fail(key, "expected a number");
   if (std::isnan(*x)) t.fail(key, "nan is not a value");
   return *x;
+}
+
+/// A list of `size` numbers (any where 0), each of which `check` may refuse.
+std::vector<double> read_list(const Table& t, std::string_view key, const toml::node& node, std::size_t size,
+                              const auto& check) {
+  const toml::array* list = node.as_array();
+  if (!list || (size && list->size() != size))
+    t.fail(key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
+  std::vector<double> out;
+  for (const toml::node& item : *list) {
+    out.push_back(read_number(t, key, item));
+    check(out.back());
+  }
+  return out;
+}
+
+/// Of a list as it stands, for the tests of its range.
+std::size_t length_of(const toml::node* node, std::size_t size) {
+  const toml::array* list = node ? node->as_array() : nullptr;
+  return size ? size : list && !list->empty() ? list->size() : 1;
 }
 
 }  // namespace
@@ -328,36 +359,22 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
                                       std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
-  std::vector<double> out;
-  toml::array echoed;
-  const toml::array* list = f.node ? f.node->as_array() : nullptr;
   declare(key, {.key = f.key,
                 .type = list_of(size),
                 .standard = said(standard, find_unit(unit)->si),
                 .unit = unit,
                 .range = si,
                 .si = f.unit->si,
-                .size = size                     ? size
-                        : list && !list->empty() ? list->size()
-                                                 : 1});
-  if (!f.node) {
-    for (const double standing : *standard) {
-      const double x = as_echoed(standing / f.unit->si);
-      echoed.push_back(x);
-      out.push_back(x * f.unit->si);
-    }
-    access.echo(f.key, std::move(echoed));
-    return out;
-  }
-  if (!list || (size && list->size() != size))
-    fail(f.key, size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
-  for (const toml::node& node : *list) {
-    const double x = read_number(*this, f.key, node);
-    if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
-    out.push_back(x * f.unit->si);
-    echoed.push_back(x);
-  }
-  access.echo(f.key, std::move(echoed));
+                .size = length_of(f.node, size)});
+  std::vector<double> out;  // in the case's unit, as it is echoed
+  if (f.node)
+    out = read_list(*this, f.key, *f.node, size, [&](double x) {
+      if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
+    });
+  else
+    for (const double x : *standard) out.push_back(as_echoed(x / f.unit->si));
+  access.echo(f.key, as_list(out));
+  for (double& x : out) x *= f.unit->si;
   return out;
 }
 
@@ -414,29 +431,13 @@ std::vector<double> Table::numbers(Key key, std::size_t size, Range range,
                                    std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
-  const toml::array* list = node ? node->as_array() : nullptr;
-  declare(key, {.type = list_of(size),
-                .standard = said(standard),
-                .range = range,
-                .size = size                     ? size
-                        : list && !list->empty() ? list->size()
-                                                 : 1});
+  declare(key, {.type = list_of(size), .standard = said(standard), .range = range, .size = length_of(node, size)});
   if (!node && !standard) fail("", fmt::format("'{}' is missing", key.name));
-  std::vector<double> out;
-  if (!node) {
-    out = *standard;
-  } else {
-    if (!list || (size && list->size() != size))
-      fail(key.name,
-           size ? fmt::format("expected a list of {} numbers", size) : std::string("expected a list of numbers"));
-    for (const toml::node& item : *list) {
-      out.push_back(read_number(*this, key.name, item));
-      if (!range.contains(out.back())) fail(key.name, fmt::format("{:g} is {}", out.back(), range.sentence()));
-    }
-  }
-  toml::array echoed;
-  for (double x : out) echoed.push_back(x);
-  access.echo(key.name, std::move(echoed));
+  const auto check = [&](double x) {
+    if (!range.contains(x)) fail(key.name, fmt::format("{:g} is {}", x, range.sentence()));
+  };
+  const std::vector<double> out = node ? read_list(*this, key.name, *node, size, check) : *standard;
+  access.echo(key.name, as_list(out));
   return out;
 }
 
@@ -533,9 +534,7 @@ std::vector<std::string> Table::texts(Key key, std::optional<std::vector<std::st
       out.push_back(item.as_string()->get());
     }
   }
-  toml::array echoed;
-  for (const std::string& x : out) echoed.push_back(x);
-  access.echo(key.name, std::move(echoed));
+  access.echo(key.name, as_list(out));
   return out;
 }
 

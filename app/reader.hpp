@@ -2,6 +2,7 @@
 /// nobody asked for is an error with the nearest spelling. Keys carry their unit as a suffix.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <filesystem>
 #include <initializer_list>
@@ -112,6 +113,15 @@ class Table {
   std::string name(Key key, std::vector<std::string>& taken);
   /// One of the words, else an error that names the nearest.
   std::string choice(Key key, const std::vector<std::string>& allowed, const std::optional<std::string>& standard = {});
+  /// What stands beside the word in `named`.
+  template <class T>
+  T one_of(Key key, const std::vector<std::pair<std::string, T>>& named,
+           const std::optional<std::string>& standard = {}) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : named) words.push_back(word);
+    const std::string wanted = choice(key, words, standard);
+    return named[std::size_t(std::ranges::find(words, wanted) - words.begin())].second;
+  }
   std::vector<std::string> texts(Key key, std::optional<std::vector<std::string>> standard = {});
   /// A list of numbers, texts or flags as TOML text, to be handed on to another case.
   std::vector<std::string> scalars(Key key);
@@ -195,6 +205,10 @@ class CaseFile {
 
 /// The word of `candidates` nearest in spelling, or empty where none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "; did you mean 'NAME'?" with the nearest of them, else `otherwise`.
+std::string or_nearest(std::string_view word, const std::vector<std::string>& candidates,
+                       std::string_view otherwise = "");
 
 /// Where large measured files are: HOSEL_DATA, else ../shared/data beside the project.
 std::filesystem::path data_directory();

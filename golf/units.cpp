@@ -42,6 +42,7 @@ constexpr std::array kUnits = {
     Unit{"kg_per_m", line_density, 1.0},
     Unit{"g_per_m", line_density, 1e-3},
     Unit{"N_per_m", translational_stiffness, 1.0},
+    Unit{"MN_per_m", translational_stiffness, 1e6},
     Unit{"N_m_per_rad", rotational_stiffness, 1.0},
     Unit{"N_s_per_m", translational_damping, 1.0},
     Unit{"N_m_s_per_rad", rotational_damping, 1.0},

@@ -43,17 +43,14 @@ void show(Session& x) {
              : x.sheet.delimiter == "tab" ? "tabs"
                                           : "'" + x.sheet.delimiter + "'",
              x.sheet.layout.empty() ? "" : ", " + x.sheet.layout);
-  if (!x.sheet.before.empty())
-    fmt::print("  passed over: {} line{} before the header\n", x.sheet.before.size(),
-               x.sheet.before.size() > 1 ? "s" : "");
-  if (x.sheet.summaries)
-    fmt::print("  passed over: {} summary row{}\n", x.sheet.summaries, x.sheet.summaries > 1 ? "s" : "");
-  if (x.sheet.headers_again)
-    fmt::print("  passed over: {} repeated header{}\n", x.sheet.headers_again, x.sheet.headers_again > 1 ? "s" : "");
-  if (x.sheet.units_again)
-    fmt::print("  passed over: {} repeated row{} of units\n", x.sheet.units_again, x.sheet.units_again > 1 ? "s" : "");
-  if (x.sheet.messages)
-    fmt::print("  passed over: {} message{} without a shot\n", x.sheet.messages, x.sheet.messages > 1 ? "s" : "");
+  const auto passed_over = [](std::size_t n, const char* one, const char* several) {
+    if (n) fmt::print("  passed over: {} {}\n", n, n > 1 ? several : one);
+  };
+  passed_over(x.sheet.before.size(), "line before the header", "lines before the header");
+  passed_over(x.sheet.summaries, "summary row", "summary rows");
+  passed_over(x.sheet.headers_again, "repeated header", "repeated headers");
+  passed_over(x.sheet.units_again, "repeated row of units", "repeated rows of units");
+  passed_over(x.sheet.messages, "message without a shot", "messages without a shot");
   if (x.other_clubs) fmt::print("  left out: {} shots with other clubs\n", x.other_clubs);
   if (x.modelled)
     fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {} shots\n", x.modelled, x.shots);

@@ -1,4 +1,4 @@
-#include "app/kinds/calibrate_ball.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +11,7 @@
 #include "app/offer.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
+#include "app/read_options.hpp"
 #include "app/read_shaft.hpp"
 #include "app/read_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
@@ -41,15 +42,7 @@ class CalibrateBallJob final : public Job {
     options.harmonics = 0;
     if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
     check_memory(root, options);
-    if (auto time = root.optional_table("time")) {
-      options.steps_per_contact = int(time->integer(
-          {"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10, 100000, options.steps_per_contact));
-      options.newton_relative =
-          time->number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
-                       {1e-14, 1e-2}, options.newton_relative);
-      options.after =
-          time->number({"after", "time computed after contact, over the contact time"}, {0, 10}, options.after);
-    }
+    if (auto time = root.optional_table("time")) read_steps(*time, options);
     for (Table& t : root.tables("free")) problem_.free.push_back(read_free(t));
     if (problem_.free.empty()) root.fail("free", "name at least one parameter to fit: [[free]] with `what`");
     problem_.leave_one_out = root.flag(
@@ -215,12 +208,7 @@ class CalibrateBallJob final : public Job {
 
   void read_mesh(Table& mesh) {
     models::FeImpactOptions& o = problem_.options;
-    o.mesh.sector =
-        int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, o.mesh.sector));
-    o.mesh.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, o.mesh.rings));
-    o.mesh.pole = mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"},
-                              {0.01, 1}, o.mesh.pole);
-    o.mesh.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, o.mesh.skin);
+    read_ball_mesh(mesh, o.mesh);
     if (problem_.shots.empty() && !problem_.bounce) return;
     o.harmonics = int(mesh.integer({"harmonics", "highest Fourier harmonic in the oblique shots"}, 2, 16, 3));
     o.antisymmetric = int(
@@ -264,15 +252,14 @@ class CalibrateBallJob final : public Job {
   }
 
   models::FreeParameter read_free(Table& t) {
-    static const std::vector<std::pair<std::string, What>> kinds{
-        {"long-term-moduli", What::long_term}, {"branch-moduli", What::branches},
-        {"branch-times", What::branch_times},  {"layer-moduli", What::layer},
-        {"friction", What::friction},          {"face-stiffness", What::face_stiffness},
-        {"impact-high", What::impact_high},    {"head-mass", What::head_mass}};
-    std::vector<std::string> names;
-    for (const auto& [name, what] : kinds) names.push_back(name);
-    const std::string named = t.choice({"what", "is fitted"}, names);
-    models::FreeParameter p{.what = std::ranges::find(kinds, named, &std::pair<std::string, What>::first)->second};
+    models::FreeParameter p{.what = t.one_of<What>({"what", "is fitted"}, {{"long-term-moduli", What::long_term},
+                                                                           {"branch-moduli", What::branches},
+                                                                           {"branch-times", What::branch_times},
+                                                                           {"layer-moduli", What::layer},
+                                                                           {"friction", What::friction},
+                                                                           {"face-stiffness", What::face_stiffness},
+                                                                           {"impact-high", What::impact_high},
+                                                                           {"head-mass", What::head_mass}})};
     if (p.what == What::layer)
       p.layer = std::size_t(t.integer({"layer", "counted from the inside, from 1"}, 1,
                                       long(problem_.options.ball.layers.size()))) -
@@ -463,23 +450,7 @@ class CalibrateBallJob final : public Job {
                           : fmt::format("# {}: {:.6g} +- {:.1f} %\n", fit.names[p], fit.values[p], 100 * sigma(fit, p));
     text += "# covariance (logarithms of factors; strikes in cm, masses in 10 g):";
     for (const double c : fit.covariance.reshaped()) text += fmt::format(" {:.4g}", c);
-    text +=
-        fmt::format("\n\n[ball]\nmass_kg = {:g}\nradius_mm = {:g}\n", problem_.ball.mass, 1e3 * problem_.ball.radius);
-    for (const models::BallLayer& layer : fit.ball.layers) {
-      const auto& law = *layer.material.elastic.as<fem::Hyperelastic>();
-      std::vector<double> moduli, times;
-      for (const auto& b : layer.material.branches) moduli.push_back(b.modulus / 1e6), times.push_back(b.time * 1e3);
-      const char* name = law.c01 != 0 ? "mooney-rivlin" : law.c20 != 0 || law.c30 != 0 ? "yeoh" : "neo-hooke";
-      text += fmt::format("\n[[ball.layers]]\nradius_fraction = {}\nlaw = \"{}\"\nc10_MPa = {:.6g}\n", layer.radius,
-                          name, law.c10 / 1e6);
-      if (law.c01 != 0) text += fmt::format("c01_MPa = {:.6g}\n", law.c01 / 1e6);
-      if (law.c20 != 0 || law.c30 != 0)
-        text += fmt::format("c20_MPa = {:.6g}\nc30_MPa = {:.6g}\n", law.c20 / 1e6, law.c30 / 1e6);
-      text += fmt::format(
-          "bulk_MPa = {:.6g}\ndensity_kg_per_m3 = {:.6g}\nbranch_moduli_MPa = [{:.6g}]\nbranch_times_ms = [{:.6g}]\n",
-          law.bulk / 1e6, layer.material.density, fmt::join(moduli, ", "), fmt::join(times, ", "));
-    }
-    return text;
+    return text + "\n" + ball_tables(problem_.ball, fit.ball);
   }
 
   models::BallCalibrationProblem problem_;

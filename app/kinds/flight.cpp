@@ -1,9 +1,8 @@
-#include "app/kinds/flight.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
@@ -14,29 +13,6 @@
 namespace hosel::app {
 namespace {
 
-/// Ball speed and direction; the spin by its components or by rate and tilt.
-Launch read_launch(Table table) {
-  const double speed = table.quantity({"ball_speed", "of the launch"}, "mps", {0, 120, true});
-  const double up = table.quantity({"launch_angle", "of the launch, up"}, "deg", {-kPi / 2, kPi / 2});
-  const double right = table.quantity({"azimuth", "of the launch, right of the target"}, "deg", {-kPi / 2, kPi / 2}, 0);
-  Launch l;
-  l.velocity = speed * Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
-  double back = 0, side = 0;
-  if (table.has_quantity("spin_rate")) {
-    const double rate =
-        table.quantity({"spin_rate", "of the launch; instead of backspin and sidespin"}, "rpm", Range::non_negative());
-    const double axis = table.quantity({"spin_axis", "tilt of the spin, positive for a fade"}, "deg", {-kPi, kPi}, 0);
-    back = rate * std::cos(axis);
-    side = rate * std::sin(axis);
-  } else {
-    back = table.quantity({"backspin", "of the launch"}, "rpm");
-    side = table.quantity({"sidespin", "of the launch, positive for a fade"}, "rpm", Range::finite(), 0);
-  }
-  l.spin = Vec3(table.quantity({"riflespin", "of the launch, about its direction"}, "rpm", Range::finite(), 0), -back,
-                -side);
-  return l;
-}
-
 class FlightJob final : public Job {
  public:
   explicit FlightJob(CaseFile& file) {
@@ -45,7 +21,7 @@ class FlightJob final : public Job {
     if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
     std::vector<std::string> taken;
     for (Table t : root.tables("launch")) {
-      Shot s{t.name({"name", "of the shot"}, taken), read_launch(t), {}};
+      Shot s{t.name({"name", "of the shot"}, taken), read_launch(t, true).in_place_of({}), {}};
       if (auto measured = t.optional_table("measured"))
         for (const post::FlightChannel& c : post::flight_channels(setup_.unit))
           if (measured->has_quantity(c.name))

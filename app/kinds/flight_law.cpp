@@ -1,4 +1,4 @@
-#include "app/kinds/flight_law.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

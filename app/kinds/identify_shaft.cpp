@@ -1,9 +1,8 @@
-#include "app/kinds/identify_shaft.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 

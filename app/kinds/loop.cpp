@@ -1,4 +1,4 @@
-#include "app/kinds/loop.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,8 +12,6 @@
 
 #include "app/kinds/loop_common.hpp"
 #include "app/kinds/loop_corrected.hpp"
-#include "app/kinds/loop_flight.hpp"
-#include "app/kinds/loop_history.hpp"
 #include "app/kinds/loop_landings.hpp"
 #include "app/kinds/loop_offer.hpp"
 #include "app/library.hpp"
@@ -27,24 +25,6 @@
 
 namespace hosel::app {
 namespace {
-
-std::map<std::string, double> read_noise(Table table, const loop::Shots& shots, loop::Role role,
-                                         std::string_view what) {
-  std::map<std::string, double> noise;
-  for (const std::string& key : table.keys()) {
-    const loop::Column* column = shots.find(key);
-    if (!column || column->role != role) {
-      std::vector<std::string> known;
-      for (const auto& c : shots.columns)
-        if (c.role == role) known.push_back(c.name);
-      const std::string near = nearest(key, known);
-      table.fail(key, fmt::format("no {} column of this name{}", what,
-                                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-    }
-    noise[key] = table.number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
-  }
-  return noise;
-}
 
 class LoopJob final : public Job {
  public:
@@ -117,15 +97,15 @@ class LoopJob final : public Job {
     case_.varying = read_known(data, "varying", {"effect", "of which the rows that are compared differ"});
     if (!case_.varying.empty() && average_by.empty())
       data.fail("varying", "rows that share a club or a player differ alike: compare them as means (average_by)");
+    std::optional<std::pair<std::filesystem::path, std::string>> joined;
+    if (auto table = data.optional_table("join")) {
+      joined.emplace(table->data_file({"file", "CSV with further columns"}), "");
+      joined->second = table->text({"by", "column that both files have"});
+    }
     if (!std::filesystem::exists(path)) skipped_ = path;
-    if (skipped_.empty()) {
-      try {
+    if (skipped_.empty()) try {
         case_.shots = loop::read_shots(post::read_csv(path), case_.flight.has_value());
-        if (auto joined = data.optional_table("join")) {
-          const auto other = joined->data_file({"file", "CSV with further columns"});
-          const std::string by = joined->text({"by", "column that both files have"});
-          loop::join(case_.shots, post::read_csv(other), by);
-        }
+        if (joined) loop::join(case_.shots, post::read_csv(joined->first), joined->second);
         repeated_ = case_.shots.repeated;
         if (!average_by.empty()) {
           auto [means, about] = loop::average(std::move(case_.shots), average_by);
@@ -133,28 +113,17 @@ class LoopJob final : public Job {
           case_.averages = std::move(about);
         }
       } catch (const DataError& e) { throw InputError(e.what()); }
-      if (auto noise = data.optional_table("noise"))
-        case_.noise = read_noise(*noise, case_.shots, loop::Role::output, "output");
-      if (auto noise = data.optional_table("input_noise"))
-        case_.input_noise = read_noise(*noise, case_.shots, loop::Role::input, "input");
-    } else {
-      if (auto joined = data.optional_table("join")) {
-        joined->data_file({"file", "CSV with further columns"});
-        joined->text({"by", "column that both files have"});
-      }
-      for (const char* key : {"noise", "input_noise"})
-        if (auto noise = data.optional_table(key))
-          for (const std::string& header : noise->keys())
-            noise->number({header, "standard deviation of the column", "<column>"}, Range::non_negative());
-    }
+    const loop::Shots* shots = skipped_.empty() ? &case_.shots : nullptr;
+    if (auto noise = data.optional_table("noise"))
+      case_.noise = read_noise(*noise, shots, loop::Role::output, "output");
+    if (auto noise = data.optional_table("input_noise"))
+      case_.input_noise = read_noise(*noise, shots, loop::Role::input, "input");
 
     if (auto split = root.optional_table("split")) {
-      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
+      case_.split.by = read_split_by(*split, shots);
       case_.split.leave_one_out = split->choice({"mode", "a held-out share, or each cluster left out in turn"},
                                                 {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
       if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
-      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
-        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
     }
     if (skipped_.empty())
       if (const auto use = use_of_shots(case_)) check_use(root, *use, {case_.base});

@@ -35,16 +35,34 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
   for (const auto& e : loop::effects())
     if (acts(e)) known.emplace_back(e.name);
   for (const std::string& e : into.effects)
-    if (!std::ranges::count(known, e)) {
-      const std::string near = nearest(e, known);
-      model.fail("effects",
-                 fmt::format("no effect '{}'{}", e, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-    }
+    if (!std::ranges::count(known, e)) model.fail("effects", fmt::format("no effect '{}'{}", e, or_nearest(e, known)));
   if (auto split = root.optional_table("split")) {
     into.split.holdout_fraction =
         split->number({"holdout_fraction", "share of the data that no fit sees"}, {0, 0.9}, 1.0 / 3.0);
     into.split.seed = static_cast<unsigned long>(split->integer({"seed", "of the split"}, 0, 1L << 53, 1));
   }
+}
+
+std::string read_split_by(Table split, const loop::Shots* shots) {
+  const std::string by = split.text({"by", "column whose values stay together in training or holdout"}, "");
+  if (!by.empty() && shots && !shots->find(by)) split.fail("by", fmt::format("no column '{}' in the shots", by));
+  return by;
+}
+
+std::map<std::string, double> read_noise(Table table, const loop::Shots* shots, loop::Role role,
+                                         std::string_view what) {
+  std::map<std::string, double> noise;
+  for (const std::string& key : table.keys()) {
+    const loop::Column* column = shots ? shots->find(key) : nullptr;
+    if (shots && (!column || column->role != role)) {
+      std::vector<std::string> known;
+      for (const auto& c : shots->columns)
+        if (c.role == role) known.push_back(c.name);
+      table.fail(key, fmt::format("no {} column of this name{}", what, or_nearest(key, known)));
+    }
+    noise[key] = table.number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
+  }
+  return noise;
 }
 
 void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots& table, std::string_view rows,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string_view>
 
 #include "app/output.hpp"
@@ -13,6 +14,13 @@ namespace hosel::app {
 
 /// `title`, `[model] base` and `effects` (those that `acts` is true of), `[split]` but for its clusters.
 void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::EffectEntry&));
+
+/// The column of `shots`, which may not be there, whose values `[split]` keeps together; empty: none.
+std::string read_split_by(Table split, const loop::Shots* shots);
+
+/// A standard deviation for each column that `table` names: one of `shots` with that role, `what` in words; any where
+/// the shots are not there.
+std::map<std::string, double> read_noise(Table table, const loop::Shots* shots, loop::Role role, std::string_view what);
 
 /// Tells the person what the loop is doing, each kind of work as a progress of its own, until it is destroyed.
 loop::Told progress_of(const Output& out);

@@ -1,4 +1,4 @@
-#include "app/kinds/loop_flight.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -39,11 +39,8 @@ class LoopFlightJob final : public Job {
     } else {
       read_shots(root);
     }
-    if (auto split = root.optional_table("split")) {
-      case_.split.by = split->text({"by", "column whose values stay together in training or holdout"}, "");
-      if (!case_.split.by.empty() && skipped_.empty() && !case_.shots.find(case_.split.by))
-        split->fail("by", fmt::format("no column '{}' in the shots", case_.split.by));
-    }
+    if (auto split = root.optional_table("split"))
+      case_.split.by = read_split_by(*split, skipped_.empty() ? &case_.shots : nullptr);
   }
 
   void run(Output& out) override {
@@ -98,18 +95,8 @@ class LoopFlightJob final : public Job {
       if (skipped_.empty() && !case_.shots.find(name))
         data.fail("group_by", fmt::format("no column '{}' in the shots", name));
     if (auto noise = data.optional_table("noise"))
-      for (const std::string& key : noise->keys()) {
-        const loop::Column* column = skipped_.empty() ? case_.shots.find(key) : nullptr;
-        if (skipped_.empty() && (!column || column->role != loop::Role::output)) {
-          std::vector<std::string> known;
-          for (const auto& c : case_.shots.columns)
-            if (c.role == loop::Role::output) known.push_back(c.name);
-          const std::string near = nearest(key, known);
-          noise->fail(key, fmt::format("no launch or flight column of this name{}",
-                                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-        }
-        case_.noise[key] = noise->number({key, "standard deviation of the column", "<column>"}, Range::non_negative());
-      }
+      case_.noise =
+          read_noise(*noise, skipped_.empty() ? &case_.shots : nullptr, loop::Role::output, "launch or flight");
     if (!points.empty() && skipped_.empty()) read_points(points);
   }
 

@@ -1,4 +1,4 @@
-#include "app/kinds/loop_history.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -120,13 +120,13 @@ class HistoryJob final : public Job {
       const std::string hang =
           t->choice({"shaft", "how gravity acts along the shaft"}, {"horizontal", "hanging", "standing"}, "horizontal");
       if (hang != "horizontal") options.gravity = Vec3(0, 0, hang == "hanging" ? -kGravity : kGravity);
-      const std::string kind =
-          t->choice({"start", "how the vibration begins"}, {"unknown", "release", "impulse", "rest"}, "unknown");
       using models::Start;
-      start.kind = kind == "release"   ? Start::release
-                   : kind == "impulse" ? Start::impulse
-                   : kind == "rest"    ? Start::rest
-                                       : Start::unknown;
+      start.kind = t->one_of<Start>({"start", "how the vibration begins"},
+                                    {{"unknown", Start::unknown},
+                                     {"release", Start::release},
+                                     {"impulse", Start::impulse},
+                                     {"rest", Start::rest}},
+                                    "unknown");
       if (start.kind == Start::release) {
         start.force = t->vector({"load", "force that held the hosel before its release"}, "N", Vec3::Zero());
         start.moment = t->vector({"load_moment", "moment that held the hosel before its release"}, "N_m", Vec3::Zero());

@@ -12,7 +12,7 @@
 namespace hosel::app {
 namespace {
 
-struct Club {
+struct LandedClub {
   std::string name;
   std::vector<double> ball_speed, launch_angle, spin_rate, carry, side;  ///< SI; of the shots that have it
   std::vector<Eigen::Vector2d> landed;                                   ///< side, carry
@@ -44,7 +44,7 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
   const double metre = imperial ? 0.9144 : 1;
   const std::string unit = imperial ? "yd" : "m";
 
-  std::vector<Club> all;
+  std::vector<LandedClub> all;
   std::string csv = fmt::format("shot,club,carry_{0},side_{0}\n", unit);
   std::size_t flew = 0;
   for (std::size_t i = 0; i < shots.rows(); ++i) {
@@ -52,8 +52,8 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
                              : !clubs->numeric                ? clubs->text[i]
                              : std::isfinite(clubs->value[i]) ? fmt::format("{:g}", clubs->value[i])
                                                               : "";
-    auto club = std::ranges::find(all, name, &Club::name);
-    if (club == all.end()) club = all.insert(all.end(), Club{.name = name});
+    auto club = std::ranges::find(all, name, &LandedClub::name);
+    if (club == all.end()) club = all.insert(all.end(), LandedClub{.name = name});
     ++club->shots;
     const auto add = [&](std::vector<double>& to, const loop::Column* from) {
       if (from && std::isfinite(from->value[i])) to.push_back(from->value[i]);
@@ -81,7 +81,7 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
                 "spin [rpm]", fmt::format("carry [{}]", unit), fmt::format("side [{}]", unit)}},
       .first_width = 12,
       .least_width = 14};
-  for (const Club& c : all)
+  for (const LandedClub& c : all)
     table.rows.push_back({c.name.empty() ? "(none)" : c.name, fmt::format("{}", c.shots),
                           spread(c.ball_speed, imperial ? 0.44704 : 1, 1), spread(c.launch_angle, kRadPerDeg, 1),
                           spread(c.spin_rate, 2 * kPi / 60, 0), spread(c.carry, metre, 1), spread(c.side, metre, 1)});
@@ -105,7 +105,7 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
                     .y_label = fmt::format("carry [{}]", unit)};
   std::size_t drawn = 0;
   int colour = 0;
-  for (Club& c : all) {
+  for (LandedClub& c : all) {
     if (c.landed.empty() || ++drawn > most_clubs) continue;
     ++colour;
     const post::Scatter scatter(std::move(c.landed));

@@ -1,4 +1,4 @@
-#include "app/kinds/material_point.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/kinds/plate_face.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "app/check_memory.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
-#include "app/read_face_map.hpp"
 #include "app/read_options.hpp"
 #include "app/stop.hpp"
 #include "app/stored_launch.hpp"

@@ -1,4 +1,4 @@
-#include "app/kinds/shaft_modes.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 

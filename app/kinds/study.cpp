@@ -1,4 +1,4 @@
-#include "app/kinds/study.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -24,7 +24,9 @@
 #include "app/study/optimum.hpp"
 #include "app/study/parts.hpp"
 #include "app/study/population.hpp"
+#include "app/study/regression.hpp"
 #include "app/study/sliders.hpp"
+#include "app/study/solve.hpp"
 #include "app/study/statement.hpp"
 #include "app/study/table.hpp"
 #include "app/sweep.hpp"
@@ -80,12 +82,14 @@ class StudyJob final : public PointJob {
     const auto columns = table_.design.columns();
     for (const std::string& c : columns)
       if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
+    if (!studied_) read_solved(root);
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
         CaseFile one(*blow_, with_own(l.set));
         const StudyBlow asked = read_study_blow(one.root());
         return asked.swung && !asked.swung->motion.present;
       });
+    regression_ = read_regression(root);
     if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
     reference_ = read_compare(root, table_);
     parts_ = read_parts(root, table_);
@@ -107,6 +111,7 @@ class StudyJob final : public PointJob {
     optimum_ = read_optimum(root, table_);
     if (optimum_ && (conditions_.matched_launch || conditions_.bounce_speed))
       root.fail("optimum", "is confirmed by one point more: without matched_launch and keep_bounce");
+    if (optimum_ && !solves_.empty()) root.fail("optimum", "is sought without a [[solve]]");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
     // What a case refuses is an error before anything is computed.
     for (std::size_t d = 0; d < table_.design.size(); ++d) {
@@ -177,6 +182,8 @@ class StudyJob final : public PointJob {
       for (std::size_t o = 0; o < outputs_.size(); ++o) causes[o] = outputs_[o].cause;
       summary["compare"] = compare(out, table, *reference_, against, causes);
     }
+    if (regression_)
+      if (json slopes = report_regression(out, *regression_); !slopes.is_null()) summary["regression"] = slopes;
     if (!parts_.all.empty()) summary["parts"] = report_parts(out, table, parts_, draw_);
     if (!statements_.empty()) summary["statements"] = judge(out, table, statements_, against, groups(table, layers));
     if (named && draw_) draw_study(out, table, title_, figures_, effects, reference_, against);
@@ -249,17 +256,26 @@ class StudyJob final : public PointJob {
     if (conditions_.followed && conditions_.matched_launch)
       root.fail("outputs",
                 "with matched_launch there is a blow at every loft of the search, and no one peak_stress or impulse");
+    flies_ = base.flight.has_value();
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
+  }
+
+  void read_solved(Table& root) {
+    const bool varies = table_.design.has(DesignFactor::Kind::variants);
+    solves_ = read_solves(root, varies ? table_.design.levels(0) : std::vector<std::string>{}, flies_);
+    if (!solves_.empty() && (conditions_.matched_launch || conditions_.bounce_speed))
+      root.fail("solve", "one unknown after another: without matched_launch and keep_bounce");
+    for (const StudySolve& s : solves_) table_.outputs.push_back(s.name);
   }
 
   /// Every key that a study of blows has beside the blow itself.
   static void leave_study_keys(Table root) {
     for (const std::string& key : root.keys())
       if (key.starts_with("keep_bounce_")) root.leave({key});
-    root.leave(
-        {"kind",   "title",   "outputs",  "matched_launch", "histories", "axis",       "variant",         "rows",
-         "grid",   "sample",  "measured", "compare",        "part",      "parts_over", "equivalent_mass", "statement",
-         "figure", "figures", "landing",  "population",     "optimum"});
+    root.leave({"kind",    "title",      "outputs",    "matched_launch",  "histories", "axis",
+                "variant", "rows",       "grid",       "sample",          "measured",  "compare",
+                "part",    "parts_over", "parts_from", "equivalent_mass", "statement", "figure",
+                "figures", "landing",    "population", "optimum",         "solve",     "regression"});
   }
 
   void read_point(Table& root, std::size_t d) {
@@ -280,6 +296,50 @@ class StudyJob final : public PointJob {
     table_.asked.insert(table_.asked.end(), asked.models.begin(), asked.models.end());
     leave_study_keys(one.root());
     one.finish();
+    for (const StudySolve& s : solves_)
+      for (const double end : {s.low, s.high}) {
+        CaseFile sought(*blow_, with(overrides(d), s, end, true));
+        read_study_blow(sought.root());
+        leave_study_keys(sought.root());
+        sought.finish();
+      }
+  }
+
+  /// A key that is sought, among overrides; `there`: with what holds meanwhile.
+  static std::vector<std::string> with(std::vector<std::string> set, const StudySolve& s, double x, bool there) {
+    if (there) set.insert(set.end(), s.set.begin(), s.set.end());
+    set.push_back(fmt::format("{}={}", s.key, x));
+    return set;
+  }
+
+  /// What a point sets, with every [[solve]] in it; what was found is recorded. The same problem of several points is
+  /// solved once.
+  std::vector<std::string> solved(std::size_t d, std::size_t model, json& result) const {
+    std::vector<std::string> set = overrides(d);
+    for (const StudySolve& s : solves_) {
+      if (!s.variants.empty() && std::ranges::find(s.variants, table_.design.cells(d).front()) == s.variants.end())
+        continue;
+      CaseFile problem(*blow_, with(set, s, s.low, true));
+      read_study_blow(problem.root());
+      const std::string key = fmt::format("{}\n{}\n{}", s.name, model, problem.resolved());
+      std::optional<double> found;
+      {
+        const std::scoped_lock lock(mutex_);
+        if (const auto known = solved_.find(key); known != solved_.end()) found = known->second;
+      }
+      if (!found) {
+        found = solve(s, [&](double x) {
+          const StudyBlow asked = blow_with(with(set, s, x, true));
+          const auto y = s.output.value(answer(asked.models[model], asked, conditions_, {}, nullptr));
+          return y ? std::optional(*y / s.output.si) : std::nullopt;
+        });
+        const std::scoped_lock lock(mutex_);
+        solved_[key] = *found;
+      }
+      result[s.name] = *found;
+      set = with(set, s, *found, false);
+    }
+    return set;
   }
 
   std::vector<std::string> overrides(std::size_t d) const {
@@ -324,7 +384,7 @@ class StudyJob final : public PointJob {
       if (!s.starts_with("delivery.impact_")) key += s + '\n';
     Swing* swing = nullptr;
     {
-      const std::scoped_lock lock(swings_mutex_);
+      const std::scoped_lock lock(mutex_);
       swing = &swings_[key];
     }
     std::call_once(swing->once,
@@ -375,7 +435,9 @@ class StudyJob final : public PointJob {
   }
 
   json compute_blow(std::size_t d, std::size_t model) const {
-    const auto read = latest_blow(d);
+    json result = json::object();
+    const auto read = solves_.empty() ? latest_blow(d)
+                                      : std::make_shared<const StudyBlow>(blow_with(solved(d, model, result)));
     const StudyBlow& asked = *read;
     const models::NormalImpactPoint* bounce = nullptr;
     if (conditions_.bounce_speed && d > 0) {
@@ -383,7 +445,6 @@ class StudyJob final : public PointJob {
       bounce = &bounce_;
     }
     const StudyAnswer a = answer(asked.models[model], asked, conditions_, launch_angle(d), bounce);
-    json result = json::object();
     const auto said = numbers(a);
     for (std::size_t o = 0; o < outputs_.size(); ++o)
       if (said[o]) result[outputs_[o].name] = *said[o];
@@ -410,8 +471,11 @@ class StudyJob final : public PointJob {
   StudyConditions conditions_;
   StudyTable table_;
   std::vector<StudyOutput> outputs_;  ///< of a study of blows
+  std::vector<StudySolve> solves_;
+  bool flies_ = false;
   std::optional<StudyReference> reference_;
   StudyParts parts_;
+  std::optional<StudyRegression> regression_;
   std::vector<StudyStatement> statements_;
   std::vector<StudyFigure> figures_;
   std::optional<StudyLanding> landing_;
@@ -424,10 +488,11 @@ class StudyJob final : public PointJob {
     std::once_flag once;
     std::shared_ptr<const models::SwingEnd> end;
   };
-  mutable std::mutex swings_mutex_;
-  mutable std::map<std::string, Swing> swings_;  ///< by what the design sets, place on the face apart
-  std::vector<std::string> left_out_;            ///< rows whose recorded swing is not there
-  fs::path motion_;                              ///< a swing that is not there and cannot be left out
+  mutable std::mutex mutex_;                      ///< of the two maps
+  mutable std::map<std::string, Swing> swings_;   ///< by what the design sets, place on the face apart
+  mutable std::map<std::string, double> solved_;  ///< by the resolved case at the low end
+  std::vector<std::string> left_out_;             ///< rows whose recorded swing is not there
+  fs::path motion_;                               ///< a swing that is not there and cannot be left out
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };

@@ -1,4 +1,4 @@
-#include "app/kinds/swing.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 

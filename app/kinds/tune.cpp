@@ -1,4 +1,4 @@
-#include "app/kinds/tune.hpp"
+#include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
-#include "app/read_parameter.hpp"
 #include "app/read_shaft.hpp"
 #include "golf/parallel.hpp"
 #include "golf/units.hpp"
 #include "loop/shots/shots.hpp"
 #include "models/checked_launch.hpp"
 #include "models/club/loaded_shaft.hpp"
+#include "models/parameters.hpp"
 #include "models/registry.hpp"
 #include "post/csv.hpp"
 #include "post/figure.hpp"
@@ -39,6 +39,12 @@ struct Free {
   const models::NamedParameter* parameter;
   double start;
   solvers::Bounds bounds;
+
+  /// "dynamic_loft_deg" for files.
+  std::string column() const {
+    return std::string(parameter->name) + (parameter->unit.empty() ? "" : fmt::format("_{}", parameter->unit));
+  }
+  double si() const { return parameter->unit.empty() ? 1 : split_unit(column()).unit->si; }  ///< of one of its unit
 };
 
 struct Keep {
@@ -57,10 +63,10 @@ Errors errors(const std::vector<double>& values) {
   e.count = values.size();
   if (values.empty()) return {kNaN, kNaN, kNaN, 0};
   for (const double v : values) e.mean += v, e.absolute += std::abs(v);
-  e.mean /= static_cast<double>(e.count);
-  e.absolute /= static_cast<double>(e.count);
+  e.mean /= double(e.count);
+  e.absolute /= double(e.count);
   for (const double v : values) e.sd += (v - e.mean) * (v - e.mean);
-  e.sd = e.count > 1 ? std::sqrt(e.sd / static_cast<double>(e.count - 1)) : kNaN;
+  e.sd = e.count > 1 ? std::sqrt(e.sd / double(e.count - 1)) : kNaN;
   return e;
 }
 
@@ -125,13 +131,14 @@ class TuneJob final : public Job {
     }
     rows_ = data.integer({"rows", "use so many rows, drawn at random; 0: all"}, 0, 100000000, 0);
 
-    std::optional<Table> split = root.optional_table("split");
-    train_fraction_ = split ? split->number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667)
-                            : 0.6667;
-    seed_ = static_cast<unsigned>(split ? split->integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1) : 1);
+    Table split = root.default_table("split");
+    train_fraction_ = split.number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667);
+    seed_ = unsigned(split.integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1));
 
+    std::vector<std::string> parameters;
+    for (const auto& p : models::parameters()) parameters.emplace_back(p.name);
     for (Table t : root.tables("parameters")) {
-      Free f{&read_parameter(t, {"name", "the parameter that is tuned"}), 0, {}};
+      Free f{models::find_parameter(t.choice({"name", "the parameter that is tuned"}, parameters)), 0, {}};
       const Range range{f.parameter->low, f.parameter->high};
       const std::string unit(f.parameter->unit);
       const double standard = f.parameter->get(options_, blow_);
@@ -146,15 +153,12 @@ class TuneJob final : public Job {
     }
     if (free_.empty()) root.fail("parameters", "name at least one [[parameters]]");
 
-    std::optional<Table> search = root.optional_table("search");
-    search_.starts = static_cast<int>(
-        search ? search->integer({"starts", "of the search, the first at the defaults"}, 1, 1000, 4) : 4);
-    search_.iterations =
-        static_cast<int>(search ? search->integer({"iterations", "of each search at most"}, 1, 10000, 60) : 60);
+    Table search = root.default_table("search");
+    search_.starts = int(search.integer({"starts", "of the search, the first at the defaults"}, 1, 1000, 4));
+    search_.iterations = int(search.integer({"iterations", "of each search at most"}, 1, 10000, 60));
     search_.huber =
-        search ? search->number({"huber", "residual beyond which the loss is linear, in noise units; 0: least squares"},
-                                Range::non_negative(), 0)
-               : 0;
+        search.number({"huber", "residual beyond which the loss is linear, in noise units; 0: least squares"},
+                      Range::non_negative(), 0);
     search_.seed = seed_;
   }
 
@@ -162,15 +166,15 @@ class TuneJob final : public Job {
     if (!std::filesystem::exists(shots_file_)) return out.skip(shots_file_);
     read_data(out);
     const auto residuals = [this](const Eigen::VectorXd& p, Eigen::VectorXd& r) { return whitened(train_, p, r); };
-    const int width = static_cast<int>(fitted_.size());
-    const int count = static_cast<int>(train_.size()) * width;
-    if (count <= static_cast<int>(free_.size()))
+    const int width = int(fitted_.size());
+    const int count = int(train_.size()) * width;
+    if (count <= int(free_.size()))
       throw InputError(fmt::format("{}: {} training rows cannot settle {} parameters", shots_file_.string(),
                                    train_.size(), free_.size()));
     Eigen::VectorXd start(free_.size());
     std::vector<solvers::Bounds> bounds;
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      start[static_cast<Eigen::Index>(i)] = free_[i].start;
+      start[Eigen::Index(i)] = free_[i].start;
       bounds.push_back(free_[i].bounds);
     }
     out.say(fmt::format("tuning {} parameters of {} on {} shots ({} kept for the test), {} starts", free_.size(),
@@ -233,13 +237,13 @@ class TuneJob final : public Job {
     }
     std::mt19937_64 random(seed_);
     std::vector<std::size_t> order = solvers::shuffled(blows_.size(), random);
-    if (rows_ > 0 && static_cast<std::size_t>(rows_) < order.size()) {
-      left_out["beyond the number of rows asked for"] = static_cast<int>(order.size()) - static_cast<int>(rows_);
-      order.resize(static_cast<std::size_t>(rows_));
+    if (rows_ > 0 && std::size_t(rows_) < order.size()) {
+      left_out["beyond the number of rows asked for"] = int(order.size()) - int(rows_);
+      order.resize(std::size_t(rows_));
     }
-    const auto cut = static_cast<std::size_t>(std::lround(train_fraction_ * static_cast<double>(order.size())));
-    train_.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(cut));
-    test_.assign(order.begin() + static_cast<std::ptrdiff_t>(cut), order.end());
+    const auto cut = std::size_t(std::lround(train_fraction_ * double(order.size())));
+    train_.assign(order.begin(), order.begin() + std::ptrdiff_t(cut));
+    test_.assign(order.begin() + std::ptrdiff_t(cut), order.end());
     left_out_ = left_out;
     for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
   }
@@ -268,8 +272,7 @@ class TuneJob final : public Job {
         std::vector<std::size_t> of;
         for (std::size_t i = from; i < to; ++i) {
           Blow blow = blows_[rows[i]];
-          for (std::size_t k = 0; k < free_.size(); ++k)
-            free_[k].parameter->set(options, blow, p[static_cast<Eigen::Index>(k)]);
+          for (std::size_t k = 0; k < free_.size(); ++k) free_[k].parameter->set(options, blow, p[Eigen::Index(k)]);
           if (!blow.club.head.faults().empty() && model_ != "rigid-planar") continue;
           blows.push_back(std::move(blow));
           of.push_back(i);
@@ -300,7 +303,7 @@ class TuneJob final : public Job {
       for (std::size_t k = 0; k < width; ++k) {
         const double e = error(rows[i], fitted_[k], model[i]) / channels_[fitted_[k]].noise;
         if (!std::isfinite(e)) good = false;
-        r[static_cast<Eigen::Index>(i * width + k)] = e;
+        r[Eigen::Index(i * width + k)] = e;
       }
     return good;
   }
@@ -308,11 +311,11 @@ class TuneJob final : public Job {
   void report(Output& out, const Eigen::VectorXd& start, const solvers::LeastSquaresFit& fit,
               const solvers::Identifiability& known) const {
     nlohmann::json summary;
-    const auto n = static_cast<Eigen::Index>(free_.size());
+    const auto n = Eigen::Index(free_.size());
     // The scatter left over, in units of the declared noise: the parameters' spread grows by it.
-    Eigen::VectorXd r(static_cast<Eigen::Index>(train_.size() * fitted_.size()));
+    Eigen::VectorXd r(Eigen::Index(train_.size() * fitted_.size()));
     whitened(train_, fit.parameters, r);
-    const double scatter = std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - n)));
+    const double scatter = std::sqrt(r.squaredNorm() / double(std::max<Eigen::Index>(1, r.size() - n)));
     summary["scatter_over_declared_noise"] = scatter;
     summary["costs_of_the_starts"] = fit.costs;
     post::TextTable found{.rows = {{"parameter", "start", "tuned", "sd (noise)", "sd (scatter)", ""}},
@@ -321,20 +324,20 @@ class TuneJob final : public Job {
                           .even = false};
     std::string csv = "parameter,unit,start,tuned,sd_by_noise,sd_by_scatter,min,max\n";
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Free& f = free_[static_cast<std::size_t>(i)];
-      const double si = unit_of(*f.parameter), value = fit.parameters[i] / si, sd = known.sd[i] / si;
+      const Free& f = free_[std::size_t(i)];
+      const double si = f.si(), value = fit.parameters[i] / si, sd = known.sd[i] / si;
       const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
       const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
-      found.rows.push_back({column(*f.parameter), fmt::format("{:.6g}", start[i] / si), fmt::format("{:.6g}", value),
+      found.rows.push_back({f.column(), fmt::format("{:.6g}", start[i] / si), fmt::format("{:.6g}", value),
                             fmt::format("{:.3g}", sd), fmt::format("{:.3g}", sd * std::max(1.0, scatter)),
                             edge ? "at its bound" : ""});
-      const SplitName split = split_unit(column(*f.parameter));
+      const SplitName split = split_unit(f.column());
       out.page().answer(post::spoken(split.stem),
                         fmt::format("{:.4g}{}", value, split.unit ? " " + post::symbol(split.unit->suffix) : ""),
                         edge ? "at its bound" : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
       csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit,
                          start[i] / si, value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
-      summary["parameters"].push_back({{"name", column(*f.parameter)},
+      summary["parameters"].push_back({{"name", f.column()},
                                        {"start", start[i] / si},
                                        {"value", value},
                                        {"sd", sd},
@@ -350,13 +353,12 @@ class TuneJob final : public Job {
     csv += '\n';
     std::vector<std::string> tied;
     for (Eigen::Index i = 0; i < n; ++i) {
-      csv += free_[static_cast<std::size_t>(i)].parameter->name;
+      csv += free_[std::size_t(i)].parameter->name;
       for (Eigen::Index j = 0; j < n; ++j) {
         csv += fmt::format(",{:.4f}", known.correlation(i, j));
         if (j > i && std::abs(known.correlation(i, j)) > 0.95)
-          tied.push_back(fmt::format("{} and {} (correlation {:.3f})",
-                                     free_[static_cast<std::size_t>(i)].parameter->name,
-                                     free_[static_cast<std::size_t>(j)].parameter->name, known.correlation(i, j)));
+          tied.push_back(fmt::format("{} and {} (correlation {:.3f})", free_[std::size_t(i)].parameter->name,
+                                     free_[std::size_t(j)].parameter->name, known.correlation(i, j)));
       }
       csv += '\n';
     }
@@ -375,8 +377,7 @@ class TuneJob final : public Job {
       std::string text;
       for (Eigen::Index i = 0; i < n; ++i)
         if (std::abs(v[i]) > 0.2)
-          text += fmt::format("{}{:+.2f} {}", text.empty() ? "" : ", ", v[i],
-                              free_[static_cast<std::size_t>(i)].parameter->name);
+          text += fmt::format("{}{:+.2f} {}", text.empty() ? "" : ", ", v[i], free_[std::size_t(i)].parameter->name);
       out.say("the data leave free inside the bounds: " + text + " (shares of the bounds' distance)");
       summary["blind"].push_back(text);
     }

@@ -1,6 +1,7 @@
 #include "app/study/answer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -62,6 +63,8 @@ models::PlateStrike plate_strike(const StudyAnswer& a) {
 /// A normal blow of ball, face and head in series, at the club's speed and the place of the impact.
 struct SeriesStrike {
   double mass, restitution, speed_ratio;  ///< of the head at that place [kg]; of the ball's speed over the head's
+  double contact_time;                    ///< [s]
+  MaybeNumber face_energy;                ///< left in a lumped face [J]
 };
 SeriesStrike in_series(const StudyAnswer& a, bool yields) {
   const double yc = -a.blow.delivery.impact_toe, zc = a.blow.delivery.impact_high;
@@ -69,23 +72,29 @@ SeriesStrike in_series(const StudyAnswer& a, bool yields) {
   const auto face = yields ? a.face : std::nullopt;
   const models::Striker striker = models::golf_ball(a.blow.ball);
   const double speed = a.blow.delivery.club_speed;
-  double e = 0;
+  const auto told = [&](const auto& strike, MaybeNumber energy) {
+    const double e = strike.restitution;
+    return SeriesStrike{mass, e, (1 + e) * mass / (mass + ball), strike.contact_time, energy};
+  };
   if (yields && a.face_plate) {
     const models::PlateStrike plate = plate_strike(a);
-    e = plate.strike(striker, plate.at({yc, zc}, models::kBallPatch), speed).restitution;
-  } else {
-    e = models::strike(striker, mass, face, face ? face->shape(yc, zc).value : 0, speed).restitution;
+    return told(plate.strike(striker, plate.at({yc, zc}, models::kBallPatch), speed), {});
   }
-  return {mass, e, (1 + e) * mass / (mass + ball)};
+  const models::FaceStrike s = models::strike(striker, mass, face, face ? face->shape(yc, zc).value : 0, speed);
+  return told(s, s.energy);
 }
 
-/// The rules' pendulum at the place of the impact, by the sphere and the speeds of cases/characteristic-time.
+/// The rules' pendulum at the place of the impact: a sphere of 11 mm at models::pendulum_speeds().
 models::CharacteristicTime pendulum(const StudyAnswer& a) {
   const double yc = -a.blow.delivery.impact_toe, zc = a.blow.delivery.impact_high;
   const models::Striker sphere = models::steel_sphere(0.011);
   if (a.face_plate) return plate_strike(a).characteristic_time(sphere, {yc, zc}, models::pendulum_speeds());
   return models::characteristic_time(sphere, models::mass_at(a.blow.club.head, yc, zc), a.face,
                                      a.face ? a.face->shape(yc, zc).value : 0, models::pendulum_speeds());
+}
+
+double off_rules_line(const StudyAnswer& a) {
+  return in_series(a, true).restitution - models::rules_line(pendulum(a).time);
 }
 
 /// Static, of a plate at the place of the impact [m/N]; nothing without a plate.
@@ -149,7 +158,14 @@ const std::array kBlowQuantities = {
     BlowQuantity{"rigid_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, false).restitution); }},
     BlowQuantity{"face_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); }},
     BlowQuantity{"rigid_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, false).speed_ratio); }},
+    BlowQuantity{"face_contact_time", Dimension::time,
+                 [](Given a) { return MaybeNumber(in_series(a, true).contact_time); }},
+    BlowQuantity{"face_energy", Dimension::energy, [](Given a) { return in_series(a, true).face_energy; }},
     BlowQuantity{"characteristic_time", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).time); }},
+    // By how much the sphere's contact at 1 m/s is longer, and the largest distance of a time from the straight line.
+    BlowQuantity{"pendulum_slope", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).slope); }},
+    BlowQuantity{"pendulum_departure", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).departure); }},
+    BlowQuantity{"restitution_off_rules_line", {}, [](Given a) { return MaybeNumber(off_rules_line(a)); }},
     BlowQuantity{"give_to_ball_m_per_N", {}, [](Given a) { return give(a, false); }},
     BlowQuantity{"give_to_pendulum_m_per_N", {}, [](Given a) { return give(a, true); }},
     BlowQuantity{"peak_stress", Dimension::pressure, [](Given a) { return a.face_stress; }, false, true},
@@ -230,6 +246,7 @@ StudyBlow read_study_blow(Table root) {
   out.blow = read_blow(root, out.models);
   out.options = read_options(root, out.models, out.blow);
   out.swung = read_swung_club(root, out.models, out.options.shaft_mount);
+  if (auto t = root.optional_table("launch")) out.launch = read_launch(*t, false);
   out.flight = read_optional_flight(root);
   if (auto t = root.optional_table("plate")) {
     out.plate = {
@@ -277,12 +294,10 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
       if (name == q.name) return {name, 1, q.value, q.cause, q.followed};
     }
   }
-  const std::string near = nearest(name, known);
-  std::string all;
-  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-  table.fail(key, fmt::format(
-                      "nothing of a blow is called '{}'; {}", name,
-                      near.empty() ? "known, with any unit of the dimension: " + all : "did you mean '" + near + "'?"));
+  table.fail(
+      key, fmt::format("nothing of a blow is called '{}'{}", name,
+                       or_nearest(name, known,
+                                  fmt::format("; known, with any unit of the dimension: {}", fmt::join(known, ", ")))));
 }
 
 models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
@@ -325,6 +340,7 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
   } else {
     out.launch = models::checked_launch(*made, out.blow);
   }
+  if (asked.launch) out.launch = asked.launch->in_place_of(out.launch);
   if (asked.flight) try {
       out.flight = asked.flight->follow(out.launch, asked.blow.ball);
     } catch (const std::invalid_argument&) {

@@ -24,6 +24,7 @@ struct StudyBlow {
   std::vector<std::string> models;
   Blow blow;
   models::Options options;
+  std::optional<StatedLaunch> launch;  ///< in place of what a model says
   std::optional<FlightSetup> flight;
   std::optional<models::ElasticSolid> plate;         ///< the wall, where it is not rigid
   std::optional<SwungClub> swung;                    ///< where a swing delivers the club

@@ -14,9 +14,7 @@ namespace hosel::app {
 std::size_t number_of(const Table& t, std::string_view key, std::string_view what, const std::string& name,
                       const std::vector<std::string>& names) {
   if (const auto at = std::ranges::find(names, name); at != names.end()) return std::size_t(at - names.begin());
-  const std::string near = nearest(name, names);
-  t.fail(key,
-         fmt::format("no {} '{}' in this study{}", what, name, near.empty() ? "" : "; did you mean '" + near + "'?"));
+  t.fail(key, fmt::format("no {} '{}' in this study{}", what, name, or_nearest(name, names)));
 }
 
 std::optional<StudyReference> read_compare(Table root, const StudyTable& table) {

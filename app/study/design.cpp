@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <random>
 #include <set>
 
-#include "app/read_face_map.hpp"
+#include "app/read_face.hpp"
 #include "app/read_sheet.hpp"
 #include "post/labels.hpp"
 #include "solvers/random.hpp"
@@ -17,12 +16,6 @@ namespace hosel::app {
 namespace {
 
 using FactorKind = DesignFactor::Kind;
-
-std::optional<double> cell_number(const std::string& cell) {
-  double x = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-  return error == std::errc() && end == cell.data() + cell.size() ? std::optional(x) : std::nullopt;
-}
 
 /// A TOML text without its quotes.
 std::string without_quotes(const std::string& toml) {
@@ -176,7 +169,7 @@ std::vector<double> Design::numbers(std::size_t column) const {
   const auto [f, c] = place(column);
   std::vector<double> out;
   for (std::size_t p = 0; p < size(); ++p) {
-    const auto x = cell_number(level(f, p).cells[c]);
+    const auto x = post::number(level(f, p).cells[c]);
     if (!x) return {};
     out.push_back(*x);
   }
@@ -217,7 +210,7 @@ std::string said_cell(const std::string& column, const std::string& cell) {
   if (column == "variant" || column == "row") return cell;
   const SplitName split = split_unit(column);
   const std::string name = post::label(column);
-  const auto number = cell_number(cell);
+  const auto number = post::number(cell);
   return fmt::format("{} {}{}", name.substr(0, name.find(" [")), number ? fmt::format("{:.6g}", *number) : cell,
                      split.unit ? " " + post::symbol(split.unit->suffix) : "");
 }
@@ -296,9 +289,14 @@ Design read_design(Table root) {
                                     "of values from one end of the range to the other, crossed with all other axes; "
                                     "without it the [sample] draws them"},
                                    2, long(kMostPoints));
-      for (long i = 0; i < count; ++i)
-        axis.levels.push_back(
-            level(fmt::format("{:.12g}", range[0] + (range[1] - range[0]) * double(i) / double(count - 1))));
+      const bool even = t.choice({"spacing", "of the values: by equal steps, or by equal factors"},
+                                 {"linear", "logarithmic"}, "linear") == "linear";
+      if (!even && !(range[0] * range[1] > 0)) t.fail("range", "equal factors do not lead through zero");
+      for (long i = 0; i < count; ++i) {
+        const double share = double(i) / double(count - 1);
+        axis.levels.push_back(level(fmt::format("{:.12g}", even ? range[0] + (range[1] - range[0]) * share
+                                                                : range[0] * std::pow(range[1] / range[0], share))));
+      }
       axes.push_back(std::move(axis));
       continue;
     }

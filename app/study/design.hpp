@@ -4,7 +4,7 @@
 ///     [rows]       file = "blows.csv"                      a blow a row: heads with a dot are keys of the case
 ///     [grid]       columns, rows, width_mm, height_mm      places on the face
 ///     [sample]     points, seed, method                    of every [[axis]] with a range and no count
-///     [[axis]]     key, values = [...] | range, count      one level a value
+///     [[axis]]     key, values = [...] | range, count, spacing    one level a value
 ///                  key, range | mean and sd                drawn by the [sample]
 #pragma once
 

@@ -284,10 +284,10 @@ std::vector<StudyFigure> read_study_figures(Table root, const StudyTable& table,
   const auto columns = table.design.columns();
   for (Table t : root.tables("figure")) {
     StudyFigure f;
-    const std::vector<std::string> kinds = {"line", "map", "bars", "tornado"};  // as StudyFigure::Kind
-    const std::string kind = t.choice(
-        {"kind", "lines over a column, a map over two, every point in a row, or what moves the answers most"}, kinds);
-    f.kind = StudyFigure::Kind(std::ranges::find(kinds, kind) - kinds.begin());
+    using Figure = StudyFigure::Kind;
+    f.kind = t.one_of<Figure>(
+        {"kind", "lines over a column, a map over two, every point in a row, or what moves the answers most"},
+        {{"line", Figure::line}, {"map", Figure::map}, {"bars", Figure::bars}, {"tornado", Figure::tornado}});
     f.outputs = t.texts({"outputs", "that are drawn; empty: all"}, std::vector<std::string>{});
     for (const std::string& o : f.outputs)
       if (!table.outputs.empty() && std::ranges::find(table.outputs, o) == table.outputs.end())

@@ -68,8 +68,17 @@ class PartsReport {
                          const Place& place) const {
     StudySeries out;
     const std::vector<double>& y = table_.at(model, output).y;
-    for (const std::size_t p : place.points) out.y.push_back(y[part.of * block_ + p] - y[part.minus * block_ + p]);
+    for (const std::size_t p : place.points)
+      out.y.push_back((y[part.of * block_ + p] - y[part.minus * block_ + p]) / part.per);
     return out;
+  }
+
+  /// Of the 95 % interval by independent deviations from the value `parts_from`.
+  double half_width(const StudySeries& of) const {
+    double square = 0;
+    for (const double y : of.y)
+      if (std::isfinite(y)) square += std::pow(y - of.y[*parts_.from], 2);
+    return 1.96 * std::sqrt(square);
   }
 
   std::string cells(const StudySeries::Spread& s) const {
@@ -84,6 +93,7 @@ class PartsReport {
     constexpr std::size_t few = 9;
     post::TextTable shown{.rows = {{"output", "mean"}}, .least_width = 10, .even = false};
     if (parts_.over) shown.rows[0].insert(shown.rows[0].end(), {"lowest", "highest"});
+    if (parts_.from) shown.rows[0].push_back(table_.design.levels(*parts_.over)[*parts_.from] + ", 95 %");
     if (places_.size() > 1) shown.rows[0].push_back("where");
     const auto add = [&](std::size_t o, const StudySeries& of, const std::string& where, json& at) {
       const StudySeries::Spread s = of.spread();
@@ -97,6 +107,12 @@ class PartsReport {
         for (std::size_t k = 0; k < of.y.size(); ++k)
           if (std::isfinite(of.y[k])) j["each"][table_.design.cells(places_.front().points[k])[*parts_.over]] = of.y[k];
         row.insert(row.end(), {fmt::format("{:+.4g}", s.low), fmt::format("{:+.4g}", s.high)});
+        if (parts_.from && std::isfinite(of.y[*parts_.from])) {
+          const double own = of.y[*parts_.from], half = half_width(of);
+          j["from"] = own;
+          j["half_width_95"] = half;
+          row.push_back(fmt::format("{:+.4g} ± {:.2g}", own, half));
+        }
       }
       if (places_.size() > 1) row.push_back(where);
     };
@@ -128,10 +144,11 @@ class PartsReport {
     const post::FaceGrid& grid = *table_.design.grid();
     post::Figure face{.title = fmt::format("part by part; {}", post::kFaceView),
                       .columns = int(parts_.all.size()),
-                      .panel_width = 400,
-                      .panel_height = 215};
+                      .panel_width = 640,
+                      .panel_height = 330};
     post::Figure along{
-        .title = "along the middle of the face" + (parts_.over ? "; bars: over " + columns_[*parts_.over] : ""),
+        .title = "along the middle of the face" +
+                 (parts_.over ? "; bars: from the lowest to the highest over each " + columns_[*parts_.over] : ""),
         .columns = 2,
         .panel_width = 560,
         .panel_height = 330};
@@ -181,7 +198,8 @@ StudyParts read_parts(Table root, const StudyTable& table) {
     const auto variants = table.design.levels(0);
     const auto variant = [&](Key key) { return number_of(t, key.name, "variant", t.text(key), variants); };
     out.all.push_back({t.name({"name", "of the part"}, taken), variant({"of", "the variant"}),
-                       variant({"minus", "the variant that is taken from it"})});
+                       variant({"minus", "the variant that is taken from it"}),
+                       t.number({"per", "by which the difference is divided"}, Range::positive(), 1.0)});
   }
   if (!root.has("parts_over")) return out;
   const auto columns = table.design.columns();
@@ -191,6 +209,11 @@ StudyParts read_parts(Table root, const StudyTable& table) {
       columns);
   if (out.all.empty() || *out.over == 0)
     root.fail("parts_over", "a column beside the variants, of a study with a [[part]]");
+  if (root.has("parts_from"))
+    out.from =
+        number_of(root, "parts_from", "value",
+                  root.text({"parts_from", "one of these values: each other is a standard deviation away from it"}),
+                  table.design.levels(*out.over));
   return out;
 }
 

@@ -1,7 +1,9 @@
 /// What one variant of a study is minus another, place by place, and its band over another column of the design.
 ///
 ///     parts_over = "row"                                   a column: mean, lowest and highest over its values
-///     [[part]]     name, of = "a variant", minus = "another"
+///     parts_from = "as it is"                              one of these; each other is a standard deviation away from
+///     it
+///     [[part]]     name, of = "a variant", minus = "another", per
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,9 +19,11 @@ struct StudyParts {
   struct Part {
     std::string name;
     std::size_t of, minus;  ///< levels of the variants
+    double per = 1;         ///< by which the difference is divided
   };
   std::vector<Part> all;
   std::optional<std::size_t> over;  ///< column of the design
+  std::optional<std::size_t> from;  ///< of its values
 };
 
 StudyParts read_parts(Table root, const StudyTable& table);

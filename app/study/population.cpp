@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/read_sheet.hpp"
+#include "app/study/compare.hpp"
 #include "app/study/formula.hpp"
 #include "post/labels.hpp"
 #include "solvers/robust_regression.hpp"
@@ -96,17 +97,6 @@ post::Series cloud(const Side& side, const std::string& label) {
   return s;
 }
 
-std::size_t index_of(const Table& table, std::string_view key, const std::string& name,
-                     const std::vector<std::string>& known, const char* what) {
-  const auto at = std::ranges::find(known, name);
-  if (at == known.end()) {
-    const std::string near = nearest(name, known);
-    table.fail(key,
-               fmt::format("no {} '{}'{}", what, name, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-  }
-  return std::size_t(at - known.begin());
-}
-
 /// Formulas over the columns of a sheet; a column is read when a formula uses it.
 std::vector<double> evaluated(const Table& table, std::string_view key, const std::string& text,
                               const post::Sheet& sheet) {
@@ -133,13 +123,13 @@ StudyPopulations read_populations(Table root, const StudyTable& table) {
     const auto file = t.data_file({"file", "CSV of measured shots, one a row"});
     const std::string where = t.text({"where", "a formula of the file's columns: rows where it is true count"}, "");
     const std::string given = t.text({"given", "column of the design of which all is seen as a function"});
-    p.given = index_of(t, "given", given, table.design.columns(), "column of the design");
+    p.given = number_of(t, "given", "column", given, table.design.columns());
     const std::string of_given =
         t.text({"given_measured", "a formula of the file's columns that is the same, in its unit"});
     Table measured = t.table("measured");
     std::vector<std::pair<std::string, std::string>> formulas;
     for (const std::string& key : measured.keys()) {
-      p.measured.push_back({index_of(measured, key, key, table.outputs, "output"), {}});
+      p.measured.push_back({number_of(measured, key, "output", key, table.outputs), {}});
       formulas.emplace_back(key,
                             measured.text({key, "a formula of the file's columns in the output's unit", "<output>"}));
     }

@@ -184,6 +184,145 @@ steps_per_contact = 20
   EXPECT_EQ(lines(dir / "whole" / "parts.csv"), 6u);
 }
 
+/// A rigid ball's speed is (1 + e) M / (M + m) of the club's along the normal: the club's speed that makes a ball's,
+/// and what is stated of a launch stands in place of the model's.
+const std::string kSolved = R"(kind = "study"
+models = ["rigid-planar"]
+outputs = ["ball_speed_mps", "launch_angle_deg", "backspin_rpm", "carry_yd"]
+[[variant]]
+name = "as it is"
+[[variant]]
+name = "stated"
+set = ["launch={launch_angle_deg=12, azimuth_deg=0, backspin_rpm=2500, speed_scale=0.9}"]
+[[axis]]
+key = "head.mass_kg"
+range = [0.19, 0.21]
+count = 21
+[[solve]]
+name = "speed of the club"
+key = "delivery.club_speed_mps"
+range = [20.0, 80.0]
+output = "ball_speed_mps"
+value = 60.0
+set = ["launch={speed_scale=1}"]
+[delivery]
+club_speed_mps = 30.0
+[head]
+mass_kg = 0.2
+[contact]
+restitution = 0.8
+restitution_slope_s_per_m = 0.0
+[flight]
+)";
+
+TEST(Study, FindsAKeyAndStatesALaunch) {
+  const fs::path dir = fresh_directory("study_solved");
+  write(dir / "case/case.toml", kSolved);
+  const Outcome run = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(run.status, 0) << run.text;
+  std::istringstream table(content(dir / "out" / "points.csv"));
+  std::string line;
+  std::getline(table, line);
+  ASSERT_EQ(line,
+            "point,model,variant,head.mass_kg,ball_speed_mps,launch_angle_deg,backspin_rpm,carry_yd,speed of the club,"
+            "error");
+  std::size_t points = 0;
+  while (std::getline(table, line)) {
+    std::istringstream cells(line);
+    std::vector<std::string> c;
+    for (std::string cell; std::getline(cells, cell, ',');) c.push_back(cell);
+    const double mass = std::stod(c[3]), ball = 0.04593;
+    EXPECT_NEAR(std::stod(c[8]), 60 * (mass + ball) / (1.8 * mass), 1e-6) << line;
+    EXPECT_NEAR(std::stod(c[4]), c[2] == "stated" ? 54 : 60, 1e-6) << line;
+    if (c[2] == "stated") {
+      EXPECT_NEAR(std::stod(c[5]), 12, 1e-9) << line;
+      EXPECT_NEAR(std::stod(c[6]), 2500, 1e-6) << line;
+      EXPECT_GT(std::stod(c[7]), 100) << line;
+    }
+    ++points;
+  }
+  EXPECT_EQ(points, 42u);
+  const auto refused = [&](const std::string& set, const std::string& says) {
+    const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "refused").string() + set);
+    EXPECT_NE(o.status, 0) << set;
+    EXPECT_NE(o.text.find(says), std::string::npos) << set << ": " << o.text;
+  };
+  refused(" --set solve[1].range=[20,400]", "out of range");
+  refused(" --set \"solve[1].variants=['as it was']\"", "did you mean 'as it is'");
+  refused(" --set solve[1].output=ball_speed_mqs", "nothing of a blow is called");
+  refused(" --set matched_launch=true --set measured.launch_angle_deg=10", "one unknown after another");
+  refused(" --force --set solve[1].value=600", "have no answer");
+}
+
+TEST(Study, WhoseKeysAreFoundIsKilledAndGivesTheSameTable) {
+  const fs::path dir = fresh_directory("study_solved_killed");
+  std::string text = kSolved;
+  text.replace(text.find("count = 21"), 10, "count = 200");
+  write(dir / "case/case.toml", text);
+  expect_killed_is_whole(dir, (dir / "case").string(), 400, 4, 30);
+}
+
+/// Shots on a plane have that plane's slopes, one wild reading or not; a part over rows that are each one standard
+/// deviation away has the interval of their squares.
+TEST(Study, RegressesShotsAndPropagatesDeviations) {
+  const fs::path dir = fresh_directory("study_regression");
+  std::string shots = "shot,club_speed_mps,impact_toe_mm,ball_speed_mps,launch_angle_deg,backspin_rpm,sidespin_rpm\n";
+  for (int i = 0; i < 40; ++i) {
+    const double speed = 40 + 0.25 * i, toe = (i * 7) % 20 - 10, wild = i == 11 ? 30 : 0;
+    std::ostringstream row;
+    row << i + 1 << ',' << speed << ',' << toe << ',' << 1.4 * speed - 0.1 * toe + wild + 1e-3 * ((i * 13) % 7 - 3)
+        << ",12,2500," << -40 * toe + 0.1 * ((i * 5) % 9 - 4) << '\n';
+    shots += row.str();
+  }
+  write(dir / "case/shots.csv", shots);
+  write(dir / "case/rows.csv",
+        "name,head.mass_kg,contact.restitution\nown,0.2,0.8\nheavier,0.204,0.8\nlivelier,0.2,0.82\n");
+  write(dir / "case/case.toml", R"(kind = "study"
+models = ["rigid-planar"]
+outputs = ["ball_speed_mps"]
+parts_over = "row"
+parts_from = "own"
+[rows]
+file = "rows.csv"
+[[variant]]
+name = "fast"
+set = ["delivery.club_speed_mps=50"]
+[[variant]]
+name = "slow"
+set = ["delivery.club_speed_mps=40"]
+[[part]]
+name = "per m/s"
+of = "fast"
+minus = "slow"
+per = 10.0
+[regression]
+shots = "shots.csv"
+of = ["ball_speed_mps", "sidespin_rpm"]
+on = ["club_speed_mps", "impact_toe_mm"]
+[delivery]
+club_speed_mps = 45.0
+[head]
+mass_kg = 0.2
+[contact]
+restitution = 0.8
+restitution_slope_s_per_m = 0.0
+)");
+  const Outcome run = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(run.status, 0) << run.text;
+  const auto said = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  const auto& slopes = said["regression"]["slopes"];
+  EXPECT_EQ(said["regression"]["rows"], 40);
+  EXPECT_NEAR(slopes["ball_speed_mps"]["club_speed_mps"]["slope"].get<double>(), 1.4, 2e-3);
+  EXPECT_NEAR(slopes["ball_speed_mps"]["impact_toe_mm"]["slope"].get<double>(), -0.1, 1e-3);
+  EXPECT_NEAR(slopes["sidespin_rpm"]["impact_toe_mm"]["slope"].get<double>(), -40, 0.05);
+  EXPECT_EQ(slopes["ball_speed_mps"]["rows_below_half_weight"], 1);
+  const double ball = 0.04593, own = 1.8 * 0.2 / (0.2 + ball), heavier = 1.8 * 0.204 / (0.204 + ball),
+               livelier = 1.82 * 0.2 / (0.2 + ball);
+  const auto& part = said["parts"]["per m/s"]["mean"]["ball_speed_mps"];
+  EXPECT_NEAR(part["from"].get<double>(), own, 1e-9);
+  EXPECT_NEAR(part["half_width_95"].get<double>(), 1.96 * std::hypot(heavier - own, livelier - own), 1e-9);
+}
+
 TEST(Study, ALineCutShortIsComputedAgain) {
   const fs::path dir = sweep_case("sweep_torn", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();

@@ -269,7 +269,7 @@ TEST(Study, OfASwungClubRefusesWhatASwingDoesNotSay) {
        {" --set joint.kind=hinge --set grip.start=hands", " --set joint.kind=hinge --set grip.start=weightless",
         " --set joint.kind=none", " --set delivery.club_speed_mps=45", " --set grip.force_N=[0,0,300]"})
     EXPECT_EQ(refused(set).status, 2) << set;
-  for (const char* former : {"loaded-club", "loaded-face-map"})
+  for (const char* former : {"loaded-club", "loaded-face-map", "characteristic-time", "ball-rule", "slopes"})
     EXPECT_NE(refused(std::string(" --set kind=") + former).text.find("is now 'study'"), std::string::npos) << former;
 }
 

@@ -431,11 +431,14 @@ TEST(Tables, TwoOfOneNameAreRefused) {
   std::string models = kEccentricBlow;
   models.replace(models.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-eccentric\", \"rigid-eccentric\"]");
   refused("models", models);
-  std::string rule = content(fs::path(HOSEL_SOURCE_DIR) / "cases/rollback/case.toml");
-  const std::size_t player = rule.find("[[player]]");
-  ASSERT_NE(player, std::string::npos);
-  const std::string one = rule.substr(player, rule.find("[[player]]", player + 1) - player);
-  refused("rule", rule + "\n" + one);
+  std::string sought = kEccentricBlow;
+  sought.replace(sought.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  sought += "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0, 45.0]\n";
+  for (int k = 0; k < 2; ++k)
+    sought +=
+        "[[solve]]\nname = \"loft\"\nkey = \"delivery.dynamic_loft_deg\"\nrange = [5, 40]\n"
+        "output = \"launch_angle_deg\"\nvalue = 12\n";
+  refused("sought", sought);
 }
 
 TEST(Terminal, WhatCannotBePrintedIsAnError) {

@@ -1,0 +1,110 @@
+#include "app/study/regression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "golf/quantities.hpp"
+#include "loop/shots/shots.hpp"
+#include "post/labels.hpp"
+#include "post/launch_table.hpp"
+#include "solvers/robust_regression.hpp"
+
+namespace hosel::app {
+namespace {
+
+double median_of(std::vector<double> x) {
+  std::ranges::nth_element(x, x.begin() + std::ptrdiff_t(x.size() / 2));
+  return x[x.size() / 2];
+}
+
+}  // namespace
+
+std::optional<StudyRegression> read_regression(Table root) {
+  auto t = root.optional_table("regression");
+  if (!t) return {};
+  StudyRegression r;
+  r.file = t->data_file({"shots", "CSV of the measured shots"});
+  const long first = t->integer({"first_shot", "number of the first shot that is used"}, 0, 1L << 53, 0L);
+  const long last = t->integer({"last_shot", "number of the last"}, first, 1L << 53, 1L << 53);
+  r.of = t->texts({"of", "measured quantities of the launch, each with its unit"});
+  r.on = t->texts({"on", "inputs of the blow that they are regressed on, all at once, each with its unit"});
+  const auto unit = [&](const char* key, const std::string& name, bool known) {
+    const SplitName split = split_unit(name);
+    if (!known || !split.unit) t->fail(key, fmt::format("'{}' is none, or has no unit", name));
+    return split.unit->si;
+  };
+  std::vector<double> of_unit, on_unit;
+  for (const std::string& name : r.of)
+    of_unit.push_back(unit("of", name, post::find_channel(split_unit(name).stem) != nullptr));
+  for (const std::string& name : r.on) on_unit.push_back(unit("on", name, input_of(split_unit(name).stem).has_value()));
+  if (!std::filesystem::exists(r.file)) return r;
+  loop::Shots shots;
+  try {
+    shots = loop::read_shots(post::read_csv(r.file));
+  } catch (const DataError& e) { throw InputError(e.what()); }
+  std::vector<const loop::Column*> needed;
+  for (const std::string& name : r.on) needed.push_back(shots.find_stem(split_unit(name).stem));
+  for (const std::string& name : r.of)
+    if (split_unit(name).stem == "azimuth") needed.push_back(shots.find_stem("azimuth"));
+  if (!std::ranges::all_of(needed, [](const loop::Column* c) { return c && c->numeric; }))
+    t->fail("shots", "a column of `on`, or azimuth, is not there or holds no numbers");
+  r.x.resize(r.on.size());
+  r.y.resize(r.of.size());
+  for (std::size_t row = 0; row < shots.rows(); ++row) {
+    const long number = std::strtol(shots.id[row].c_str(), nullptr, 10);
+    if (number < first || number > last) continue;
+    ++r.rows;
+    const std::optional<Launch> launch = loop::seen_launch(shots, row);
+    if (!launch || !std::ranges::all_of(needed, [&](const auto* c) { return std::isfinite(c->value[row]); })) continue;
+    for (std::size_t k = 0; k < r.on.size(); ++k) r.x[k].push_back(needed[k]->value[row] / on_unit[k]);
+    for (std::size_t q = 0; q < r.of.size(); ++q)
+      r.y[q].push_back(((*launch).*post::find_channel(split_unit(r.of[q]).stem)->value)() / of_unit[q]);
+  }
+  const std::size_t least = 3 * r.on.size();
+  if (r.y.empty() || r.y.front().size() < least)
+    t->fail("shots", fmt::format("a regression on {} inputs needs {} whole rows, and a quantity", r.on.size(), least));
+  return r;
+}
+
+nlohmann::json report_regression(Output& out, const StudyRegression& r) {
+  if (r.x.empty()) {
+    out.lack(
+        fmt::format("no regression: {} is not there; HOSEL_DATA names the folder of measured files", r.file.string()));
+    return nullptr;
+  }
+  const std::size_t n = r.y.front().size();
+  nlohmann::json json = {{"rows", n}, {"of_rows", r.rows}};
+  Eigen::MatrixXd X = Eigen::MatrixXd::Ones(Eigen::Index(n), 1 + Eigen::Index(r.on.size()));
+  for (std::size_t k = 0; k < r.on.size(); ++k) {
+    const double centre = median_of(r.x[k]);
+    json["median"][r.on[k]] = centre;
+    X.col(Eigen::Index(k) + 1) = Eigen::Map<const Eigen::VectorXd>(r.x[k].data(), X.rows()).array() - centre;
+  }
+  std::string csv = "output,over,slope,half_width_95\n";
+  post::TextTable table{.rows = {{"measured slope over"}}, .first_width = 24, .least_width = 16, .even = false};
+  for (const std::string& name : r.on) table.rows[0].push_back(post::label(name));
+  for (std::size_t q = 0; q < r.of.size(); ++q) {
+    const auto fit = solvers::robust_regression(X, Eigen::Map<const Eigen::VectorXd>(r.y[q].data(), X.rows()));
+    auto& row = table.rows.emplace_back(std::vector{post::label(r.of[q])});
+    nlohmann::json& j = json["slopes"][r.of[q]];
+    for (std::size_t k = 0; k < r.on.size(); ++k) {
+      const auto at = Eigen::Index(k) + 1;
+      const double slope = fit.coefficients[at], half = 1.96 * std::sqrt(fit.covariance(at, at));
+      j[r.on[k]] = {{"slope", slope}, {"half_width_95", half}};
+      row.push_back(fmt::format("{:.3g} ± {:.2g}", slope, half));
+      csv += fmt::format("{},{},{:.6g},{:.4g}\n", r.of[q], r.on[k], slope, half);
+    }
+    j["scatter"] = fit.scale;
+    j["rows_below_half_weight"] = (fit.weights.array() < 0.5).count();
+  }
+  out.tell(fmt::format("{} of {} measured rows are whole", n, r.rows));
+  out.show(table, "Measured slopes, each at equal other inputs");
+  out.write("regression.csv", csv);
+  return json;
+}
+
+}  // namespace hosel::app

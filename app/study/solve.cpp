@@ -1,0 +1,57 @@
+#include "app/study/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include "app/study/compare.hpp"
+#include "solvers/errors.hpp"
+
+namespace hosel::app {
+
+std::vector<StudySolve> read_solves(Table root, const std::vector<std::string>& variants, bool flies) {
+  std::vector<StudySolve> out;
+  std::vector<std::string> taken;
+  for (Table t : root.tables("solve")) {
+    StudySolve s{.name = t.name({"name", "of the column that holds what was found"}, taken),
+                 .key = t.text({"key", "of the case, with its unit: found so that the output has the value"}),
+                 .low = 0,
+                 .high = 0,
+                 .output = {},
+                 .value = 0,
+                 .set = {},
+                 .variants = {}};
+    const auto range = t.numbers({"range", "of the key: the output at its ends must enclose the value"}, 2);
+    if (!(range[0] < range[1])) t.fail("range", "give the lowest and the highest");
+    s.low = range[0], s.high = range[1];
+    s.output = find_study_output(t, "output", t.text({"output", "a quantity of blow, launch or flight"}), flies);
+    s.value = t.number({"value", "wanted of the output, in its unit"});
+    s.set = t.texts({"set", "keys that hold while the key is sought, table.key=value"}, std::vector<std::string>{});
+    s.variants = t.texts({"variants", "of the design for which it is sought; empty: all"}, std::vector<std::string>{});
+    for (const std::string& v : s.variants) number_of(t, "variants", "variant", v, variants);
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+double solve(const StudySolve& wanted, const std::function<std::optional<double>(double)>& answer) {
+  const auto excess = [&](double x) {
+    const auto y = answer(x);
+    if (!y)
+      throw solvers::NonConvergence(
+          fmt::format("{}: no {} at {} = {:g}", wanted.name, wanted.output.name, wanted.key, x));
+    return *y - wanted.value;
+  };
+  const double low = excess(wanted.low), high = excess(wanted.high);
+  if (low * high > 0)
+    throw solvers::NonConvergence(fmt::format("{}: no {} from {:g} to {:g} makes {} {:g}: it is {:.5g} and {:.5g}",
+                                              wanted.name, wanted.key, wanted.low, wanted.high, wanted.output.name,
+                                              wanted.value, low + wanted.value, high + wanted.value));
+  // A bounce more or less makes a total distance jump: the key is found as well as it can be.
+  std::uintmax_t most = 200;
+  const auto [a, b] = boost::math::tools::toms748_solve(excess, wanted.low, wanted.high, low, high,
+                                                        boost::math::tools::eps_tolerance<double>(30), most);
+  return (a + b) / 2;
+}
+
+}  // namespace hosel::app
