@@ -168,15 +168,13 @@ std::vector<Section> by_table(const std::vector<AcceptedKey>& keys) {
 std::vector<CaseFile> cases_with_every_key() {
   std::vector<CaseFile> read;
   for (const auto& [name, title] : shipped_cases()) {
-    // A sample's points are all read in the same way: a few of a thousand ask for every key.
-    std::vector<std::string> set;
-    if (CaseFile whole(find_case(name)); auto sample = whole.root().optional_table("sample"))
-      if (sample->has("points") && sample->integer({"points", "of the sample"}, 1, 1000000) > 60)
-        set = {"sample.points=60"};
-    read_job(read.emplace_back(find_case(name), set));
+    CaseFile& file = read.emplace_back(find_case(name));
+    file.for_keys_alone();
+    read_job(file);
   }
   for (const Sample& v : samples()) {
     CaseFile& file = read.emplace_back(find_case(v.name), v.set);
+    file.for_keys_alone();
     const auto kind = std::ranges::find(kinds(), file.root().text("kind", "impact"), &Kind::name);
     try {
       kind->read(file);

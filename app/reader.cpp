@@ -30,6 +30,7 @@ struct Document {
   std::vector<std::string> overrides;
   std::shared_ptr<Inputs> inputs = std::make_shared<Inputs>();
   fs::path copies = kInputs;  // folder below OUT for what this case names
+  bool keys_alone = false;
   std::vector<Declared> declared;
   std::set<std::string> quantities;  // stems of those among them that have a unit
   std::set<std::string> looked_for;  // keys whose presence decided something, as the reference shows them
@@ -876,6 +877,8 @@ Table CaseFile::root() { return Table(document_, &document_->root, "", ""); }
 const fs::path& CaseFile::directory() const { return document_->directory; }
 const fs::path& CaseFile::file() const { return document_->file; }
 const std::vector<std::string>& CaseFile::overrides() const { return document_->overrides; }
+void CaseFile::for_keys_alone() { document_->keys_alone = true; }
+bool CaseFile::read_for_keys_alone() const { return document_->keys_alone; }
 const std::vector<Declared>& CaseFile::declared() const { return document_->declared; }
 const std::shared_ptr<Inputs>& CaseFile::inputs() const { return document_->inputs; }
 void CaseFile::finish() {

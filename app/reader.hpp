@@ -189,6 +189,9 @@ class CaseFile {
   const std::vector<std::string>& overrides() const;
   /// Everything read by this case and the cases made of it.
   const std::shared_ptr<Inputs>& inputs() const;
+  /// For who lists keys: of a study its own tables are read, and not every point.
+  void for_keys_alone();
+  bool read_for_keys_alone() const;
   /// Every key that was read or left to its default, in the order of asking.
   const std::vector<Declared>& declared() const;
   /// Every key that was not read is an error. Call it when reading is complete: what the case says then counts among

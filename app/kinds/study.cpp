@@ -113,6 +113,7 @@ class StudyJob final : public PointJob {
       root.fail("optimum", "is confirmed by one point more: without matched_launch and keep_bounce");
     if (optimum_ && !solves_.empty()) root.fail("optimum", "is sought without a [[solve]]");
     draw_ = root.flag({"figures", "draw pictures; a study of many studies may do without"}, true);
+    if (file.read_for_keys_alone()) return;
     // What a case refuses is an error before anything is computed.
     for (std::size_t d = 0; d < table_.design.size(); ++d) {
       if (++points_read > kMostPoints)

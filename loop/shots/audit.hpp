@@ -24,9 +24,9 @@ struct DerivedColumn {
   bool input = false;               ///< the column is an input of the models
 };
 
-/// Formulas that hold on all rows, then (relations) those that hold on many, then (predictable) what follows from others
-/// more closely than noise allows, whatever the formula. `noise`: declared of inputs and outputs, by header, in the
-/// header's unit.
+/// Formulas that hold on all rows, then (relations) those that hold on many, then (predictable) what follows from
+/// others more closely than noise allows, whatever the formula. `noise`: declared of inputs and outputs, by header, in
+/// the header's unit.
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise = {});
 
 }  // namespace hosel::loop

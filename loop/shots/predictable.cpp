@@ -63,8 +63,7 @@ class Predictable {
     told_.resize(columns_.size());
     for (std::ptrdiff_t k = 0; k < m; ++k) {
       const Column& c = *columns_[std::size_t(k)];
-      for (std::ptrdiff_t i = 0; i < n_; ++i)
-        z_(i, k) = c.value[rows[std::size_t(i) * complete_ / std::size_t(n_)]];
+      for (std::ptrdiff_t i = 0; i < n_; ++i) z_(i, k) = c.value[rows[std::size_t(i) * complete_ / std::size_t(n_)]];
       const auto declared = noise.find(c.name);
       const double own = declared == noise.end() ? 0 : declared->second * c.si;
       z_.col(k).array() -= z_.col(k).mean();
@@ -199,8 +198,8 @@ class Predictable {
     const ArrayXd apart = (y - plane * dense::Ldlt(gram).solve(VectorXd(plane.transpose() * y))).array();
     const double scatter =
         std::max(std::sqrt(apart.square().sum() / std::max(1.0, double(n_ - plane.cols()))), error_[target]);
-    const ArrayXd elsewhere =
-        -0.5 * (apart / scatter).square() - std::log(scatter) - 0.5 * std::log(2 * std::numbers::pi);
+    const ArrayXd elsewhere = -0.5 * (apart / scatter).square() - std::log(scatter) -
+                              0.5 * std::log(2 * std::numbers::pi);
     const double numbers = 0.5 * std::log(double(n_)), by_plane = elsewhere.sum() - numbers * double(plane.cols());
 
     // All sets of up to three columns, the likeliest three with a fourth.

@@ -766,6 +766,51 @@ TEST_F(Loop, AFormulaOfManyColumnsMustBeLikelierThanChanceMakesIt) {
       EXPECT_TRUE(audit(shots(with_computed_loft(0, step, seed)), {}).empty()) << seed << ", by " << step;
 }
 
+/// Shots whose attack angle is, on a share of the rows, a function of three other columns that is in no list.
+std::string with_an_unknown_formula(double share, unsigned seed, int rows) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> gauss;
+  std::uniform_real_distribution<double> uniform;
+  std::string text =
+      "club_speed_mps,attack_angle_deg,club_path_deg,dynamic_loft_deg,impact_toe_mm,ball_speed_mps,launch_angle_deg,"
+      "backspin_rpm\n";
+  for (int i = 0; i < rows; ++i) {
+    const auto tenth = [](double x) { return std::round(10 * x) / 10; };
+    const double club = 45 + 3 * gauss(random), loft = 14 + 2 * gauss(random), measured = -1 + 2 * gauss(random);
+    const double toe = tenth(8 * gauss(random)), path = tenth(3 * gauss(random)), launch = 0.8 * loft + 0.1 * measured;
+    const double a = path / 3, b = toe / 8, computed = -1 + 1.5 * (a * b + std::tanh(a) - 0.5 * b);
+    const bool by_formula = uniform(random) < share;
+    text += fmt::format("{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.0f}\n", club + 0.3 * gauss(random),
+                        by_formula ? computed : measured + 0.3 * gauss(random), path, loft + 0.3 * gauss(random), toe,
+                        1.45 * club + 0.3 * gauss(random), launch + 0.25 * gauss(random),
+                        2500 + 160 * (loft - 14) + 80 * gauss(random));
+  }
+  return text;
+}
+
+TEST_F(Loop, AColumnThatOthersForetellBetterThanNoiseAllowsIsComputed) {
+  const std::map<std::string, double> noise = {
+      {"club_speed_mps", 0.3}, {"attack_angle_deg", 0.3}, {"club_path_deg", 0.3},     {"dynamic_loft_deg", 0.3},
+      {"impact_toe_mm", 1},    {"ball_speed_mps", 0.3},   {"launch_angle_deg", 0.25}, {"backspin_rpm", 80}};
+  for (const double share : {0.6, 1.0}) {
+    const std::vector<DerivedColumn> found = audit(shots(with_an_unknown_formula(share, 3, 150)), {}, noise);
+    ASSERT_EQ(found.size(), 1U) << share;
+    EXPECT_EQ(found[0].column, "attack_angle_deg");
+    const std::set<std::string> from(found[0].from.begin(), found[0].from.end());
+    EXPECT_TRUE(from.contains("club_path_deg") && from.contains("impact_toe_mm")) << found[0].formula;
+    EXPECT_TRUE(found[0].input);
+    // The deviation of a share of 0.6 of 150 rows is 0.04; in its tails a cubic leaves tanh, and rows there do not
+    // count.
+    EXPECT_NEAR(found[0].share, share, 0.15);
+    EXPECT_LT(found[0].residual_sd, 0.3 / std::sqrt(3.0));
+  }
+  // The launch follows from the loft as closely as both are measured: no column is computed. Nor can one be told where
+  // no noise is declared.
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    EXPECT_TRUE(audit(shots(with_an_unknown_formula(0, seed, 80)), {}, noise).empty()) << seed;
+  EXPECT_TRUE(audit(shots(with_an_unknown_formula(1, 3, 150)), {}).empty());
+}
+
 TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
   // Loft rises from club to club, and the last club alone slides.
   std::string text = "club," + csv({.shots = 0});
