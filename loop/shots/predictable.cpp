@@ -16,6 +16,7 @@
 namespace hosel::loop {
 namespace {
 
+constexpr std::size_t kLeastRows = 40;
 constexpr std::size_t kRowsAsked = 400;  // an evenly spread sample shows a function
 constexpr std::size_t kMostColumns = 4;
 constexpr double kBadRows = 0.1;  // so many may depart from what holds on all rows
@@ -55,6 +56,7 @@ class Predictable {
       return std::ranges::any_of(columns_, [&](const Column* c) { return !std::isfinite(c->value[row]); });
     });
     complete_ = rows.size();
+    if (complete_ < kLeastRows) columns_.clear();
     n_ = std::ptrdiff_t(std::min(complete_, kRowsAsked));
     const auto m = std::ptrdiff_t(columns_.size());
     z_.resize(n_, m);
@@ -78,7 +80,7 @@ class Predictable {
   /// The column that is likeliest a function of others.
   std::optional<DerivedColumn> likeliest() {
     const auto m = int(columns_.size());
-    if (n_ < 40 || m < 3) return {};
+    if (m < 3) return {};
     std::vector<Smooth> all;
     for (int y = 0; y < m; ++y)
       if (told_[std::size_t(y)])
