@@ -26,14 +26,6 @@ fs::path offered_file(const fs::path& out, Shelf shelf) {
   return out / "entries" / fmt::format("{}.toml", singular(shelf));
 }
 
-/// A text as TOML, as the resolved case has it: what a file may not hold as it is (DEL, what is no character) escaped.
-std::string toml_text(const std::string& text) {
-  const toml::value<std::string> value(text);
-  std::ostringstream out;
-  out << toml::toml_formatter(value, toml::format_flags{});
-  return out.str();
-}
-
 std::string toml_list(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& t : texts) all.push_back(toml_text(t));
@@ -57,6 +49,13 @@ std::string saw_tables(const Seen& seen, std::string_view table) {
 }
 
 }  // namespace
+
+std::string toml_text(const std::string& text) {
+  const toml::value<std::string> value(text);
+  std::ostringstream out;
+  out << toml::toml_formatter(value, toml::format_flags{});
+  return out.str();
+}
 
 std::string ball_tables(const Ball& body, const models::FeBall& layers) {
   std::string text = fmt::format("\n[ball]\nmass_kg = {}\nradius_mm = {}\ninertia_factor = {}\n", body.mass,

@@ -24,6 +24,9 @@ struct Offer {
   Seen seen = {};
 };
 
+/// A text as TOML, as the resolved case has it: what a file may not hold as it is (DEL, what is no character) escaped.
+std::string toml_text(const std::string& text);
+
 /// Tables of an entry, as the reader takes them. Throws std::invalid_argument for a layer whose law is no polynomial.
 std::string ball_tables(const Ball& body, const models::FeBall& layers);
 std::string face_tables(const FaceCompliance& face);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/offer.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
 #include "models/calibration/reduced_calibration.hpp"
@@ -127,16 +128,16 @@ class CalibrateReducedJob final : public Job {
     const auto [low, high] = std::ranges::minmax(set.lofts);
     const models::VolumetricLaw& v = fit.volume;
     std::string faces;
-    for (const std::string& f : set.faces) faces += fmt::format("{}\"{}\"", faces.empty() ? "" : ", ", f);
+    for (const std::string& f : set.faces) faces += fmt::format("{}{}", faces.empty() ? "" : ", ", toml_text(f));
     return fmt::format(
-        "\n[[reduced]]\nname = \"{}\"\n[reduced.saw]\nspin_loft_deg = [{:g}, {:g}]\n{}[reduced.contact]\n"
+        "\n[[reduced]]\nname = {}\n[reduced.saw]\nspin_loft_deg = [{:g}, {:g}]\n{}[reduced.contact]\n"
         "face_friction = {:.6g}\nrestitution = {:.6g}\nrestitution_slope_s_per_m = {:.6g}\n"
         "tangential_restitution = {:.6g}\nfriction = {:.6g}\nnormal_force_offset = 0\n[reduced.volumetric]\n"
         "stiffness_N_per_m3 = {:.6g}\ndamping_s_per_m = {:.6g}\nfriction = {:.6g}\ntransition_speed_mps = {:.6g}\n"
         "joint_stiffness_N_m_per_rad = {:.6g}\njoint_damping_N_m_s_per_rad = {:.6g}\ncover_thickness_mm = {:.6g}\n"
         "volume_exponent = {:.6g}\n[reduced.hertz_maw]\nmodulus_MPa = {:.6g}\npoisson = {:.6g}\nfriction = {:.6g}\n"
         "damping_s_per_m = {:.6g}\n",
-        set.name, degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces),
+        toml_text(set.name), degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces),
         fit.law.friction, fit.law.restitution, fit.law.restitution_slope, fit.law.tangential_restitution,
         fit.law.friction, v.stiffness, v.damping, v.friction, v.transition_speed, v.joint_stiffness, v.joint_damping,
         1e3 * v.cover_thickness, v.volume_exponent, 1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction,

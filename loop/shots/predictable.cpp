@@ -17,7 +17,8 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kLeastRows = 40;
-constexpr std::size_t kRowsAsked = 400;  // an evenly spread sample shows a function
+constexpr std::ptrdiff_t kRowsPerNumber = 5;  // fewer rows are fitted by chance
+constexpr std::size_t kRowsAsked = 400;       // an evenly spread sample shows a function
 constexpr std::size_t kMostColumns = 4;
 constexpr double kBadRows = 0.1;  // so many may depart from what holds on all rows
 
@@ -250,7 +251,7 @@ class Predictable {
     std::vector<Smooth> all;
     for (const std::vector<int>& from : sets) {
       const MatrixXd a = features(from, 2);
-      if (n_ < 3 * a.cols()) continue;
+      if (n_ < kRowsPerNumber * a.cols()) continue;
       Smooth f{.of = target, .from = from, .degree = 2, .coefficients = {}, .weight = VectorXd::Ones(n_)};
       improve(f, a, y, elsewhere, 10, least);
       f.gain = f.likelihood - numbers * double(a.cols());
@@ -261,7 +262,7 @@ class Predictable {
     for (Smooth& f : all)
       for (const int degree : {2, 3}) {
         const MatrixXd a = features(f.from, degree);
-        if (n_ < 3 * a.cols()) continue;
+        if (n_ < kRowsPerNumber * a.cols()) continue;
         Smooth finer = f;
         finer.degree = degree;
         improve(finer, a, y, elsewhere, 20, least);
