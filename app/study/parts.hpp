@@ -1,8 +1,7 @@
 /// What one variant of a study is minus another, place by place, and its band over another column of the design.
 ///
 ///     parts_over = "row"                                   a column: mean, lowest and highest over its values
-///     parts_from = "as it is"                              one of these; each other is a standard deviation away from
-///     it
+///     parts_from = "as it is"                              one of them; the others are a standard deviation away
 ///     [[part]]     name, of = "a variant", minus = "another", per
 #pragma once
 

@@ -8,20 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "golf/quantities.hpp"
+#include "loop/median.hpp"
 #include "loop/shots/shots.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
 #include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
-namespace {
-
-double median_of(std::vector<double> x) {
-  std::ranges::nth_element(x, x.begin() + std::ptrdiff_t(x.size() / 2));
-  return x[x.size() / 2];
-}
-
-}  // namespace
 
 std::optional<StudyRegression> read_regression(Table root) {
   auto t = root.optional_table("regression");
@@ -80,7 +73,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
   nlohmann::json json = {{"rows", n}, {"of_rows", r.rows}};
   Eigen::MatrixXd X = Eigen::MatrixXd::Ones(Eigen::Index(n), 1 + Eigen::Index(r.on.size()));
   for (std::size_t k = 0; k < r.on.size(); ++k) {
-    const double centre = median_of(r.x[k]);
+    const double centre = loop::median(r.x[k]);
     json["median"][r.on[k]] = centre;
     X.col(Eigen::Index(k) + 1) = Eigen::Map<const Eigen::VectorXd>(r.x[k].data(), X.rows()).array() - centre;
   }

@@ -187,7 +187,8 @@ class Predictable {
     }
   }
 
-  /// What `target` may be computed from: functions that leave it less scatter than noise allows.
+  /// The likeliest functions of other columns that `target` may be, with their evidence where they leave it less
+  /// scatter than noise allows.
   std::vector<Smooth> functions_of_others(int target) {
     const VectorXd y = z_.col(target);
     std::vector<int> others;
