@@ -53,7 +53,7 @@ void Oblique(benchmark::State& state) {
                                .pull = 1e-4 * double(state.range(2))}));
 }
 BENCHMARK(Oblique)
-    ->ArgsProduct({{2, 3, 4, 6}, {94, 160}, {200, 400}})
+    ->ArgsProduct({{2, 3, 4, 6}, {50, 94, 160}, {200, 400, 800, 1200}})
     ->ArgNames({"sector", "approach", "pull"})
     ->Iterations(1)
     ->Unit(benchmark::kSecond);

@@ -17,7 +17,9 @@ struct TractionField::Station {
 
 namespace {
 
-constexpr int kBoundRounds = 20, kFine = 3;  // of friction within its bound; panels of the quadrature
+constexpr int kBoundRounds = 20;          // of friction within its bound
+constexpr int kAround = 32, kAcross = 5;  // points of the quadrature, the latter within the inner ellipse and outside
+constexpr double kLargestInner = 0.99;    // of a patch that sticks to its rim
 
 /// All that touches, mirror images and turns about the axis included.
 struct Touching {
@@ -59,10 +61,25 @@ struct Principal {
   Eigen::Matrix2d with(const Eigen::Vector2d& other) const { return axes * other.asDiagonal() * axes.transpose(); }
 };
 
+/// r at the rim of the inner ellipse: the largest c with |a| <= bound, where a at the rim follows from the mean ratio
+/// of friction and pressure, f = a + b c^3, and from the mean weighed by r^2, m = a + b c^5.
+double stuck(const Eigen::Vector2d& f, const Eigen::Vector2d& m, double bound) {
+  const auto within = [&](double c) { return (m - f * c * c).norm() <= bound * (1 - c * c); };
+  double least = 0, most = kLargestInner;
+  if (within(most)) return most;
+  for (int i = 0; i < 40; ++i) {
+    const double c = 0.5 * (least + most);
+    (within(c) ? least : most) = c;
+  }
+  return least;
+}
+
 }  // namespace
 
-TractionField::Quadratic TractionField::monomials(const Vec2& xi) {
-  return (Quadratic() << 1, xi.x(), xi.y(), xi.x() * xi.x(), xi.x() * xi.y(), xi.y() * xi.y()).finished();
+TractionField::Four TractionField::shapes(const Vec2& xi) const {
+  // Of both ellipses over the pressure: sqrt(c^2 - r^2) / sqrt(1 - r^2) within the inner one.
+  const double r2 = xi.squaredNorm(), within = inner_ * inner_ - r2;
+  return {1, within > 0 ? std::sqrt(within / (1 - r2)) : 0, xi.x(), xi.y()};
 }
 
 TractionField::Ellipse TractionField::ellipse(const Vec2& centre, const Mat2& shape) {
@@ -75,21 +92,27 @@ TractionField::Ellipse TractionField::ellipse(const Vec2& centre, const Mat2& sh
 }
 
 template <class Visit>
-void TractionField::over(const Ellipse& e, int panels, Visit&& visit) const {
-  // With u = sqrt(1 - r^2), sqrt(1 - r^2) r dr = -u^2 du: one panel integrates polynomials exactly.
-  const int around = 16 * panels;
-  const double jacobian = std::abs(e.axes.determinant());
-  for (int k = 0; k < panels; ++k)
-    for (const auto& [x, w] : mesh::gauss(5)) {
-      const double u = (k + 0.5 * (1 + x)) / panels, r = std::sqrt(1 - u * u);
-      for (int i = 0; i < around; ++i) {
-        const double phi = 2 * kPi * (i + 0.5) / around;
-        const Vec2 at = e.centre + e.axes * Vec2(r * std::cos(phi), r * std::sin(phi));
-        // Of the surface against the plane; a patch does not reach round the ball.
-        const double tilt = std::sqrt(std::max(0.01, 1 - at.squaredNorm() / (radius_ * radius_)));
-        visit(at, 0.5 * w / panels * u * u * jacobian * 2 * kPi / around / tilt);
-      }
+void TractionField::over(const Ellipse& e, double inner, Visit&& visit) const {
+  // With u = sqrt(1 - r^2), sqrt(1 - r^2) r dr = -u^2 du: outside, polynomials are exact. Within, u^2 = b^2 + (c s)^2,
+  // b = sqrt(1 - c^2): there c s is sqrt(c^2 - r^2).
+  const double jacobian = std::abs(e.axes.determinant()), b = std::sqrt(1 - inner * inner);
+  const auto ring = [&](double u, double weight) {
+    const double r = std::sqrt(std::max(0.0, 1 - u * u));
+    for (int i = 0; i < kAround; ++i) {
+      const double phi = 2 * kPi * (i + 0.5) / kAround;
+      const Vec2 at = e.centre + e.axes * Vec2(r * std::cos(phi), r * std::sin(phi));
+      // Of the surface against the plane; a patch does not reach round the ball.
+      const double tilt = std::sqrt(std::max(0.01, 1 - at.squaredNorm() / (radius_ * radius_)));
+      visit(at, weight * jacobian * 2 * kPi / kAround / tilt);
     }
+  };
+  for (const auto& [x, w] : mesh::gauss(kAcross)) {
+    const double t = 0.5 * (1 + x);
+    ring(b * t, 0.5 * w * b * (b * t) * (b * t));
+    if (inner == 0) continue;
+    const double u = std::hypot(b, inner * t);
+    ring(u, 0.5 * w * inner * inner * t * u);
+  }
 }
 
 TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2& variance) const {
@@ -102,7 +125,7 @@ TractionField::Ellipse TractionField::with_moments(const Vec2& mean, const Mat2&
     double sum = 0;
     Vec2 first = Vec2::Zero();
     Mat2 second = Mat2::Zero();
-    over(e, 1, [&](const Vec2& x, double w) {
+    over(e, 0, [&](const Vec2& x, double w) {
       sum += w;
       first += w * (x - mean);
       second += w * (x - mean) * (x - mean).transpose();
@@ -153,7 +176,7 @@ void TractionField::fit_pressure(const std::vector<Station>& stations) {
   variance = own.with(own.values.cwiseMax(footprint / (5 * kPi)));
   patch_ = with_moments(mean, variance);
   double unit = 0;
-  over(patch_, 1, [&](const Vec2&, double w) { unit += w; });
+  over(patch_, 0, [&](const Vec2&, double w) { unit += w; });
   peak_ = force / unit;
 
   Mat3 normal = Mat3::Zero(), right = Mat3::Zero();
@@ -177,28 +200,37 @@ void TractionField::fit_friction(const std::vector<Station>& stations) {
   along_.col(0) = (plane_.col(0) - plane_.col(0).dot(inwards) * inwards).normalized();
   along_.col(1) = inwards.cross(along_.col(0));
 
-  Eigen::Matrix<double, 6, 6> shapes = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 2> target = Eigen::Matrix<double, 6, 2>::Zero();
+  // Moments of 1, r^2 and xi.
+  const auto tested = [](const Vec2& xi) { return Four(1, xi.squaredNorm(), xi.x(), xi.y()); };
+  using Moments = Eigen::Matrix<double, 4, 2>;
+  Moments target = Moments::Zero();
   for (const Station& s : stations)
-    target += s.area * monomials(patch_.unit(s.x)) * (along_.transpose() * s.friction).transpose();
-  over(patch_, kFine, [&](const Vec2& x, double w) {
-    const Quadratic m = monomials(patch_.unit(x));
-    shapes += w * peak_ * m * m.transpose();
+    target += s.area * tested(patch_.unit(s.x)) * (along_.transpose() * s.friction).transpose();
+  Four pressure = Four::Zero();
+  over(patch_, 0, [&](const Vec2& x, double w) { pressure += w * peak_ * tested(patch_.unit(x)); });
+  inner_ = stuck(target.row(0).transpose() / pressure[0], target.row(1).transpose() / pressure[1], bound_);
+
+  struct Point {
+    double pressure;
+    Four shapes, tested;
+  };
+  std::vector<Point> points;
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+  over(patch_, inner_, [&](const Vec2& x, double w) {
+    const Vec2 xi = patch_.unit(x);
+    points.push_back({w * peak_, shapes(xi), tested(xi)});
+    matrix += points.back().pressure * points.back().tested * points.back().shapes.transpose();
   });
   // Where the bound cuts the ratio, the rest of the patch takes over its share.
-  const dense::Ldlt factors(shapes);
   for (int i = 0; i < kBoundRounds; ++i) {
-    Eigen::Matrix<double, 6, 2> off = target;
-    over(patch_, kFine, [&](const Vec2& x, double w) {
-      const Vec2 xi = patch_.unit(x);
-      off -= w * peak_ * monomials(xi) * ratio(xi).transpose();
-    });
-    ratio_ += factors.solve(Eigen::MatrixXd(off)).transpose();
+    Moments off = target;
+    for (const Point& p : points) off -= p.pressure * p.tested * ratio(p.shapes).transpose();
+    ratio_ += dense::minimum_norm(matrix, Eigen::MatrixXd(off)).transpose();
   }
 }
 
-TractionField::Vec2 TractionField::ratio(const Vec2& xi) const {
-  const Vec2 r = ratio_ * monomials(xi);
+TractionField::Vec2 TractionField::ratio(const Four& of_shapes) const {
+  const Vec2 r = ratio_ * of_shapes;
   const double size = r.norm();
   return size > bound_ ? Vec2(bound_ / size * r) : r;
 }
@@ -212,7 +244,7 @@ TractionField::Value TractionField::at(const Vec3& reference) const {
   const double rest = 1 - xi.squaredNorm();
   if (!(rest > 0)) return out;
   out.pressure = peak_ * std::sqrt(rest);
-  if (bound_ > 0) out.tangential = along_ * (out.pressure * ratio(xi));
+  if (bound_ > 0) out.tangential = along_ * (out.pressure * ratio(shapes(xi)));
   out.traction = out.pressure * (push_ * Vec3(1, xi.x(), xi.y())) + out.tangential;
   return out;
 }

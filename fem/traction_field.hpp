@@ -16,8 +16,10 @@ namespace hosel::fem {
 /// - Pressure: p0 sqrt(1 - r^2) on an ellipse, r = 1 at its rim (Hertz). The six moments of degree 0 to 2 give p0,
 /// centre
 ///   and axes.
-/// - Friction: the pressure times a ratio, a vector polynomial of degree 2 cut where it exceeds the largest ratio of a
-///   station. Moments of degree 0 to 2 give it.
+/// - Friction: two such ellipses, the patch and one of the same shape within it where points stick, each with a vector
+///   [@cattaneo-mindlin], and the pressure times a linear ratio. Friction over pressure is cut where it exceeds the
+///   largest ratio of a station. The inner ellipse is the largest with which the rim does not exceed it. Moments of
+///   degree 0 and 1 and the polar one of degree 2 give the rest.
 ///
 /// Coordinates are those of the solid before the motion, in the plane across the direction to the centre of pressure;
 /// values are per reference area, as the stations' are. The equations stand in docs/theory.md, Contact.
@@ -46,17 +48,18 @@ class TractionField {
     Vec2 unit(const Vec2& x) const { return inverse * (x - centre); }
   };
   struct Station;
-  using Quadratic = Eigen::Matrix<double, 6, 1>;
+  using Four = Eigen::Matrix<double, 4, 1>;
 
-  static Quadratic monomials(const Vec2& xi);
+  Four shapes(const Vec2& xi) const;
   static Ellipse ellipse(const Vec2& centre, const Mat2& shape);
-  /// Calls visit(x, weight) at points of a quadrature of sqrt(1 - r^2) f over the ellipse, per reference area.
+  /// Calls visit(x, weight) at points of a quadrature of sqrt(1 - r^2) f over the ellipse, per reference area. f is
+  /// smooth, but for what bends at r = `inner`.
   template <class Visit>
-  void over(const Ellipse& e, int panels, Visit&& visit) const;
+  void over(const Ellipse& e, double inner, Visit&& visit) const;
   Ellipse with_moments(const Vec2& mean, const Mat2& variance) const;
   void fit_pressure(const std::vector<Station>& stations);
   void fit_friction(const std::vector<Station>& stations);
-  Vec2 ratio(const Vec2& xi) const;
+  Vec2 ratio(const Four& of_shapes) const;
 
   Vec3 origin_;
   double radius_ = 0;
@@ -67,7 +70,8 @@ class TractionField {
   double peak_ = 0;
   Eigen::Matrix3d push_ = Mat3::Zero();  // direction of the pressure: columns of 1, xi
   Eigen::Matrix<double, 3, 2> along_;    // tangential directions, global
-  Eigen::Matrix<double, 2, 6> ratio_ = Eigen::Matrix<double, 2, 6>::Zero();  // friction over pressure, of monomials
+  double inner_ = 0;                     // r at the rim of the inner ellipse
+  Eigen::Matrix<double, 2, 4> ratio_ = Eigen::Matrix<double, 2, 4>::Zero();  // friction over pressure, of shapes
   double bound_ = 0;                                                         // largest ratio of a station
 };
 

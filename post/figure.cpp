@@ -117,6 +117,14 @@ std::string title(std::string_view whole, int width) {
   return out;
 }
 
+/// Between marks of an axis so that at most six stand on it: their numbers do not touch in a narrow map.
+double between_marks(double range) {
+  const double least = range / 5, ten = std::pow(10, std::floor(std::log10(least)));
+  for (const double step : {1, 2, 5})
+    if (step * ten >= least) return step * ten;
+  return 10 * ten;
+}
+
 bool shows_something(const Panel& p) {
   return !p.map.empty() || std::ranges::any_of(p.series, [](const Series& s) { return !s.x.empty(); });
 }
@@ -167,6 +175,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
                         : "0 '#ffffd9', 0.3 '#c7e9b4', 0.65 '#7fcdbb', 1 '#41a0c4'",
         p.map_equal_axes && !alone ? "ratio -1" : "noratio", shown(p.map_label), low, high, p.map_x.front(),
         p.map_x.back(), p.map_y.front(), p.map_y.back());
+    const double range = p.map_x.back() - p.map_x.front();
+    if (range > 0) s += fmt::format("set xtics {:.10g}\n", between_marks(range));
     if (p.map_contours)
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
@@ -193,7 +203,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     }
     if (p.map_contours) s += ", $" + name + " with labels boxed nosurface notitle";
     return {data, s + "\nunset contour\nunset pm3d\nunset lmargin\nunset rmargin\nunset tmargin\nunset bmargin\nset "
-                      "size noratio\nset autoscale xy\n"};
+                      "xtics autofreq\nset size noratio\nset autoscale xy\n"};
   }
   std::string plot;
   bool marks = false;

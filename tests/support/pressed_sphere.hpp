@@ -80,7 +80,8 @@ struct Pressed {
 };
 
 /// Against the exact pressure, and for friction against q(r) = mu (p(r) - c/a p(r a/c)), c/a = (1 - Q / mu P)^(1/3)
-/// (Cattaneo and Mindlin; with the pressure of the finite sphere, Jaeger and Ciavarella).
+/// (Cattaneo and Mindlin; with the pressure of the finite sphere, Jaeger and Ciavarella). The patch rolls over the
+/// sphere by a tenth of its radius at most where it is pulled; theory stands about the patch's own centre.
 inline Pressed press(const PressedSphere& o) {
   constexpr double R = 0.02, E = 100e6;
   const mesh::Meridian meridian = mesh::sphere_meridian({R}, o.mesh);
@@ -163,13 +164,15 @@ inline Pressed press(const PressedSphere& o) {
   const fem::TractionField field(*scene->ball, points);
 
   Pressed out;
-  double normal = 0, along = 0;
+  double normal = 0, along = 0, middle = 0;
   Vec3 turning = Vec3::Zero();  // about the centre, of what the plane of symmetry leaves
   for (const fem::ContactPoint& p : points) {
     normal += p.area * p.pressure;
     along += p.area * p.traction.y();
+    middle += p.area * p.pressure * p.reference.y();
     turning += p.area * p.reference.cross(p.traction);
   }
+  middle = axial ? 0 : middle / normal;
   const SqueezedPressure exact(o.nu, normal / (E * R * R));
   out.radius = exact.radius();
   for (const auto& edge : meridian.surface) {
@@ -186,7 +189,7 @@ inline Pressed press(const PressedSphere& o) {
     Vec3 friction;
   };
   const auto expected = [&](const Vec3& x) -> Expected {
-    const double r = std::hypot(x.y(), x.z()) / R, p = E * exact(r);
+    const double r = std::hypot(x.y() - middle, x.z()) / R, p = E * exact(r);
     return {p, o.friction * (p - (stick > 0 ? stick * E * exact(r / stick) : 0)) * direction};
   };
   struct Sum {
