@@ -27,6 +27,11 @@ speed = model.launch(impact_toe_mm=grid[0], impact_high_mm=grid[1])["ball_speed_
 best = np.unravel_index(speed.argmax(), speed.shape)
 print(f"fastest ball {grid[0][best]:.0f} mm towards the toe, {grid[1][best]:.0f} mm up the face")
 
+# %% A study: any key of the case, on a grid of two axes, kept on disk and resumed if it is killed.
+study = hosel.Study("driver-toe", set=['models=["rigid-eccentric"]'], outputs=["models.rigid-eccentric.ball_speed_mps"])
+found = study.grid(out / "heads", {"head.mass_kg": [0.19, 0.2, 0.21], "delivery.impact_toe_mm": [0, 15]}, force=True)
+print(found["models.rigid-eccentric.ball_speed_mps"])
+
 # %% The same blow with a finite-element ball, coarse enough for a second of computing.
 run = hosel.run("driver-toe", out / "toe", force=True,
                 set=['models=["fe-free-body"]', "accuracy=look", "output.vtk=false"])

@@ -59,6 +59,63 @@ class Launches(unittest.TestCase):
             hosel.check("driver-toe", set=["head.mass_kg=200"])
 
 
+class Studies(unittest.TestCase):
+    TOE, SPEED = "delivery.impact_toe_mm", "delivery.club_speed_mph"
+    BALL, SIDE = "models.rigid-eccentric.ball_speed_mps", "models.rigid-eccentric.sidespin_rpm"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = Path(folder.name) / "out"
+        self.study = hosel.Study("driver-toe", set=FAST, outputs=[self.BALL, self.SIDE])
+        self.model = hosel.Model("driver-toe", "rigid-eccentric")
+
+    def compare(self, found, name, launch):
+        self.assertGreater(np.ptp(found.array[name]), 1)  # the inputs did something
+        np.testing.assert_allclose(found.array[name], launch[name.split(".")[-1]], rtol=1e-9)
+
+    def test_a_grid_is_each_blow_by_itself(self):
+        toe, speed = [-20.0, 0.0, 15.0], [95.0, 105.0]
+        found = self.study.grid(self.out, {self.TOE: toe, self.SPEED: speed})
+        self.assertEqual(found.dims, (self.TOE, self.SPEED))
+        self.assertEqual(found.outputs, [self.BALL, self.SIDE])
+        self.assertTrue((found.errors == "").all())
+        launch = self.model.launch(impact_toe_mm=np.array(toe)[:, None], club_speed_mph=speed)
+        for name in found.outputs:
+            self.compare(found, name, launch)
+            np.testing.assert_array_equal(np.asarray(found[name]), found.array[name])
+        with self.assertRaisesRegex(hosel.InputError, "finished run"):
+            self.study.grid(self.out, {self.TOE: toe})
+        with self.assertRaisesRegex(KeyError, "sidespin"):
+            found["sidespin"]
+
+    def test_rows_and_a_sample_have_their_inputs_beside_them(self):
+        toe, speed = [-20.0, 5.0, 15.0], [90.0, 100.0, 110.5]
+        found = self.study.rows(self.out, {self.TOE: toe, self.SPEED: speed})
+        self.compare(found, self.SIDE, self.model.launch(impact_toe_mm=toe, club_speed_mph=speed))
+        np.testing.assert_array_equal(found.coords[self.SPEED], speed)
+        found = self.study.sample(self.out.with_name("sample"), {self.TOE: (-20, 20)}, points=9, seed=3)
+        self.assertEqual(found.array.shape, (9,))
+        self.compare(found, self.SIDE, self.model.launch(impact_toe_mm=found.coords[self.TOE]))
+
+    def test_axes_are_labelled_where_xarray_is(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("no xarray (python3-xarray)")
+        found = self.study.grid(self.out, {self.TOE: [-20.0, 20.0], self.SPEED: [95.0, 105.0, 115.0]})[self.SIDE]
+        self.assertIsInstance(found, xarray.DataArray)
+        self.assertGreater(float(found.sel({self.TOE: -20, self.SPEED: 105})), 100)
+        self.assertLess(float(found.sel({self.TOE: 20, self.SPEED: 105})), -100)
+
+    def test_what_cannot_be_is_said(self):
+        for columns, words in [({"delivery.impact_to_mm": [1.0]}, "did you mean 'impact_toe_mm'"),
+                               ({self.TOE: [1.0, 2.0], self.SPEED: [90.0]}, "one length"),
+                               ({self.TOE: [1.0], "title": ['a "b",\n\\c']}, "rows.csv")]:
+            with self.assertRaisesRegex(ValueError, words):
+                self.study.rows(self.out, columns)
+
+
 class Results(unittest.TestCase):
     def test_a_run_is_read_back(self):
         with tempfile.TemporaryDirectory() as folder:
