@@ -106,6 +106,7 @@ void add(std::vector<AcceptedKey>& keys, const std::string& kind, const std::vec
     it->kinds.insert(kind);
     it->types.insert(d.type);
     it->ranges.insert(range_of(d));
+    if (!d.decided_by.empty()) it->decided_by.emplace(d.decided_by);
     if (d.standard) it->standards.insert(*d.standard);
     it->optional = it->optional || d.optional;
     it->required = it->required || (!d.standard && !d.optional);
@@ -119,6 +120,9 @@ std::string heading(const std::string& table) {
   return table.ends_with("[]") ? fmt::format("[[{}]]", plain) : fmt::format("[{}]", plain);
 }
 
+/// "by head.name".
+std::string decided(const AcceptedKey& k) { return fmt::format("by {}", fmt::join(k.decided_by, " or ")); }
+
 /// "number, 0.01 to 5 kg".
 std::string value_of(const AcceptedKey& k) {
   std::string type = *k.types.begin();
@@ -128,18 +132,19 @@ std::string value_of(const AcceptedKey& k) {
     // "text" as well: one reader only passes over the key.
     type = lists                                                 ? "list of numbers"
            : choice != k.types.end() && k.types.contains("text") ? *choice
-                                                                 : "depends on the case";
+                                                                 : fmt::format("{}", fmt::join(k.types, " or "));
   }
   if (type.starts_with("one of ") && std::ranges::count(type, ',') > 7) return "a name (`hosel list`)";
-  if (k.ranges.size() > 1) return type + ", range depends on the case";
+  if (k.ranges.size() > 2 && !k.decided_by.empty()) return type + ", range " + decided(k);
+  if (k.ranges.size() > 1) return fmt::format("{}, {}", type, fmt::join(k.ranges, " or "));
   const std::string& range = *k.ranges.begin();
   return range.empty() ? type : fmt::format("{}, {}", type, range);
 }
 
 std::string default_of(const AcceptedKey& k) {
   if (k.standards.empty()) return k.optional ? "-" : "required";
-  if (k.standards.size() > 1) return "depends on the case";
-  const std::string standard = k.standards.begin()->empty() ? "empty" : *k.standards.begin();
+  std::string standard = k.standards.begin()->empty() ? "empty" : *k.standards.begin();
+  if (k.standards.size() > 1) standard = k.decided_by.empty() ? std::string(kUndecided) : decided(k);
   return k.required ? "required, or " + standard : standard;
 }
 
@@ -229,7 +234,8 @@ std::string keys_markdown(const std::vector<AcceptedKey>& keys) {
 Written by `scripts/write-reference` from what the reader declares where it reads (`hosel keys` prints the same,
 `hosel keys KIND` or `hosel keys TABLE` a part of it). A key with a unit at its end may carry any other unit of the same
 dimension: `club_speed_mps`, `club_speed_mph`. What is not listed is an error. A list of tables `[[table]]` may stand
-several times. Default `-`: the key may be left out, and then says nothing. `Read in`: the kinds of the shipped cases that
+several times. Default `-`: the key may be left out, and then says nothing. Default `by KEY`: what that key says decides;
+`hosel check CASE` prints it for a case. `Read in`: the kinds of the shipped cases that
 read the table; a case of another kind that asks the same model reads it as well.
 )";
   for (const Section& s : by_table(keys)) {

@@ -17,12 +17,13 @@ struct AcceptedKey {
   std::string table;  ///< dotted, `[]` behind a list of tables; empty: the top of the file
   std::string name;   ///< with its unit
   std::string meaning;
-  std::set<std::string> kinds;      ///< of the shipped cases that read it
-  std::set<std::string> types;      ///< "number", "one of a, b"
-  std::set<std::string> ranges;     ///< "0.01 to 5 kg"; empty where a number says nothing more
-  std::set<std::string> standards;  ///< defaults; empty: the key is required
-  bool required = false;            ///< in some case, without a default
-  bool optional = false;            ///< read in some case only where it is there
+  std::set<std::string> kinds;       ///< of the shipped cases that read it
+  std::set<std::string> types;       ///< "number", "one of a, b"
+  std::set<std::string> ranges;      ///< "0.01 to 5 kg"; empty where a number says nothing more
+  std::set<std::string> standards;   ///< defaults; empty: the key is required
+  std::set<std::string> decided_by;  ///< keys that decide default or range, where these differ from case to case
+  bool required = false;             ///< in some case, without a default
+  bool optional = false;             ///< read in some case only where it is there
 };
 
 /// The shipped cases, then variants of them that say what none of them says, each as far as it could be read: among
@@ -33,6 +34,8 @@ std::vector<AcceptedKey> accepted_keys();
 
 /// As text for a terminal; of one kind or one table alone where `of` names it. Throws InputError with the nearest name.
 std::string keys_text(const std::vector<AcceptedKey>& keys, std::string_view of);
+/// What stands for defaults that differ from case to case where no declaration says by which key.
+inline constexpr std::string_view kUndecided = "NOT SAID";
 /// docs/reference.md.
 std::string keys_markdown(const std::vector<AcceptedKey>& keys);
 

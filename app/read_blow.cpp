@@ -50,6 +50,7 @@ Head read_head(Table table, bool whole) {
 
 Head read_head_values(Table table, bool whole, const std::optional<Head>& named) {
   Head head;
+  table.decided_by("head.name");
   head.mass = table.quantity({"mass", "of the clubhead; inf is a head that no blow moves"}, "kg", limits::head_mass,
                              named ? std::optional(named->mass) : std::nullopt);
   head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
@@ -106,6 +107,7 @@ Delivery read_delivery(Table table, double loft) {
   d.attack_angle = table.quantity({"attack_angle", "direction of the head's velocity, up"}, "deg", limits::angle, 0);
   d.club_path =
       table.quantity({"club_path", "direction of the head's velocity, right of the target"}, "deg", limits::angle, 0);
+  table.decided_by("head.name");
   d.dynamic_loft =
       table.quantity({"dynamic_loft", "tilt of the face's normal at its centre, up"}, "deg", limits::angle, loft);
   d.face_angle = table.quantity({"face_angle", "direction of the face's normal at its centre, right of the target"},
@@ -119,6 +121,7 @@ Delivery read_delivery(Table table, double loft) {
 ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard) {
   const auto value = [&](double ContactLaw::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   ContactLaw law;
+  table.decided_by("contact.name or ball.model");
   law.restitution = table.number({"restitution", "normal coefficient of restitution at 0 m/s approach speed"},
                                  Range{0, 1}.because("above 1 the blow creates energy"),
                                  value(&ContactLaw::restitution));

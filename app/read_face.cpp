@@ -9,6 +9,7 @@ FaceCompliance read_compliance(Table table, const std::optional<FaceCompliance>&
     return named ? std::optional((*named).*value) : std::nullopt;
   };
   FaceCompliance face;
+  table.decided_by("face.name");
   face.mass = table.quantity({"effective_mass", "of the face's mode, at its centre; part of the head's mass"}, "g",
                              {1e-4, 0.1}, standard(&FaceCompliance::mass));
   face.stiffness = table.quantity({"stiffness", "at the centre of the face"}, "N_per_m", {1e5, 1e12},
@@ -39,6 +40,7 @@ std::optional<FaceCompliance> read_club_face(Table root) {
   if (auto head = root.optional_table("head"); head && head->has("name"))
     if (const std::string face = library_head(*named_entry(*head, "name", Shelf::heads)).face; !face.empty()) {
       Table t = root.default_table("face");
+      t.decided_by("head.name");
       t.text({"name", "a face of the library (`hosel list`)"}, face);
       return read_compliance(t, library_face(face).face);
     }

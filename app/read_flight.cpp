@@ -74,6 +74,7 @@ models::Air read_air(Table table) {
   w.humidity = table.quantity({"humidity", "relative humidity of the air"}, "pct", Range::fraction(), 0.5);
   const double altitude =
       table.quantity({"altitude", "above sea level; gives the standard pressure"}, "m", {-500, 9000}, 0.0);
+  table.decided_by("altitude_m");
   w.pressure = table.quantity({"pressure", "of the air; default: the standard atmosphere's at the altitude"}, "hPa",
                               {2e4, 1.2e5}, models::standard_pressure(altitude));
   return models::air(w);

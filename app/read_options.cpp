@@ -29,6 +29,7 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
   const bool stated = named && named->face_friction;
   Table contact = stated ? root.default_table("contact") : root.table("contact");
   friction = {};
+  contact.decided_by("contact.name or ball.model");
   friction.coefficient =
       contact.number({"face_friction", "Coulomb coefficient between the finite-element ball and the face"}, {0, 5},
                      stated ? named->face_friction : std::nullopt);
@@ -92,6 +93,7 @@ models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
 }  // namespace
 
 void read_ball_mesh(Table& mesh, mesh::MeridianOptions& m) {
+  mesh.decided_by("accuracy");
   m.sector = int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, m.sector));
   m.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, m.rings));
   m.pole =
@@ -100,6 +102,7 @@ void read_ball_mesh(Table& mesh, mesh::MeridianOptions& m) {
 }
 
 void read_steps(Table& time, models::FeImpactOptions& o) {
+  time.decided_by("accuracy");
   o.steps_per_contact = int(time.integer({"steps_per_contact", "time steps in a contact of Hertz's duration"}, 10,
                                          100000, o.steps_per_contact));
   o.newton_relative = time.number({"newton_relative", "residual at which Newton stops, over the size of the forces"},
@@ -146,6 +149,7 @@ models::VolumetricLaw read_volumetric_law(Table table, const std::optional<model
   const Range positive = Range::positive(), some = Range::non_negative();
   const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   Law law;
+  table.decided_by("published or contact.name or ball.model");
   law.stiffness = table.quantity({"stiffness", "volumetric stiffness: normal force per overlapping volume"}, "N_per_m3",
                                  positive, value(&Law::stiffness));
   law.damping =
@@ -169,6 +173,7 @@ models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::
   using Law = models::HertzMawLaw;
   const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   Law law;
+  table.decided_by("contact.name or ball.model");
   law.modulus =
       table.quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(), value(&Law::modulus));
   law.poisson = table.number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, value(&Law::poisson));

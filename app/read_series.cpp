@@ -112,6 +112,7 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     channel.arc_length = strain ? clamp : tip;
     if (sensors && sensors->has(name)) {
       Table place = sensors->table({name, "", "<channel>"});
+      place.decided_by("channel");
       channel.arc_length = place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(),
                                           channel.arc_length);
       if (strain)

@@ -188,6 +188,7 @@ Shaft read_shaft(Table table) {
 HoselPlace read_hosel(Table table, const std::optional<HoselPlace>& standard) {
   const auto value = [&](double HoselPlace::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   HoselPlace at;
+  table.decided_by("head.name");
   at.position = table.vector({"position", "the hosel (where the shaft's axis enters the head) in the face frame"}, "mm",
                              limits::head_place, standard ? std::optional(standard->position) : std::nullopt);
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.

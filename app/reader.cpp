@@ -244,6 +244,7 @@ void Table::declare(Key key, Declared what) {
   what.shown = dotted(shown_, key.shown.empty() ? key.name : key.shown);
   if (!what.unit.empty()) what.shown += fmt::format("_{}", what.unit);
   what.meaning = key.meaning;
+  what.decided_by = decided_by_;
   what.optional = !what.standard && document_->looked_for.contains(dotted(shown_, key.name));
   document_->declared.push_back(std::move(what));
 }

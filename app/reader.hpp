@@ -70,6 +70,7 @@ struct Declared {
   std::string_view unit = {};                ///< suffix of `shown`
   Range range = {};                          ///< of a number, SI
   double si = 1;                             ///< one of the case's unit in SI
+  std::string_view decided_by = {};          ///< the key that decides default or range (Table::decided_by)
   bool optional = false;                     ///< without a default, but asked for only where it is there
   std::size_t size = 0;                      ///< of a list; 0: a single number
   bool whole = false;                        ///< an integer
@@ -149,6 +150,9 @@ class Table {
   /// All keys as they stand, for tables whose keys are data (noise per channel); each must then be read.
   std::vector<std::string> keys() const;
 
+  /// Which key decides the defaults and ranges that differ from case to case, of what is read from here on: a literal.
+  void decided_by(std::string_view key) { decided_by_ = key; }
+
   /// What `hosel check` says of this table beside its keys, a line or several.
   void tell(std::string_view text);
 
@@ -166,6 +170,7 @@ class Table {
   void* node_;         // toml::table*, kept out of this header for compile time
   std::string path_;   // dotted, for messages
   std::string shown_;  // dotted, for the reference: lists as `layers[]`
+  std::string_view decided_by_;
 };
 
 /// One `case.toml`, or a case directory that contains it.

@@ -260,6 +260,7 @@ class CalibrateBallJob final : public Job {
                                                                            {"face-stiffness", What::face_stiffness},
                                                                            {"impact-high", What::impact_high},
                                                                            {"head-mass", What::head_mass}})};
+    t.decided_by("ball.layers");
     if (p.what == What::layer)
       p.layer = std::size_t(t.integer({"layer", "counted from the inside, from 1"}, 1,
                                       long(problem_.options.ball.layers.size()))) -

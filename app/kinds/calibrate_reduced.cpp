@@ -99,6 +99,7 @@ class CalibrateReducedJob final : public Job {
     set.lofts = t.quantities({"lofts", "of the grid"}, "deg", 0, limits::angle);
     const auto toes = t.quantities({"impact_toes", "of the strikes off centre, each with its height"}, "mm", 0,
                                    limits::impact_place, std::vector<double>{});
+    t.decided_by("impact_toes_mm");
     const auto highs = t.quantities({"impact_highs", "of the same strikes"}, "mm", toes.size(), limits::impact_place,
                                     std::vector<double>(toes.size(), 0.0));
     if (speeds.empty() || set.lofts.empty()) t.fail("lofts", "a grid needs at least one speed and one loft");

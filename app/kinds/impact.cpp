@@ -155,6 +155,7 @@ class ImpactJob final : public Job {
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
     if (std::ranges::none_of(side.models, [](const Entry& e) { return e.fe() != nullptr; })) return side;
     const auto coarser = options.fe.coarser();
+    root.decided_by("accuracy");
     if (!root.flag({"error_estimate", "run a coarser companion too: every number of a launch gets its numerical error"},
                    coarser.has_value() && root.has("accuracy")))
       return side;

@@ -156,6 +156,7 @@ class LoopJob final : public Job {
     std::optional<Head> named;
     if (const auto name = named_entry(table, "name", Shelf::heads)) named = library_head(*name).head;
     Head head;
+    table.decided_by("head.name");
     head.mass = case_.head_mass_declared ? table.quantity({"mass", "of the clubhead"}, "kg", Range::positive(),
                                                           named ? std::optional(named->mass) : std::nullopt)
                                          : 0.2;

@@ -139,6 +139,7 @@ class TuneJob final : public Job {
     for (const auto& p : models::parameters()) parameters.emplace_back(p.name);
     for (Table t : root.tables("parameters")) {
       Free f{models::find_parameter(t.choice({"name", "the parameter that is tuned"}, parameters)), 0, {}};
+      t.decided_by("name");
       const Range range{f.parameter->low, f.parameter->high};
       const std::string unit(f.parameter->unit);
       const double standard = f.parameter->get(options_, blow_);

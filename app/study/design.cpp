@@ -261,6 +261,7 @@ Design read_design(Table root) {
     if (t.has("keys")) keys = t.texts({"keys", "of the case, all set to the axis' value"});
     else keys = {t.text({"key", "of the case, with its unit"})};
     if (keys.empty()) t.fail("keys", "name at least one key");
+    t.decided_by("key");
     const std::string name = t.text({"name", "of the axis in tables and figures"}, keys.front());
     for (const std::string& key : keys) {
       for (const auto& [other, table] : swept)

@@ -54,6 +54,8 @@ TEST(Keys, EveryKeyHasAMeaning) {
 TEST(Keys, ReferenceIsWhatTheReaderSays) {
   const std::string page = keys_markdown(accepted_keys());
   EXPECT_NE(page.find("| `club_speed_mps` |"), std::string::npos);
+  EXPECT_NE(page.find("by head.name |"), std::string::npos);
+  EXPECT_EQ(page.find(kUndecided), std::string::npos) << "say by Table::decided_by what decides this default";
   EXPECT_EQ(test::content(fs::path(HOSEL_SOURCE_DIR) / "docs" / "reference.md"), page) << "run scripts/write-reference";
 }
 
