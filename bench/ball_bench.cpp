@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
@@ -148,6 +149,118 @@ void AccuracyLevels(benchmark::State& state) {
   }
 }
 BENCHMARK(AccuracyLevels)->Arg(0)->Arg(1)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
+
+/// Multiplications and additions a second, of a matrix product that fits the core's cache.
+double peak_operations() {
+  constexpr Eigen::Index n = 192;
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(n, n), b = a;
+  Eigen::MatrixXd c(n, n);
+  double best = 0;
+  for (int i = 0; i < 5; ++i)
+    best = std::max(best, 2.0 * n * n * n / seconds(40, [&] {
+                            c.noalias() = a * b;
+                            benchmark::DoNotOptimize(c.data());
+                          }));
+  return best;
+}
+
+/// Bytes a second, read again and again from a field of this size.
+double read_rate(std::size_t bytes) {
+  const Eigen::VectorXf field = Eigen::VectorXf::Ones(Eigen::Index(bytes / sizeof(float)));
+  double best = 0;
+  for (int i = 0; i < 5; ++i)
+    best = std::max(best, double(bytes) / seconds(20, [&] { benchmark::DoNotOptimize(field.sum()); }));
+  return best;
+}
+
+/// What a free-body 7-iron at an accuracy spends its time on, on one core, beside what this machine could do at best:
+/// the larger of a unit's operations at the rate of a matrix product and of its factors' bytes at the rate at which as
+/// large a field is read. Operations are those of the products of matrices: what materials and gaps take is not
+/// counted.
+void Roofline(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  FeImpactOptions o;
+  o.resolve(static_cast<Accuracy>(state.range(0)));
+  const ImpactBodies impact = Impact(o).assemble(iron7());
+  FeImpactResult result;
+  fem::State peak;
+  for (auto _ : state) {
+    double force = 0;
+    const auto at_peak = [&](const ImpactView& view) {
+      if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
+    };
+    const double whole = seconds(1, [&] { result = Impact(o).run(iron7(), at_peak).result; });
+    impact.contact->start(impact.initial);
+    const fem::Weights weights{1, 0, 1e10};
+    solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth);
+    solvers::DenseTangent abrupt(smooth);
+    solvers::CondensedFactorisation factors;
+    const auto touch = [&] {
+      abrupt.clear();
+      impact.contact->tangent(peak, weights, abrupt);
+    };
+    touch();
+    smooth.assemble(impact.system, peak, weights);
+    const std::vector<char> apart = solvers::weakly_coupled(impact.system, smooth);
+    if (!factors.factorise(smooth, abrupt.touched(), apart)) {
+      state.SkipWithError("the ball's tangent is not positive definite");
+      return;
+    }
+    const auto kept = static_cast<Eigen::Index>(factors.kept().size());
+    fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
+
+    const fem::HarmonicSolid& ball = *impact.ball;
+    const auto K = double(ball.unknowns()), P = 4.0,  // Gauss points of an element
+
+        elements = double(ball.mesh().elements.size()), angles = double(2 * o.harmonics + 4);
+    double functions[3] = {};  // of each direction
+    for (const fem::AngularFunction& f : ball.basis())
+      for (int c = 0; c < 3; ++c) functions[c] += f.cosine[c] != 0 || f.sine[c] != 0;
+    double pairs = 0;
+    for (int c = 0; c < 3; ++c)
+      for (int d = c; d < 3; ++d) pairs += functions[c] * functions[d];
+    const std::vector<fem::ContactPoint> points = impact.contact->points(peak);
+    const double stations = double(std::ranges::count_if(points, [](const auto& p) { return p.pressure > 0; })) /
+                            double(3 * o.harmonics + 8);
+
+    const double rate = peak_operations();
+    const auto n = double(result.counts.iterations), f = double(result.counts.factorisations) + 1,
+               d = double(result.counts.dense_factorisations), steps = double(result.counts.steps);
+    const auto tell = [&](const std::string& unit, double times, double operations, double bytes, double spent) {
+      const double limit = std::max(operations / rate, bytes > 0 ? bytes / read_rate(std::size_t(bytes / 2)) : 0.0);
+      state.counters[unit + "_share"] = times * spent / whole;
+      state.counters[unit + "_us"] = 1e6 * spent;
+      state.counters[unit + "_limit_us"] = 1e6 * limit;
+      state.counters[unit + "_over_limit"] = spent / limit;
+    };
+    const double gradients = elements * (48 * K * P + 6 * angles * K * P);
+    tell("residual", n + steps, 2 * gradients + elements * 128 * K, 0,
+         seconds(50, [&] { ball.residual(peak, inertia, internal); }));
+    tell("energies", 2 * steps, gradients, 0, seconds(50, [&] { benchmark::DoNotOptimize(ball.energies(peak)); }));
+    tell("assembly", f, elements * pairs * 18 * P * (angles + 64), 0,
+         seconds(10, [&] { smooth.assemble(impact.system, peak, weights); }));
+    tell("factorisation", f, factors.operations(), 0,
+         seconds(10, [&] { factors.factorise(smooth, abrupt.touched(), apart); }));
+    const fem::Vector right = smooth.gather(internal);
+    tell("solve", n, 4 * double(factors.entries()), 8 * double(factors.entries()), seconds(50, [&] {
+           const Eigen::VectorXf half = factors.eliminate(right);
+           benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
+         }));
+    const double columns = K + 6;
+    tell("contact", n + steps, stations * 18 * K * (3 * o.harmonics + 8), 0,
+         seconds(50, [&] { impact.contact->residual(peak, inertia, internal); }));
+    tell("contact_tangent", d, stations * 6 * (3 * o.harmonics + 8) * columns * (columns + 3), 0, seconds(20, touch));
+    tell("dense_factors", d, 2.0 / 3 * std::pow(double(kept), 3), 0, seconds(20, [&] {
+           benchmark::DoNotOptimize(
+               (factors.schur() + abrupt.on(factors.places(), kept)).partialPivLu().matrixLU().sum());
+         }));
+    state.counters["Gflop_per_s"] = 1e-9 * rate;
+    state.counters["GB_per_s_of_the_factors"] = 1e-9 * read_rate(4 * factors.entries());
+    state.counters["GB_per_s_of_memory"] = 1e-9 * read_rate(std::size_t{1} << 28);
+    state.counters["seconds"] = whole;
+  }
+}
+BENCHMARK(Roofline)->Arg(0)->Arg(1)->Arg(2)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
 
 /// One blow on one core and on two, in turn. `alone`: by the time that the calling thread worked, which is the wall
 /// time where nothing else runs.

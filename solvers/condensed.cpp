@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "golf/parallel.hpp"
@@ -142,6 +143,13 @@ class Part {
   Index size() const { return static_cast<Index>(order_.size()); }
   Index kept() const { return kept_; }
   const Eigen::MatrixXd& root() const { return root_; }  ///< the factor's last rows and columns
+  std::size_t entries() const { return single_.size(); }
+  double operations() const {
+    double sum = 0;
+    for (std::size_t s = 0; s < factor_->nsuper; ++s)
+      for (Index j = 0, rows = front(s).values.rows(); j < front(s).columns; ++j) sum += std::pow(double(rows - j), 2);
+    return sum;
+  }
 
   /// Half of a solution, in place and in the order of the pivots: L x = b.
   void solve_lower(Eigen::Ref<Eigen::VectorXf> x) const {
@@ -282,6 +290,18 @@ void CondensedFactorisation::forget() { state_->ready = false; }
 std::span<const int> CondensedFactorisation::kept() const { return state_->kept; }
 const std::vector<int>& CondensedFactorisation::places() const { return state_->places; }
 const Eigen::MatrixXd& CondensedFactorisation::schur() const { return state_->schur; }
+
+double CondensedFactorisation::operations() const {
+  double sum = 0;
+  for (const auto& part : state_->parts) sum += part->operations();
+  return sum;
+}
+
+std::size_t CondensedFactorisation::entries() const {
+  std::size_t sum = 0;
+  for (const auto& part : state_->parts) sum += part->entries();
+  return sum;
+}
 
 bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector<int>& kept,
                                        const std::vector<char>& apart) {

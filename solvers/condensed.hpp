@@ -50,6 +50,8 @@ class CondensedFactorisation {
   std::span<const int> kept() const;
   const std::vector<int>& places() const;
   const Eigen::MatrixXd& schur() const;  ///< complement on the kept rows
+  double operations() const;             ///< multiplications and additions of a factorisation
+  std::size_t entries() const;           ///< of the factors, stored zeros included
 
   /// First half of a solution: what recover() goes on from. Solutions are in single precision, a Newton method's
   /// increments; the factors and the complement are made in double.
