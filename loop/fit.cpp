@@ -61,6 +61,16 @@ solvers::LeastSquares least_squares(const Problem& problem, Part part, const Mod
   return out;
 }
 
+/// Whether a parameter stands at the edge of its plausible range, zero excepted.
+bool at_bound(const Model& model, const Eigen::VectorXd& p) {
+  Eigen::Index k = 0;
+  for (const Parameter* q : model.parameters()) {
+    const double x = p[k++], margin = 1e-3 * (q->max - q->min);
+    if ((q->max - x < margin && q->max > 0) || (x - q->min < margin && q->min < 0)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, const Eigen::VectorXd& p) {
@@ -159,14 +169,19 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
     }
   }
   if (at.empty()) return best;
-  best.p = at.front().parameters.cwiseProduct(scale);
-  best.deviance = 2 * at.front().cost;
-  best.converged = at.front().converged;
-  Eigen::Index k = 0;
-  for (const Parameter* q : model.parameters()) {
-    const double x = best.p[k++], margin = 1e-3 * (q->max - q->min);
-    best.at_bound = best.at_bound || (q->max - x < margin && q->max > 0) || (x - q->min < margin && q->min < 0);
-  }
+  // A size at the edge of what is plausible explains nothing: another optimum goes before it that leaves less than a
+  // parameter's cost more.
+  const auto taken = std::ranges::find_if(at, [&](const solvers::Minimum& m) {
+    return !at_bound(model, m.parameters.cwiseProduct(scale)) &&
+           2 * (m.cost - at.front().cost) < Rules{}.parameter_cost;
+  });
+  const solvers::Minimum& minimum = taken == at.end() ? at.front() : *taken;
+  for (const solvers::Minimum& m : at)
+    if (&m != &minimum) best.others.push_back(m.parameters.cwiseProduct(scale));
+  best.p = minimum.parameters.cwiseProduct(scale);
+  best.deviance = 2 * minimum.cost;
+  best.converged = minimum.converged;
+  best.at_bound = at_bound(model, best.p);
   return best;
 }
 

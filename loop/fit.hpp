@@ -10,7 +10,8 @@ struct Fit {
   Eigen::VectorXd p;    ///< parameters [SI]
   double deviance = 0;  ///< see deviance(); infinite where the model has no answer
   bool converged = false;
-  bool at_bound = false;  ///< a parameter at the edge of its plausible range (zero excepted)
+  bool at_bound = false;                     ///< a parameter at the edge of its plausible range (zero excepted)
+  std::vector<Eigen::VectorXd> others = {};  ///< further optima that other starts led to
   int size() const { return int(p.size()); }
 };
 

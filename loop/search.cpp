@@ -133,8 +133,12 @@ void Search::fit_pairs() {
       from.push_back(joined({base.p, as_vector(s), pb}));
     for (const auto& s : b->threshold ? b->starts : decltype(b->starts){})
       from.push_back(joined({base.p, pa, as_vector(s)}));
-    all[k] = candidate(fit(problem_, Part::select, base.model.with(a).with(b), std::move(from),
-                           a->threshold || b->threshold ? 2 : 1, true));
+    // An effect with several optima: which of them the other asks for is not known before.
+    const std::size_t before = from.size();
+    for (const Eigen::VectorXd& other : other_optima(a)) from.push_back(joined({base.p, other, pb}));
+    for (const Eigen::VectorXd& other : other_optima(b)) from.push_back(joined({base.p, pa, other}));
+    const std::size_t followed = (a->threshold || b->threshold ? 2 : 1) + from.size() - before;
+    all[k] = candidate(fit(problem_, Part::select, base.model.with(a).with(b), std::move(from), followed, true));
   });
   std::vector<Candidate> forms = of_form_;
   std::ranges::stable_sort(forms, {}, &Candidate::criterion);
@@ -261,6 +265,15 @@ Eigen::VectorXd Search::optimum(const Parametrisation* form) const {
   for (const Candidate& c : of_form_)
     if (c.fit.model.forms.back() == form) return c.fit.p.tail(n);
   return Eigen::VectorXd::Zero(n);
+}
+
+std::vector<Eigen::VectorXd> Search::other_optima(const Parametrisation* form) const {
+  std::vector<Eigen::VectorXd> out;
+  if (form->threshold) return out;  // its starts are all tried
+  for (const Candidate& c : of_form_)
+    if (c.fit.model.forms.back() == form)
+      for (const Eigen::VectorXd& p : c.fit.others) out.push_back(p.tail(Eigen::Index(form->parameters.size())));
+  return out;
 }
 
 Candidate Search::candidate(Fit f) const {

@@ -63,6 +63,7 @@ class Search {
   Candidate candidate(Fit fit) const;
   std::vector<Candidate> refined(std::vector<Candidate> all) const;
   Eigen::VectorXd optimum(const Parametrisation* form) const;
+  std::vector<Eigen::VectorXd> other_optima(const Parametrisation* form) const;
 
   const Problem& problem_;
   const std::size_t base_forms_;
