@@ -89,7 +89,8 @@ std::vector<double> last_digits(const std::vector<std::string>& cells, const std
 }
 
 /// Values that were recorded in another unit of the same dimension and then converted lie on that unit's decimal steps
-/// to within their own last digit. Then they are taken from there, as if the header said that unit. SI; 0: they do not.
+/// to within their own last digit. Then they are taken from there, as if the header said that unit. So are values of
+/// the header's own unit that a program wrote with all its digits, 12.300000000000001. SI; 0: they do not.
 double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step, const std::vector<double>& last) {
   constexpr double kCoarser = 4;  // than what is written; and so many bits against chance, over all different values
   constexpr double kBits = 24;
@@ -99,7 +100,8 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
   double best = 0;
   std::vector<double> taken;
   for (const Unit& other : units()) {
-    if (other.dimension != unit.dimension || other.suffix == unit.suffix) continue;
+    if (other.dimension != unit.dimension) continue;
+    const double astray = other.suffix == unit.suffix ? 0 : 0.02;  // share of the values that may lie beside the steps
     for (int digits = 0; digits <= 6; ++digits) {
       const double power = std::pow(10.0, digits), coarse = other.si / power;
       const double ratio = coarse / std::max(step * unit.si, 1e-9 * coarse);
@@ -115,7 +117,7 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
         if (std::abs(x - whole * coarse) > rounding) ++off;
         else x = whole / power * other.si;
       }
-      if (double(off) > 0.02 * double(n)) continue;
+      if (double(off) > astray * double(n)) continue;
       std::vector<double> there = values;
       for (double& x : there) x /= other.si;
       if (const double found = shared_step(there, 1 / power) * other.si; found > best) {

@@ -155,6 +155,10 @@ TEST(UnitsAndOrder, AResolutionIsThatOfTheInstrument) {
   for (const int digits : {5, 8, 12, 17})
     EXPECT_NEAR(resolution("dynamic_loft_rad", [&](double x) { return written(radians(x), digits); }), tenth, 1e-12)
         << digits << " digits";
+  // As a program writes a number with all its digits: 20.100000000000001.
+  for (const int digits : {16, 17})
+    EXPECT_NEAR(resolution("dynamic_loft_deg", [&](double x) { return written(x, digits); }), tenth, 1e-12)
+        << digits << " digits";
   // Two decimals of a radian are half a degree: there is nothing to find.
   EXPECT_NEAR(resolution("dynamic_loft_rad", [](double x) { return written(std::round(100 * radians(x)) / 100); }),
               0.01, 1e-12);
