@@ -210,9 +210,9 @@ void Roofline(benchmark::State& state) {
     fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
 
     const fem::HarmonicSolid& ball = *impact.ball;
-    const auto K = double(ball.unknowns()), P = 4.0,  // Gauss points of an element
-
-        elements = double(ball.mesh().elements.size()), angles = double(2 * o.harmonics + 4);
+    constexpr double P = 4;  // Gauss points of an element
+    const auto K = double(ball.unknowns()), elements = double(ball.mesh().elements.size()),
+               angles = double(2 * o.harmonics + 4);
     double functions[3] = {};  // of each direction
     for (const fem::AngularFunction& f : ball.basis())
       for (int c = 0; c < 3; ++c) functions[c] += f.cosine[c] != 0 || f.sine[c] != 0;

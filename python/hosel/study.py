@@ -69,7 +69,7 @@ class Study:
         top = f'kind = "study"\ncase = {_toml(self.case)}\nset = {_toml(self.set)}\noutputs = {_toml(self.outputs)}\n'
         with tempfile.TemporaryDirectory() as folder:
             for name, text in {"case.toml": top + design, **files}.items():
-                (Path(folder) / name).write_text(text)
+                (Path(folder) / name).write_text(text, encoding="utf-8")
             return run(folder, out, force=force, quiet=quiet)
 
 

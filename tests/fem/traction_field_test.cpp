@@ -40,9 +40,9 @@ TEST(TractionField, PressureOfASqueezedSphere) {
   EXPECT_LT(std::sqrt(mean[6]), .5 * std::sqrt(mean[3]));
 }
 
-/// Pulled two thirds of the way to sliding and until it slides: the resultants are those of the stations. Friction is
-/// off by what the mesh leaves of its polar moment, which decides how far the stick zone reaches; that falls with the
-/// mesh.
+/// Pulled a third and two thirds of the way to sliding, and until it slides: the resultants are those of the stations.
+/// Friction is off by what the mesh leaves of its polar moment, which decides how far the stick zone reaches; that
+/// falls with the mesh.
 TEST(TractionField, FrictionOfAPulledSphere) {
   const auto pulled = [](int sector, double pull) {
     const test::Pressed p =

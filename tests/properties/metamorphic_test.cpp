@@ -144,7 +144,8 @@ TEST(Metamorphic, BlowsDoNotKnowTheirUnitsFramesAndHands) {
     for (const std::string& name : names) {
       test::Random random(unsigned(1000 + k));
       test::Trial trial = test::random_trial(random, false);
-      trial.options.volumetric_solution.tolerance = 1e-6;  // the relation is asked, not the error of the integration
+      // Its first step in other units moves it by up to 1e-3 at the default: the relation is asked at a finer one.
+      if (name == "shaft-coupled") trial.options.volumetric_solution.tolerance = 1e-6;
       const Relation all[] = {
           mirror(), frame(random.between(-1, 1)), units(random.log_between(0.1, 10), 1, 1),
           units(random.log_between(0.1, 10), random.log_between(0.3, 3), random.log_between(0.3, 3))};
