@@ -142,6 +142,9 @@ class Problem {
   virtual std::vector<Location> places(const Selection& selection) const = 0;
   /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.
   virtual std::vector<Location> shapes(const Selection& selection) const = 0;
+  /// A sentence where more rows lie far off than the declared noise allows, and in no one column: its tails are
+  /// heavier.
+  virtual std::optional<std::string> heavy_tails(const Selection& /*selection*/) const { return {}; }
   /// Why no model that is fitted to these data is to be trusted: rows lost, or missed by many noise scales.
   virtual std::vector<Location> doubts(const Selection& selection) const = 0;
   /// What to measure to break a tie, or to find the effect without a name.

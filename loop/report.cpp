@@ -264,7 +264,7 @@ std::string sentence(const LoopResult& r) {
     case Verdict::insufficient:
       return "Too little to name anything: the smallest effects that these data would have shown are listed.";
     case Verdict::noise_contradicted: {
-      std::string which;
+      std::string which = r.tails;
       for (const ChannelResult& c : r.channels)
         if (c.refuted) which += (which.empty() ? "" : "; ") + c.refutation();
       std::string s = "The declared noise is contradicted by the data's own scatter: " + which + ".";

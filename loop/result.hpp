@@ -127,6 +127,7 @@ struct LoopResult {
   std::optional<Remainder> remainder;  ///< of the model behind `after`
   NextExperiment next;
   std::vector<UsedRow> rows;
+  std::string tails;               ///< that the noise is not normal, in words; empty: nothing says so
   std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
   Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories

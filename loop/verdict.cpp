@@ -64,7 +64,11 @@ Rival one_function(const Study& study) {
   const Mechanism& best = found.front();
   const double of_names = criterion(s.chosen, study.rules);
   const std::vector<std::string> names = s.chosen.model.effects(study.base.size());
-  const bool more = best.criterion + study.rules.tie < of_names, as_much = best.criterion < of_names + study.rules.tie;
+  // Every further name must pay for itself, here as in the search, where the function is one name or one step.
+  const double further = study.rules.further_gain * (double(names.size()) - 1);
+  const bool known = best.step || !best.names.empty();
+  const bool more = best.criterion + study.rules.tie < of_names,
+             as_much = best.criterion < of_names + std::max(study.rules.tie, known ? further : 0);
   // A drift is slow and steady: where no function is likelier than a step there is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.step;
   if (!more && !drift && !(as_much && names.size() > 1)) return {};
@@ -154,6 +158,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     unexplained.push_back(
         {"", "", fmt::format("{} only at the edge of what is plausible", fmt::join(s.adopted, " and "))});
   if (!unexplained.empty()) return Verdict::unexplained;
+  if (problem.heavy_tails(s)) return Verdict::noise_contradicted;
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
@@ -255,6 +260,7 @@ void conclude(const Study& study, LoopResult& result) {
   const std::vector<std::string> restitution = through_one_restitution(study);
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
+  if (result.verdict == Verdict::noise_contradicted) result.tails = problem.heavy_tails(s).value_or("");
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);
     result.next = problem.next_experiment(result);

@@ -63,6 +63,7 @@ struct Columns::Slip {
   std::string finding;
   int column = 0, second = -1;
   double factor = 1, offset = 0;  ///< true value = factor * recorded + offset [SI]
+  int rows = 0;                   ///< the true value stands so many rows below
   std::vector<char> member;       ///< of a level shift: rows that are shifted; empty: all
   std::string what;               ///< unit; where the shift begins
   double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
@@ -239,6 +240,14 @@ void Columns::estimate_noise() {
   }
 }
 
+/// A column's value so many rows below in the file; its own where there is none.
+double Columns::neighbour(Eigen::Index i, int column, int rows) const {
+  const auto& x = columns_[std::size_t(column)]->value;
+  const std::ptrdiff_t at = rows_[std::size_t(i)] + rows;
+  const bool there = at >= 0 && at < std::ptrdiff_t(x.size()) && std::isfinite(x[std::size_t(at)]);
+  return there ? x[std::size_t(at)] : values_(i, column);
+}
+
 Eigen::MatrixXd Columns::corrected(const Slip& s) const {
   Eigen::MatrixXd values = values_;
   if (s.finding == "swapped") {
@@ -246,6 +255,10 @@ Eigen::MatrixXd Columns::corrected(const Slip& s) const {
     const double a = columns_[std::size_t(s.column)]->si, b = columns_[std::size_t(s.second)]->si;
     values.col(s.column) = values_.col(s.second) * (a / b);
     values.col(s.second) = values_.col(s.column) * (b / a);
+    return values;
+  }
+  if (s.rows != 0) {
+    for (Eigen::Index i = 0; i < values.rows(); ++i) values(i, s.column) = neighbour(i, s.column, s.rows);
     return values;
   }
   for (const int k : {s.column, s.second}) {
@@ -275,6 +288,7 @@ void Columns::try_constants() {
       attempt({.finding = "unit", .column = k, .factor = u.si / c.si, .what = std::string(u.suffix), .cost = 2});
     }
     if (has_sign(c)) attempt({.finding = "sign", .column = k, .factor = -1, .cost = 2});
+    for (const int rows : {-1, 1}) attempt({.finding = "rows", .column = k, .rows = rows, .cost = 4});
     for (int l = k + 1; l < count; ++l) {
       const Column& d = *columns_[std::size_t(l)];
       if (dimension(c) != dimension(d)) continue;
@@ -426,15 +440,24 @@ void Columns::try_sizes() {
       consider(std::move(shift), members_only(J, part.member));
     }
   }
-  // A club or a ball that changes there moves the ball speed as a reading that is off from there on does.
+  // A club or a ball that changes there moves the ball speed as a reading that is off from there on does: a face the
+  // same all over, or the more the farther from its centre.
+  const auto index = [&](Input i) { return std::ranges::find(inputs_, i) - inputs_.begin(); };
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(n);
+  for (const Input i : {Input::impact_toe, Input::impact_high})
+    if (index(i) < std::ptrdiff_t(inputs_.size())) square += (values_.col(index(i)) / 0.01).cwiseAbs2();
   std::map<std::string, double> physics;
   for (const auto& [of, largest] :
        {std::pair{&ContactLaw::restitution, 0.1}, {&ContactLaw::tangential_restitution, 0.3}}) {
     const Eigen::MatrixXd J = sensitivity(of) * W.transpose();
     if (J.norm() < 1e-12) continue;
     for (const PartOfRows& part : parts) {
-      const auto [size, value] = fitted(z, members_only(J, part.member));
+      const Eigen::MatrixXd even = members_only(J, part.member);
+      auto [size, value] = fitted(z, even);
       if (std::abs(size) > largest) continue;
+      const Eigen::MatrixXd off_centre = square.asDiagonal() * even;
+      if (off_centre.norm() > 1e-12)
+        value = std::min(value, fitted(z + size * even, off_centre).second + case_.rules.parameter_cost);
       const auto known = physics.try_emplace(part.what, value).first;
       known->second = std::min(known->second, value);
     }
@@ -474,6 +497,7 @@ std::string Columns::text(const Slip& s, bool second) const {
     return fmt::format("{} reads like {}: ratio {:.4g} to what the other columns allow", c.name, s.what,
                        s.factor < 1 ? 1 / s.factor : s.factor);
   if (s.finding == "sign") return fmt::format("{} reads with the other sign", c.name);
+  if (s.finding == "rows") return fmt::format("{} is that of the row {}", c.name, s.rows > 0 ? "before" : "after");
   if (s.finding == "swapped")
     return fmt::format("{} reads like {}: the two columns are swapped", c.name,
                        columns_[std::size_t(second ? s.column : s.second)]->name);

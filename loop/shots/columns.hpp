@@ -1,5 +1,5 @@
-/// Do whole columns hold what their headers say? Units, signs, columns swapped, offsets, scales, level shifts: told,
-/// never repaired.
+/// Do whole columns hold what their headers say? Units, signs, columns swapped or moved by a row, offsets, scales,
+/// level shifts: told, never repaired.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ namespace hosel::loop {
 
 struct WrongColumn {
   std::string column;
-  std::string finding;  ///< unit, sign, swapped, offset, scale, level-shift
+  std::string finding;  ///< unit, sign, swapped, rows, offset, scale, level-shift
   std::string text;     ///< "reads like mph: ..."
 };
 
@@ -43,6 +43,7 @@ class Columns {
   double deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values) const;
   Eigen::MatrixXd corrected(const Slip& slip) const;
+  double neighbour(Eigen::Index row, int column, int rows) const;
   void attempt(Slip slip);
   void try_constants();
   void try_sizes();

@@ -575,28 +575,49 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
   return {};
 }
 
+ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
+  FarOff out;
+  std::map<int, int> of_finding;
+  std::map<std::string, int> of_column;
+  for (const RowFlag& f : flags_) ++of_finding[f.finding];
+  for (const RowFlag& f : flags_)
+    if (of_finding[f.finding] == 1) ++out.rows, ++of_column[f.column];
+  out.lost = int(flags_.size());
+  for (const auto& [column, rows] : of_column)
+    if (2 * rows > out.rows) out.column = column;
+  std::vector<int> used = rows_.train;
+  used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
+  const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
+  const solvers::Loss loss = stages().back().loss;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const double square = z.segment(std::ptrdiff_t(i) * width(), width()).squaredNorm();
+    out.lost += square > loss.cap;
+    out.rows += square > loss.knee;
+  }
+  out.all = int(flags_.size() + used.size());
+  out.many = out.rows > std::max(3.0, kMany * out.all);
+  return out;
+}
+
+std::optional<std::string> ShotProblem::heavy_tails(const Selection& s) const {
+  const FarOff far = far_off(s);
+  if (s.level > 0 || !far.many || !far.column.empty()) return {};
+  return fmt::format("{}, in no one column: the noise has heavier tails than a normal one of the declared size",
+                     far.said());
+}
+
 /// A fifth of the rows is flagged or so far off that the loss is flat there, or half of them are off by many noise
 /// scales.
 std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   constexpr double lost_share = 0.2, many = 3, wide = 1.75;
   std::vector<int> used = rows_.train;
   used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
-  const std::size_t flagged = flags().size();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
-  const solvers::Loss loss = stages().back().loss;
-  double lost = double(flagged), far = 0;
-  std::map<int, int> of_finding;
-  for (const RowFlag& f : flags_) ++of_finding[f.finding];
-  for (const auto& [finding, rows] : of_finding) far += rows == 1;
   std::vector<Location> told;
   std::vector<std::vector<double>> size(static_cast<std::size_t>(width()));
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const auto of = z.segment(std::ptrdiff_t(i) * width(), width());
-    lost += of.squaredNorm() > loss.cap;
-    far += of.squaredNorm() > loss.knee;
+  for (std::size_t i = 0; i < used.size(); ++i)
     for (int c = 0; c < width(); ++c)
-      if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(of[c]));
-  }
+      if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(z[std::ptrdiff_t(i) * width() + c]));
   // Too few shots to refute the declared noise are too few to call what goes beyond it noise.
   const Eigen::MatrixXd residuals = this->residuals(s.chosen.model, s.chosen.p);
   for (int c = 0; c < width(); ++c)
@@ -607,17 +628,19 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   for (int c = 0; c < width(); ++c)
     if (const double middle = median(size[std::size_t(c)]); middle > many)
       told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});
-  if (const double share = lost / double(flagged + used.size()); share >= lost_share)
+  const FarOff far = far_off(s);
+  if (const double share = double(far.lost) / far.all; share >= lost_share)
     told.push_back({"", "",
                     fmt::format("{:.0f} % of the rows are flagged or explained by nothing: what fits the others "
                                 "is no explanation of the set",
                                 100 * share)});
-  else if (const double all = double(flagged + used.size()); far > std::max(3.0, kMany * all))
-    told.push_back(
-        {"", "",
-         fmt::format("{:.0f} of {:.0f} shots lie so far from the model that noise puts one shot in a thousand there",
-                     far, all)});
+  else if (far.many && (s.level > 0 || !far.column.empty())) told.push_back({"", far.column, far.said()});
   return told;
+}
+
+std::string ShotProblem::FarOff::said() const {
+  return fmt::format("{} of {} shots lie so far from the model that noise puts one shot in a thousand there", rows,
+                     all);
 }
 
 NextExperiment ShotProblem::next_experiment(const LoopResult& so_far) const {

@@ -58,6 +58,7 @@ class ShotProblem : public Problem {
   std::vector<Mechanism> mechanisms(const Selection& selection, const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
+  std::optional<std::string> heavy_tails(const Selection& selection) const override;
   std::vector<Location> doubts(const Selection& selection) const override;
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
@@ -71,6 +72,14 @@ class ShotProblem : public Problem {
   const std::vector<int>& shots(Part part) const;
   Location place(const Finding& f) const;
   std::optional<Location> two_populations(const Selection& s) const;
+  /// Shots beyond what noise does to one in a thousand.
+  struct FarOff {
+    int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many
+    bool many = false;                ///< more than exceptions are
+    std::string column;               ///< in which most of those flagged are wrong; empty: in no one
+    std::string said() const;
+  };
+  FarOff far_off(const Selection& s) const;
 
   const ShotCase& case_;
   const std::optional<std::set<int>> held_rows_;
