@@ -587,6 +587,13 @@ TEST_F(Loop, AStepOfThePhysicsAccusesNoColumn) {
   EXPECT_TRUE(cracked.adopted.empty());
   ASSERT_FALSE(cracked.unexplained.empty());
   EXPECT_EQ(cracked.unexplained.front().regressor, "shot");
+  // Nor where it is more off the centre: 0.02 there, and 0.045 more 15 mm off.
+  ShotCase over_face = case_of(csv({.shots = 200, .cracked = -0.02, .crack = 0.045, .unsure = 0.25, .seed = 3}));
+  over_face.input_noise = {
+      {"club_speed_mps", 0.25}, {"dynamic_loft_deg", 0.3}, {"impact_toe_mm", 1.2}, {"impact_high_mm", 1.2}};
+  const LoopResult off_centre = run(over_face);
+  EXPECT_EQ(name(off_centre.verdict), "unexplained") << sentence(off_centre);
+  EXPECT_TRUE(off_centre.columns.empty()) << sentence(off_centre);
   // The club speed's step moves every channel, as no restitution does.
   const LoopResult misread = run(case_of(csv({.misread = 1.5})));
   ASSERT_EQ(misread.columns.size(), 1U) << sentence(misread);
