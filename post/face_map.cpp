@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "golf/units.hpp"
-#include "post/csv.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
+#include "post/table.hpp"
 
 namespace hosel::post {
 namespace {
@@ -66,22 +66,20 @@ using Column = std::function<std::vector<double>(std::size_t map, const MapQuant
 /// Of those maps that are not left out.
 std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const Column& column,
                 const std::function<bool(std::size_t)>& left_out) {
-  std::string out = "model,impact_toe_mm,impact_high_mm";
+  Table out{{{"model"}, {"impact_toe_mm", "{:.6g}"}, {"impact_high_mm", "{:.6g}"}}};
   if (!maps.empty())
-    for (const MapQuantity& q : map_quantities(maps.front())) out += fmt::format(",{}_{}", q.name, q.unit);
-  out += '\n';
+    for (const MapQuantity& q : map_quantities(maps.front()))
+      out.in_files({fmt::format("{}_{}", q.name, q.unit)}, "{:.9g}");
   for (std::size_t m = 0; m < maps.size(); ++m) {
     if (left_out(m)) continue;
     std::vector<std::vector<double>> columns;
     for (const MapQuantity& q : map_quantities(maps[m])) columns.push_back(column(m, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
-      out += fmt::format("{},{:.6g},{:.6g}", csv_cell(maps[m].title), 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
-      for (const auto& c : columns)
-        out += c.empty() || !std::isfinite(c[p]) ? std::string(",") : fmt::format(",{:.9g}", c[p]);
-      out += '\n';
+      out.add(maps[m].title, 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
+      for (const auto& c : columns) out.more(if_finite(c.empty() ? kNone : c[p]));
     }
   }
-  return out;
+  return out.csv();
 }
 
 }  // namespace

@@ -29,11 +29,14 @@ std::string TextTable::text() const {
     width.resize(std::max(width.size(), row.size()), least_width);
     for (std::size_t c = 1; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size() + 2);
   }
+  std::size_t first = first_width;
+  for (const auto& row : rows)
+    if (margin) first = std::max(first, row[0].size() + margin);
   if (even && !width.empty()) std::ranges::fill(width, std::ranges::max(width));
   std::string out;
   for (const auto& row : rows) {
     if (&row != rows.data()) out += '\n';
-    out += fmt::format("{:<{}}", row[0], first_width);
+    out += fmt::format("{:<{}}", row[0], first);
     for (std::size_t c = 1; c < row.size(); ++c) out += fmt::format("{:>{}}", row[c], width[c]);
   }
   return out;

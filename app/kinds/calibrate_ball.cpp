@@ -16,8 +16,8 @@
 #include "app/read_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "models/calibration/ball_calibration.hpp"
-#include "post/csv.hpp"
 #include "post/figure.hpp"
+#include "post/table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -81,24 +81,18 @@ class CalibrateBallJob final : public Job {
       summary["covariance"].push_back(row);
     }
     out.say("speed [m/s]   target e   ball e   contact [ms]   peak [kN]");
-    std::string csv = "speed_mps,target_restitution,restitution,contact_time_s,peak_force_N\n";
     post::Series wanted{.label = "target, one standard deviation"}, got{.label = "ball", .style = "points"};
     post::Series time_wanted{.label = "target, one standard deviation"},
         time_got{.label = "ball", .style = "linespoints"};
-    post::TextTable bounce{{{"speed [m/s]", "wanted e", "e", "contact [ms]", "peak force [kN]"}}};
+    post::Table bounce{{{"speed_mps", "{}", "speed [m/s]", "{:g}"},
+                        {"target_restitution", "{:.6g}", "wanted e", "{:.4f}"},
+                        {"restitution", "{:.6g}", "e", "{:.4f}"},
+                        {"contact_time_s", "{:.6g}", "contact [ms]", "{:.4f}", 1e3},
+                        {"peak_force_N", "{:.6g}", "peak force [kN]", "{:.2f}", 1e-3}}};
     for (const auto& p : fit.points) {
-      bounce.rows.push_back({fmt::format("{:g}", p.speed), fmt::format("{:.4f}", p.target),
-                             fmt::format("{:.4f}", p.restitution), fmt::format("{:.4f}", 1e3 * p.contact_time),
-                             fmt::format("{:.2f}", 1e-3 * p.peak_force)});
+      bounce.add(p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution,
                           1e3 * p.contact_time, 1e-3 * p.peak_force));
-      csv += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.speed, p.target, p.restitution, p.contact_time,
-                         p.peak_force);
-      summary["points"].push_back({{"speed_mps", p.speed},
-                                   {"target_restitution", p.target},
-                                   {"restitution", p.restitution},
-                                   {"contact_time_s", p.contact_time},
-                                   {"peak_force_N", p.peak_force}});
       wanted.x.push_back(p.speed);
       wanted.y.push_back(p.target);
       wanted.error.push_back(problem_.wall.restitution_sigma);
@@ -107,11 +101,12 @@ class CalibrateBallJob final : public Job {
       time_got.x.push_back(p.speed);
       time_got.y.push_back(1e3 * p.contact_time);
     }
-    out.page().answer(bounce);
+    out.page().answer(bounce.shown());
+    summary["points"] = bounce.json();
     time_wanted.x = {problem_.wall.contact_speed};
     time_wanted.y = {1e3 * problem_.wall.contact_time};
     time_wanted.error = {1e3 * problem_.wall.contact_time_sigma};
-    out.write("fit.csv", csv);
+    out.write("fit.csv", bounce.csv());
     if (fit.bounce) {
       out.say(fmt::format("thrown at a plate at {:g} m/s, {:g} deg from the normal: e_t {:.3f}, wanted {:g} +- {:g}",
                           problem_.bounce->speed, degrees(problem_.bounce->angle), *fit.bounce,
@@ -306,11 +301,16 @@ class CalibrateBallJob final : public Job {
   void report_shots(Output& out, const models::BallCalibration& fit, nlohmann::json& summary) const {
     std::size_t width = 5;
     for (const auto& shot : problem_.shots) width = std::max(width, shot.name.size() + 1);
-    std::string csv =
-        "fit,name,group,dynamic_loft_deg,spin_rate_rpm,spin_off_percent,ball_speed_mps,ball_speed_off_percent,"
-        "tangential_restitution,launch_ratio\n";
-    post::TextTable page{
-        {{"fit", "shot", "loft [deg]", "spin [rpm]", "off [%]", "ball speed [m/s]", "off [%]", "e_t", "launch ratio"}}};
+    post::Table shots{{{"fit", "{}", "fit"},
+                       {"name", "{}", "shot"},
+                       {"group"},
+                       {"dynamic_loft_deg", "{:.6g}", "loft [deg]", "{:.2f}"},
+                       {"spin_rate_rpm", "{:.6g}", "spin [rpm]", "{:.0f}"},
+                       {"spin_off_percent", "{:.4g}", "off [%]", "{:+.1f}"},
+                       {"ball_speed_mps", "{:.6g}", "ball speed [m/s]", "{:.2f}"},
+                       {"ball_speed_off_percent", "{:.4g}", "off [%]", "{:+.2f}"},
+                       {"tangential_restitution", "{:.4g}", "e_t", "{:.3f}"},
+                       {"launch_ratio", "{:.4g}", "launch ratio", "{:.3f}"}}};
     const auto rows = [&](const std::string& title, const Points& points) {
       if (points.empty()) return;
       out.say(fmt::format("{:<{}} {:>7} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6}", title, width, "loft", "measured",
@@ -318,18 +318,13 @@ class CalibrateBallJob final : public Job {
       for (const models::ObliquePoint& p : points) {
         const models::ObliqueTarget& t = target_of(p);
         const double spin = off(p.spin_rate, t.spin_rate);
-        const std::string speed = t.ball_speed ? fmt::format("{:+.2f}", off(p.ball_speed, *t.ball_speed)) : "-";
+        const auto fast = t.ball_speed ? std::optional(off(p.ball_speed, *t.ball_speed)) : std::nullopt;
+        const std::string speed = fast ? fmt::format("{:+.2f}", *fast) : "-";
         out.say(fmt::format("{:<{}} {:7.2f} {:9.0f} {:7.0f} {:+7.1f} {:8.2f} {:>7} {:7.3f} {:6.3f}", p.name, width,
                             degrees(p.loft), rpm(t.spin_rate), rpm(p.spin_rate), spin, p.ball_speed, speed,
                             p.tangential_restitution, p.launch_ratio));
-        page.rows.push_back({title, p.name, fmt::format("{:.2f}", degrees(p.loft)),
-                             fmt::format("{:.0f}", rpm(p.spin_rate)), fmt::format("{:+.1f}", spin),
-                             fmt::format("{:.2f}", p.ball_speed), speed,
-                             fmt::format("{:.3f}", p.tangential_restitution), fmt::format("{:.3f}", p.launch_ratio)});
-        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{:.4g},{:.4g}\n", title, post::csv_cell(p.name),
-                           post::csv_cell(group_of(p)), degrees(p.loft), rpm(p.spin_rate), spin, p.ball_speed,
-                           t.ball_speed ? fmt::format("{:.4g}", off(p.ball_speed, *t.ball_speed)) : "",
-                           p.tangential_restitution, p.launch_ratio);
+        shots.add(title, p.name, group_of(p), degrees(p.loft), rpm(p.spin_rate), spin, p.ball_speed, fast,
+                  p.tangential_restitution, p.launch_ratio);
         summary["shots"].push_back({{"fit", title},
                                     {"name", p.name},
                                     {"dynamic_loft_deg", degrees(p.loft)},
@@ -354,8 +349,8 @@ class CalibrateBallJob final : public Job {
                               0.01 * fit.left_out_values[row][c]));
       ++row;
     }
-    out.page().answer(page);
-    out.write("shots.csv", csv);
+    out.page().answer(shots.shown());
+    out.write("shots.csv", shots.csv());
   }
 
   /// Root of the mean square of the errors of every group that has a name.

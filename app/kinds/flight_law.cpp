@@ -9,6 +9,7 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_paths.hpp"
+#include "post/table.hpp"
 #include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
@@ -103,25 +104,24 @@ class FlightLawJob final : public Job {
   void tell_law(Output& out, const PathFit& fit, nlohmann::json& summary) {
     FlightLaw law = fit.law, shipped = models::find_flight_law("radar-2022")->make();
     constexpr int n = models::kInferredCoefficients;
-    post::TextTable table{.rows = {{"coefficient", "inferred", "standard error", "radar-2022 as shipped"}},
-                          .first_width = 20};
-    std::string csv = "coefficient,value";
-    for (int k = 0; k < n; ++k) csv += fmt::format(",covariance_{}", models::inferred_coefficient_name(k));
-    csv += '\n';
+    post::Table table{{{"coefficient", "{}", "coefficient"},
+                       {"value", "{:.9g}", "inferred", "{:.4g}"},
+                       {.heading = "standard error", .spoken = "{:.2g}"},
+                       {.heading = "radar-2022 as shipped", .spoken = "{:.4g}"}},
+                      {.first_width = 20}};
+    for (int k = 0; k < n; ++k)
+      table.in_files({fmt::format("covariance_{}", models::inferred_coefficient_name(k))}, "{:.6g}");
     for (int k = 0; k < n; ++k) {
       const std::string name(models::inferred_coefficient_name(k));
       const double value = models::inferred_coefficient(law, k), sd = std::sqrt(law.covariance[std::size_t(k * n + k)]);
-      table.rows.push_back({name, fmt::format("{:.4g}", value), fmt::format("{:.2g}", sd),
-                            fmt::format("{:.4g}", models::inferred_coefficient(shipped, k))});
-      csv += fmt::format("{},{:.9g}", name, value);
-      for (int j = 0; j < n; ++j) csv += fmt::format(",{:.6g}", law.covariance[std::size_t(k * n + j)]);
-      csv += '\n';
+      table.add(name, value, sd, models::inferred_coefficient(shipped, k));
+      table.more(std::span(law.covariance).subspan(std::size_t(k * n), n));
       summary["law"][name] = {{"value", value}, {"sd", sd}};
     }
     out.say(fmt::format("\nthe law, after {} steps; positions are met to {:.2f} m rms (weighted, each axis)",
                         fit.iterations, fit.rms));
-    out.show(table, "The law");
-    out.write("law.csv", csv);
+    out.show(table.shown(), "The law");
+    out.write("law.csv", table.csv());
     draw_law(out, law);
   }
 

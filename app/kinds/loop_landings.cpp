@@ -7,6 +7,7 @@
 
 #include "post/csv.hpp"
 #include "post/scatter.hpp"
+#include "post/table.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::app {
@@ -45,8 +46,8 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
   const std::string unit = imperial ? "yd" : "m";
 
   std::vector<LandedClub> all;
-  std::string csv = fmt::format("shot,club,carry_{0},side_{0}\n", unit);
-  std::size_t flew = 0;
+  post::Table landings;
+  landings.in_files({"shot", "club", "carry_" + unit, "side_" + unit}, "{:.2f}");
   for (std::size_t i = 0; i < shots.rows(); ++i) {
     const std::string name = !clubs                           ? "all shots"
                              : !clubs->numeric                ? clubs->text[i]
@@ -69,9 +70,7 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
       const bool aside = has(azimuth, i) && (has(axis, i) || has(sidespin, i));
       club->carry.push_back(f.carry);
       if (aside) club->side.push_back(f.side), club->landed.emplace_back(f.side / metre, f.carry / metre);
-      csv += fmt::format("{},{},{:.2f},{}\n", post::csv_cell(shots.id[i]), post::csv_cell(name), f.carry / metre,
-                         aside ? fmt::format("{:.2f}", f.side / metre + 0.0) : "");
-      ++flew;
+      landings.add(shots.id[i], name, f.carry / metre, aside ? std::optional(f.side / metre + 0.0) : std::nullopt);
     } catch (const solvers::NonConvergence&) {  // it does not come down within a minute
     } catch (const std::invalid_argument&) {}   // it does not rise to the case's ground
   }
@@ -94,8 +93,9 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
   if (mirrored)
     told += " The player is left-handed and the shots are mirrored: what is called right is the player's left.";
   out.page().section("", "<p><small>" + told + "</small></p>");
+  const std::size_t flew = landings.rows.size();
   if (flew == 0) return;
-  out.write("landings.csv", csv);
+  out.write("landings.csv", landings.csv());
 
   constexpr std::size_t most_points = 400, most_clubs = 8;
   post::Figure figure{.title = "where the shots land, seen from above; ellipses: 95 % of each club's",

@@ -22,6 +22,7 @@
 #include "models/fe/plate_strike.hpp"
 #include "post/face_map.hpp"
 #include "post/launch_table.hpp"
+#include "post/table.hpp"
 #include "post/vtk_series.hpp"
 #include "solvers/errors.hpp"
 
@@ -157,17 +158,13 @@ class PlateFaceJob final : public PointJob {
     const double f1 = plate.omega().front() / (2 * kPi);
     out.say(fmt::format("face {:.1f} g; first frequencies {:.0f}, {:.0f}, {:.0f} Hz with the rim in a head at rest",
                         1e3 * plate.mass(), f1, plate.omega()[1] / (2 * kPi), plate.omega()[2] / (2 * kPi)));
-    post::TextTable table{.rows = {{"mode", "frequency [Hz]"}}};
-    std::string csv = "mode,frequency_Hz\n";
+    post::Table table{{{"mode"}, {"frequency_Hz", "{:.4f}"}}};
     for (std::size_t i = 0; i < plate.omega().size(); ++i) {
       const double f = plate.omega()[i] / (2 * kPi);
-      csv += fmt::format("{},{:.4f}\n", i + 1, f);
-      if (i < kModes) {
-        table.rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.0f}", f)});
-        summary["frequencies_Hz"].push_back(f);
-      }
+      table.add(i + 1, f);
+      if (i < kModes) summary["frequencies_Hz"].push_back(f);
     }
-    out.write("modes.csv", csv);
+    out.write("modes.csv", table.csv());
     out.page().answer("first frequency", fmt::format("{:.0f} Hz", f1), "rim in a head at rest");
     // The lumped face that stands for it: as stiff at the centre, and as heavy in that static shape.
     const fem::Vector load = plate.patch_load(Vector2d::Zero(), models::kBallPatch), w = plate.solve(load);
@@ -258,9 +255,10 @@ class PlateFaceJob final : public PointJob {
       for (std::size_t i = 0; i < points.size(); ++i)
         if (image(i) < i) points[i] = points[image(i)], lacks[i] = lacks[image(i)];
     const auto without = std::ranges::count(lacks, 1);
-    std::string csv =
-        "toe_mm,high_mm,thickness_mm,characteristic_time_us,departure_us,restitution,head_mass_kg,"
-        "ball_speed_ratio\n";
+    post::Table table;
+    table.in_files({"toe_mm", "high_mm"}, "{:g}").in_files({"thickness_mm"}, "{:.4f}");
+    table.in_files({"characteristic_time_us", "departure_us"}, "{:.3f}");
+    table.in_files({"restitution", "head_mass_kg", "ball_speed_ratio"}, "{:.5f}");
     std::vector<double> time, restitution, ratio, thickness;
     double longest = 0, fastest = 0, departure = 0;
     Vector2d slowest = Vector2d::Zero();
@@ -276,11 +274,10 @@ class PlateFaceJob final : public PointJob {
       beyond += p.time > kRulesTime + kRulesTolerance;
       if (p.time > longest) longest = p.time, departure = p.departure, slowest = {-grid_.toe_at(i), grid_.high_at(i)};
       fastest = std::max(fastest, p.restitution);
-      csv += fmt::format("{:g},{:g},{:.4f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f}\n", 1e3 * grid_.toe_at(i),
-                         1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure, p.restitution,
-                         p.mass, ratio.back());
+      table.add(1e3 * grid_.toe_at(i), 1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure,
+                p.restitution, p.mass, ratio.back());
     }
-    out.write("map.csv", csv);
+    out.write("map.csv", table.csv());
     const models::CharacteristicTime centre = strike.characteristic_time(sphere_, Vector2d::Zero(), speeds_);
     const double e =
         strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;

@@ -9,6 +9,7 @@
 #include "app/read_swing.hpp"
 #include "post/figure.hpp"
 #include "post/swing_recorder.hpp"
+#include "post/table.hpp"
 
 namespace hosel::app {
 namespace {
@@ -50,17 +51,16 @@ class SwingJob final : public Job {
         progress.update((s.time - motion_.begin) / (motion_.end - motion_.begin), fmt::format("t = {:.3f} s", s.time));
       });
     }
-    std::string csv =
-        "time_s,lead_mm,droop_mm,twist_deg,head_speed_mps,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,"
-        "moment_z_N_m\n";
+    post::Table table;
+    table.in_files({"time_s", "lead_mm", "droop_mm", "twist_deg", "head_speed_mps", "force_x_N", "force_y_N",
+                    "force_z_N", "moment_x_N_m", "moment_y_N_m", "moment_z_N_m"},
+                   "{:.9g}");
     post::Series lead{.label = "lead"}, droop{.label = "droop"}, speed{.label = ""};
     double peak_lead = 0, peak_droop = 0;
     for (const auto& s : samples) {
       // The wrench in grip axes, as [@shaft-influence] shows it.
       const Vec3 force = s.grip.rotation.conjugate() * s.force;
-      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.time,
-                         1e3 * s.lead, 1e3 * s.droop, degrees(s.twist.z()), s.head.velocity.norm(), force.x(),
-                         force.y(), force.z(), s.moment.x(), s.moment.y(), s.moment.z());
+      table.add(s.time, 1e3 * s.lead, 1e3 * s.droop, degrees(s.twist.z()), s.head.velocity.norm(), force, s.moment);
       lead.x.push_back(s.time);
       lead.y.push_back(1e3 * s.lead);
       droop.x.push_back(s.time);
@@ -70,7 +70,7 @@ class SwingJob final : public Job {
       if (std::abs(s.lead) > std::abs(peak_lead)) peak_lead = s.lead;
       if (std::abs(s.droop) > std::abs(peak_droop)) peak_droop = s.droop;
     }
-    out.write("swing.csv", csv);
+    out.write("swing.csv", table.csv());
     post::Figure figure{.columns = 2};
     figure.panels.push_back({.title = "hosel in the grip frame",
                              .x_label = "time [s]",

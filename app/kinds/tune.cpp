@@ -17,10 +17,10 @@
 #include "models/club/loaded_shaft.hpp"
 #include "models/parameters.hpp"
 #include "models/registry.hpp"
-#include "post/csv.hpp"
 #include "post/figure.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
+#include "post/table.hpp"
 #include "solvers/least_squares.hpp"
 #include "solvers/random.hpp"
 
@@ -319,25 +319,28 @@ class TuneJob final : public Job {
     const double scatter = std::sqrt(r.squaredNorm() / double(std::max<Eigen::Index>(1, r.size() - n)));
     summary["scatter_over_declared_noise"] = scatter;
     summary["costs_of_the_starts"] = fit.costs;
-    post::TextTable found{.rows = {{"parameter", "start", "tuned", "sd (noise)", "sd (scatter)", ""}},
-                          .first_width = 28,
-                          .least_width = 14,
-                          .even = false};
-    std::string csv = "parameter,unit,start,tuned,sd_by_noise,sd_by_scatter,min,max\n";
+    post::Table found{{{.heading = "parameter"},
+                       {"parameter"},
+                       {"unit"},
+                       {"start", "{:.8g}", "start", "{:.6g}"},
+                       {"tuned", "{:.8g}", "tuned", "{:.6g}"},
+                       {"sd_by_noise", "{:.5g}", "sd (noise)", "{:.3g}"},
+                       {"sd_by_scatter", "{:.5g}", "sd (scatter)", "{:.3g}"},
+                       {"min", "{:.8g}"},
+                       {"max", "{:.8g}"},
+                       {}},
+                      {.first_width = 28, .least_width = 14, .even = false}};
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[std::size_t(i)];
       const double si = f.si(), value = fit.parameters[i] / si, sd = known.sd[i] / si;
       const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
       const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
-      found.rows.push_back({f.column(), fmt::format("{:.6g}", start[i] / si), fmt::format("{:.6g}", value),
-                            fmt::format("{:.3g}", sd), fmt::format("{:.3g}", sd * std::max(1.0, scatter)),
-                            edge ? "at its bound" : ""});
+      found.add(f.column(), f.parameter->name, f.parameter->unit, start[i] / si, value, sd, sd * std::max(1.0, scatter),
+                f.bounds.low / si, f.bounds.high / si, edge ? "at its bound" : "");
       const SplitName split = split_unit(f.column());
       out.page().answer(post::spoken(split.stem),
                         fmt::format("{:.4g}{}", value, split.unit ? " " + post::symbol(split.unit->suffix) : ""),
                         edge ? "at its bound" : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
-      csv += fmt::format("{},{},{:.8g},{:.8g},{:.5g},{:.5g},{:.8g},{:.8g}\n", f.parameter->name, f.parameter->unit,
-                         start[i] / si, value, sd, sd * std::max(1.0, scatter), f.bounds.low / si, f.bounds.high / si);
       summary["parameters"].push_back({{"name", f.column()},
                                        {"start", start[i] / si},
                                        {"value", value},
@@ -346,24 +349,22 @@ class TuneJob final : public Job {
                                        {"at_bound", edge}});
     }
     out.tell("");
-    out.show(found, "What was tuned");
-    out.write("parameters.csv", csv);
+    out.show(found.shown(), "What was tuned");
+    out.write("parameters.csv", found.csv());
 
-    csv = "parameter";
-    for (const Free& f : free_) csv += fmt::format(",{}", f.parameter->name);
-    csv += '\n';
+    post::Table correlation{{{"parameter"}}};
+    for (const Free& f : free_) correlation.in_files({std::string(f.parameter->name)}, "{:.4f}");
     std::vector<std::string> tied;
     for (Eigen::Index i = 0; i < n; ++i) {
-      csv += free_[std::size_t(i)].parameter->name;
+      correlation.add(free_[std::size_t(i)].parameter->name);
       for (Eigen::Index j = 0; j < n; ++j) {
-        csv += fmt::format(",{:.4f}", known.correlation(i, j));
+        correlation.more(known.correlation(i, j));
         if (j > i && std::abs(known.correlation(i, j)) > 0.95)
           tied.push_back(fmt::format("{} and {} (correlation {:.3f})", free_[std::size_t(i)].parameter->name,
                                      free_[std::size_t(j)].parameter->name, known.correlation(i, j)));
       }
-      csv += '\n';
     }
-    out.write("correlation.csv", csv);
+    out.write("correlation.csv", correlation.csv());
     summary["condition"] = known.condition;
     summary["inseparable"] = tied;
     summary["blind"] = nlohmann::json::array();
@@ -387,17 +388,21 @@ class TuneJob final : public Job {
 
     // Errors before and after, on both sets.
     post::Figure figure{.title = fmt::format("{} tuned: model minus measured", model_), .columns = 3};
-    std::string rows_csv = "shot,set";
+    post::Table residuals{{{"shot"}, {"set"}}};
     for (const TuneChannel& c : channels_)
-      for (const char* what : {"measured", "before", "after"})
-        rows_csv += "," + post::csv_cell(fmt::format("{}__{}", c.name, what));
-    rows_csv += '\n';
-    csv = "set,channel,rows,before_mean,before_sd,before_mae,after_mean,after_sd,after_mae\n";
-    post::TextTable table{
-        .rows = {{"set", "channel", "rows", "before: mean +- sd", "after: mean +- sd", "MAE before", "MAE after"}},
-        .first_width = 6,
-        .least_width = 6,
-        .even = false};
+      residuals.in_files({c.name + "__measured", c.name + "__before", c.name + "__after"}, "{:.8g}");
+    post::Table table{{{"set", "{}", "set"},
+                       {"channel", "{}", "channel"},
+                       {"rows", "{}", "rows"},
+                       {.heading = "before: mean +- sd"},
+                       {.heading = "after: mean +- sd"},
+                       {"before_mean", "{:.6g}"},
+                       {"before_sd", "{:.6g}"},
+                       {"before_mae", "{:.6g}", "MAE before", "{:.4g}"},
+                       {"after_mean", "{:.6g}"},
+                       {"after_sd", "{:.6g}"},
+                       {"after_mae", "{:.6g}", "MAE after", "{:.4g}"}},
+                      {.first_width = 6, .least_width = 6, .even = false}};
     for (const TuneChannel& c : channels_)
       figure.panels.push_back(
           {.x_label = "measured " + post::label(c.name),
@@ -408,25 +413,20 @@ class TuneJob final : public Job {
       int lost = 0;
       for (std::size_t i = 0; i < rows->size(); ++i) {
         const std::size_t row = (*rows)[i];
-        rows_csv += fmt::format("{},{}", post::csv_cell(id_[row]), set);
+        residuals.add(id_[row], set);
         for (std::size_t c = 0; c < channels_.size(); ++c) {
           const double b = error(row, c, model_before[i]), a = error(row, c, model_after[i]);
           if (std::isfinite(a) && std::isfinite(b)) before[c].push_back(b), after[c].push_back(a);
           else if (c == 0) ++lost;
-          rows_csv += fmt::format(",{:.8g},{:.8g},{:.8g}", measured_[row][c] / channels_[c].si,
-                                  model_before[i][c] / channels_[c].si, model_after[i][c] / channels_[c].si);
+          residuals.more(measured_[row][c] / channels_[c].si, model_before[i][c] / channels_[c].si,
+                         model_after[i][c] / channels_[c].si);
         }
-        rows_csv += '\n';
       }
       if (lost) out.say(fmt::format("{} {} rows have no answer from the model and are not counted below", lost, set));
       for (std::size_t c = 0; c < channels_.size(); ++c) {
         const Errors b = errors(before[c]), a = errors(after[c]);
-        table.rows.push_back({set, channels_[c].name, fmt::format("{}", a.count),
-                              fmt::format("{:.4g} +- {:.4g}", b.mean, b.sd),
-                              fmt::format("{:.4g} +- {:.4g}", a.mean, a.sd), fmt::format("{:.4g}", b.absolute),
-                              fmt::format("{:.4g}", a.absolute)});
-        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", set, channels_[c].name, a.count,
-                           b.mean, b.sd, b.absolute, a.mean, a.sd, a.absolute);
+        table.add(set, channels_[c].name, a.count, fmt::format("{:.4g} +- {:.4g}", b.mean, b.sd),
+                  fmt::format("{:.4g} +- {:.4g}", a.mean, a.sd), b.mean, b.sd, b.absolute, a.mean, a.sd, a.absolute);
         summary["errors"].push_back({{"set", set},
                                      {"channel", channels_[c].name},
                                      {"rows", a.count},
@@ -441,9 +441,9 @@ class TuneJob final : public Job {
       }
     }
     out.tell("");
-    out.show(table, "Model minus measured");
-    out.write("errors.csv", csv);
-    out.write("residuals.csv", rows_csv);
+    out.show(table.shown(), "Model minus measured");
+    out.write("errors.csv", table.csv());
+    out.write("residuals.csv", residuals.csv());
     out.draw(figure, "errors");
     for (const auto& [why, k] : left_out_) summary["left_out"][why] = k;
     summary["rows"] = {{"train", train_.size()}, {"test", test_.size()}};

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "post/csv.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -75,17 +74,18 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
   nlohmann::json json = {{"with", reference.name}, {"differences", nlohmann::json::array()}};
   const auto columns = table.design.columns();
   const auto groups = reference.by ? table.design.levels(*reference.by) : std::vector<std::string>{""};
-  std::string csv = reference.by ? "model,of,output,points,mean,rms,largest" : "model,output,points,mean,rms,largest";
-  for (const std::string& c : columns) csv += "," + post::csv_cell(c);
+  post::Table differences{{{"model"}}};
+  if (reference.by) differences.in_files({"of"});
+  differences.in_files({"output", "points"}).in_files({"mean", "rms", "largest"}, "{:.6g}").in_files(columns);
   for (std::size_t o = 0; o < table.outputs.size(); ++o)
-    if (causes[o]) csv += "," + post::csv_cell(fmt::format("{} difference there [%]", table.outputs[o]));
-  csv += '\n';
+    if (causes[o]) differences.in_files({fmt::format("{} difference there [%]", table.outputs[o])}, "{:.4g}");
   const bool any_cause = std::ranges::find(causes, true) != causes.end();
   for (std::size_t k = 0; k < table.models.size() * groups.size(); ++k) {
     const std::size_t m = k / groups.size();
     const std::string& group = groups[k % groups.size()];
     if (reference.model == m) continue;
-    post::TextTable shown{.rows = {{"output", "mean", "rms", "largest", "where"}}, .least_width = 9, .even = false};
+    post::TextTable shown{
+        .rows = {{"output", "mean", "rms", "largest", "where"}}, .margin = 1, .least_width = 9, .even = false};
     if (any_cause) shown.rows[0].push_back("differs most there");
     for (std::size_t o = 0; o < table.outputs.size(); ++o) {
       const StudySeries &mine = table.at(m, o), &theirs = against[m * table.outputs.size() + o];
@@ -101,10 +101,9 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       if (count == 0) continue;
       mean /= double(count);
       const double rms = std::sqrt(square / double(count));
-      csv += post::csv_cell(table.models[m]) + ",";
-      if (reference.by) csv += post::csv_cell(group) + ",";
-      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(table.outputs[o]), count, mean, rms, largest);
-      for (const std::string& cell : table.design.cells(where)) csv += "," + post::csv_cell(cell);
+      differences.add(table.models[m]);
+      if (reference.by) differences.more(group);
+      differences.more(table.outputs[o], count, mean, rms, largest, table.design.cells(where));
       std::string cause = "-";
       double most = 0;
       nlohmann::json shares = nlohmann::json::object();
@@ -112,19 +111,16 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
         if (!causes[q]) continue;
         const double a = table.at(m, q).y[where], b = against[m * table.outputs.size() + q].y[where];
         const double share = 100 * (a - b) / b;
-        csv += std::isfinite(share) ? fmt::format(",{:.4g}", share) : std::string(",");
+        differences.more(post::if_finite(share));
         if (!std::isfinite(share)) continue;
         shares[table.outputs[q]] = share;
         if (std::abs(share) <= std::abs(most) || std::abs(largest) <= 1e-9) continue;
         most = share;
         cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g})", post::label(table.outputs[q]), share, a, b);
       }
-      csv += '\n';
-      const std::string spoken = post::label(table.outputs[o]);
-      shown.first_width = std::max(shown.first_width, spoken.size() + 1);
       auto& row = shown.rows.emplace_back();
-      row = {spoken, fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", rms), fmt::format("{:+.4g}", largest),
-             table.design.said(where)};
+      row = {post::label(table.outputs[o]), fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", rms),
+             fmt::format("{:+.4g}", largest), table.design.said(where)};
       if (any_cause) row.push_back(cause);
       nlohmann::json j = {
           {"output", table.outputs[o]},       {"points", count}, {"mean", mean}, {"rms", rms}, {"largest", largest},
@@ -140,7 +136,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
     out.tell(title);
     out.show(shown, title);
   }
-  out.write("differences.csv", csv);
+  out.write("differences.csv", differences.csv());
   return json;
 }
 

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "post/csv.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -115,12 +114,16 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
 void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effects, nlohmann::json& summary) {
   const bool several = effects.columns.size() > 1;
   const auto columns = table.design.columns();
-  post::TextTable shown{
-      .rows = {{"answer", "lowest", "mean", "highest"}}, .first_width = 10, .least_width = 10, .even = false};
+  post::TextTable shown{.rows = {{"answer", "lowest", "mean", "highest"}},
+                        .first_width = 10,
+                        .margin = 1,
+                        .least_width = 10,
+                        .even = false};
   if (several) shown.rows[0].insert(shown.rows[0].end(), {"goes most with", "share of variance [%]"});
   const bool emulated = std::ranges::any_of(effects.emulators, [](const auto& e) { return e.has_value(); });
   if (emulated) shown.rows[0].push_back("emulator off by");
-  std::string csv = "output,parameter,share,share_low,share_high,together,together_low,together_high\n";
+  post::Table sensitivity{{{"output"}, {"parameter"}}};
+  sensitivity.in_files({"share", "share_low", "share_high", "together", "together_low", "together_high"}, "{:.6g}");
   bool begun = false;
   for (std::size_t s = 0; s < table.series.size(); ++s) {
     const StudySeries& series = table.series[s];
@@ -130,7 +133,6 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     summary["mean"][series.name] = mean;
     auto& row = shown.rows.emplace_back();
     row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", mean), fmt::format("{:.4g}", high)};
-    shown.first_width = std::max(shown.first_width, series.spoken.size() + 1);
     const std::string off = effects.emulators[s] ? fmt::format("{:.2g}", effects.emulators[s]->error()) : "-";
     if (const auto& e = effects.emulators[s])
       summary["emulator"][series.name] = {
@@ -147,15 +149,14 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       auto& entry = summary["main_effects"][series.name][column];
       entry = {
           {"share", own.share}, {"low", own.low}, {"high", own.high}, {"at_low", own.at_low}, {"at_high", own.at_high}};
-      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}", post::csv_cell(series.name), post::csv_cell(column), own.share,
-                         own.low, own.high);
+      sensitivity.add(series.name, column, own.share, own.low, own.high);
       if (effects.together[s].empty()) {
-        csv += ",,,\n";
+        sensitivity.more(std::nullopt, std::nullopt, std::nullopt);
         continue;
       }
       const StudyEmulator::Share& all = effects.together[s][effects.columns[f]];
       entry["together"] = {{"share", all.value}, {"low", all.low}, {"high", all.high}};
-      csv += fmt::format(",{:.6g},{:.6g},{:.6g}\n", all.value, all.low, all.high);
+      sensitivity.more(all.value, all.low, all.high);
     }
     const solvers::MainEffect& first = e.factors[e.order[0]];
     row.insert(row.end(),
@@ -171,7 +172,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
-  if (std::ranges::count(csv, '\n') > 1) out.write("sensitivity.csv", csv);
+  if (!sensitivity.rows.empty()) out.write("sensitivity.csv", sensitivity.csv());
 }
 
 post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const std::vector<std::size_t>& which) {

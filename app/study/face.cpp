@@ -137,8 +137,9 @@ class FaceReport {
   /// What the shaft does to the head at every place: force and moment over time, and their impulses as maps.
   void hosel(const FaceLayer& layer) {
     static constexpr std::array kAxes = {"x", "y", "z"};
-    std::string csv =
-        "impact_toe_mm,impact_high_mm,time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+    post::Table table;
+    table.in_files({"impact_toe_mm", "impact_high_mm", "time_ms"}, "{:.6g}");
+    table.in_files({"force_x_N", "force_y_N", "force_z_N", "moment_x_N_m", "moment_y_N_m", "moment_z_N_m"}, "{:.8g}");
     std::array<std::vector<double>, 6> impulses;
     bool any = false;
     for (std::size_t p = 0; p < grid_.size(); ++p) {
@@ -148,16 +149,13 @@ class FaceReport {
         impulses[k].push_back(has ? point.at("hosel").at("impulse").at(k / 3).at(k % 3).get<double>() : std::nan(""));
       if (!has) continue;
       any = true;
-      for (const json& row : point.at("hosel").at("history")) {
-        const Vec3 force = vector_from(row.at(1)), moment = vector_from(row.at(2));
-        csv += fmt::format("{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", 1e3 * grid_.toe_at(p),
-                           1e3 * grid_.high_at(p), 1e3 * row.at(0).get<double>(), force.x(), force.y(), force.z(),
-                           moment.x(), moment.y(), moment.z());
-      }
+      for (const json& row : point.at("hosel").at("history"))
+        table.add(1e3 * grid_.toe_at(p), 1e3 * grid_.high_at(p), 1e3 * row.at(0).get<double>(), vector_from(row.at(1)),
+                  vector_from(row.at(2)));
     }
     if (!any) return;
     const std::string name = out_.file_name(layer.map.title);
-    out_.write(fmt::format("hosel-{}.csv", name), csv);
+    out_.write(fmt::format("hosel-{}.csv", name), table.csv());
     post::Figure figure{.title = fmt::format("{}: impulse of the shaft on the head at the hosel, face axes; {}",
                                              layer.map.title, post::kFaceView),
                         .columns = 3,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "post/csv.hpp"
+#include "app/stored_launch.hpp"
 
 namespace hosel::app {
 
@@ -19,21 +19,15 @@ namespace {
 
 /// hosel.csv: force and moment of the shaft on the head at every point.
 void report_hosels(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
-  std::string csv = "point,model";
-  for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);
-  csv += ",time_ms,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n";
+  post::Table hosel = table.places().in_files({"time_ms"}, "{:.6f}");
+  hosel.in_files({"force_x_N", "force_y_N", "force_z_N", "moment_x_N_m", "moment_y_N_m", "moment_z_N_m"}, "{:.6g}");
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].contains("hosel")) continue;
-    std::string place = fmt::format("{},{}", i, post::csv_cell(table.model_of(i)));
-    for (const std::string& cell : table.design.cells(i / table.models.size())) place += "," + post::csv_cell(cell);
-    for (const nlohmann::json& row : points[i]["hosel"]["history"]) {
-      csv += fmt::format("{},{:.6f}", place, 1e3 * row.at(0).get<double>());
-      for (const std::size_t load : {1, 2})
-        for (const nlohmann::json& x : row.at(load)) csv += fmt::format(",{:.6g}", x.get<double>());
-      csv += '\n';
-    }
+    for (const nlohmann::json& row : points[i]["hosel"]["history"])
+      hosel.add(i, table.model_of(i), table.design.cells(i / table.models.size()), 1e3 * row.at(0).get<double>(),
+                vector_from(row.at(1)), vector_from(row.at(2)));
   }
-  out.write("hosel.csv", csv);
+  out.write("hosel.csv", hosel.csv());
 }
 
 }  // namespace
@@ -42,9 +36,7 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
   if (!table.design.grid() && std::ranges::any_of(points, [](const auto& p) { return p.contains("hosel"); }))
     report_hosels(out, table, points);
   if (std::ranges::none_of(points, [](const nlohmann::json& p) { return p.contains("history"); })) return;
-  std::string csv = "point,model";
-  for (const std::string& c : table.design.columns()) csv += "," + post::csv_cell(c);
-  csv += ",time_ms,normal_force_N,tangential_force_N\n";
+  post::Table histories = table.places().in_files({"time_ms", "normal_force_N", "tangential_force_N"}, "{:.8g}");
   post::Figure figure{.columns = 2};
   for (std::size_t m = 0; m < table.models.size(); ++m) {
     post::Panel tangential{.title = table.models[m], .x_label = "time [ms]", .y_label = "tangential force [kN]"},
@@ -52,12 +44,10 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
     for (std::size_t d = 0; d < table.design.size(); ++d) {
       const std::size_t point = d * table.models.size() + m;
       if (!points[point].contains("history")) continue;
-      std::string place = fmt::format("{},{}", point, post::csv_cell(table.models[m]));
-      for (const std::string& cell : table.design.cells(d)) place += "," + post::csv_cell(cell);
       post::Series line{.label = table.design.said(d)}, share = line;
       for (const nlohmann::json& s : points[point]["history"]) {
         const double time = 1e3 * s.at(0).get<double>(), normal = s.at(1).get<double>(), along = s.at(2).get<double>();
-        csv += fmt::format("{},{:.8g},{:.8g},{:.8g}\n", place, time, normal, along);
+        histories.add(point, table.models[m], table.design.cells(d), time, normal, along);
         line.x.push_back(time);
         line.y.push_back(1e-3 * along);
         if (normal <= 1) continue;  // [N]: nothing over nothing
@@ -69,7 +59,7 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
     }
     figure.panels.insert(figure.panels.end(), {tangential, ratio});
   }
-  out.write("histories.csv", csv);
+  out.write("histories.csv", histories.csv());
   out.draw(figure, "figures/histories");
 }
 

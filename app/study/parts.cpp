@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/study/compare.hpp"
-#include "post/csv.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -35,24 +34,25 @@ class PartsReport {
   }
 
   json report(bool draw) {
-    std::string csv = "part,model";
-    for (const std::size_t c : where_) csv += "," + post::csv_cell(columns_[c]);
+    post::Table table{{{"part"}, {"model"}}};
+    for (const std::size_t c : where_) table.in_files({columns_[c]});
     for (const std::string& o : table_.outputs)
-      csv += parts_.over ? fmt::format(",{0}_mean,{0}_low,{0}_high", post::csv_cell(o)) : "," + post::csv_cell(o);
-    csv += '\n';
+      table.in_files(parts_.over ? std::vector{o + "_mean", o + "_low", o + "_high"} : std::vector{o}, "{:.9g}");
     json summary = json::object();
     for (std::size_t m = 0; m < table_.models.size(); ++m)
       for (const StudyParts::Part& part : parts_.all) {
         json& said = table_.models.size() > 1 ? summary[table_.models[m]][part.name] : summary[part.name];
         for (const Place& place : places_) {
-          csv += post::csv_cell(part.name) + "," + post::csv_cell(table_.models[m]);
-          for (const std::string& cell : place.cells) csv += "," + post::csv_cell(cell);
-          for (std::size_t o = 0; o < table_.outputs.size(); ++o) csv += cells(difference(part, m, o, place).spread());
-          csv += '\n';
+          table.add(part.name, table_.models[m], place.cells);
+          for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+            const StudySeries::Spread s = difference(part, m, o, place).spread();
+            table.more(post::if_finite(s.mean));
+            if (parts_.over) table.more(post::if_finite(s.low), post::if_finite(s.high));
+          }
         }
         tell(part, m, said);
       }
-    out_.write("parts.csv", csv);
+    out_.write("parts.csv", table.csv());
     if (draw && on_face())
       for (std::size_t m = 0; m < table_.models.size(); ++m) maps(m);
     return summary;
@@ -81,17 +81,12 @@ class PartsReport {
     return 1.96 * std::sqrt(square);
   }
 
-  std::string cells(const StudySeries::Spread& s) const {
-    if (!std::isfinite(s.mean)) return parts_.over ? ",,," : ",";
-    return parts_.over ? fmt::format(",{:.9g},{:.9g},{:.9g}", s.mean, s.low, s.high) : fmt::format(",{:.9g}", s.mean);
-  }
-
   bool on_face() const { return table_.design.grid() && places_.size() == table_.design.grid()->size(); }
 
   /// The mean over the places, and each of them where they are few.
   void tell(const StudyParts::Part& part, std::size_t model, json& said) const {
     constexpr std::size_t few = 9;
-    post::TextTable shown{.rows = {{"output", "mean"}}, .least_width = 10, .even = false};
+    post::TextTable shown{.rows = {{"output", "mean"}}, .margin = 1, .least_width = 10, .even = false};
     if (parts_.over) shown.rows[0].insert(shown.rows[0].end(), {"lowest", "highest"});
     if (parts_.from) shown.rows[0].push_back(table_.design.levels(*parts_.over)[*parts_.from] + ", 95 %");
     if (places_.size() > 1) shown.rows[0].push_back("where");
@@ -101,7 +96,6 @@ class PartsReport {
       json& j = at[table_.outputs[o]];
       j = s.mean;
       auto& row = shown.rows.emplace_back(std::vector{post::label(table_.outputs[o]), fmt::format("{:+.4g}", s.mean)});
-      shown.first_width = std::max(shown.first_width, row.front().size() + 1);
       if (parts_.over) {
         j = {{"mean", s.mean}, {"low", s.low}, {"high", s.high}};
         for (std::size_t k = 0; k < of.y.size(); ++k)

@@ -77,7 +77,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
     json["median"][r.on[k]] = centre;
     X.col(Eigen::Index(k) + 1) = Eigen::Map<const Eigen::VectorXd>(r.x[k].data(), X.rows()).array() - centre;
   }
-  std::string csv = "output,over,slope,half_width_95\n";
+  post::Table slopes{{{"output"}, {"over"}, {"slope", "{:.6g}"}, {"half_width_95", "{:.4g}"}}};
   post::TextTable table{.rows = {{"measured slope over"}}, .first_width = 24, .least_width = 16, .even = false};
   for (const std::string& name : r.on) table.rows[0].push_back(post::label(name));
   for (std::size_t q = 0; q < r.of.size(); ++q) {
@@ -89,14 +89,14 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
       const double slope = fit.coefficients[at], half = 1.96 * std::sqrt(fit.covariance(at, at));
       j[r.on[k]] = {{"slope", slope}, {"half_width_95", half}};
       row.push_back(fmt::format("{:.3g} ± {:.2g}", slope, half));
-      csv += fmt::format("{},{},{:.6g},{:.4g}\n", r.of[q], r.on[k], slope, half);
+      slopes.add(r.of[q], r.on[k], slope, half);
     }
     j["scatter"] = fit.scale;
     j["rows_below_half_weight"] = (fit.weights.array() < 0.5).count();
   }
   out.tell(fmt::format("{} of {} measured rows are whole", n, r.rows));
   out.show(table, "Measured slopes, each at equal other inputs");
-  out.write("regression.csv", csv);
+  out.write("regression.csv", slopes.csv());
   return json;
 }
 

@@ -50,7 +50,6 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
 
 nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
                      const std::vector<StudySeries>& references, const std::vector<StudyGroup>& groups) {
-  nlohmann::json json = nlohmann::json::array();
   const auto columns = table.design.columns();
   std::vector<std::string> figures;
   if (!groups.empty())
@@ -58,10 +57,12 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
   const auto names = formula_names(columns, table.outputs, figures, !references.empty());
   std::vector<std::vector<double>> numbers;
   for (std::size_t c = 0; c < columns.size(); ++c) numbers.push_back(table.design.numbers(c));
-  post::TextTable shown{.rows = {{"statement"}}, .least_width = 10, .even = false};
+  post::Table verdicts{{{"text", "{}", "statement"}}, {.margin = 2, .least_width = 10, .even = false}};
   const bool named = std::ranges::any_of(groups, [](const StudyGroup& g) { return !g.name.empty(); });
-  if (named) shown.rows[0].push_back("model");
-  shown.rows[0].insert(shown.rows[0].end(), {"verdict", "holds in", "points"});
+  if (named) verdicts.columns.push_back({"model", "{}", "model"});
+  verdicts.columns.insert(
+      verdicts.columns.end(),
+      {{"verdict", "{}", "verdict"}, {"share", "{}", "holds in", "{:.1f} %", 100}, {"points", "{}", "points"}});
   for (const StudyStatement& s : statements)
     for (const StudyGroup& group : groups) {
       const std::size_t m = group.model;
@@ -103,16 +104,12 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
                             : share >= 0.95 ? "holds"
                             : share <= 0.05 ? "fails"
                                             : "undecided";
-      nlohmann::json j = {{"text", s.text}, {"verdict", verdict}, {"share", share}, {"points", judged}};
-      if (named) j["model"] = group.name;
-      json.push_back(std::move(j));
-      auto& row = shown.rows.emplace_back(std::vector{s.text});
-      shown.first_width = std::max(shown.first_width, s.text.size() + 2);
-      if (named) row.push_back(group.name);
-      row.insert(row.end(), {verdict, fmt::format("{:.1f} %", 100 * share), fmt::format("{}", judged)});
+      verdicts.add(s.text);
+      if (named) verdicts.more(group.name);
+      verdicts.more(verdict, share, judged);
     }
-  out.show(shown, "Statements");
-  return json;
+  out.show(verdicts.shown(), "Statements");
+  return verdicts.json();
 }
 
 }  // namespace hosel::app

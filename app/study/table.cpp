@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "post/csv.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -74,24 +73,27 @@ bool StudyTable::one_model(std::size_t model) const {
 
 std::string StudyTable::csv(const std::vector<json>& points) const {
   const bool other = models.front().empty();
-  std::string csv = other ? "point" : "point,model";
-  for (const std::string& c : design.columns()) csv += "," + post::csv_cell(c);
-  for (const std::string& o : outputs) csv += "," + post::csv_cell(o);
-  csv += ",error\n";
+  post::Table table = other ? post::Table{{{"point"}}} : places();
+  if (other) table.in_files(design.columns());
+  table.in_files(outputs).in_files({"error"});
   for (std::size_t i = 0; i < points.size(); ++i) {
-    csv += std::to_string(i);
-    if (!other) csv += "," + post::csv_cell(model_of(i));
-    for (const std::string& cell : design.cells(i / models.size())) csv += "," + post::csv_cell(cell);
+    table.add(i);
+    if (!other) table.more(model_of(i));
+    table.more(design.cells(i / models.size()));
     const bool failed = points[i].contains("error");
     for (const std::string& o : outputs) {
-      csv += ",";
-      if (failed) continue;
-      if (points[i].contains(o)) csv += points[i][o].dump();
-      else if (other) throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary", i, o));
+      if (!failed && other && !points[i].contains(o))
+        throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary", i, o));
+      table.more(failed || !points[i].contains(o) ? "" : points[i][o].dump());
     }
-    csv += "," + (failed ? post::csv_cell(points[i]["error"].get<std::string>()) : "") + "\n";
+    table.more(failed ? points[i]["error"].get<std::string>() : "");
   }
-  return csv;
+  return table.csv();
+}
+
+post::Table StudyTable::places() const {
+  post::Table table{{{"point"}, {"model"}}};
+  return table.in_files(design.columns());
 }
 
 std::optional<MeasuredRange> StudyTable::seen(std::size_t point, std::size_t output) const {
@@ -111,7 +113,7 @@ std::optional<MeasuredRange> StudyTable::seen(std::size_t point, std::size_t out
 post::TextTable StudyTable::rows() const {
   constexpr std::size_t most = 60;
   if (design.size() * models.size() > most) return {};
-  post::TextTable table{.rows = {{"point"}}, .least_width = 9, .even = false};
+  post::TextTable table{.rows = {{"point"}}, .margin = 1, .least_width = 9, .even = false};
   if (models.size() > 1) table.rows[0].push_back("model");
   std::vector<bool> measured_too(outputs.size());
   for (std::size_t o = 0; o < outputs.size(); ++o) {
@@ -123,7 +125,6 @@ post::TextTable StudyTable::rows() const {
     for (std::size_t m = 0; m < models.size(); ++m) {
       auto& row = table.rows.emplace_back(std::vector{design.said(d)});
       if (row.front().empty()) row.front() = fmt::format("{}", d);
-      table.first_width = std::max(table.first_width, row.front().size() + 1);
       if (models.size() > 1) row.push_back(models[m]);
       for (std::size_t o = 0; o < outputs.size(); ++o) {
         const double y = at(m, o).y[d];

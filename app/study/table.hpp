@@ -8,6 +8,7 @@
 #include "app/output.hpp"
 #include "app/study/answer.hpp"
 #include "app/study/design.hpp"
+#include "post/table.hpp"
 
 namespace hosel::app {
 
@@ -36,6 +37,8 @@ struct StudyTable {
   /// Fills `series`, and `outputs` where none is named: all numbers that the points hold.
   void fill(const std::vector<nlohmann::json>& points);
   std::string csv(const std::vector<nlohmann::json>& points) const;
+  /// An empty table for files whose rows begin with the number of a point, its model and its place in the design.
+  post::Table places() const;
   /// Every point in a row, for a design small enough to be read; empty else.
   post::TextTable rows() const;
   /// Measured values of an output at a point, in the output's unit; nothing where it was not measured.

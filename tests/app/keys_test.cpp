@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 /// Keys and meanings as the sources declare them: `read({"key", "meaning"`.
 std::map<std::string, std::string> declared_in_sources() {
-  const std::regex declaration(R"re(\(\s*\{\s*"(\w+)",\s*"([^"]+)"\s*\})re");
+  const std::regex declaration(R"re((\w*)\(\s*\{\s*"(\w+)",\s*"([^"]+)"\s*\})re");
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(HOSEL_SOURCE_DIR) / "app")) {
     const std::string name = entry.path().filename().string();
@@ -29,7 +29,7 @@ std::map<std::string, std::string> declared_in_sources() {
     if (!reads || entry.path().extension() != ".cpp") continue;
     const std::string text = test::content(entry.path());
     for (std::sregex_iterator it(text.begin(), text.end(), declaration), end; it != end; ++it)
-      out[(*it)[2].str() + " (" + (*it)[1].str() + ")"] = (*it)[1];
+      if ((*it)[1] != "in_files") out[(*it)[3].str() + " (" + (*it)[2].str() + ")"] = (*it)[2];  // columns of a table
   }
   return out;
 }
