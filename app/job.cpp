@@ -17,8 +17,6 @@ std::unique_ptr<Job> read_either_modes(CaseFile& file) {
 constexpr std::array kKinds = {
     Kind{"impact", "one blow through one or several models, with the measured launch beside",
          "What does the ball do after this blow?", read_impact},
-    Kind{"flight", "where balls of given launches go, by several laws, with an error budget",
-         "Where do these balls go, and how sure is that?", read_flights},
     Kind{"flight-law", "a law of drag, lift and spin decay from followed flights, judged on players left out",
          "What are drag and lift of a ball in flight, and does that hold for players that were not seen?",
          read_flight_law},
@@ -78,6 +76,9 @@ constexpr std::array kFormerKinds = {
         "[[variant]], a loss is a [[part]]"},
     FormerKind{"slopes",
                "[step] is four [[variant]] and two [[part]], [data] is [regression], heads are [rows] with parts_from"},
+    FormerKind{"flight",
+               "without models [launch] is the whole launch, each [[launch]] is a [[variant]] that sets it, measured "
+               "stands in the variant, outputs names the quantities"},
     FormerKind{"cross-check", "[[grid]] is [[axis]], reference is [compare], outputs names the quantities"},
 };
 

@@ -166,7 +166,8 @@ Delivery read_delivery_of(Table root) {
 std::vector<std::string> read_models(Table root) {
   std::vector<std::string> known;
   for (const auto& m : models::registry()) known.emplace_back(m.name);
-  std::vector<std::string> wanted = root.texts({"models", "the models that answer (`hosel list`)"});
+  std::vector<std::string> wanted =
+      root.texts({"models", "the models that answer (`hosel list`); a study without them follows the stated [launch]"});
   if (wanted.empty()) root.fail("models", "name at least one model");
   for (const std::string& m : wanted) {
     if (std::ranges::count(wanted, m) > 1) root.fail("models", fmt::format("'{}' is there twice", m));

@@ -226,13 +226,29 @@ models::FlightBudget FlightSetup::budget(const Launch& launch, const Ball& ball)
 }
 
 nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
-                             const Ball& ball) {
+                             const Ball& ball, post::Table* by_law, bool draw) {
   constexpr double sample = 0.05;  // [s]
   std::vector<post::NamedFlight> flights = {{setup.conditions.law.name, setup.follow(launch, ball, sample)}};
   for (const models::FlightLaw& law : setup.others) {
     FlightSetup other = setup;
     other.conditions.law = law;
     flights.push_back({law.name, other.follow(launch, ball, sample)});
+  }
+  if (by_law) {
+    const auto channels = post::flight_channels(setup.unit);
+    if (by_law->columns.empty()) {
+      by_law->in_files({"launch", "law"});
+      for (const post::FlightChannel& c : channels) by_law->in_files({fmt::format("{}_{}", c.name, c.unit)}, "{:.8g}");
+      by_law->in_files({"outside_law_range"}, "{:.4g}");
+    }
+    for (const auto& [law, shot] : flights) {
+      by_law->add(name, law);
+      for (const post::FlightChannel& c : channels) {
+        const auto x = c.value(shot);
+        by_law->more(x ? std::optional(*x / c.si) : std::nullopt);
+      }
+      by_law->more(shot.flight.outside);
+    }
   }
   const models::FlightBudget budget = setup.budget(launch, ball);
   const std::string how =
@@ -247,7 +263,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
                     name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
                     flight.spin.low, flight.spin.high));
   const std::string file = out.file_name(name);
-  out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
+  if (draw) out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)
       .write(flight.time, post::trajectory_mesh(flight));
   return post::to_json(budget, setup.errors, setup.unit);

@@ -5,6 +5,7 @@
 
 #include "app/output.hpp"
 #include "app/reader.hpp"
+#include "post/table.hpp"
 #include "post/trajectory.hpp"
 
 namespace hosel::app {
@@ -51,8 +52,9 @@ std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::o
                                              const Ball& ball);
 
 /// The error budget as a table, the trajectories by every law as figure and lines for ParaView in OUT; returns the
-/// budget for the summary. `name` begins the files' names. Says where a law is used outside its range.
+/// budget for the summary. `name` begins the files' names. Says where a law is used outside its range. With a table for
+/// files: gives it a row a law. Without `draw`: no figure.
 nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
-                             const Ball& ball);
+                             const Ball& ball, post::Table* by_law = nullptr, bool draw = true);
 
 }  // namespace hosel::app

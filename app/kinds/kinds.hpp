@@ -8,7 +8,6 @@ namespace hosel::app {
 std::unique_ptr<Job> read_calibrate_ball(CaseFile& file);
 std::unique_ptr<Job> read_calibrate_face(CaseFile& file);
 std::unique_ptr<Job> read_calibrate_reduced(CaseFile& file);
-std::unique_ptr<Job> read_flights(CaseFile& file);
 std::unique_ptr<Job> read_flight_law(CaseFile& file);
 std::unique_ptr<Job> read_identify_shaft(CaseFile& file);
 std::unique_ptr<Job> read_impact(CaseFile& file);

@@ -68,6 +68,9 @@ struct Nesting {
   Nesting& operator=(const Nesting&) = delete;
 };
 
+/// Of launches: each has a table, a figure and a path of its own.
+constexpr std::size_t kMostBudgets = 60;
+
 class StudyJob final : public PointJob {
  public:
   explicit StudyJob(CaseFile& file) {
@@ -82,6 +85,8 @@ class StudyJob final : public PointJob {
     const auto columns = table_.design.columns();
     for (const std::string& c : columns)
       if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
+    if (budgets_ && table_.design.size() > kMostBudgets)
+      root.fail("flight", fmt::format("launch_error and beside tell of each launch: of {} at most", kMostBudgets));
     if (!studied_) read_solved(root);
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
@@ -169,6 +174,7 @@ class StudyJob final : public PointJob {
           between);
       if (const post::TextTable rows = table.rows(); rows.rows.size() > 1) out.show(rows, "Points");
     }
+    if (budgets_) summary["launches"] = report_flights(out);
     if (landing_) summary["landing"] = report_landing(out, table, effects, *landing_, title_);
     if (optimum_)
       summary["optimum"] =
@@ -231,14 +237,19 @@ class StudyJob final : public PointJob {
   /// The study's own tables are the blow.
   void read_blows(CaseFile& file, Table root) {
     const StudyBlow base = read_study_blow(root);
+    const bool struck = !base.models.front().empty();
+    flies_ = base.flight.has_value();
+    budgets_ = !struck && flies_ && !(base.flight->errors.empty() && base.flight->others.empty());
+    blow_ = std::make_unique<CaseFile>(file, file.overrides());
     table_.models = base.models;
     table_.outputs = root.texts({"outputs", "quantities of blow, launch and flight, each with its unit"});
     if (table_.outputs.empty()) root.fail("outputs", "name at least one quantity, ball_speed_mps for example");
     for (const std::string& name : table_.outputs) {
       if (std::ranges::count(table_.outputs, name) > 1) root.fail("outputs", fmt::format("'{}' is there twice", name));
-      outputs_.push_back(find_study_output(root, "outputs", name, base.flight.has_value()));
+      outputs_.push_back(find_study_output(root, "outputs", name, flies_, struck));
       conditions_.followed = conditions_.followed || outputs_.back().followed;
     }
+    if (!struck) return;
     conditions_.matched_launch =
         root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
     if (root.has_quantity("keep_bounce"))
@@ -257,8 +268,30 @@ class StudyJob final : public PointJob {
     if (conditions_.followed && conditions_.matched_launch)
       root.fail("outputs",
                 "with matched_launch there is a blow at every loft of the search, and no one peak_stress or impulse");
-    flies_ = base.flight.has_value();
-    blow_ = std::make_unique<CaseFile>(file, file.overrides());
+  }
+
+  /// The error budget of every stated launch, its paths by every law, and all launches in one picture.
+  json report_flights(Output& out) const {
+    json said = json::object();
+    post::Table by_law;
+    std::vector<post::NamedFlight> flights;
+    FlightSetup first = *blow(0).flight;
+    first.show_in(out);
+    for (std::size_t d = 0; d < table_.design.size(); ++d) {
+      const StudyBlow asked = blow(d);
+      FlightSetup setup = *asked.flight;
+      setup.unit = first.unit;  // of all in one table
+      std::string name = table_.design.said(d);
+      if (name.empty()) name = table_.design.cells(d).front();
+      const Launch launch = asked.launch->in_place_of({});
+      flights.push_back({name, setup.follow(launch, asked.blow.ball, 0.05)});
+      said[name] = post::to_json(flights.back().shot);
+      said[name]["budget"] = report_flight(out, setup, name, launch, asked.blow.ball, &by_law, draw_);
+    }
+    out.write("flights.csv", by_law.csv());
+    if (draw_ && flights.size() > 1)
+      out.draw(post::trajectory_figure(first.conditions.law.name, flights), "figures/flights");
+    return said;
   }
 
   void read_solved(Table& root) {
@@ -474,6 +507,7 @@ class StudyJob final : public PointJob {
   std::vector<StudyOutput> outputs_;  ///< of a study of blows
   std::vector<StudySolve> solves_;
   bool flies_ = false;
+  bool budgets_ = false;  ///< launches are stated, and [flight] says what else they and the law may be
   std::optional<StudyReference> reference_;
   StudyParts parts_;
   std::optional<StudyRegression> regression_;

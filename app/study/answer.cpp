@@ -242,6 +242,13 @@ Launch launch_with_history(const std::string& model, const models::Options& opti
 }  // namespace
 
 StudyBlow read_study_blow(Table root) {
+  if (!root.has("models") && root.has("launch")) {
+    StudyBlow stated{.models = {""}};
+    if (auto ball = root.optional_table("ball")) stated.blow.ball = read_ball(*ball);
+    stated.launch = read_launch(root.table("launch"), true);
+    stated.flight = read_optional_flight(root);
+    return stated;
+  }
   StudyBlow out{.models = read_models(root)};
   out.blow = read_blow(root, out.models);
   out.options = read_options(root, out.models, out.blow);
@@ -260,7 +267,8 @@ StudyBlow read_study_blow(Table root) {
   return out;
 }
 
-StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies) {
+StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies,
+                              bool struck) {
   const SplitName split = split_unit(name);
   std::vector<std::string> known;
   const auto unit_of = [&](std::string_view stem, Dimension dimension) -> std::optional<Unit> {
@@ -287,6 +295,7 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
             [value = c.value](const StudyAnswer& a) { return a.flight ? value(*a.flight) : MaybeNumber(); }};
   }
   for (const BlowQuantity& q : kBlowQuantities) {
+    if (!struck) break;
     if (q.dimension) {
       if (const auto unit = unit_of(q.name, *q.dimension)) return {name, unit->si, q.value, q.cause, q.followed};
     } else {
@@ -318,10 +327,12 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
                            : KeptBounce{own.restitution, own.contact_time};
   }
   const std::unique_ptr<models::ImpactModel> made =
-      asked.plate && model.starts_with("fe-")
+      model.empty() ? nullptr
+      : asked.plate && model.starts_with("fe-")
           ? std::make_unique<models::ElasticPlate>(options.fe, *asked.plate, asked.blow.ball)
           : models::find(model)->make(options);
-  if (conditions.matched_launch) {
+  if (!made) {  // the stated launch is all there is
+  } else if (conditions.matched_launch) {
     constexpr double tolerance = radians(0.03);
     auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);

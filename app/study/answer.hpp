@@ -19,7 +19,8 @@
 
 namespace hosel::app {
 
-/// A blow as the tables of a study say it.
+/// A blow as the tables of a study say it. Without `models`, where [launch] says all of the launch, nothing is struck:
+/// one model without a name "answers" with it.
 struct StudyBlow {
   std::vector<std::string> models;
   Blow blow;
@@ -71,8 +72,10 @@ struct StudyOutput {
   bool cause = false;     ///< of the contact itself: may explain why a launch differs
   bool followed = false;  ///< is there where StudyConditions::followed asks for it
 };
-/// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so.
-StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies);
+/// Throws InputError at `key` of `table`, with the nearest name, where nothing is called so, of the launch and the
+/// flight alone where nothing is `struck`.
+StudyOutput find_study_output(const Table& table, std::string_view key, const std::string& name, bool flies,
+                              bool struck = true);
 
 /// The axial bounce on a rigid wall, of the ball and numerics of a blow.
 models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed);

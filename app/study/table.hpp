@@ -28,7 +28,7 @@ struct StudySeries {
 /// A design, what was asked at each of its points, and the answers: point = design point * models + model.
 struct StudyTable {
   Design design;
-  std::vector<std::string> models;      ///< one empty name where another case answers
+  std::vector<std::string> models;      ///< one empty name where another case answers, or nothing is struck
   std::vector<std::string> outputs;     ///< names with their units, or entries of a summary
   std::vector<MeasuredRange> measured;  ///< of every point; those of a variant or row come before
   std::vector<StudySeries> series;      ///< models x outputs

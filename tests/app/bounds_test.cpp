@@ -147,8 +147,8 @@ TEST(Bounds, WhatNoShaftSwingOrBallHas) {
   refused("swing-driver --set solution.step_ms=1e-300", "solution.step_ms: 1e-300 is out of range");
   const fs::path dir = fresh_directory("drives");
   const std::string flight =
-      "kind = \"flight\"\n[[launch]]\nname = \"a\"\nball_speed_mps = 77\nlaunch_angle_deg = "
-      "10\nspin_rate_rpm = 2600\n[flight]\nlaw = \"table\"\ncoefficients = \"c.csv\"\n"
+      "kind = \"study\"\noutputs = [\"carry_m\"]\n[[variant]]\nname = \"a\"\n[launch]\nball_speed_mps = 77\n"
+      "launch_angle_deg = 10\nspin_rate_rpm = 2600\n[flight]\nlaw = \"table\"\ncoefficients = \"c.csv\"\n"
       "spin_decay_per_s = 0.04\n";
   const auto table = [](const std::string& drag) {
     return "reynolds,spin_ratio,drag,lift\n1e4,0," + drag + ",0\n1e4,1,0.2,0\n3e5,0,0.2,0\n3e5,1,0.2,0\n";

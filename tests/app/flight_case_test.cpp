@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "post/csv.hpp"
 
 namespace {
 
@@ -96,19 +97,19 @@ TEST(FlightCase, TunesOnCarry) {
   EXPECT_NEAR(found["value"].get<double>(), 0.81, 1e-3);
 }
 
-const std::string kLaunches = R"(kind = "flight"
-[[launch]]
-name = "drive"
+const std::string kLaunches = R"(kind = "study"
+outputs = ["carry_yd", "spin_axis_deg"]
+[launch]
 ball_speed_mph = 165.0
 launch_angle_deg = 11.0
 spin_rate_rpm = 2600.0
 spin_axis_deg = 8.0
+[[variant]]
+name = "drive"
 measured = {carry_yd = 270.0}
-[[launch]]
+[[variant]]
 name = "wedge"
-ball_speed_mph = 100.0
-launch_angle_deg = 26.0
-backspin_rpm = 9000.0
+set = ["launch={ball_speed_mph=100.0, launch_angle_deg=26.0, backspin_rpm=9000.0}"]
 [flight]
 beside = ["smits-smith-1994"]
 [[flight.launch_error]]
@@ -117,8 +118,11 @@ ball_speed_mph = 0.5
 )";
 
 TEST(FlightCase, ReportsErrorsAndWarnsOutsideTheLaw) {
-  Outcome o;
-  const auto s = run("flight_kind", kLaunches, &o);
+  const fs::path dir = fresh_directory("flight_budget");
+  write(dir / "case" / "case.toml", kLaunches);
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto s = nlohmann::json::parse(content(dir / "out" / "summary.json"));
   const auto& drive = s["launches"]["drive"];
   EXPECT_GT(drive["side_yd"], 5);  // fade goes right
   const auto& carry = drive["budget"]["carry_yd"];
@@ -130,6 +134,56 @@ TEST(FlightCase, ReportsErrorsAndWarnsOutsideTheLaw) {
   EXPECT_GT(s["launches"]["wedge"]["outside_law_range"], 0.1);
   EXPECT_NE(o.text.find("wedge: "), std::string::npos);
   EXPECT_NE(o.text.find("outside the range of ferguson-2022"), std::string::npos);
+  // The study's own table says the same of the stated launches, beside what was measured.
+  EXPECT_NEAR(s["range"]["spin_axis_deg"][1].get<double>(), 8, 1e-9);
+  const auto& off = s["compare"]["differences"][0];
+  EXPECT_EQ(off["points"], 1);
+  EXPECT_NEAR(off["mean"].get<double>(), drive["carry_yd"].get<double>() - 270, 1e-9);
+  const hosel::post::Sheet by_law = hosel::post::read_csv(dir / "out" / "flights.csv");
+  EXPECT_EQ(by_law.rows(), 4U) << "two launches by two laws";
+  const auto pictured = [&] { return fs::exists(dir / "out" / "figures" / "flight-drive.gp"); };
+  EXPECT_TRUE(pictured());
+  fs::remove_all(dir / "out");
+  ASSERT_EQ(command("run " + (dir / "case").string() + " --set figures=false --out " + (dir / "out").string()).status,
+            0);
+  EXPECT_TRUE(fs::exists(dir / "out" / "flights.csv"));
+  EXPECT_FALSE(pictured());
+}
+
+TEST(FlightCase, StatedLaunchesAreSweptAsBlowsAre) {
+  const auto s = run("flight_sweep",
+                     "kind = \"study\"\noutputs = [\"ball_speed_mps\", \"carry_m\"]\n"
+                     "[launch]\nball_speed_mps = 60\nlaunch_angle_deg = 12\nspin_rate_rpm = 2500\n"
+                     "[flight]\n[[axis]]\nkey = \"launch.ball_speed_mps\"\nvalues = [50, 60, 70]\n");
+  EXPECT_EQ(s["failed"], 0);
+  EXPECT_FALSE(s.contains("launches")) << "a budget where the case asks for one";
+  EXPECT_NEAR(s["range"]["ball_speed_mps"][0].get<double>(), 50, 1e-9);
+  EXPECT_NEAR(s["range"]["ball_speed_mps"][1].get<double>(), 70, 1e-9);
+  std::string struck = kEccentricBlow;
+  struck.replace(struck.find("\"impact\""), 8, "\"study\"\noutputs = [\"carry_m\"]");
+  const auto blow = run("flight_swept", struck +
+                                            "[launch]\nball_speed_mps = 70\nlaunch_angle_deg = 12\nazimuth_deg = 0\n"
+                                            "spin_rate_rpm = 2500\n[flight]\n[[variant]]\nname = \"stated\"\n");
+  EXPECT_NEAR(s["range"]["carry_m"][1].get<double>(), blow["range"]["carry_m"][1].get<double>(), 1e-9)
+      << "as the launch in place of a model's";
+}
+
+TEST(FlightCase, OfAStatedLaunchNothingOfABlowIsKnown) {
+  const std::string launch = "[launch]\nball_speed_mps = 60\nlaunch_angle_deg = 12\nspin_rate_rpm = 2500\n[flight]\n";
+  std::string sixty_one = "[61";
+  for (int k = 0; k < 60; ++k) sixty_one += ", " + std::to_string(k + 1);
+  const std::string axis = "[[axis]]\nkey = \"launch.ball_speed_mps\"\nvalues = ", few = axis + "[50, 60]\n";
+  for (const auto& [text, says] :
+       {std::pair{"outputs = [\"smash_factor\"]\n" + launch + few, "nothing of a blow is called 'smash_factor'"},
+        {"outputs = [\"carry_m\"]\nmatched_launch = true\n" + launch + few, "matched_launch"},
+        {"outputs = [\"carry_m\"]\n" + launch + few + "[delivery]\nclub_speed_mps = 40\n", "delivery"},
+        {"outputs = [\"carry_m\"]\n" + launch + "beside = [\"libgolf\"]\n" + axis + sixty_one + "]\n", "60 at most"}}) {
+    const fs::path dir = fresh_directory("flight_launch_alone");
+    write(dir / "case.toml", "kind = \"study\"\n" + text);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2) << text << o.text;
+    EXPECT_NE(o.text.find(says), std::string::npos) << o.text;
+  }
 }
 
 TEST(FlightCase, ABadTableIsOneLine) {

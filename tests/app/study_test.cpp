@@ -829,7 +829,8 @@ by = "variant"
 }
 
 TEST(Study, AFormerKindSaysWhatItIsNow) {
-  for (const char* kind : {"sweep", "variants", "cross-check", "curves", "clubs", "bounce", "restitution-face"}) {
+  for (const char* kind :
+       {"sweep", "variants", "cross-check", "curves", "clubs", "bounce", "restitution-face", "flight"}) {
     const fs::path dir = fresh_directory("study_former");
     write(dir / "case.toml", std::string("kind = \"") + kind + "\"\n");
     const Outcome o = command("check " + dir.string());

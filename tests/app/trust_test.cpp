@@ -368,12 +368,14 @@ TEST(Tables, NamesAreCellsWhateverStandsInThem) {
                                           "&#x0; x",
                                           std::string(200, 'n'),
                                           "\xC3\xA9t\xC3\xA9"};
-  std::string flight = "kind = \"flight\"\n", variants = kEccentricBlow;
+  std::string flight =
+      "kind = \"study\"\noutputs = [\"carry_m\"]\n[launch]\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\n"
+      "backspin_rpm = 2500.0\n[flight]\n[[flight.launch_error]]\nsource = \"radar\"\nball_speed_mps = 0.1\n";
+  std::string variants = kEccentricBlow;
   variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   for (const std::string& n : names) {
     const std::string quoted = "'''" + n + "'''";
-    flight += "[[launch]]\nname = " + quoted +
-              "\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
+    flight += "[[variant]]\nname = " + quoted + "\n";
     variants += "[[variant]]\nname = " + quoted + "\nset = [\"delivery.club_speed_mps=44.0\"]\n";
   }
   write(dir / "flight/case.toml", flight);
@@ -408,7 +410,7 @@ TEST(Tables, NamesAreCellsWhateverStandsInThem) {
           << entry.path() << " is well-formed";
     }
     EXPECT_EQ(series, names.size()) << "a series of each";
-    EXPECT_EQ(pictures, names.size() + 1) << "a picture of each, and one of all";
+    EXPECT_EQ(pictures, names.size() + 2) << "a picture of each, one of all, and the study's own";
   }
 }
 
@@ -424,9 +426,9 @@ TEST(Tables, TwoOfOneNameAreRefused) {
   variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
   for (int k = 0; k < 2; ++k) variants += "[[variant]]\nname = \"soft\"\n";
   refused("variants", variants);
-  std::string flight = "kind = \"flight\"\n[flight]\n";
+  std::string flight = "kind = \"study\"\noutputs = [\"carry_m\"]\n[flight]\n";
   for (int k = 0; k < 2; ++k) flight += "[[flight.launch_error]]\nsource = \"monitor\"\nball_speed_mps = 0.1\n";
-  flight += "[[launch]]\nname = \"a\"\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
+  flight += "[launch]\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n";
   refused("flight", flight);
   std::string models = kEccentricBlow;
   models.replace(models.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-eccentric\", \"rigid-eccentric\"]");
@@ -463,8 +465,9 @@ TEST(Terminal, WhatCannotBePrintedIsAnError) {
 TEST(Terminal, TextsOfACaseMoveNoCursor) {
   const fs::path dir = fresh_directory("escapes");
   write(dir / "case/case.toml",
-        "kind = \"flight\"\n[[launch]]\nname = \"a\\u001b[2Jb\\nc\\u0085d\\u2028e\\u202ef\"\n"
-        "ball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n");
+        "kind = \"study\"\noutputs = [\"carry_m\"]\n[[variant]]\nname = \"a\\u001b[2Jb\\nc\\u0085d\\u2028e\\u202ef\"\n"
+        "[launch]\nball_speed_mps = 60.0\nlaunch_angle_deg = 12.0\nbackspin_rpm = 2500.0\n"
+        "[[flight.launch_error]]\nsource = \"radar\"\nball_speed_mps = 0.1\n");
   const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
   ASSERT_EQ(o.status, 0) << o.text;
   EXPECT_NE(o.text.find("a [2Jb c d e f"), std::string::npos) << o.text;
