@@ -72,17 +72,18 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
         where.set(name, x);
       };
       for (const auto& [name, value] : group.figures) set(name, value);
-      for (std::size_t o = 0; o < table.outputs.size(); ++o) {
-        const std::string name = formula_name(table.outputs[o]);
-        StudySeries there;
-        for (const std::size_t d : group.points) there.y.push_back(table.at(m, o).y[d]);
-        const StudySeries::Spread all = there.spread();
-        set("mean." + name, all.mean);
-        set("least." + name, all.low);
-        set("largest." + name, all.high);
-      }
-      std::size_t judged = 0, held = 0;
-      for (const std::size_t d : group.points) {
+      const auto over = [&](const std::vector<std::size_t>& points) {
+        for (std::size_t o = 0; o < table.outputs.size(); ++o) {
+          const std::string name = formula_name(table.outputs[o]);
+          StudySeries there;
+          for (const std::size_t d : points) there.y.push_back(table.at(m, o).y[d]);
+          const StudySeries::Spread all = there.spread();
+          set("mean." + name, all.mean);
+          set("least." + name, all.low);
+          set("largest." + name, all.high);
+        }
+      };
+      const auto at = [&](std::size_t d) {
         for (std::size_t c = 0; c < columns.size(); ++c)
           set(formula_name(columns[c]), numbers[c].empty() ? NAN : numbers[c][d]);
         for (std::size_t o = 0; o < table.outputs.size(); ++o) {
@@ -94,8 +95,19 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
           set("reference." + name, r);
           set("difference." + name, y - r);
         }
-        const auto spoken_of = where(), true_here = holds();
-        if (!spoken_of || !*spoken_of || !true_here) continue;
+      };
+      over(group.points);
+      std::vector<std::size_t> spoken_of;
+      for (const std::size_t d : group.points) {
+        at(d);
+        if (where().value_or(false)) spoken_of.push_back(d);
+      }
+      over(spoken_of);
+      std::size_t judged = 0, held = 0;
+      for (const std::size_t d : spoken_of) {
+        at(d);
+        const auto true_here = holds();
+        if (!true_here) continue;
         ++judged;
         held += *true_here;
       }

@@ -12,7 +12,8 @@ namespace hosel::app {
 
 /// A sentence and the formula that bears it out: arithmetic, comparisons, && and || (muParser) of the design's columns,
 /// the outputs, with a [compare] also reference.NAME and difference.NAME, and mean.NAME, least.NAME and largest.NAME of
-/// an output over the points that are judged together, and the figures of a face that is compared.
+/// an output over the points that are judged together (in `holds` over those that it speaks of), and the figures of a
+/// face that is compared.
 struct StudyStatement {
   std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
 };

@@ -853,6 +853,32 @@ TEST(Study, AStatementThatCannotBeReadIsRefused) {
   }
 }
 
+TEST(Study, AStatementComparesWithThePointsThatItSpeaksOf) {
+  // The slower of two clubs makes the fastest ball among the blows of slow clubs, and not among all.
+  const fs::path dir = fresh_directory("study_statement_where");
+  write(dir / "case.toml", std::string(R"(kind = "study"
+models = ["stick-slip"]
+outputs = ["ball_speed_mps"]
+[[axis]]
+key = "delivery.club_speed_mps"
+values = [40.0, 50.0]
+[[statement]]
+text = "among the slow ones"
+where = "club_speed_mps < 45"
+holds = "ball_speed_mps == largest.ball_speed_mps"
+[[statement]]
+text = "among all"
+where = "club_speed_mps < 45 && ball_speed_mps == largest.ball_speed_mps"
+holds = "1"
+)") + kCentredBlow);
+  const std::string out = (dir / "out").string();
+  ASSERT_EQ(command("run " + dir.string() + " --out " + out + " --quiet").status, 0);
+  const auto statements = nlohmann::json::parse(content(dir / "out" / "summary.json"))["statements"];
+  EXPECT_EQ(statements[0]["points"], 1);
+  EXPECT_EQ(statements[0]["verdict"], "holds");
+  EXPECT_EQ(statements[1]["points"], 0);
+}
+
 TEST(Study, GridTakesNumbersAndWords) {
   const fs::path dir = sweep_case("sweep_grid", R"(kind = "study"
 case = "../blow"
