@@ -231,8 +231,7 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   }
   // The known end of a path is the column's name, where no other column has it.
   for (std::string& name : sheet.names)
-    if (const std::string known = known_name(d, name); !known.empty() && !std::ranges::count(sheet.names, known))
-      name = known;
+    if (const std::string end = known_name(d, name); !end.empty() && !std::ranges::count(sheet.names, end)) name = end;
   return sheet;
 }
 

@@ -142,20 +142,6 @@ double value(const LoopResult& r, const std::string& parameter) {
   return std::nan("");
 }
 
-struct Undeclared {
-  std::string effect;
-  Hidden hidden;
-  double wind;  ///< of the groups: where an undeclared wind is sought, theirs is little
-};
-std::vector<Undeclared> effects_hidden() {
-  return {{"drag-level", {.drag = 0.06}, 1.5},
-          {"lift-law", {.lift = -0.1}, 1.5},
-          {"spin-decay", {.decay = 0.12}, 1.5},
-          {"air-density", {.density = -0.08}, 1.5},
-          {"wind", {.wind_along = -2, .wind_right = 2.5}, 0.5},
-          {"spin-axis-bias", {.axis = radians(4)}, 1.5}};
-}
-
 TEST(FlightBase, TheReferenceIsTheFlight) {
   // Two integrations of one law: what they differ by is the larger of their errors, a centimetre.
   const Ball ball;
