@@ -583,8 +583,6 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
   for (const RowFlag& f : flags_)
     if (of_finding[f.finding] == 1) ++out.rows, ++of_column[f.column];
   out.lost = int(flags_.size());
-  for (const auto& [column, rows] : of_column)
-    if (2 * rows > out.rows) out.column = column;
   std::vector<int> used = rows_.train;
   used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
@@ -594,6 +592,8 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
     out.lost += square > loss.cap;
     out.rows += square > loss.knee;
   }
+  for (const auto& [column, rows] : of_column)
+    if (2 * rows > out.rows) out.column = column;
   out.all = int(flags_.size() + used.size());
   out.many = out.rows > std::max(3.0, kMany * out.all);
   return out;

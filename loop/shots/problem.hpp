@@ -76,7 +76,7 @@ class ShotProblem : public Problem {
   struct FarOff {
     int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many
     bool many = false;                ///< more than exceptions are
-    std::string column;               ///< in which most of those flagged are wrong; empty: in no one
+    std::string column;               ///< in which more than half of `rows` are flagged; empty: no one
     std::string said() const;
   };
   FarOff far_off(const Selection& s) const;
