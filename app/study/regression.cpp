@@ -12,6 +12,7 @@
 #include "loop/shots/shots.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
+#include "post/table.hpp"
 #include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
