@@ -131,7 +131,7 @@ TEST(FeImpact, ReleaseIsWhereHertzsForceEnds) {
   for (int k = 0; k < 9; ++k) {
     const double t = 0.05 * k;
     r.add(t, 7e3 * std::pow(0.42 - t, 1.5), true);
-    if (k < 3) EXPECT_FALSE(r.end()) << "three steps";
+    EXPECT_TRUE(k >= 3 || !r.end()) << "three steps";
   }
   r.add(0.45, 0, false);
   ASSERT_TRUE(r.end());
