@@ -159,7 +159,7 @@ NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
 /// A file of the library, read whole: what is left over is an error.
 template <class Entry>
 Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
-  static OfFile<Entry> entries;
+  static OfFile<Entry> entries(true);
   return entries.get(file, [&] {
     CaseFile text(file);
     Table root = text.root();
@@ -175,10 +175,13 @@ Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
 /// Names and files of one folder in the order of names, nothing read.
 using Folder = std::shared_ptr<const std::vector<LibraryEntry>>;
 Folder in_folder(const fs::path& folder, bool shipped) {
-  static OfFile<Folder> folders;
+  static OfFile<Folder> folders(true);
   return folders.get(folder, [&] {
     std::vector<LibraryEntry> here;
     std::error_code none;
+    if (!shipped &&
+        fs::equivalent(folder, shipped_library() / folder.filename(), none))  // who ships entries makes them
+      return std::make_shared<const std::vector<LibraryEntry>>();
     for (const auto& file : fs::directory_iterator(folder, none))
       if (file.path().extension() == ".toml" && file.is_regular_file())
         here.push_back({.name = file.path().stem().string(), .what = {}, .file = file.path(), .shipped = shipped});
@@ -191,9 +194,7 @@ Folder in_folder(const fs::path& folder, bool shipped) {
 std::vector<Folder> on_shelf(Shelf shelf) {
   static const fs::path of_hosel = shipped_library();
   std::vector<Folder> all{in_folder(of_hosel / name(shelf), true)};
-  const fs::path own = user_library();
-  std::error_code none;  // who ships entries makes them
-  if (!own.empty() && !fs::equivalent(own, of_hosel, none)) all.push_back(in_folder(own / name(shelf), false));
+  if (const fs::path own = user_library(); !own.empty()) all.push_back(in_folder(own / name(shelf), false));
   return all;
 }
 

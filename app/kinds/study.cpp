@@ -12,6 +12,7 @@
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
+#include "app/of_file.hpp"
 #include "app/stored_launch.hpp"
 #include "app/study/answer.hpp"
 #include "app/study/compare.hpp"
@@ -499,6 +500,7 @@ class StudyJob final : public PointJob {
   }
 
   std::string title_;
+  StudyFiles files_;
   std::unique_ptr<CaseFile> studied_, blow_;  ///< as they were when the study was read; one of them
   std::vector<std::string> set_;
   bool keep_outputs_ = false;
