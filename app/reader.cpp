@@ -239,6 +239,7 @@ std::size_t length_of(const toml::node* node, std::size_t size) {
 }  // namespace
 
 void Table::declare(Key key, Declared what) {
+  if (!document_->keys_alone) return;
   if (what.key.empty()) what.key = key.name;
   what.key = dotted(path_, what.key);
   what.shown = dotted(shown_, key.shown.empty() ? key.name : key.shown);
@@ -343,7 +344,7 @@ double Table::quantity(Key key, std::string_view unit, Range si, std::optional<d
   declare(key, {.key = f.key,
                 .type = "number",
                 .standard = said(standard, find_unit(unit)->si),
-                .unit = unit,
+                .unit = std::string(unit),
                 .range = si,
                 .si = f.unit->si});
   if (!f.node) {
@@ -364,7 +365,7 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
   declare(key, {.key = f.key,
                 .type = list_of(size),
                 .standard = said(standard, find_unit(unit)->si),
-                .unit = unit,
+                .unit = std::string(unit),
                 .range = si,
                 .si = f.unit->si,
                 .size = length_of(f.node, size)});
@@ -394,7 +395,7 @@ Vec3 Table::vector(Key key, std::string_view unit, Range si, std::optional<Vec3>
 Mat3 Table::matrix(Key key, std::string_view unit, std::optional<Mat3> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
-  declare(key, {.key = f.key, .type = "3x3 matrix", .unit = unit, .si = f.unit->si});
+  declare(key, {.key = f.key, .type = "3x3 matrix", .unit = std::string(unit), .si = f.unit->si});
   Mat3 out;
   if (!f.node) {
     out = *standard;

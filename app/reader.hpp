@@ -67,10 +67,10 @@ struct Declared {
   std::string meaning = {};
   std::string type = {};                     ///< "number", "list of 3", "text", "one of a, b"
   std::optional<std::string> standard = {};  ///< the default as TOML text; without one the key is required
-  std::string_view unit = {};                ///< suffix of `shown`
+  std::string unit = {};                     ///< suffix of `shown`
   Range range = {};                          ///< of a number, SI
   double si = 1;                             ///< one of the case's unit in SI
-  std::string_view decided_by = {};          ///< the key that decides default or range (Table::decided_by)
+  std::string decided_by = {};               ///< the key that decides default or range (Table::decided_by)
   bool optional = false;                     ///< without a default, but asked for only where it is there
   std::size_t size = 0;                      ///< of a list; 0: a single number
   bool whole = false;                        ///< an integer
@@ -197,7 +197,7 @@ class CaseFile {
   /// For who lists keys: of a study its own tables are read, and not every point.
   void for_keys_alone();
   bool read_for_keys_alone() const;
-  /// Every key that was read or left to its default, in the order of asking.
+  /// Every key that was read or left to its default, in the order of asking; nothing unless read for keys alone.
   const std::vector<Declared>& declared() const;
   /// Every key that was not read is an error. Call it when reading is complete: what the case says then counts among
   /// the inputs.

@@ -139,7 +139,7 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
     element_mass_.push_back(element_mass(mesh_, e, material.density));
   }
   history_.assign(start, 0);
-  starts_.assign(step_start, 0);
+  starts_.assign(step_start + static_cast<std::size_t>(padded_), 0);  // a row also where no material has a history
   starts_of_.assign(mesh_.elements.size(), NAN);
   found_.resize(mesh_.elements.size());
   stiffness_.resize(mesh_.elements.size());

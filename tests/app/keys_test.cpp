@@ -51,6 +51,22 @@ TEST(Keys, EveryKeyHasAMeaning) {
     EXPECT_FALSE(k.meaning.empty()) << k.table << "." << k.name << ": say what it means where it is read";
 }
 
+/// Also where a reader puts key and unit together while it reads.
+TEST(Keys, ARangeIsInTheUnitOfItsKey) {
+  int in_units = 0;
+  for (const AcceptedKey& k : accepted_keys()) {
+    const SplitName split = split_unit(k.name);
+    if (!split.unit) continue;
+    for (const std::string& range : k.ranges) {
+      if (range.empty()) continue;
+      ++in_units;
+      EXPECT_NE(range.find(" " + std::string(split.unit->suffix)), std::string::npos)
+          << k.table << "." << k.name << ": " << range;
+    }
+  }
+  EXPECT_GT(in_units, 200);
+}
+
 TEST(Keys, ReferenceIsWhatTheReaderSays) {
   const std::string page = keys_markdown(accepted_keys());
   EXPECT_NE(page.find("| `club_speed_mps` |"), std::string::npos);

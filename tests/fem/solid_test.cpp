@@ -309,7 +309,7 @@ TEST(Solid, LanesAreThePointsOneByOne) {
     ++laws;
     for (const double dt : {0.0, 4e-6, 2e-4}) {
       const auto size = static_cast<std::size_t>(solid.history_size());
-      std::vector<double> history(kLanes * size), starts(static_cast<std::size_t>(kLanes * solid.start_size()));
+      std::vector<double> history(kLanes * size), starts(static_cast<std::size_t>(kLanes * (solid.start_size() + 1)));
       Mat3 F[kLanes];
       Mat3Lanes all;
       for (std::size_t l = 0; l < kLanes; ++l) {
