@@ -175,8 +175,8 @@ Entry read_entry(const fs::path& file, Entry (*read)(Table)) {
 /// Names and files of one folder in the order of names, nothing read.
 using Folder = std::shared_ptr<const std::vector<LibraryEntry>>;
 Folder in_folder(const fs::path& folder, bool shipped) {
-  static OfFile<Folder> folders(true);
-  return folders.get(folder, [&] {
+  static OfFile<Folder> of_hosel(true), of_user(true);  // the same folder may be both
+  return (shipped ? of_hosel : of_user).get(folder, [&] {
     std::vector<LibraryEntry> here;
     std::error_code none;
     if (!shipped &&

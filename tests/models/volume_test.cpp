@@ -104,7 +104,7 @@ TEST(Volume, LanesAreTheNumbers) {
       const Overlap one = overlap(lane(depth, l), r, c);
       EXPECT_EQ(one.volume > 0, l > 0);
       // A compiler may contract products and sums of lanes where it does not those of numbers: a few roundings.
-      const auto same = [](double a, double b) { EXPECT_NEAR(a, b, 1e-14 * b); };
+      const auto same = [](double a, double b) { EXPECT_NEAR(a, b, 1e-14 * std::abs(b)); };
       same(lane(four.volume, l), one.volume);
       same(lane(four.area, l), one.area);
       same(lane(four.centroid, l), one.centroid);
