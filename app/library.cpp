@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
 
 #include "app/of_file.hpp"
@@ -190,12 +191,20 @@ Folder in_folder(const fs::path& folder, bool shipped) {
   });
 }
 
-/// Names and files of a shelf, folder by folder: the shipped one first.
-std::vector<Folder> on_shelf(Shelf shelf) {
+/// Names and files of a shelf, folder by folder: the shipped one first. All points of a study see the same.
+const std::vector<Folder>& on_shelf(Shelf shelf) {
+  struct Seen {
+    unsigned long by = 0;
+    std::vector<Folder> folders;
+  };
+  thread_local std::map<Shelf, Seen> all;
+  Seen& seen = all[shelf];
+  const unsigned long study = StudyFiles::now();
+  if (study && seen.by == study) return seen.folders;
   static const fs::path of_hosel = shipped_library();
-  std::vector<Folder> all{in_folder(of_hosel / name(shelf), true)};
-  if (const fs::path own = user_library(); !own.empty()) all.push_back(in_folder(own / name(shelf), false));
-  return all;
+  seen = {study, {in_folder(of_hosel / name(shelf), true)}};
+  if (const fs::path own = user_library(); !own.empty()) seen.folders.push_back(in_folder(own / name(shelf), false));
+  return seen.folders;
 }
 
 std::vector<std::string> names_on(Shelf shelf) {
@@ -208,8 +217,7 @@ std::vector<std::string> names_on(Shelf shelf) {
 
 LibraryEntry find_entry(Shelf shelf, const std::string& wanted) {
   const LibraryEntry* found = nullptr;
-  const std::vector<Folder> folders = on_shelf(shelf);
-  for (const Folder& folder : folders)
+  for (const Folder& folder : on_shelf(shelf))
     if (const auto it = std::ranges::find(*folder, wanted, &LibraryEntry::name); it != folder->end()) {
       if (found)
         throw InputError(

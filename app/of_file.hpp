@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -46,7 +47,8 @@ class OfFile {
     const unsigned long once = once_a_study_ ? StudyFiles::now() : 0;
     if (once) {
       const std::lock_guard lock(mutex_);
-      if (const auto it = kept_.find(file); it != kept_.end() && it->second.once == once) return it->second.made;
+      if (const auto it = kept_.find(file.native()); it != kept_.end() && it->second.once == once)
+        return it->second.made;
     }
     std::error_code none;
     Stamp stamp{fs::last_write_time(file, none), 0};
@@ -55,7 +57,8 @@ class OfFile {
       stamp.size = fs::file_size(file, none);  // of a folder: an error, and any number
       if (none) stamp.size = 0;
       const std::lock_guard lock(mutex_);
-      if (const auto it = kept_.find(file); it != kept_.end() && it->second.stands && it->second.stamp == stamp) {
+      if (const auto it = kept_.find(file.native());
+          it != kept_.end() && it->second.stands && it->second.stamp == stamp) {
         it->second.once = once;
         return it->second.made;
       }
@@ -64,7 +67,7 @@ class OfFile {
     stands = stands && fs::file_time_type::clock::now() - stamp.written > std::chrono::seconds(1);
     if (stands || once) {
       const std::lock_guard lock(mutex_);
-      kept_.insert_or_assign(file, Kept{stamp, stands, once, made});
+      kept_.insert_or_assign(file.native(), Kept{stamp, stands, once, made});
     }
     return made;
   }
@@ -83,7 +86,7 @@ class OfFile {
   };
   bool once_a_study_;
   std::mutex mutex_;
-  std::map<std::filesystem::path, Kept> kept_;
+  std::map<std::string, Kept> kept_;  // by name: paths are compared part by part
 };
 
 }  // namespace hosel::app

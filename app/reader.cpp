@@ -4,6 +4,7 @@
 #include <utf8.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -26,14 +27,14 @@ constexpr const char* kResolved = "case.resolved.toml";
 
 struct Document {
   fs::path directory, file;
-  std::string text;  // of the file
   std::vector<std::string> overrides;
   std::shared_ptr<Inputs> inputs = std::make_shared<Inputs>();
   fs::path copies = kInputs;  // folder below OUT for what this case names
   bool keys_alone = false;
   std::vector<Declared> declared;
-  std::set<std::string> quantities;  // stems of those among them that have a unit
-  std::set<std::string> looked_for;  // keys whose presence decided something, as the reference shows them
+  std::set<std::string> quantities;           // stems of those among them that have a unit
+  std::set<std::string> looked_for;           // keys whose presence decided something, as the reference shows them
+  std::shared_ptr<const toml::table> parsed;  // as it stands in the file: shared by all that differ by overrides alone
   toml::table root, resolved;
   std::map<const toml::node*, std::string> set;  // what `--set` put there: errors name it, not a line of the file
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
@@ -155,10 +156,23 @@ std::string dotted(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
+/// The line of the file where a node of its copy stands; 0: it stands nowhere there.
+unsigned line_of(const toml::node& wanted, const toml::node& copy, const toml::node& original) {
+  if (&wanted == &copy) return original.source().begin.line;
+  unsigned line = 0;
+  if (const toml::table* of = copy.as_table(), *from = original.as_table(); of && from)
+    for (auto&& [key, child] : *of)
+      if (const toml::node* there = from->get(key.str()); there && !line) line = line_of(wanted, child, *there);
+  if (const toml::array* of = copy.as_array(), *from = original.as_array(); of && from)
+    for (std::size_t i = 0; i < std::min(of->size(), from->size()) && !line; ++i)
+      line = line_of(wanted, *of->get(i), *from->get(i));
+  return line;
+}
+
 /// Where a key stands: "case.toml:12", or the `--set` that put it there.
 std::string place(const detail::Document& d, const toml::node& node) {
   if (const auto it = d.set.find(&node); it != d.set.end()) return "--set " + it->second;
-  return fmt::format("{}:{}", d.file.string(), std::max<unsigned>(node.source().begin.line, 1));
+  return fmt::format("{}:{}", d.file.string(), std::max(line_of(node, d.root, *d.parsed), 1u));
 }
 
 }  // namespace
@@ -238,8 +252,9 @@ std::size_t length_of(const toml::node* node, std::size_t size) {
 
 }  // namespace
 
+bool Table::listed() const { return document_->keys_alone; }
+
 void Table::declare(Key key, Declared what) {
-  if (!document_->keys_alone) return;
   if (what.key.empty()) what.key = key.name;
   what.key = dotted(path_, what.key);
   what.shown = dotted(shown_, key.shown.empty() ? key.name : key.shown);
@@ -251,14 +266,24 @@ void Table::declare(Key key, Declared what) {
 }
 
 bool Table::has(std::string_view key) const {
-  document_->looked_for.insert(dotted(shown_, key));
+  if (listed()) document_->looked_for.insert(dotted(shown_, key));
   return as_table(node_).contains(key);
 }
 
+namespace {
+
+/// Whether a name may be this stem and a unit behind it.
+bool may_be(std::string_view name, std::string_view stem) {
+  return name.size() > stem.size() && name[stem.size()] == '_' && name.starts_with(stem);
+}
+
+}  // namespace
+
 bool Table::has_quantity(std::string_view stem) const {
-  document_->looked_for.insert(dotted(shown_, stem));
+  if (listed()) document_->looked_for.insert(dotted(shown_, stem));
   document_->quantities.insert(dotted(shown_, stem));
   for (auto&& [key, value] : as_table(node_)) {
+    if (!may_be(key.str(), stem)) continue;
     const SplitName split = split_unit(key.str());
     if (split.unit && split.stem == stem) return true;
   }
@@ -286,11 +311,12 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
   const Unit* wrong = nullptr;
   std::string wrong_key;
   for (auto&& [key, node] : access.table) {
-    const SplitName split = split_unit(key.str());
     if (key.str() == stem) {
       wrong_key = std::string(key.str());
       continue;
     }
+    if (!may_be(key.str(), stem)) continue;
+    const SplitName split = split_unit(key.str());
     if (!split.unit || split.stem != stem) continue;
     if (split.unit->dimension != unit->dimension) {
       wrong = find_unit(split.unit->suffix);
@@ -341,12 +367,13 @@ double as_echoed(double x) { return std::isfinite(x) ? std::stod(fmt::format("{:
 double Table::quantity(Key key, std::string_view unit, Range si, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
-  declare(key, {.key = f.key,
-                .type = "number",
-                .standard = said(standard, find_unit(unit)->si),
-                .unit = std::string(unit),
-                .range = si,
-                .si = f.unit->si});
+  if (listed())
+    declare(key, {.key = f.key,
+                  .type = "number",
+                  .standard = said(standard, find_unit(unit)->si),
+                  .unit = std::string(unit),
+                  .range = si,
+                  .si = f.unit->si});
   if (!f.node) {
     const double x = as_echoed(*standard / f.unit->si);
     access.echo(f.key, x);
@@ -362,13 +389,14 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
                                       std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
-  declare(key, {.key = f.key,
-                .type = list_of(size),
-                .standard = said(standard, find_unit(unit)->si),
-                .unit = std::string(unit),
-                .range = si,
-                .si = f.unit->si,
-                .size = length_of(f.node, size)});
+  if (listed())
+    declare(key, {.key = f.key,
+                  .type = list_of(size),
+                  .standard = said(standard, find_unit(unit)->si),
+                  .unit = std::string(unit),
+                  .range = si,
+                  .si = f.unit->si,
+                  .size = length_of(f.node, size)});
   std::vector<double> out;  // in the case's unit, as it is echoed
   if (f.node)
     out = read_list(*this, f.key, *f.node, size, [&](double x) {
@@ -395,7 +423,7 @@ Vec3 Table::vector(Key key, std::string_view unit, Range si, std::optional<Vec3>
 Mat3 Table::matrix(Key key, std::string_view unit, std::optional<Mat3> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
-  declare(key, {.key = f.key, .type = "3x3 matrix", .unit = std::string(unit), .si = f.unit->si});
+  if (listed()) declare(key, {.key = f.key, .type = "3x3 matrix", .unit = std::string(unit), .si = f.unit->si});
   Mat3 out;
   if (!f.node) {
     out = *standard;
@@ -422,7 +450,7 @@ Mat3 Table::matrix(Key key, std::string_view unit, std::optional<Mat3> standard)
 double Table::number(Key key, Range range, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
-  declare(key, {.type = "number", .standard = said(standard), .range = range});
+  if (listed()) declare(key, {.type = "number", .standard = said(standard), .range = range});
   if (!node && !standard) fail("", fmt::format("'{}' is missing (allowed: {})", key.name, range.allowed()));
   const double x = node ? read_number(*this, key.name, *node) : *standard;
   if (node && !range.contains(x)) fail(key.name, fmt::format("{:g} is {}", x, range.sentence()));
@@ -434,7 +462,8 @@ std::vector<double> Table::numbers(Key key, std::size_t size, Range range,
                                    std::optional<std::vector<double>> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
-  declare(key, {.type = list_of(size), .standard = said(standard), .range = range, .size = length_of(node, size)});
+  if (listed())
+    declare(key, {.type = list_of(size), .standard = said(standard), .range = range, .size = length_of(node, size)});
   if (!node && !standard) fail("", fmt::format("'{}' is missing", key.name));
   const auto check = [&](double x) {
     if (!range.contains(x)) fail(key.name, fmt::format("{:g} is {}", x, range.sentence()));
@@ -457,8 +486,9 @@ std::pair<double, double> Table::number_or_range(Key key) {
 long Table::integer(Key key, long min, long max, std::optional<long> standard) {
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
-  declare(key,
-          {.type = "whole number", .standard = said(standard), .range = {double(min), double(max)}, .whole = true});
+  if (listed())
+    declare(key,
+            {.type = "whole number", .standard = said(standard), .range = {double(min), double(max)}, .whole = true});
   if (!node && !standard) fail("", fmt::format("'{}' is missing (a whole number from {} to {})", key.name, min, max));
   long x = standard.value_or(0);
   if (node) {
@@ -472,9 +502,11 @@ long Table::integer(Key key, long min, long max, std::optional<long> standard) {
 
 bool Table::flag(Key key, std::optional<bool> standard) {
   Access access{*document_, as_table(node_)};
-  std::optional<std::string> otherwise;
-  if (standard) otherwise = *standard ? "true" : "false";
-  declare(key, {.type = "true or false", .standard = otherwise});
+  if (listed()) {
+    std::optional<std::string> otherwise;
+    if (standard) otherwise = *standard ? "true" : "false";
+    declare(key, {.type = "true or false", .standard = otherwise});
+  }
   const toml::node* node = access.find(key.name);
   if (!node && !standard) fail("", fmt::format("'{}' is missing (true or false)", key.name));
   if (node && !node->is_boolean()) fail(key.name, "expected true or false");
@@ -494,7 +526,7 @@ std::string Table::read_text(std::string_view key, const std::optional<std::stri
 }
 
 std::string Table::text(Key key, const std::optional<std::string>& standard) {
-  declare(key, {.type = "text", .standard = standard});
+  if (listed()) declare(key, {.type = "text", .standard = standard});
   std::string x = printable(read_text(key.name, standard));
   std::ranges::replace(x, '\n', ' ');
   return x;
@@ -510,19 +542,21 @@ std::string Table::name(Key key, std::vector<std::string>& taken) {
 
 std::string Table::choice(Key key, const std::vector<std::string>& allowed,
                           const std::optional<std::string>& standard) {
-  const std::string all = fmt::format("{}", fmt::join(allowed, ", "));
-  declare(key, {.type = "one of " + all, .standard = standard});
+  if (listed()) declare(key, {.type = fmt::format("one of {}", fmt::join(allowed, ", ")), .standard = standard});
   const std::string x = read_text(key.name, standard);
   if (std::ranges::find(allowed, x) != allowed.end()) return x;
+  const std::string all = fmt::format("{}", fmt::join(allowed, ", "));
   const std::string near = nearest(x, allowed);
   fail(key.name, near.empty() ? fmt::format("no '{}' (allowed: {})", x, all)
                               : fmt::format("no '{}'; did you mean '{}'? (allowed: {})", x, near, all));
 }
 
 std::vector<std::string> Table::texts(Key key, std::optional<std::vector<std::string>> standard) {
-  std::optional<std::string> otherwise;
-  if (standard) otherwise = fmt::format("[{}]", fmt::join(*standard, ", "));
-  declare(key, {.type = "list of texts", .standard = otherwise});
+  if (listed()) {
+    std::optional<std::string> otherwise;
+    if (standard) otherwise = fmt::format("[{}]", fmt::join(*standard, ", "));
+    declare(key, {.type = "list of texts", .standard = otherwise});
+  }
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
   if (!node && !standard) fail("", fmt::format("'{}' is missing", key.name));
@@ -542,7 +576,7 @@ std::vector<std::string> Table::texts(Key key, std::optional<std::vector<std::st
 }
 
 std::vector<std::string> Table::scalars(Key key) {
-  declare(key, {.type = "list of values"});
+  if (listed()) declare(key, {.type = "list of values"});
   Access access{*document_, as_table(node_)};
   const toml::node* node = access.find(key.name);
   if (!node) fail("", fmt::format("'{}' is missing", key.name));
@@ -565,7 +599,7 @@ std::vector<std::string> Table::scalars(Key key) {
 }
 
 fs::path Table::file(Key key) {
-  declare(key, {.type = "file"});
+  if (listed()) declare(key, {.type = "file"});
   const std::string name = read_text(key.name, {});
   const fs::path copy = copied(*document_, name), path = copy.empty() ? document_->directory / name : copy;
   if (!fs::is_regular_file(path)) fail(key.name, fmt::format("no file '{}'", path.string()));
@@ -574,7 +608,7 @@ fs::path Table::file(Key key) {
 }
 
 fs::path Table::data_file(Key key) {
-  declare(key, {.type = "file"});
+  if (listed()) declare(key, {.type = "file"});
   return data_path(key.name, read_text(key.name, {}));
 }
 
@@ -728,6 +762,26 @@ void override_element(detail::Document& document, toml::table& table, const std:
   document.set[list->get(number - 1)] = text;
 }
 
+/// What is to be set, as `value`: TOML, or else the text as it stands. A decimal number, of which a study sets
+/// thousands, needs no parser.
+toml::table parse_value(const std::string& value) {
+  toml::table out;
+  const std::size_t sign = value.starts_with('-'), whole = value.find_first_not_of("0123456789", sign) - sign;
+  const bool decimal = value.find_first_not_of("-.0123456789") == std::string::npos && whole > 0 &&
+                       (whole == 1 || value[sign] != '0') && value.back() != '.';
+  const char* const end = value.data() + value.size();
+  double x = 0;
+  if (decimal && value.find('.') != std::string::npos)
+    if (const auto read = std::from_chars(value.data(), end, x); read.ec == std::errc() && read.ptr == end) {
+      out.insert("value", x);
+      return out;
+    }
+  try {
+    return toml::parse("value = " + value);
+  } catch (const toml::parse_error&) { out.insert("value", value); }
+  return out;
+}
+
 void apply_override(detail::Document& document, const std::string& text) {
   if (!utf8::is_valid(text.begin(), text.end())) throw InputError("--set: the text is not UTF-8");
   const auto equals = text.find('=');
@@ -735,10 +789,7 @@ void apply_override(detail::Document& document, const std::string& text) {
     throw InputError(fmt::format("--set {}: expected key=value, e.g. --set delivery.club_speed_mps=45", text));
   const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
   limit_dots(text, fmt::format("--set {:.80}", key));
-  toml::table parsed;
-  try {
-    parsed = toml::parse("value = " + value);
-  } catch (const toml::parse_error&) { parsed.insert("value", value); }
+  const toml::table parsed = parse_value(value);
   toml::table* at = &document.root;
   std::stringstream parts(key);
   std::vector<std::string> path;
@@ -770,9 +821,10 @@ void apply_override(detail::Document& document, const std::string& text) {
   if (split.unit) {
     std::string doubled;
     for (auto&& [other, node] : *at)
-      if (const SplitName s = split_unit(other.str()); s.unit && s.stem == split.stem && other.str() != path.back())
-        doubled = std::string(other.str());
-    if (!doubled.empty()) at->erase(doubled);
+      if (may_be(other.str(), split.stem) && other.str() != path.back())
+        if (const SplitName s = split_unit(other.str()); s.unit && s.stem == split.stem)
+          doubled = std::string(other.str());
+    if (!doubled.empty()) document.set.erase(at->get(doubled)), at->erase(doubled);
   }
   // Likewise what says the same another way: the layers of a ball and its name in the library.
   if (path.size() == 2 && path[0] == "ball")
@@ -851,25 +903,25 @@ void CaseFile::open(const fs::path& where) {
   if (fs::file_size(d.file) > most)
     throw InputError(
         fmt::format("{}: more than 1 MiB: this is no case; tables belong into files that it names", d.file.string()));
-  d.text = post::read_file(d.file);
+  d.parsed = std::make_shared<const toml::table>(parse_toml(post::read_file(d.file), d.file.string()));
   d.inputs->case_file(d.file);
-  parse();
+  begin();
 }
 
 CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrides)
     : document_(std::make_shared<detail::Document>()) {
   document_->file = read.document_->file;
   document_->directory = read.document_->directory;
-  document_->text = read.document_->text;
+  document_->parsed = read.document_->parsed;
   document_->inputs = read.document_->inputs;
   document_->copies = read.document_->copies;
   document_->overrides = overrides;
-  parse();
+  begin();
 }
 
-void CaseFile::parse() {
+void CaseFile::begin() {
   detail::Document& d = *document_;
-  d.root = parse_toml(d.text, d.file.string());
+  d.root = *d.parsed;
   for (const std::string& o : d.overrides) apply_override(d, o);
   d.echo[&d.root] = &d.resolved;
   d.known[&d.root];
@@ -883,9 +935,41 @@ void CaseFile::for_keys_alone() { document_->keys_alone = true; }
 bool CaseFile::read_for_keys_alone() const { return document_->keys_alone; }
 const std::vector<Declared>& CaseFile::declared() const { return document_->declared; }
 const std::shared_ptr<Inputs>& CaseFile::inputs() const { return document_->inputs; }
+
+namespace {
+
+/// All that a node says, to the last bit, for a digest: a study asks for it at every point.
+void write_content(const toml::node& node, std::string& out) {
+  const auto bits = [&](char type, const auto& x) {
+    out += type;
+    out.append(reinterpret_cast<const char*>(&x), sizeof x);
+  };
+  if (const auto* number = node.as_floating_point()) bits('f', number->get());
+  else if (const auto* whole = node.as_integer()) bits('i', whole->get());
+  else if (const auto* flag = node.as_boolean()) bits('b', flag->get());
+  else if (const auto* text = node.as_string()) bits('s', text->get().size()), out += text->get();
+  else if (const toml::array* list = node.as_array()) {
+    bits('a', list->size());
+    for (const toml::node& item : *list) write_content(item, out);
+  } else if (const toml::table* table = node.as_table()) {
+    bits('t', table->size());
+    for (auto&& [key, child] : *table) {
+      bits('k', key.str().size());
+      out += key.str();
+      write_content(child, out);
+    }
+  } else {
+    throw std::logic_error("a case has no key that is read as a date");
+  }
+}
+
+}  // namespace
+
 void CaseFile::finish() {
   find_unknown(document_, document_->root, "");
-  document_->inputs->resolved(resolved());
+  std::string content;
+  write_content(document_->resolved, content);
+  document_->inputs->resolved(content);
 }
 
 namespace {

@@ -162,6 +162,8 @@ class Table {
  private:
   friend class CaseFile;
   Table(std::shared_ptr<detail::Document> document, void* node, std::string path, std::string shown);
+  /// Whether what is asked for is noted: most readers want no list of keys.
+  bool listed() const;
   /// Notes what has been asked for; `unit` is the suffix that the key carries in the reference.
   void declare(Key key, Declared what);
   std::string read_text(std::string_view key, const std::optional<std::string>& standard);
@@ -207,7 +209,7 @@ class CaseFile {
 
  private:
   void open(const std::filesystem::path& where);
-  void parse();
+  void begin();
   std::shared_ptr<detail::Document> document_;
 };
 
