@@ -240,7 +240,11 @@ class StudyJob final : public PointJob {
     const StudyBlow base = read_study_blow(root);
     const bool struck = !base.models.front().empty();
     flies_ = base.flight.has_value();
-    budgets_ = !struck && flies_ && !(base.flight->errors.empty() && base.flight->others.empty());
+    budgets_ = flies_ && !(base.flight->errors.empty() && base.flight->others.empty());
+    if (budgets_ && struck)
+      root.fail("flight",
+                "launch_error and beside tell of a stated launch: a study that has models says neither; an axis or a "
+                "variant may be flight.law");
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
     table_.models = base.models;
     table_.outputs = root.texts({"outputs", "quantities of blow, launch and flight, each with its unit"});

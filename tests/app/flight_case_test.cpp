@@ -186,6 +186,21 @@ TEST(FlightCase, OfAStatedLaunchNothingOfABlowIsKnown) {
   }
 }
 
+TEST(FlightCase, AStudyOfBlowsTakesNoErrorOfALaunch) {
+  std::string struck = kEccentricBlow;
+  struck.replace(struck.find("\"impact\""), 8, "\"study\"\noutputs = [\"carry_m\"]");
+  const std::string varied = "[[variant]]\nname = \"stated\"\n[flight]\n";
+  for (const auto& [text, status] : {std::pair{"", 0},
+                                     {"beside = [\"libgolf\"]\n", 2},
+                                     {"[[flight.launch_error]]\nsource = \"radar\"\nspin_rate_rpm = 50\n", 2}}) {
+    const fs::path dir = fresh_directory("flight_blow_errors");
+    write(dir / "case.toml", struck + varied + text);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, status) << text << o.text;
+    EXPECT_EQ(o.text.find("tell of a stated launch") != std::string::npos, status == 2) << o.text;
+  }
+}
+
 TEST(FlightCase, ABadTableIsOneLine) {
   for (const auto& [text, says] : {std::pair{"law = \"fergusen-2022\"\n", "did you mean 'ferguson-2022'"},
                                    {"units = \"feet\"\n", "allowed: yards, metres"},
