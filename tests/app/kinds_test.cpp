@@ -1,9 +1,13 @@
 // Kinds of cases that no other test runs, against what is known without them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "command.hpp"
 #include "golf/units.hpp"
@@ -84,6 +88,186 @@ TEST(IdentifyShaft, TheShaftOfASwingIsFoundFromItsDeflection) {
   EXPECT_GT(before, 2);
   EXPECT_LT(after, 1e-5);
   EXPECT_GT(told.at("rigid_rms_mm").at("train").get<double>(), before);
+}
+
+/// The summary of a case of this text, run.
+nlohmann::json summary_of(const fs::path& dir, const std::string& text, const std::string& more = "") {
+  write(dir / "case.toml", text);
+  const Outcome o = command("run " + dir.string() + " --quiet --force --out " + (dir / "out").string() + more);
+  EXPECT_EQ(o.status, 0) << o.text;
+  return o.status ? nlohmann::json() : nlohmann::json::parse(content(dir / "out/summary.json"));
+}
+
+/// Numbers of a column of the points of that run.
+std::vector<double> points_of(const fs::path& dir, const char* column) {
+  const post::Sheet s = post::read_csv(dir / "out/points.csv");
+  std::vector<double> out;
+  for (const std::string& cell : s.columns[std::size_t(std::ranges::find(s.names, column) - s.names.begin())])
+    out.push_back(std::stod(cell));
+  return out;
+}
+
+/// A number of a TOML file that stands behind its key.
+double of_toml(const fs::path& file, const std::string& key) {
+  const std::string text = "\n" + content(file);
+  const auto at = text.find("\n" + key + " = ");
+  EXPECT_NE(at, std::string::npos) << key;
+  return at == std::string::npos ? NAN : std::strtod(text.c_str() + at + key.size() + 4, nullptr);
+}
+
+/// Shear of a neo-Hookean solid with two Maxwell branches, so small that they are linear: held, and at constant rate.
+TEST(MaterialPoint, AShearRelaxesAndHeatsAsMaxwellsBranchesDo) {
+  const fs::path dir = fresh_directory("material");
+  constexpr double shear = 1e-3, time = 0.5e-3, rate = shear / time, mu = 20e6;
+  constexpr std::array<std::pair<double, double>, 2> branches = {{{10e6, 0.1e-3}, {5e6, 1e-3}}};
+  const std::string text =
+      "kind = \"material-point\"\n[material]\nlaw = \"neo-hooke\"\nc10_MPa = 10\nbulk_MPa = 4000\n"
+      "branch_moduli_MPa = [10, 5]\nbranch_times_ms = [0.1, 1.0]\n"
+      "[path]\nshear = 1e-3\nduration_ms = 0.5\nsteps = 4000\nkind = ";
+  double held = mu * shear, ramped = mu * shear, heat = 0;
+  for (const auto& [G, tau] : branches) {
+    const double left = std::exp(-time / tau), viscous = G * tau * rate;
+    held += G * shear * left;
+    ramped += viscous * (1 - left);
+    heat += viscous * rate * (time - 2 * tau * (1 - left) + tau / 2 * (1 - left * left));
+  }
+  // Steps of 1/800 of the shorter time, at second order, and the square of the shear.
+  EXPECT_NEAR(summary_of(dir, text + "\"relaxation\"\n").at("final_stress_Pa").get<double>(), held, 1e-5 * held);
+  const auto ramp = summary_of(dir, text + "\"shear\"\n");
+  EXPECT_NEAR(ramp.at("final_stress_Pa").get<double>(), ramped, 1e-5 * ramped);
+  EXPECT_NEAR(ramp.at("dissipated_J_per_m3").get<double>(), heat, 1e-5 * heat);
+  // What was put in is stored in springs or has become heat.
+  double stored = 0.5 * mu * shear * shear;
+  for (const auto& [G, tau] : branches) stored += 0.5 * G * std::pow(tau * rate * (1 - std::exp(-time / tau)), 2);
+  EXPECT_NEAR(ramp.at("work_J_per_m3").get<double>(), stored + heat, 1e-5 * stored);
+}
+
+/// What a face of the library tells by the pendulum and by restitution leads back to it.
+TEST(CalibrateFace, TheFaceOfItsOwnTimesIsFound) {
+  const fs::path dir = fresh_directory("calibrate_face");
+  const std::vector<std::pair<std::string, std::string>> places = {
+      {"toe", "20.0"}, {"toe", "-20.0"}, {"high", "10.0"}, {"high", "-10.0"}, {"toe", "0.0"}};
+  std::string told =
+      "kind = \"study\"\nmodels = [\"volumetric\"]\noutputs = [\"characteristic_time_us\", \"face_restitution\"]\n"
+      "[delivery]\nclub_speed_mps = 48.77\n[head]\nname = \"driver-200\"\n[face]\nname = \"modern-driver\"\n"
+      "[volumetric]\npublished = \"driver\"\n";
+  for (const auto& [way, mm] : places)
+    told += "[[variant]]\nname = \"" + way + mm + "\"\nset = [\"delivery.impact_" + way + "_mm=" + mm + "\"]\n";
+  summary_of(dir, told);
+  const auto times = points_of(dir, "characteristic_time_us"), restitution = points_of(dir, "face_restitution");
+  ASSERT_EQ(times.size(), places.size());
+  EXPECT_LT(times[0], times[4] - 20) << "the face is stiffer towards its rim";
+  const fs::path library = fs::path(HOSEL_SOURCE_DIR) / "library/faces/modern-driver.toml";
+  std::string text =
+      "kind = \"calibrate-face\"\n[ball]\nmass_kg = 0.04593\nradius_mm = 21.335\ninertia_factor = 0.4\n"
+      "[head]\nname = \"driver-200\"\n[sphere]\nradius_mm = 11.0\n";
+  for (std::size_t k = 0; k < places.size(); ++k)
+    text += fmt::format("[[tap]]\n{}_mm = {}\ntime_us = {:.12g}\n", places[k].first, places[k].second, times[k]);
+  text += fmt::format(
+      "[target]\ntap_sigma_us = 0.3\nrestitution = {:.12g}\nrestitution_sigma = 2e-4\neffective_mass_g = 10.0\n"
+      "effective_mass_sigma_g = 2.0\n",
+      restitution[4]);
+  const auto found = summary_of(dir, text);
+  ASSERT_EQ(found.at("parameters").size(), 5u);
+  EXPECT_LT(found.at("cost").get<double>(), 1e-9);
+  for (const auto& p : found.at("parameters")) {
+    std::string key = p.at("name");
+    const std::string listed = content(library);
+    const auto at = listed.find("\n" + key);
+    ASSERT_NE(at, std::string::npos) << key;
+    const double truth = std::strtod(listed.c_str() + listed.find('=', at) + 1, nullptr);
+    EXPECT_NEAR(p.at("value").get<double>(), truth, 1e-4 * truth) << key;  // what the fit's tolerance leaves
+  }
+}
+
+std::string one_piece(double c10, double branch) {
+  return fmt::format(
+      "[ball]\nmass_kg = 0.04593\nradius_mm = 21.335\n[[ball.layers]]\nlaw = \"neo-hooke\"\nc10_MPa = {}\n"
+      "bulk_MPa = 1000\nbranch_moduli_MPa = [{}]\nbranch_times_ms = [0.01]\n",
+      c10, branch);
+}
+
+/// Restitution and contact time of blows on a wall.
+std::string on_wall(const std::string& speeds) {
+  return "kind = \"study\"\nmodels = [\"fe-free-body\"]\noutputs = [\"normal_restitution\", \"contact_time_ms\"]\n"
+         "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = " +
+         speeds + "\n[delivery]\nclub_speed_mps = 20\n[head]\nmass_kg = inf\n[contact]\nface_friction = 0.3\n";
+}
+
+/// The bounce of a ball, by blows on a wall, leads back to its moduli from others.
+TEST(CalibrateBall, TheBallOfItsOwnBounceIsFound) {
+  const fs::path dir = fresh_directory("calibrate_ball");
+  const std::string numerics = "[mesh]\nsector = 1\nrings = 2\nharmonics = 0\n[time]\nsteps_per_contact = 400\n";
+  summary_of(dir, on_wall("[20.0, 40.0]") + one_piece(14, 60) + numerics);
+  const auto e = points_of(dir, "normal_restitution"), time = points_of(dir, "contact_time_ms");
+  ASSERT_EQ(e.size(), 2u);
+  EXPECT_LT(e[1], e[0] - 0.03) << "a faster blow returns less";
+  const double slope = (e[1] - e[0]) / 20;
+  const auto found = summary_of(
+      dir,
+      "kind = \"calibrate-ball\"\n" + one_piece(10, 50) +
+          "[mesh]\nsector = 1\nrings = 2\n[time]\nsteps_per_contact = 400\n"
+          "[[free]]\nwhat = \"long-term-moduli\"\n[[free]]\nwhat = \"branch-moduli\"\n" +
+          fmt::format("[target]\nspeeds_mps = [20, 40]\nrestitution = {:.12g}\nrestitution_slope_s_per_m = {:.12g}\n"
+                      "restitution_sigma = 1e-4\ncontact_speed_mps = 40\ncontact_time_ms = {:.12g}\n"
+                      "contact_time_sigma_ms = 2e-4\n",
+                      e[0] - 20 * slope, slope, time[1]));
+  // A contact of 400 steps ends a step sooner or later: 0.5 % of the stiffness.
+  ASSERT_EQ(found.at("parameters").size(), 2u);
+  EXPECT_NEAR(found["parameters"][0].at("value").get<double>(), 28e6, 0.005 * 28e6);
+  EXPECT_NEAR(found["parameters"][1].at("value").get<double>(), 60e6, 0.005 * 60e6);
+}
+
+/// The restitution of the reduced law of a ball that a wall of 1 and 2 degrees throws back is that of the wall at right
+/// angles.
+TEST(CalibrateReduced, TheLawsRestitutionIsThatOfTheWall) {
+  const fs::path dir = fresh_directory("calibrate_reduced");
+  const std::string numerics = "[mesh]\nsector = 1\nrings = 2\nharmonics = 1\n[time]\nsteps_per_contact = 40\n";
+  const std::string ball = one_piece(14, 60);
+  summary_of(dir, on_wall("[25.0, 40.0]") + ball + numerics);
+  const auto e = points_of(dir, "normal_restitution");
+  ASSERT_EQ(e.size(), 2u);
+  EXPECT_LT(e[1], e[0] - 0.03);
+  summary_of(
+      dir,
+      "kind = \"calibrate-reduced\"\n[delivery]\nclub_speed_mps = 30\ndynamic_loft_deg = 1\n[head]\nmass_kg = inf\n"
+      "[contact]\nface_friction = 0.3\n[[sets]]\nname = \"wall\"\nclub_speeds_mps = [25, 40]\nlofts_deg = [1, 2]\n" +
+          ball + numerics);
+  const double at_rest = of_toml(dir / "out/reduced.toml", "restitution"),
+               slope = of_toml(dir / "out/reduced.toml", "restitution_slope_s_per_m");
+  // Two degrees take 0.06 % of the speed, and the slip of such a blow 1e-4 of its energy.
+  EXPECT_NEAR(at_rest + 25 * slope, e[0], 1e-3);
+  EXPECT_NEAR(at_rest + 40 * slope, e[1], 1e-3);
+}
+
+/// Thrown without air, balls fly 2 v sin(angle) / g. What one site adds is found, and the air carries none of it.
+TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
+  const fs::path dir = fresh_directory("landing_times");
+  constexpr double added = 0.25;
+  std::string shots = "event,speed_mps,launch_deg,azimuth_deg,landing_time_s,measured_time_s\n";
+  for (const char* site : {"low", "high"})
+    for (int k = 0; k < 40; ++k) {
+      const double v = 60 + 0.5 * k, angle = 9 + 0.1 * (k % 20);
+      const double time = 2 * v * std::sin(radians(angle)) / kGravity + (k % 2 ? 0.02 : -0.02) +
+                          (*site == 'h' ? added : 0);
+      shots += fmt::format("{},{},{},{},{:.9f},{:.9f}\n", site, v, angle, k % 3 - 1, time, time);
+    }
+  write(dir / "times.csv", shots);
+  const auto s = summary_of(
+      dir,
+      "kind = \"landing-times\"\n[flight]\nlaw = \"ferguson-2022\"\ndrag_scale = 0\nlift_scale = 0\n"
+      "[times]\nfile = \"times.csv\"\nspin_rate_rpm = 2600\nball_speed_mps = [50, 90]\nlaunch_angle_deg = [5, 15]\n"
+      "time_s = [1, 6]\n[[times.site]]\nevent = \"low\"\nname = \"low\"\naltitude_m = 0\n"
+      "[[times.site]]\nevent = \"high\"\nname = \"high\"\naltitude_m = 1600\n");
+  // Half the shots are early and half late by 0.02 s: the mean is exact, and its error 0.02 s over the root of 40.
+  ASSERT_EQ(s.at("sites").at("low").at("shots"), 40);
+  EXPECT_NEAR(s["sites"]["low"]["measured_less_law_s"].get<double>(), 0, 1e-6);
+  EXPECT_NEAR(s["sites"]["high"]["measured_less_law_s"].get<double>(), added, 1e-6);
+  const auto& d = s.at("differences").at("high");
+  EXPECT_NEAR(d.at("measured_s").get<double>(), added, 1e-6);
+  EXPECT_NEAR(d.at("density_s").get<double>(), 0, 1e-9);
+  EXPECT_NEAR(d.at("left_s").get<double>(), added, 1e-6);
+  EXPECT_NEAR(d.at("error_s").get<double>(), std::sqrt(2.0) * 0.02 / std::sqrt(40), 1e-6);
 }
 
 }  // namespace
