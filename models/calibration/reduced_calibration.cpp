@@ -27,8 +27,10 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
   constexpr double kTimeSd = 0.03;  // relative
   double speed = 0, spin = 0;
   for (const Launch& l : target) speed += l.ball_speed(), spin += l.spin_rate();
+  // Of blows without spin, what rounding leaves of it says nothing.
   const double n = double(target.size()), speed_sd = 0.005 * speed / n, angle_sd = radians(0.3),
-               spin_sd = 0.03 * spin / n;
+               least_spin_sd = 1e-3 * speed / n / blows.front().ball.radius,
+               spin_sd = std::max(0.03 * spin / n, least_spin_sd);
   const auto residuals = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r) {
     r.resize(Eigen::Index(7 * target.size()));
     const std::vector<Answer> answers = model.launches(x, blows);

@@ -219,25 +219,31 @@ TEST(CalibrateBall, TheBallOfItsOwnBounceIsFound) {
 }
 
 /// The restitution of the reduced law of a ball that a wall of 1 and 2 degrees throws back is that of the wall at right
-/// angles.
+/// angles: with friction, and on a smooth wall, where there is no spin to go by.
 TEST(CalibrateReduced, TheLawsRestitutionIsThatOfTheWall) {
   const fs::path dir = fresh_directory("calibrate_reduced");
-  const std::string numerics = "[mesh]\nsector = 1\nrings = 2\nharmonics = 1\n[time]\nsteps_per_contact = 40\n";
-  const std::string ball = one_piece(14, 60);
-  summary_of(dir, on_wall("[25.0, 40.0]") + ball + numerics);
-  const auto e = points_of(dir, "normal_restitution");
-  ASSERT_EQ(e.size(), 2u);
-  EXPECT_LT(e[1], e[0] - 0.03);
-  summary_of(
-      dir,
-      "kind = \"calibrate-reduced\"\n[delivery]\nclub_speed_mps = 30\ndynamic_loft_deg = 1\n[head]\nmass_kg = inf\n"
-      "[contact]\nface_friction = 0.3\n[[sets]]\nname = \"wall\"\nclub_speeds_mps = [25, 40]\nlofts_deg = [1, 2]\n" +
-          ball + numerics);
-  const double at_rest = of_toml(dir / "out/reduced.toml", "restitution"),
-               slope = of_toml(dir / "out/reduced.toml", "restitution_slope_s_per_m");
-  // Two degrees take 0.06 % of the speed, and the slip of such a blow 1e-4 of its energy.
-  EXPECT_NEAR(at_rest + 25 * slope, e[0], 1e-3);
-  EXPECT_NEAR(at_rest + 40 * slope, e[1], 1e-3);
+  const std::string shared = one_piece(14, 60) +
+                             "[mesh]\nsector = 1\nrings = 2\nharmonics = 1\n[time]\nsteps_per_contact = 40\n";
+  for (const std::string friction : {"0.3", "0.0"}) {
+    const std::string set = " --set contact.face_friction=" + friction;
+    summary_of(dir, on_wall("[25.0, 40.0]") + shared, set);
+    const auto e = points_of(dir, "normal_restitution");
+    ASSERT_EQ(e.size(), 2u);
+    EXPECT_LT(e[1], e[0] - 0.03);
+    const auto found = summary_of(
+        dir,
+        "kind = \"calibrate-reduced\"\n[delivery]\nclub_speed_mps = 30\ndynamic_loft_deg = 1\n[head]\nmass_kg = inf\n"
+        "[contact]\nface_friction = 0.3\n[[sets]]\nname = \"wall\"\nclub_speeds_mps = [25, 40]\nlofts_deg = [1, 2]\n" +
+            shared,
+        set);
+    const double at_rest = of_toml(dir / "out/reduced.toml", "restitution"),
+                 slope = of_toml(dir / "out/reduced.toml", "restitution_slope_s_per_m");
+    // Two degrees take 0.06 % of the speed, and the slip of such a blow 1e-4 of its energy.
+    EXPECT_NEAR(at_rest + 25 * slope, e[0], 1e-3) << friction;
+    EXPECT_NEAR(at_rest + 40 * slope, e[1], 1e-3) << friction;
+    // A thousandth of the restitution is 0.04 m/s.
+    EXPECT_LT(found["sets"]["wall"]["rigid-eccentric"]["ball_speed_rms_mps"].get<double>(), 0.04) << friction;
+  }
 }
 
 /// Thrown without air, balls fly 2 v sin(angle) / g. What one site adds is found, and the air carries none of it.
