@@ -767,7 +767,7 @@ void override_element(detail::Document& document, toml::table& table, const std:
 toml::table parse_value(const std::string& value) {
   toml::table out;
   const std::size_t sign = value.starts_with('-'), whole = value.find_first_not_of("0123456789", sign) - sign;
-  const bool decimal = value.find_first_not_of("-.0123456789") == std::string::npos && whole > 0 &&
+  const bool decimal = !value.empty() && value.find_first_not_of("-.0123456789") == std::string::npos && whole > 0 &&
                        (whole == 1 || value[sign] != '0') && value.back() != '.';
   const char* const end = value.data() + value.size();
   double x = 0;
