@@ -44,10 +44,13 @@ struct Document {
 
 namespace {
 
-/// How the copy of a file is called that a case names so: as the file, behind a digest where the name has folders.
+/// How the copy of a file is called that a case names so: as the file, behind a digest where the name has folders or is
+/// that of the folder around (`case = ".."`), in which nothing may be written.
 std::string copy_name(const std::string& named) {
   const fs::path path = named;
-  return path.has_parent_path() ? post::digest(named).substr(0, 8) + "-" + path.filename().string() : named;
+  return path.has_parent_path() || named == ".." || named == "."
+             ? post::digest(named).substr(0, 8) + "-" + path.filename().string()
+             : named;
 }
 
 /// Where below OUT the copy belongs; empty where none is wanted.
@@ -830,6 +833,11 @@ void apply_override(detail::Document& document, const std::string& text) {
   if (path.size() == 2 && path[0] == "ball")
     for (const auto& [one, other] : {std::pair{"layers", "model"}, {"model", "layers"}})
       if (path[1] == one) at->erase(other), at->erase("digest");
+  // A resolved case has every value of a head beside its name: with another name they are not this head's.
+  if (document.file.filename() == detail::kResolved && path == std::vector<std::string>{"head", "name"} &&
+      at->get("name") && (*at)["name"].value<std::string>() != parsed["value"].value<std::string>())
+    for (auto it = at->begin(); it != at->end();)
+      it = document.set.contains(&it->second) || it->first == "name" ? std::next(it) : at->erase(it);
   if (const toml::node* old = at->get(path.back())) document.set.erase(old);
   at->insert_or_assign(path.back(), *parsed.get("value"));
   document.set[at->get(path.back())] = text;

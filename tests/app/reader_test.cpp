@@ -1,5 +1,6 @@
 // A case read again with other overrides, as a study does at every point.
 #include "app/reader.hpp"
+#include "app/job.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -38,6 +39,48 @@ TEST(Reader, ACaseReadAgainKnowsTheLinesOfItsFile) {
   EXPECT_TRUE(refusal(read, {}).starts_with(at)) << "an override is kept for the next";
   write(file, "[[row]]\nnumber = 0.5\n[[row]]\nnumber = 0.5\n");
   EXPECT_TRUE(refusal(read, {}).starts_with(at)) << "the file as it was when it was read";
+}
+
+TEST(Reader, AStudyOfTheCaseAroundItLeavesItsOwnResolvedCase) {
+  const fs::path dir = fresh_directory("reader_around");
+  write(dir / "case.toml", kEccentricBlow);
+  write(dir / "inner/case.toml",
+        "kind = \"study\"\ncase = \"..\"\n[[axis]]\nkey = \"delivery.dynamic_loft_deg\"\nvalues = [10, 12]\n");
+  const auto run = [&](const fs::path& what, const std::string& out) {
+    const Outcome o = command("run " + what.string() + " --quiet --out " + (dir / out).string());
+    ASSERT_EQ(o.status, 0) << o.text;
+  };
+  run(dir / "inner", "first");
+  EXPECT_NE(content(dir / "first/case.resolved.toml").find("kind = \"study\""), std::string::npos);
+  fs::create_directories(dir / "elsewhere");
+  fs::rename(dir / "first", dir / "elsewhere/moved");
+  run(dir / "elsewhere/moved/case.resolved.toml", "second");
+  EXPECT_EQ(content(dir / "elsewhere/moved/points.csv"), content(dir / "second/points.csv"));
+}
+
+TEST(Reader, AnotherHeadOfAResolvedCaseIsWhole) {
+  const fs::path dir = fresh_directory("reader_head");
+  std::string text = kEccentricBlow;
+  const auto from = text.find("[head]"), to = text.find("\n[", from + 1);
+  text.replace(from, to - from, "[head]\nname = \"driver-460\"\n");
+  write(dir / "case.toml", text);
+  const auto mass = [&](const fs::path& file, const std::vector<std::string>& set) {
+    CaseFile read(file, set);
+    hosel::app::read_job(read);
+    return read.resolved().substr(read.resolved().find("[head]"), 400);
+  };
+  write(dir / "resolved/case.resolved.toml", [&] {
+    CaseFile read(dir / "case.toml");
+    hosel::app::read_job(read);
+    return read.resolved();
+  }());
+  const fs::path resolved = dir / "resolved/case.resolved.toml";
+  EXPECT_NE(mass(resolved, {}).find("mass_kg = 0.204"), std::string::npos) << mass(resolved, {});
+  EXPECT_EQ(mass(resolved, {"head.name=driver-200"}), mass(dir / "case.toml", {"head.name=driver-200"}));
+  EXPECT_NE(mass(resolved, {"head.name=driver-200"}), mass(resolved, {}));
+  // The same name changes nothing, and what is set beside the other name stands.
+  EXPECT_EQ(mass(resolved, {"head.name=driver-460"}), mass(resolved, {}));
+  EXPECT_NE(mass(resolved, {"head.mass_kg=0.21", "head.name=driver-200"}).find("mass_kg = 0.21"), std::string::npos);
 }
 
 /// The number that an override sets; its text where it is none.
