@@ -56,7 +56,9 @@ Run read(const fs::path& directory) {
   try {
     text = post::read_file(resolved);
   } catch (const std::runtime_error& e) { throw InputError(e.what()); }
-  leaves(parse_toml(text, resolved.string()), "", run.inputs);
+  toml::table inputs = parse_toml(text, resolved.string());
+  inputs.erase("defaults");  // they stand above
+  leaves(inputs, "", run.inputs);
   return run;
 }
 

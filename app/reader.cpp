@@ -24,6 +24,8 @@ namespace detail {
 /// wherever OUT has been taken.
 constexpr const char* kInputs = "inputs";
 constexpr const char* kResolved = "case.resolved.toml";
+/// The table in which a resolved case lists what it left to its defaults: dotted keys, with the value that each has.
+constexpr const char* kDefaults = "defaults";
 
 struct Document {
   fs::path directory, file;
@@ -36,6 +38,9 @@ struct Document {
   std::set<std::string> looked_for;           // keys whose presence decided something, as the reference shows them
   std::shared_ptr<const toml::table> parsed;  // as it stands in the file: shared by all that differ by overrides alone
   toml::table root, resolved;
+  toml::table defaults;                                       // of a resolved case, by dotted key
+  std::set<const toml::node*> added;                          // tables of defaults alone, which stand in no case
+  std::set<std::pair<const toml::table*, std::string>> kept;  // echoed for good: no defaults (Table::keep)
   std::map<const toml::node*, std::string> set;  // what `--set` put there: errors name it, not a line of the file
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for, per table
   std::map<const toml::table*, toml::table*> echo;                         // where each table is echoed
@@ -694,9 +699,14 @@ std::optional<Table> Table::optional_table(std::string_view key) {
 
 Table Table::default_table(std::string_view key) {
   toml::table& t = as_table(node_);
-  if (!t.contains(key)) t.insert(key, toml::table{});
+  if (!t.contains(key)) {
+    t.insert(key, toml::table{});
+    document_->added.insert(t.get(key));
+  }
   return *optional_table(key);
 }
+
+void Table::keep(std::string_view key) { document_->kept.emplace(&as_table(node_), key); }
 
 void Table::tell(std::string_view text) {
   std::string lines = fmt::format("[{}] ", path_);
@@ -832,12 +842,9 @@ void apply_override(detail::Document& document, const std::string& text) {
   // Likewise what says the same another way: the layers of a ball and its name in the library.
   if (path.size() == 2 && path[0] == "ball")
     for (const auto& [one, other] : {std::pair{"layers", "model"}, {"model", "layers"}})
-      if (path[1] == one) at->erase(other), at->erase("digest");
-  // A resolved case has every value of a head beside its name: with another name they are not this head's.
-  if (document.file.filename() == detail::kResolved && path == std::vector<std::string>{"head", "name"} &&
-      at->get("name") && (*at)["name"].value<std::string>() != parsed["value"].value<std::string>())
-    for (auto it = at->begin(); it != at->end();)
-      it = document.set.contains(&it->second) || it->first == "name" ? std::next(it) : at->erase(it);
+      if (path[1] == one) at->erase(other);
+  // The digest is that of the entry which was named before.
+  if (path.back() == "name" || path.back() == "model") at->erase("digest");
   if (const toml::node* old = at->get(path.back())) document.set.erase(old);
   at->insert_or_assign(path.back(), *parsed.get("value"));
   document.set[at->get(path.back())] = text;
@@ -874,6 +881,81 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
       for (const toml::node& item : *list)
         if (const toml::table* child = item.as_table(); child && d->known.contains(child))
           find_unknown(d, *child, name);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// All that a node says, to the last bit, for a digest: a study asks for it at every point.
+void write_content(const toml::node& node, std::string& out) {
+  const auto bits = [&](char type, const auto& x) {
+    out += type;
+    out.append(reinterpret_cast<const char*>(&x), sizeof x);
+  };
+  if (const auto* number = node.as_floating_point()) bits('f', number->get());
+  else if (const auto* whole = node.as_integer()) bits('i', whole->get());
+  else if (const auto* flag = node.as_boolean()) bits('b', flag->get());
+  else if (const auto* text = node.as_string()) bits('s', text->get().size()), out += text->get();
+  else if (const toml::array* list = node.as_array()) {
+    bits('a', list->size());
+    for (const toml::node& item : *list) write_content(item, out);
+  } else if (const toml::table* table = node.as_table()) {
+    bits('t', table->size());
+    for (auto&& [key, child] : *table) {
+      bits('k', key.str().size());
+      out += key.str();
+      write_content(child, out);
+    }
+  } else {
+    throw std::logic_error("a case has no key that is read as a date");
+  }
+}
+
+bool same(const toml::node& a, const toml::node& b) {
+  std::string one, other;
+  write_content(a, one);
+  write_content(b, other);
+  return one == other;
+}
+
+/// Takes out of a table what its case had left to defaults, unless somebody has changed it since or an override is of a
+/// part of it.
+void drop_defaults(const detail::Document& d, toml::table& table, const std::string& path) {
+  for (auto it = table.begin(); it != table.end();) {
+    const std::string name = dotted(path, it->first.str());
+    if (toml::table* child = it->second.as_table()) drop_defaults(d, *child, name);
+    if (toml::array* list = it->second.as_array())
+      for (std::size_t i = 0; i < list->size(); ++i)
+        if (toml::table* child = list->get(i)->as_table()) drop_defaults(d, *child, fmt::format("{}[{}]", name, i + 1));
+    const toml::node* was = d.defaults.get(name);
+    const bool drop = was && same(*was, it->second) && std::ranges::none_of(d.overrides, [&](const std::string& o) {
+                        return o.starts_with(name + "[");
+                      });
+    it = drop ? table.erase(it) : std::next(it);
+  }
+}
+
+/// What a case left to defaults, by dotted key: a table that is there for its defaults alone is empty in the list.
+void list_defaults(const detail::Document& d, const toml::table& echoed, const toml::table& stated,
+                   const std::string& path, toml::table& list) {
+  for (auto&& [key, value] : echoed) {
+    const std::string name = dotted(path, key.str());
+    const toml::node* const node = stated.get(key.str());
+    const toml::node* const was = d.defaults.get(name);
+    const bool as_before = was && !d.set.contains(node) && (was->is_table() || same(*was, value));
+    if (!d.kept.contains({&stated, std::string(key.str())}) && (!node || d.added.contains(node) || as_before)) {
+      if (value.is_table()) list.insert(name, toml::table{});
+      else list.insert(name, value);
+    }
+    if (!node) continue;
+    if (const toml::table* child = value.as_table(), *of = node->as_table(); child && of)
+      list_defaults(d, *child, *of, name, list);
+    if (const toml::array* items = value.as_array(), *of = node->as_array(); items && of)
+      for (std::size_t i = 0; i < items->size(); ++i)
+        if (const toml::table* child = items->get(i)->as_table(), *from = of->get(i)->as_table(); child && from)
+          list_defaults(d, *child, *from, fmt::format("{}[{}]", name, i + 1), list);
   }
 }
 
@@ -930,6 +1012,14 @@ CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrid
 void CaseFile::begin() {
   detail::Document& d = *document_;
   d.root = *d.parsed;
+  if (toml::node* listed = d.root.get(detail::kDefaults)) {
+    if (!listed->is_table())
+      throw InputError(fmt::format("{}: {}: expected a table", place(d, *listed), detail::kDefaults));
+    d.defaults = std::move(*listed->as_table());
+    d.root.erase(detail::kDefaults);
+  }
+  // Another setting may decide other defaults.
+  if (!d.overrides.empty() && !d.defaults.empty()) drop_defaults(d, d.root, "");
   for (const std::string& o : d.overrides) apply_override(d, o);
   d.echo[&d.root] = &d.resolved;
   d.known[&d.root];
@@ -943,35 +1033,6 @@ void CaseFile::for_keys_alone() { document_->keys_alone = true; }
 bool CaseFile::read_for_keys_alone() const { return document_->keys_alone; }
 const std::vector<Declared>& CaseFile::declared() const { return document_->declared; }
 const std::shared_ptr<Inputs>& CaseFile::inputs() const { return document_->inputs; }
-
-namespace {
-
-/// All that a node says, to the last bit, for a digest: a study asks for it at every point.
-void write_content(const toml::node& node, std::string& out) {
-  const auto bits = [&](char type, const auto& x) {
-    out += type;
-    out.append(reinterpret_cast<const char*>(&x), sizeof x);
-  };
-  if (const auto* number = node.as_floating_point()) bits('f', number->get());
-  else if (const auto* whole = node.as_integer()) bits('i', whole->get());
-  else if (const auto* flag = node.as_boolean()) bits('b', flag->get());
-  else if (const auto* text = node.as_string()) bits('s', text->get().size()), out += text->get();
-  else if (const toml::array* list = node.as_array()) {
-    bits('a', list->size());
-    for (const toml::node& item : *list) write_content(item, out);
-  } else if (const toml::table* table = node.as_table()) {
-    bits('t', table->size());
-    for (auto&& [key, child] : *table) {
-      bits('k', key.str().size());
-      out += key.str();
-      write_content(child, out);
-    }
-  } else {
-    throw std::logic_error("a case has no key that is read as a date");
-  }
-}
-
-}  // namespace
 
 void CaseFile::finish() {
   find_unknown(document_, document_->root, "");
@@ -1022,6 +1083,12 @@ std::string with_short_numbers(const std::string& toml) {
 std::string CaseFile::resolved() const {
   std::ostringstream out;
   out << toml::toml_formatter(document_->resolved, toml::format_flags{}) << '\n';
+  toml::table defaults;
+  list_defaults(*document_, document_->resolved, document_->root, "", defaults);
+  if (!defaults.empty()) {
+    out << "\n# Left to defaults: with another setting (--set) they are decided again, but for those changed above.\n";
+    out << toml::toml_formatter(toml::table{{detail::kDefaults, defaults}}, toml::format_flags{}) << '\n';
+  }
   return with_short_numbers(out.str());
 }
 

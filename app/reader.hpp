@@ -141,6 +141,8 @@ class Table {
   std::optional<Table> optional_table(std::string_view key);
   /// A sub-table that is as good as empty where it is absent: its defaults are echoed all the same.
   Table default_table(std::string_view key);
+  /// What is echoed for this key is no default, though no case states it: it stands whatever else is set.
+  void keep(std::string_view key);
   /// A file that the case depends on without naming its path.
   void note_file(const std::filesystem::path& file);
   /// A list of tables `[[key]]`; empty where absent.
@@ -204,7 +206,8 @@ class CaseFile {
   /// Every key that was not read is an error. Call it when reading is complete: what the case says then counts among
   /// the inputs.
   void finish();
-  /// The case with every default filled in, as TOML text.
+  /// The case with every default filled in, as TOML text, and a list of these. Where it is read with overrides, those
+  /// in the list are decided again, as they are when the case is read that it was made of.
   std::string resolved() const;
 
  private:

@@ -189,6 +189,8 @@ TEST(Library, AContactOfOnesOwnIsTheReducedModels) {
   EXPECT_EQ(refusal(dir, resolved, {"volumetric"}), "");
   write(own.home / "contacts" / "mine.toml", kContact + "# another\n");
   EXPECT_NE(refusal(dir, resolved, {"volumetric"}).find("'mine' is not what it was"), std::string::npos);
+  const std::string faster = refusal(dir, resolved, {"volumetric"}, {"delivery.club_speed_mps=41"});
+  EXPECT_NE(faster.find("'mine' is not what it was"), std::string::npos) << faster;
 }
 
 /// Faults of an entry are told with its file and line.
