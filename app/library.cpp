@@ -193,12 +193,12 @@ Folder in_folder(const fs::path& folder, bool shipped) {
 
 /// Names and files of a shelf, folder by folder: the shipped one first. All points of a study see the same.
 const std::vector<Folder>& on_shelf(Shelf shelf) {
-  struct Seen {
+  struct Contents {
     unsigned long by = 0;
     std::vector<Folder> folders;
   };
-  thread_local std::map<Shelf, Seen> all;
-  Seen& seen = all[shelf];
+  thread_local std::map<Shelf, Contents> all;
+  Contents& seen = all[shelf];
   const unsigned long study = StudyFiles::now();
   if (study && seen.by == study) return seen.folders;
   static const fs::path of_hosel = shipped_library();
