@@ -80,8 +80,8 @@ def read_table(file):
 class Run:
     """The directory of a finished run.
 
-    summary: summary.json. case: case.resolved.toml as a dict, every default filled in.
-    tables: names of the CSV files; run["history.csv"] reads one.
+    summary: summary.json. case: case.resolved.toml as a dict, every default filled in;
+    its "defaults" are those, by dotted key. tables: names of the CSV files; run["history.csv"] reads one.
     figures: the drawn figures. series: the ParaView series (.pvd).
     """
 

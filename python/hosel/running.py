@@ -7,7 +7,10 @@ from .results import Run
 
 
 def check(case, set=()):
-    """The case with every default filled in, as a dict. Raises InputError with file, line and what is allowed."""
+    """The case with every default filled in, as a dict; its "defaults" are those, by dotted key.
+
+    Raises InputError with file, line and what is allowed.
+    """
     return tomllib.loads(_hosel.check(str(case), list(set)))
 
 
