@@ -844,7 +844,7 @@ void apply_override(detail::Document& document, const std::string& text) {
     for (const auto& [one, other] : {std::pair{"layers", "model"}, {"model", "layers"}})
       if (path[1] == one) at->erase(other);
   // The digest is that of the entry which was named before.
-  if (path.back() == "name" || path.back() == "model") at->erase("digest");
+  if (path.back() == "name" || path.back() == "model" || path.back() == "layers") at->erase("digest");
   if (const toml::node* old = at->get(path.back())) document.set.erase(old);
   at->insert_or_assign(path.back(), *parsed.get("value"));
   document.set[at->get(path.back())] = text;

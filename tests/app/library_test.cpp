@@ -191,6 +191,7 @@ TEST(Library, AContactOfOnesOwnIsTheReducedModels) {
   EXPECT_NE(refusal(dir, resolved, {"volumetric"}).find("'mine' is not what it was"), std::string::npos);
   const std::string faster = refusal(dir, resolved, {"volumetric"}, {"delivery.club_speed_mps=41"});
   EXPECT_NE(faster.find("'mine' is not what it was"), std::string::npos) << faster;
+  EXPECT_EQ(refusal(dir, resolved, {"volumetric"}, {"contact.name=mine"}), "") << "named again, it is the present one";
 }
 
 /// Faults of an entry are told with its file and line.
