@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "app/of_file.hpp"
 #include "app/reader.hpp"
@@ -58,8 +60,14 @@ std::string Inputs::fingerprint() const {
   const std::lock_guard lock(mutex_);
   if (fingerprint_.empty()) {
     std::string text = program_version() + '\n' + all_ + '\n';
-    // By name and content: the same case elsewhere is the same run.
-    for (const auto& [file, digest] : digests_) text += file.filename().string() + '\n' + digest + '\n';
+    // By name and content: the same case elsewhere is the same run. A resolved case reads copies: their name counts for
+    // the original too.
+    std::map<fs::path, std::string> copied;
+    for (const auto& [copy, file] : copies_) copied.emplace(file, copy.filename().string());
+    std::set<std::string> read;
+    for (const auto& [file, digest] : digests_)
+      read.insert((copied.contains(file) ? copied.at(file) : file.filename().string()) + '\n' + digest + '\n');
+    for (const std::string& one : read) text += one;
     fingerprint_ = post::digest(text);
   }
   return fingerprint_;

@@ -136,6 +136,37 @@ TEST(Reader, WhatSomebodyChangedInAResolvedCaseStands) {
   EXPECT_EQ(resolved(again, {"head.mass_kg=0.204"}), resolved(file, {"head.mass_kg=0.204"}));
 }
 
+TEST(Reader, ACopyOfWhatACaseNamesIsTheSameInput) {
+  const fs::path dir = fresh_directory("reader_copies");
+  write(dir / "case/case.toml", "first = \"../tables/a.csv\"\nsecond = \"b.csv\"\n");
+  write(dir / "tables/a.csv", "x\n1\n");
+  write(dir / "case/b.csv", "x\n2\n");
+  std::map<fs::path, fs::path> copies;
+  std::string text;
+  const auto fingerprint = [&](const fs::path& file) {
+    CaseFile read(file);
+    for (const char* key : {"first", "second"}) read.root().file({key, "of a test"});
+    read.finish();
+    copies = read.inputs()->copies();
+    text = read.resolved();
+    return read.inputs()->fingerprint();
+  };
+  const std::string original = fingerprint(dir / "case/case.toml");
+  ASSERT_EQ(copies.size(), 2u);
+  for (const char* out : {"out", "changed"}) {
+    for (const auto& [copy, from] : copies) write(dir / out / copy, content(from));
+    write(dir / out / "case.resolved.toml", text);
+  }
+  // The contents of the two changed places.
+  std::vector<fs::path> changed;
+  for (const auto& [copy, from] : copies) changed.push_back(dir / "changed" / copy);
+  fs::rename(changed[0], dir / "between");
+  fs::rename(changed[1], changed[0]);
+  fs::rename(dir / "between", changed[1]);
+  EXPECT_EQ(fingerprint(dir / "out/case.resolved.toml"), original);
+  EXPECT_NE(fingerprint(dir / "changed/case.resolved.toml"), original);
+}
+
 /// The number that an override sets; its text where it is none.
 std::string set_to(const CaseFile& file, const std::string& text) {
   CaseFile again(file, {"other.x=" + text});
