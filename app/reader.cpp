@@ -884,10 +884,6 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// All that a node says, to the last bit, for a digest: a study asks for it at every point.
 void write_content(const toml::node& node, std::string& out) {
   const auto bits = [&](char type, const auto& x) {

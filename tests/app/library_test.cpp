@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "app/job.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
 #include "command.hpp"
@@ -192,6 +193,27 @@ TEST(Library, AContactOfOnesOwnIsTheReducedModels) {
   const std::string faster = refusal(dir, resolved, {"volumetric"}, {"delivery.club_speed_mps=41"});
   EXPECT_NE(faster.find("'mine' is not what it was"), std::string::npos) << faster;
   EXPECT_EQ(refusal(dir, resolved, {"volumetric"}, {"contact.name=mine"}), "") << "named again, it is the present one";
+}
+
+TEST(Library, LayersTakeThePlaceOfABallOfOnesOwnAndOfItsDigest) {
+  const OwnLibrary own("library_layers");
+  write(own.home / "balls" / "mine.toml", content(shipped_library() / "balls" / "tour.toml"));
+  const fs::path dir = fresh_directory("library_layers_case");
+  const auto resolved = [&](const std::string& text, const std::vector<std::string>& set) {
+    CaseFile file = case_of(dir, text, set);
+    read_job(file);
+    return file.resolved();
+  };
+  const std::string once = resolved(
+      "kind = \"impact\"\nmodels = [\"fe-free-body\"]\n[delivery]\nclub_speed_mps = 45.0\n[head]\nname = "
+      "\"driver-460\"\n"
+      "[ball]\nmodel = \"mine\"\n[contact]\nfriction = 0.24\nface_friction = 0.24\n",
+      {});
+  ASSERT_NE(once.find("digest"), std::string::npos) << once;
+  const std::string layers =
+      resolved(once, {"ball.layers=[{law='neo-hooke', c10_MPa=13.0, bulk_MPa=1000, density_kg_per_m3=1150}]"});
+  EXPECT_EQ(layers.find("digest"), std::string::npos) << layers;
+  EXPECT_EQ(layers.find("mine"), std::string::npos) << layers;
 }
 
 /// Faults of an entry are told with its file and line.
