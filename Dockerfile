@@ -3,7 +3,7 @@ FROM debian:12 AS build
 WORKDIR /src
 COPY packages.txt ./
 COPY scripts/install-packages scripts/
-RUN bash -c 'mapfile -t wanted < <(grep -v "^#" packages.txt | tr -s " " "\n"); scripts/install-packages "${wanted[@]}" dpkg-dev lintian'
+RUN grep -v "^#" packages.txt | xargs scripts/install-packages dpkg-dev lintian
 COPY . .
 RUN scripts/package
 

@@ -325,15 +325,12 @@ std::string beyond(const Seen& seen, const Use& use) {
   return text;
 }
 
-bool asks_law(std::string_view model) {
-  constexpr std::array laws = {"rigid-planar", "rigid-eccentric", "stick-slip", "pendulum-club", "hinged-head"};
-  return std::ranges::find(laws, model) != laws.end();
-}
-
-void refuse(Table& table, std::string_view key, const std::string& called, const Seen& seen, const Use& use) {
-  if (table.has("extrapolate") && table.flag({"extrapolate", "use the library's entry beyond what it saw"}, false))
-    return;
-  if (const std::string text = beyond(seen, use); !text.empty())
+void refuse(Table& table, std::string_view key, const std::string& called, const Seen& seen,
+            const std::optional<Use>& use) {
+  const bool beyond_all_the_same = table.has("extrapolate") &&
+                                   table.flag({"extrapolate", "use the library's entry beyond what it saw"}, false);
+  if (!use || beyond_all_the_same) return;
+  if (const std::string text = beyond(seen, *use); !text.empty())
     table.fail(key, fmt::format("'{}' {}: `extrapolate = true` beside its name uses it all the same", called, text));
 }
 
@@ -385,7 +382,12 @@ std::optional<NamedContact> named_contact(Table root) {
                                   *model, fmt::join(names, ", ")));
 }
 
-void check_use(Table root, const Use& use, const std::vector<std::string>& models) {
+bool asks_law(std::string_view model) {
+  constexpr std::array laws = {"rigid-planar", "rigid-eccentric", "stick-slip", "pendulum-club", "hinged-head"};
+  return std::ranges::find(laws, model) != laws.end();
+}
+
+void check_use(Table root, const std::optional<Use>& use, const std::vector<std::string>& models) {
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
   const bool volume =
       std::ranges::any_of(models, [](const std::string& m) { return m == "volumetric" || m == "shaft-coupled"; });
@@ -395,7 +397,10 @@ void check_use(Table root, const Use& use, const std::vector<std::string>& model
   if (ball && fe)
     if (const auto model = named_entry(*ball, "model", Shelf::balls))
       refuse(*ball, "model", *model, library_ball(*model).seen, use);
-  if (const auto contact = named_contact(root)) {
+  std::optional<NamedContact> contact = named_contact(root);
+  if (!contact && ball)  // a ball that says nothing of a contact
+    if (const auto model = named_entry(*ball, "model", Shelf::balls)) contact = NamedContact{.name = *model};
+  if (contact) {
     auto own = root.optional_table("contact");
     const bool by_name = own && own->has("name");
     Table& at = by_name ? *own : *ball;
@@ -405,8 +410,7 @@ void check_use(Table root, const Use& use, const std::vector<std::string>& model
         at.fail(key, fmt::format("'{}' has no {}: state them in the case, or name another", contact->name, what));
     };
     needs(law, contact->law || (own && own->has("restitution")), "restitution and friction for the rigid models");
-    auto volumetric = root.optional_table("volumetric");
-    needs(volume, contact->volume || (volumetric && volumetric->has("published")), "constants of the volumetric model");
+    needs(volume, contact->volume || root.has("volumetric"), "constants of the volumetric model");
     needs(hertz, contact->hertz_maw || root.has("hertz_maw"), "constants of hertz-maw");
     if (law || volume || hertz || (fe && contact->face_friction)) refuse(at, key, contact->name, contact->seen, use);
   }

@@ -109,8 +109,11 @@ std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf
 /// of several). Nothing where neither is there.
 std::optional<NamedContact> named_contact(Table root);
 
-/// Refuses, with a sentence, what uses an entry that the case names beyond what it saw, unless `extrapolate = true`
-/// stands beside its name. `models` are those that are asked.
-void check_use(Table root, const Use& use, const std::vector<std::string>& models);
+/// Whether this model takes its contact from [contact]: restitution and friction.
+bool asks_law(std::string_view model);
+
+/// Refuses, with a sentence, an entry that has nothing of what `models` ask, and one that is used beyond what it saw
+/// unless `extrapolate = true` stands beside its name. Without a use, which a swing tells at its end, the first alone.
+void check_use(Table root, const std::optional<Use>& use, const std::vector<std::string>& models);
 
 }  // namespace hosel::app

@@ -143,10 +143,10 @@ ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standa
   return law;
 }
 
-ContactLaw read_contact(Table root) {
+ContactLaw read_contact(Table root, const std::vector<std::string>& models) {
   const std::optional<NamedContact> named = named_contact(root);
   const bool law = named && named->law;
-  if (!law && !root.has("contact")) return {};
+  if (!law && !root.has("contact") && std::ranges::none_of(models, asks_law)) return {};
   return read_contact_law(root.default_table("contact"), law ? *named->law : ContactLaw{});
 }
 
@@ -185,8 +185,8 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   blow.delivery = read_delivery_of(root);
   if (auto shaft = root.optional_table("shaft")) blow.club.shaft = read_shaft(*shaft);
   blow.club.geometry = read_club_geometry(root, blow.club.shaft.has_value());
-  blow.contact = read_contact(root);
-  if (!root.has("motion")) check_use(root, use_of(blow), models);
+  blow.contact = read_contact(root, models);
+  check_use(root, root.has("motion") ? std::nullopt : std::optional(use_of(blow)), models);
   return blow;
 }
 

@@ -45,8 +45,8 @@ Delivery read_delivery(Table table, double loft = 0);
 Delivery read_delivery_of(Table root);
 /// Without a standard every value but the falloff is required.
 ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard);
-/// `[contact]` of a case, on top of what it names in the library.
-ContactLaw read_contact(Table root);
+/// `[contact]` of a case, on top of what it names in the library; with every default where one of `models` asks it.
+ContactLaw read_contact(Table root, const std::vector<std::string>& models);
 
 /// `models = [...]`: names from the registry, at least one.
 std::vector<std::string> read_models(Table root);

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/kinds/impact_page.hpp"
+#include "app/library.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
@@ -32,6 +34,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What all columns share: `[[compare]]` sets none of it.
+constexpr std::array<std::string_view, 6> kOfTheCase = {"kind",   "title",    "matched_launch",
+                                                        "output", "measured", "compare"};
+
 class ImpactJob final : public Job {
  public:
   explicit ImpactJob(CaseFile& file) {
@@ -44,15 +50,19 @@ class ImpactJob final : public Job {
     if (auto measured = root.optional_table("measured")) read_measured(*measured);
     if (matched_ && own_.swung) root.fail("matched_launch", "the swing says the loft");
     if (matched_ && !launch_angle()) root.fail("matched_launch", "state the measured launch angle in [measured]");
-    flight_ = read_optional_flight(root);
     std::vector<std::string> taken;
     for (Table t : root.tables("compare")) {
       const std::string name = t.name({"name", "of the columns that stand before the case's own"}, taken);
       std::vector<std::string> set = t.texts({"set", "keys in which it differs from the case, table.key=value"});
+      for (const std::string& s : set)
+        if (const std::string table = s.substr(0, s.find_first_of(".[=")); std::ranges::count(kOfTheCase, table))
+          t.fail("set", fmt::format("'{}': {} is the case's own; a column is a blow and its flight", s, table));
       set.insert(set.end(), file.overrides().begin(), file.overrides().end());  // the command line has the last word
       CaseFile other(file, set);
       compared_.push_back(read_side(other.root()));
       compared_.back().name = name;
+      for (const std::string_view key : kOfTheCase) other.root().leave({key});
+      other.finish();
       if (!compared_.back().missing.empty()) missing_ = compared_.back().missing;
     }
   }
@@ -62,12 +72,15 @@ class ImpactJob final : public Job {
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !own_.yields() && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
     if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
-    if (flight_) flight_->show_in(out);
+    if (own_.flight) own_.flight->show_in(out);
+    for (Side& side : compared_)
+      if (side.flight) side.flight->show_in(out);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
     std::vector<FeRun> runs;
     for (const Side& side : compared_) compare(side, columns, summary["compared"][side.name]);
+    const std::size_t compared = columns.size();
     Blow blow = own_.blow;  // of the last model
     for (const Entry& entry : own_.models) {
       blow = at_measured_launch(entry, own_.blow);
@@ -93,19 +106,21 @@ class ImpactJob final : public Job {
       note_oblique(blow, columns.back(), said);
       if (matched_) note_match(out, columns.back(), blow, said);
     }
-    if (flight_)
-      for (post::LaunchColumn& c : columns) c.flight = flight_->follow(c.launch, own_.blow.ball);
+    if (own_.flight)
+      for (std::size_t c = compared; c < columns.size(); ++c)
+        columns[c].flight = own_.flight->follow(columns[c].launch, own_.blow.ball);
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
-    const ImpactStory story{blow,     columns,       measured_,           table,      runs,
-                            matched_, own_.yields(), flight_.has_value(), record_.vtk};
+    const ImpactStory story{
+        blow, columns, measured_, table, runs, matched_, own_.yields(), own_.flight.has_value(), record_.vtk};
     show_shaft(out, story);
-    if (flight_)  // where the errors of the answer's carry come from; the other columns have theirs in the summary
-      for (const post::LaunchColumn& c : columns) {
-        nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
-        if (&c == &columns.back()) said["budget"] = report_flight(out, *flight_, c.title, c.launch, own_.blow.ball);
-      }
+    for (const post::LaunchColumn& c : columns) {
+      if (!c.flight) continue;
+      nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
+      // Where the errors of the answer's carry come from; the other columns have theirs in the summary.
+      if (&c == &columns.back()) said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
+    }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
     if (matched_) {
@@ -137,6 +152,7 @@ class ImpactJob final : public Job {
     Blow blow;
     models::FeImpactOptions fe;
     std::vector<Entry> models;
+    std::optional<FlightSetup> flight;
     bool yields() const { return fe.face || blow.club.head.compliance; }
   };
 
@@ -145,10 +161,15 @@ class ImpactJob final : public Job {
     const std::vector<std::string> names = read_models(root);
     side.blow = read_blow(root, names);
     models::Options options = read_options(root, names, side.blow);
+    side.flight = read_optional_flight(root);
     if (const auto swung = read_swung_club(root, names, options.shaft_mount)) {
       side.swung = true;
-      if (!swung->motion.present) side.missing = swung->motion.file;
-      else swung->begin(swung->swing(side.blow.club), side.blow, options.shaft_mount);
+      if (!swung->motion.present) {
+        side.missing = swung->motion.file;
+      } else {
+        swung->begin(swung->swing(side.blow.club), side.blow, options.shaft_mount);
+        check_use(root, use_of(side.blow), names);
+      }
     }
     side.fe = options.fe;
     for (const std::string& name : names) side.models.push_back({name, models::find(name)->make(options)});
@@ -233,6 +254,7 @@ class ImpactJob final : public Job {
       blows[k] = at_measured_launch(entry, side.blow);
       columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
                             models::checked_launch(*entry.model, blows[k])};
+      if (side.flight) columns[first + k].flight = side.flight->follow(columns[first + k].launch, side.blow.ball);
     });
     for (std::size_t k = 0; k < count; ++k) {
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
@@ -399,7 +421,6 @@ class ImpactJob final : public Job {
   post::Measured measured_;
   post::MeasuredOblique ranges_;
   bool matched_ = false;
-  std::optional<FlightSetup> flight_;
 };
 
 }  // namespace

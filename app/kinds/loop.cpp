@@ -54,7 +54,7 @@ class LoopJob final : public Job {
     case_.head_turns = case_.base != "rigid-planar";
 
     case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
-    case_.blow.contact = read_contact(root);
+    case_.blow.contact = read_contact(root, {case_.base});
     case_.blow.contact.patch = declared.contact.patch;
     if (fe) case_.blow.contact.friction = case_.blow.contact.patch.coefficient;
     case_.blow.club.geometry = read_club_geometry(root, root.has("shaft"));
@@ -125,8 +125,7 @@ class LoopJob final : public Job {
                                                 {"holdout", "leave-one-out"}, "holdout") == "leave-one-out";
       if (case_.split.leave_one_out && case_.split.by.empty()) split->fail("mode", "leave-one-out needs by = a column");
     }
-    if (skipped_.empty())
-      if (const auto use = use_of_shots(case_)) check_use(root, *use, {case_.base});
+    if (skipped_.empty()) check_use(root, use_of_shots(case_), {case_.base});
   }
 
   void run(Output& out) override {

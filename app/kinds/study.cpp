@@ -12,6 +12,7 @@
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
+#include "app/library.hpp"
 #include "app/of_file.hpp"
 #include "app/stored_launch.hpp"
 #include "app/study/answer.hpp"
@@ -84,11 +85,10 @@ class StudyJob final : public PointJob {
     else read_blows(file, root);
     table_.design = read_design(root);
     const auto columns = table_.design.columns();
-    for (const std::string& c : columns)
-      if (std::ranges::count(columns, c) > 1) root.fail("axis", fmt::format("'{}' is varied twice", c));
     if (budgets_ && table_.design.size() > kMostBudgets)
       root.fail("flight", fmt::format("launch_error and beside tell of each launch: of {} at most", kMostBudgets));
     if (!studied_) read_solved(root);
+    check_varied_once(root);
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
         CaseFile one(*blow_, with_own(l.set));
@@ -97,6 +97,7 @@ class StudyJob final : public PointJob {
       });
     regression_ = read_regression(root);
     if (auto t = root.optional_table("measured")) table_.measured = read_measured(*t);
+    check_measured(root);
     reference_ = read_compare(root, table_);
     parts_ = read_parts(root, table_);
     const bool referred = reference_ && (reference_->model || reference_->variant);
@@ -158,7 +159,13 @@ class StudyJob final : public PointJob {
     summary["failed"] = std::ranges::count_if(points, [](const json& p) { return p.contains("error"); });
     std::vector<FaceLayer> layers;
     if (maps_face()) {
-      layers = face_layers(table, points, reference_, [&](std::size_t d) { return blow(d); });
+      layers = face_layers(table, points, reference_, [&](std::size_t d, std::size_t m) {
+        std::vector<std::string> set = overrides(d);
+        for (const StudySolve& s : solves_)
+          if (const json& point = points[d * table.models.size() + m]; point.contains(s.name))
+            set = with(std::move(set), s, point[s.name].get<double>(), false);
+        return blow_with(set);
+      });
       report_face(out, table, points, layers, extra_mass_, draw_, summary);
     }
     StudyEffects effects = named ? effects_of(table) : StudyEffects{};
@@ -307,6 +314,30 @@ class StudyJob final : public PointJob {
     for (const StudySolve& s : solves_) table_.outputs.push_back(s.name);
   }
 
+  /// A key that the design, `set` or the command line, and a [[solve]] give would have the value of one of them.
+  void check_varied_once(Table& root) const {
+    table_.design.check_varied_once(root, studied_ ? set_ : blow_->overrides());
+    for (const StudySolve& s : solves_)
+      if (const std::string twice = table_.design.varied(s.key, s.variants); !twice.empty())
+        root.fail("solve", fmt::format("'{}' is sought, and '{}' is varied", s.key, twice));
+  }
+
+  /// What was measured of nothing that is answered would be compared with nothing.
+  void check_measured(Table& root) const {
+    if (table_.outputs.empty()) return;  // all of a summary: known at the end
+    const auto check = [&](const MeasuredRange& m, std::string_view key) {
+      if (conditions_.matched_launch && split_unit(m.name).stem == "launch_angle") return;
+      for (std::size_t o = 0; o < table_.outputs.size(); ++o)
+        if (table_.measures(m, o)) return;
+      root.fail(key, fmt::format("'{}' is measured and no output of this study{}", m.name,
+                                 or_nearest(m.name, table_.outputs, "; a key of the case has a dot")));
+    };
+    for (const MeasuredRange& m : table_.measured) check(m, "measured");
+    for (const DesignFactor& f : table_.design.factors())
+      for (const DesignLevel& l : f.levels)
+        for (const MeasuredRange& m : l.measured) check(m, f.kind == DesignFactor::Kind::rows ? "rows" : "variant");
+  }
+
   /// Every key that a study of blows has beside the blow itself.
   static void leave_study_keys(Table root) {
     for (const std::string& key : root.keys())
@@ -430,6 +461,7 @@ class StudyJob final : public PointJob {
                    [&] { swing->end = std::make_shared<const models::SwingEnd>(out.swung->swing(out.blow.club)); });
     out.end = swing->end;
     out.swung->begin(*out.end, out.blow, out.options.shaft_mount);
+    check_use(file.root(), use_of(out.blow), out.models);
     return out;
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/library.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
@@ -85,7 +86,8 @@ class TuneJob final : public Job {
     model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names);
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
-    blow_.contact = read_contact(root);
+    blow_.contact = read_contact(root, {model_});
+    check_use(root, {}, {model_});
     if (auto shaft = root.optional_table("shaft")) blow_.club.shaft = read_shaft(*shaft);
     blow_.club.geometry = read_club_geometry(root, false);
     options_ = read_options(root, {model_}, blow_);

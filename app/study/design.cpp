@@ -29,6 +29,23 @@ bool same_quantity(const std::string& a, const std::string& b) {
   return a == b || (x.unit && y.unit && x.stem == y.stem);
 }
 
+/// Whether a key that is set later leaves nothing of an earlier one: it is the same, or the list of which that is an
+/// element.
+bool replaces(const std::string& later, const std::string& earlier) {
+  return same_quantity(later, earlier) ||
+         (earlier.ends_with(']') && same_quantity(later, earlier.substr(0, earlier.rfind('['))));
+}
+
+std::string key_of(const std::string& override) { return override.substr(0, override.find('=')); }
+
+/// The keys that a level of the factor sets.
+std::set<std::string> keys_of(const DesignFactor& factor) {
+  std::set<std::string> out;
+  for (const DesignLevel& l : factor.levels)
+    for (const std::string& s : l.set) out.insert(key_of(s));
+  return out;
+}
+
 DesignFactor read_variants(Table root) {
   DesignFactor out{.kind = FactorKind::variants, .columns = {"variant"}};
   std::vector<std::string> taken;
@@ -65,6 +82,10 @@ DesignFactor read_rows(Table t) {
       if (!column && std::isfinite(measured[r])) level.measured.push_back({head, measured[r], measured[r]});
     }
   }
+  for (std::size_t c = 0; c < sheet.names.size(); ++c)
+    for (std::size_t other = 0; other < c; ++other)
+      if (same_quantity(sheet.names[c], sheet.names[other]))
+        t.fail("file", fmt::format("'{}' and '{}' are one quantity", sheet.names[other], sheet.names[c]));
   if (out.levels.empty()) t.fail("file", "holds no row");
   if (out.columns.empty()) t.fail("file", "no head is a key of the case, as delivery.club_speed_mps is");
   return out;
@@ -142,6 +163,36 @@ const DesignLevel& Design::level(std::size_t factor, std::size_t point) const {
 
 bool Design::has(FactorKind kind) const {
   return std::ranges::find(factors_, kind, &DesignFactor::kind) != factors_.end();
+}
+
+std::string Design::varied(const std::string& key, const std::vector<std::string>& variants) const {
+  for (const DesignFactor& f : factors_)
+    for (const DesignLevel& l : f.levels) {
+      if (f.kind == FactorKind::variants && !variants.empty() &&
+          std::ranges::find(variants, l.cells.front()) == variants.end())
+        continue;
+      for (const std::string& s : l.set)
+        if (same_quantity(key, key_of(s))) return key_of(s);
+    }
+  return "";
+}
+
+void Design::check_varied_once(const Table& root, const std::vector<std::string>& stated) const {
+  const auto refuse = [&](const std::string& key, const std::string& how) {
+    root.fail("", fmt::format("'{}' is varied by this study{}", key, how));
+  };
+  for (const DesignFactor& f : factors_) {
+    const bool first = f.kind == FactorKind::variants || f.kind == FactorKind::rows;
+    for (const std::string& key : keys_of(f)) {
+      for (const std::string& s : stated)
+        if (const std::string other = key_of(s); first ? replaces(other, key) : replaces(key, other))
+          refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", other));
+      for (const DesignFactor& g : factors_)
+        if (&g != &f)
+          for (const std::string& other : keys_of(g))
+            if (replaces(key, other)) refuse(other, fmt::format(" twice, as '{}' too", key));
+    }
+  }
 }
 
 std::vector<std::string> Design::columns() const {

@@ -56,6 +56,11 @@ class Design {
   const DesignLevel& level(std::size_t factor, std::size_t point) const;
   bool has(DesignFactor::Kind kind) const;
 
+  /// The key of the same quantity that the design sets; empty where none does. Of the variants those named, or all.
+  std::string varied(const std::string& key, const std::vector<std::string>& variants = {}) const;
+  /// Refuses a quantity that two factors set, or a factor and `stated`, overrides of every point.
+  void check_varied_once(const Table& root, const std::vector<std::string>& stated) const;
+
   std::vector<std::string> columns() const;
   std::vector<std::string> cells(std::size_t point) const;
   /// A column's number at every point; empty where one is not a number.

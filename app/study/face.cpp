@@ -185,7 +185,7 @@ class FaceReport {
 
 std::vector<FaceLayer> face_layers(const StudyTable& table, const std::vector<json>& points,
                                    const std::optional<StudyReference>& reference,
-                                   const std::function<StudyBlow(std::size_t)>& blow) {
+                                   const std::function<StudyBlow(std::size_t, std::size_t)>& blow) {
   std::vector<FaceLayer> out;
   const Design& design = table.design;
   const std::size_t places = design.grid()->size(), models = table.models.size();
@@ -195,10 +195,10 @@ std::vector<FaceLayer> face_layers(const StudyTable& table, const std::vector<js
   const auto setting_of = [&](std::size_t d) { return d / (block * places) * block + d % block; };
   for (std::size_t k = 0; k < design.size() / places; ++k) {
     const std::size_t first = k / block * block * places + k % block;
-    const StudyBlow asked = blow(first);
     const std::string said = design.said(first, DesignFactor::Kind::grid);
     for (std::size_t m = 0; m < models; ++m) {
       const std::string& model = table.models[m];
+      const StudyBlow asked = blow(first, m);
       FaceLayer l{.map = {.title = said.empty()  ? model
                                    : models == 1 ? said
                                                  : fmt::format("{}, {}", said, model),
@@ -221,7 +221,8 @@ std::vector<FaceLayer> face_layers(const StudyTable& table, const std::vector<js
         l.map.distances = asked.flight->unit;
         l.map.flights.emplace_back();
         if (l.map.launches.back()) try {
-            l.map.flights.back() = asked.flight->follow(*l.map.launches.back(), asked.blow.ball);
+            const StudyBlow here = blow(l.points.back(), m);
+            l.map.flights.back() = here.flight->follow(*l.map.launches.back(), here.blow.ball);
           } catch (const std::invalid_argument&) {}  // a ball that cannot reach the landing has no flight
       }
       if (reference && (reference->model || reference->variant)) {

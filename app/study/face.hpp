@@ -26,10 +26,11 @@ struct FaceLayer {
   std::vector<post::NamedFigure> figures = {};  ///< of what it is minus that one, once reported
 };
 
-/// Settings x models. `blow` reads the blow of a design point: its head, ball and flight are those of the whole layer.
+/// Settings x models. `blow` reads the blow of a point and model, with what was solved there; the head of the first is
+/// that of the whole layer.
 std::vector<FaceLayer> face_layers(const StudyTable& table, const std::vector<nlohmann::json>& points,
                                    const std::optional<StudyReference>& reference,
-                                   const std::function<StudyBlow(std::size_t)>& blow);
+                                   const std::function<StudyBlow(std::size_t, std::size_t)>& blow);
 
 /// What formulas may name of a layer that is compared.
 std::vector<std::string> face_figure_names(bool with_mass);

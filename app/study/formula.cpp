@@ -5,15 +5,41 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace hosel::app {
 
-std::string formula_name(const std::string& name) {
-  std::string entry = name.ends_with(".value") ? name.substr(0, name.size() - 6) : name;
-  std::string out = entry.substr(entry.rfind('.') + 1);
-  for (char& c : out)
+namespace {
+
+std::string as_variable(std::string key) {
+  for (char& c : key)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  if (!out.empty() && std::isdigit(static_cast<unsigned char>(out.front()))) out = "_" + out;
+  if (!key.empty() && std::isdigit(static_cast<unsigned char>(key.front()))) key = "_" + key;
+  return key;
+}
+
+std::string whole_key(const std::string& name) {
+  return name.ends_with(".value") ? name.substr(0, name.size() - 6) : name;
+}
+
+std::string last_part(const std::string& name) {
+  const std::string whole = whole_key(name);
+  return as_variable(whole.substr(whole.rfind('.') + 1));
+}
+
+}  // namespace
+
+FormulaNames formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs) {
+  std::map<std::string, std::set<std::string>> ends;
+  for (const auto* names : {&columns, &outputs})
+    for (const std::string& n : *names) ends[last_part(n)].insert(whole_key(n));
+  FormulaNames out;
+  const auto called = [&](const std::string& n) {
+    return ends[last_part(n)].size() > 1 ? as_variable(whole_key(n)) : last_part(n);
+  };
+  for (const std::string& c : columns) out.columns.push_back(called(c));
+  for (const std::string& o : outputs) out.outputs.push_back(called(o));
   return out;
 }
 

@@ -13,8 +13,12 @@
 
 namespace hosel::app {
 
-/// What a formula calls a column or an output: the last part of a dotted key, with _ for what is no letter or digit.
-std::string formula_name(const std::string& name);
+/// What formulas call the columns and outputs of a study: the last part of a dotted key, and all of it where another's
+/// ends alike; with _ for what is no letter or digit.
+struct FormulaNames {
+  std::vector<std::string> columns, outputs;
+};
+FormulaNames formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs);
 
 /// A formula with its variables; unset ones are NaN.
 class Formula {

@@ -15,10 +15,12 @@
 namespace hosel::app {
 namespace {
 
+FormulaNames called(const StudyTable& table) { return formula_names(table.design.columns(), table.outputs); }
+
 std::vector<std::string> names_of(const StudyTable& table) {
-  std::vector<std::string> names;
-  for (const std::string& c : table.design.columns()) names.push_back(formula_name(c));
-  for (const std::string& o : table.outputs) names.push_back(formula_name(o));
+  const FormulaNames of = called(table);
+  std::vector<std::string> names = of.columns;
+  names.insert(names.end(), of.outputs.begin(), of.outputs.end());
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
@@ -44,6 +46,7 @@ std::optional<Found> seek(const StudyTable& table, const StudyEffects& effects, 
   const std::size_t first = model * table.outputs.size();
   const StudyEmulator& of = *effects.emulators[first + optimum.output];
   const auto columns = table.design.columns();
+  const FormulaNames names = called(table);
   const auto d = Eigen::Index(columns.size());
   Formula where(optimum.where.empty() ? "1" : optimum.where, names_of(table));
   std::mt19937_64 random(1965);
@@ -63,11 +66,11 @@ std::optional<Found> seek(const StudyTable& table, const StudyEffects& effects, 
       tried.expected = of(tried.x);
       if (best && (optimum.largest ? tried.expected <= best->expected : tried.expected >= best->expected)) continue;
       if (!optimum.where.empty()) {
-        for (std::size_t c = 0; c < columns.size(); ++c) where.set(formula_name(columns[c]), tried.x[Eigen::Index(c)]);
+        for (std::size_t c = 0; c < columns.size(); ++c) where.set(names.columns[c], tried.x[Eigen::Index(c)]);
         bool met = true;
         for (const double sds : {-kSpare, kSpare}) {
           for (std::size_t o = 0; o < table.outputs.size(); ++o)
-            if (const std::string name = formula_name(table.outputs[o]); where.uses(name)) {
+            if (const std::string& name = names.outputs[o]; where.uses(name)) {
               const StudyEmulator& e = *effects.emulators[first + o];
               where.set(name, e(tried.x) + sds * std::max(e.error(), e.expected_error(tried.x)));
             }
@@ -102,6 +105,7 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
                               const StudyOptimum& optimum, const AnswersAt& answers) {
   nlohmann::json json = nlohmann::json::object();
   const auto columns = table.design.columns();
+  const FormulaNames names = called(table);
   for (std::size_t model = 0; model < table.models.size(); ++model) {
     const std::size_t first = model * table.outputs.size();
     const std::string& name = table.models[model];
@@ -109,7 +113,7 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
     std::string lacking;
     Formula where(optimum.where.empty() ? "1" : optimum.where, names_of(table));
     for (std::size_t o = 0; o < table.outputs.size(); ++o)
-      if (!effects.emulators[first + o] && (o == optimum.output || where.uses(formula_name(table.outputs[o]))))
+      if (!effects.emulators[first + o] && (o == optimum.output || where.uses(names.outputs[o])))
         lacking = table.outputs[o];
     auto& entry = name.empty() ? json : json[name];  // another case answers: it has no model's name
     if (!lacking.empty()) {
@@ -157,9 +161,8 @@ nlohmann::json report_optimum(Output& out, const StudyTable& table, const StudyE
       said += fmt::format(
           "The model answers {:.5g} there; the emulator expected {:.5g} with a standard deviation of {:.2g}.", *answer,
           found->expected, error);
-      for (std::size_t c = 0; c < columns.size(); ++c) where.set(formula_name(columns[c]), found->x[Eigen::Index(c)]);
-      for (std::size_t o = 0; o < table.outputs.size(); ++o)
-        where.set(formula_name(table.outputs[o]), confirmed[o].value_or(NAN));
+      for (std::size_t c = 0; c < columns.size(); ++c) where.set(names.columns[c], found->x[Eigen::Index(c)]);
+      for (std::size_t o = 0; o < table.outputs.size(); ++o) where.set(names.outputs[o], confirmed[o].value_or(NAN));
       const bool met = where().value_or(false);
       entry["condition_met"] = met;
       std::string others;

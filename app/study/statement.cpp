@@ -6,20 +6,17 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/study/formula.hpp"
-
 namespace hosel::app {
 namespace {
 
-std::vector<std::string> formula_names(const std::vector<std::string>& columns, const std::vector<std::string>& outputs,
-                                       const std::vector<std::string>& figures, bool compared) {
+/// All that a statement may name.
+std::vector<std::string> variables(const FormulaNames& names, const std::vector<std::string>& figures, bool compared) {
   std::vector<std::string> out = figures;
   const auto add = [&](const std::string& name) {
     if (std::ranges::find(out, name) == out.end()) out.push_back(name);
   };
-  for (const std::string& c : columns) add(formula_name(c));
-  for (const std::string& o : outputs) {
-    const std::string name = formula_name(o);
+  for (const std::string& c : names.columns) add(c);
+  for (const std::string& name : names.outputs) {
     add(name);
     for (const char* of : {"mean", "least", "largest"}) add(fmt::format("{}.{}", of, name));
     if (compared)
@@ -34,11 +31,13 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
                                                   const std::vector<std::string>& outputs,
                                                   const std::vector<std::string>& figures, bool compared) {
   std::vector<StudyStatement> out;
-  const auto names = formula_names(columns, outputs, figures, compared);
+  const FormulaNames called = formula_names(columns, outputs);
+  const auto names = variables(called, figures, compared);
   for (Table t : root.tables("statement")) {
     StudyStatement s{.text = t.text({"text", "the statement, a sentence"}),
                      .holds = t.text({"holds", "a formula of outputs and axes that is true where the statement holds"}),
-                     .where = t.text({"where", "a formula that is true at the points of which it speaks"}, "")};
+                     .where = t.text({"where", "a formula that is true at the points of which it speaks"}, ""),
+                     .names = called};
     for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
       if (formula->empty() && key == std::string_view("where")) continue;
       check_formula(t, key, *formula, names);
@@ -54,7 +53,6 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
   std::vector<std::string> figures;
   if (!groups.empty())
     for (const post::NamedFigure& f : groups.front().figures) figures.push_back(f.name);
-  const auto names = formula_names(columns, table.outputs, figures, !references.empty());
   std::vector<std::vector<double>> numbers;
   for (std::size_t c = 0; c < columns.size(); ++c) numbers.push_back(table.design.numbers(c));
   post::Table verdicts{{{"text", "{}", "statement"}}, {.margin = 2, .least_width = 10, .even = false}};
@@ -66,6 +64,7 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
   for (const StudyStatement& s : statements)
     for (const StudyGroup& group : groups) {
       const std::size_t m = group.model;
+      const auto names = variables(s.names, figures, !references.empty());
       Formula holds(s.holds, names), where(s.where.empty() ? "1" : s.where, names);
       const auto set = [&](const std::string& name, double x) {
         holds.set(name, x);
@@ -73,8 +72,8 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
       };
       for (const auto& [name, value] : group.figures) set(name, value);
       const auto over = [&](const std::vector<std::size_t>& points) {
-        for (std::size_t o = 0; o < table.outputs.size(); ++o) {
-          const std::string name = formula_name(table.outputs[o]);
+        for (std::size_t o = 0; o < s.names.outputs.size(); ++o) {
+          const std::string& name = s.names.outputs[o];
           StudySeries there;
           for (const std::size_t d : points) there.y.push_back(table.at(m, o).y[d]);
           const StudySeries::Spread all = there.spread();
@@ -85,9 +84,9 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
       };
       const auto at = [&](std::size_t d) {
         for (std::size_t c = 0; c < columns.size(); ++c)
-          set(formula_name(columns[c]), numbers[c].empty() ? NAN : numbers[c][d]);
-        for (std::size_t o = 0; o < table.outputs.size(); ++o) {
-          const std::string name = formula_name(table.outputs[o]);
+          set(s.names.columns[c], numbers[c].empty() ? NAN : numbers[c][d]);
+        for (std::size_t o = 0; o < s.names.outputs.size(); ++o) {
+          const std::string& name = s.names.outputs[o];
           const double y = table.at(m, o).y[d];
           set(name, y);
           if (references.empty()) continue;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/study/formula.hpp"
 #include "app/study/table.hpp"
 #include "post/shaft_effect.hpp"
 
@@ -16,6 +17,7 @@ namespace hosel::app {
 /// face that is compared.
 struct StudyStatement {
   std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
+  FormulaNames names;              ///< what it calls columns and outputs
 };
 
 /// Points that are judged together, of one model.

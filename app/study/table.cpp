@@ -96,15 +96,19 @@ post::Table StudyTable::places() const {
   return table.in_files(design.columns());
 }
 
+bool StudyTable::measures(const MeasuredRange& m, std::size_t output) const {
+  if (m.name == outputs[output]) return true;
+  const SplitName own = split_unit(m.name), wanted = split_unit(outputs[output]);
+  return own.unit && wanted.unit && own.stem == wanted.stem && own.unit->dimension == wanted.unit->dimension;
+}
+
 std::optional<MeasuredRange> StudyTable::seen(std::size_t point, std::size_t output) const {
-  const SplitName wanted = split_unit(outputs[output]);
   std::vector<MeasuredRange> all = design.measured(point);
   all.insert(all.end(), measured.begin(), measured.end());
-  for (MeasuredRange m : all) {
+  for (const MeasuredRange& m : all) {
+    if (!measures(m, output)) continue;
     if (m.name == outputs[output]) return m;
-    const SplitName own = split_unit(m.name);
-    if (!own.unit || !wanted.unit || own.stem != wanted.stem || own.unit->dimension != wanted.unit->dimension) continue;
-    const double factor = own.unit->si / wanted.unit->si;
+    const double factor = split_unit(m.name).unit->si / split_unit(outputs[output]).unit->si;
     return MeasuredRange{outputs[output], m.low * factor, m.high * factor};
   }
   return {};

@@ -41,6 +41,8 @@ struct StudyTable {
   post::Table places() const;
   /// Every point in a row, for a design small enough to be read; empty else.
   post::TextTable rows() const;
+  /// Whether that output is what was measured, in this or another unit.
+  bool measures(const MeasuredRange& measured, std::size_t output) const;
   /// Measured values of an output at a point, in the output's unit; nothing where it was not measured.
   std::optional<MeasuredRange> seen(std::size_t point, std::size_t output) const;
   const std::string& model_of(std::size_t point) const {

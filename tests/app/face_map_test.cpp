@@ -8,8 +8,12 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "command.hpp"
 #include "golf/units.hpp"
@@ -298,6 +302,37 @@ TEST(FaceMap, ANameWithACommaStaysOneCell) {
   ASSERT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_NE(content(dir / "out" / "face_differences.csv").find("\n\"heavier, 2.5 g\",-37.5,-18.75,"),
             std::string::npos);
+}
+
+TEST(FaceMap, FlightsAreThoseOfWhatWasFound) {
+  const fs::path dir = fresh_directory("face_map_solved");
+  std::string blow = kEccentricBlow;
+  blow.erase(0, blow.find("[delivery]"));
+  write(dir / "case.toml",
+        "kind = \"study\"\nmodels = [\"rigid-eccentric\"]\noutputs = [\"carry_m\"]\n[grid]\ncolumns = 3\nrows = 3\n"
+        "width_mm = 30\nheight_mm = 10\n[[solve]]\nname = \"drag\"\nkey = \"flight.drag_scale\"\nrange = [0.2, 4.0]\n"
+        "output = \"carry_m\"\nvalue = 150.0\n[flight]\nlaw = \"ferguson-2022\"\nunits = \"metres\"\n" +
+            blow);
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto column = [&](const char* file, const std::string& name) {
+    std::ifstream in(dir / "out" / file);
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(in, line);) {
+      std::vector<std::string> cells;
+      std::istringstream of(line);
+      for (std::string cell; std::getline(of, cell, ',');) cells.push_back(cell);
+      rows.push_back(cells);
+    }
+    const auto at = std::ranges::find(rows.at(0), name) - rows[0].begin();
+    std::vector<double> out;
+    for (std::size_t r = 1; r < rows.size(); ++r) out.push_back(std::stod(rows[r].at(std::size_t(at))));
+    return out;
+  };
+  const auto drag = column("points.csv", "drag");
+  ASSERT_EQ(drag.size(), 9U);
+  ASSERT_GT(std::abs(drag[0] - drag[1]), 0.01) << "each place has its own drag";
+  for (const double carry : column("face_map.csv", "carry_m")) EXPECT_NEAR(carry, 150, 0.01);
 }
 
 TEST(FaceMap, AVariantsMisspeltKeyIsAnError) {

@@ -321,6 +321,42 @@ TEST(ImpactCase, OneCoreGivesTheBytesOfAll) {
   expect_same_files(one, expected);
 }
 
+TEST(ImpactCase, AComparedColumnIsTheCaseThatItSays) {
+  const fs::path dir = fresh_directory("impact_compared");
+  const std::string flight = "[flight]\nlaw = \"ferguson-2022\"\n";
+  write(dir / "case.toml", kEccentricBlow + flight +
+                               "[[compare]]\nname = \"light\"\nset = [\"ball.mass_kg=0.040\"]\n"
+                               "[[compare]]\nname = \"high\"\nset = [\"flight.altitude_m=2000\"]\n");
+  ASSERT_EQ(command("run " + dir.string() + " --quiet --out " + (dir / "out").string()).status, 0);
+  const auto together = nlohmann::json::parse(content(dir / "out/summary.json"))["flights"];
+  for (const auto& [name, set] : {std::pair{"light", "ball.mass_kg=0.040"}, {"high", "flight.altitude_m=2000"}}) {
+    const fs::path own = dir / name;
+    write(own / "case.toml", kEccentricBlow + flight);
+    ASSERT_EQ(command("run " + own.string() + " --quiet --set " + set + " --out " + (own / "out").string()).status, 0);
+    const auto alone = nlohmann::json::parse(content(own / "out/summary.json"))["flights"]["rigid-eccentric"];
+    const auto& column = together[std::string(name) + ": rigid-eccentric"];
+    EXPECT_EQ(column["carry_yd"], alone["carry_yd"]) << name << column;
+    EXPECT_NE(column["carry_yd"], together["rigid-eccentric"]["carry_yd"]) << "the setting changes the carry";
+  }
+}
+
+TEST(ImpactCase, AComparedColumnTakesNoUnknownKey) {
+  const fs::path dir = fresh_directory("impact_compared_key");
+  const auto checked = [&](const std::string& set) {
+    write(dir / "case.toml", kEccentricBlow + "[[compare]]\nname = \"other\"\nset = [\"" + set + "\"]\n");
+    return command("check " + dir.string());
+  };
+  ASSERT_EQ(checked("delivery.club_speed_mps=20").status, 0);
+  const Outcome misspelt = checked("delivery.club_sped_mps=20");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_NE(misspelt.text.find("club_speed_mps"), std::string::npos) << misspelt.text;
+  const Outcome shared = checked("output.vtk=false");
+  EXPECT_EQ(shared.status, 2);
+  EXPECT_NE(shared.text.find("output is the case's own"), std::string::npos) << shared.text;
+  const Outcome set = command("check reduced-tour --set 'sets[1].set=[\"head.mas_kg=0.3\"]'");
+  EXPECT_EQ(set.status, 2) << set.text;
+}
+
 TEST(ImpactCase, AMeshTooLargeForTheMachineIsRefused) {
   const Outcome o = command("check " HOSEL_SOURCE_DIR
                             "/cases/driver-toe --set mesh.sector=64 --set mesh.rings=64 --set mesh.harmonics=16");

@@ -8,6 +8,7 @@
 #include "app/job.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
+#include "build_info.hpp"
 #include "command.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "golf/face_library.hpp"
@@ -17,8 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 using namespace hosel;
 using namespace hosel::app;
+using hosel::test::command;
 using hosel::test::content;
 using hosel::test::fresh_directory;
+using hosel::test::kEccentricBlow;
+using hosel::test::Outcome;
 using hosel::test::write;
 
 /// A library of the user's own for the length of a test.
@@ -149,7 +153,41 @@ TEST(Library, BeyondWhatABallSawIsRefusedUnlessItIsSaid) {
   EXPECT_NE(fast.find("ball.model: 'two-piece' saw impact speeds"), std::string::npos) << fast;
   EXPECT_NE(fast.find("`extrapolate = true`"), std::string::npos) << fast;
   EXPECT_EQ(refusal(dir, text, {"fe-free-body"}, {"delivery.club_speed_mps=65", "ball.extrapolate=true"}), "");
-  EXPECT_EQ(refusal(dir, text, {"rigid-eccentric"}, {"delivery.club_speed_mps=65"}), "") << "no layers are asked";
+  EXPECT_EQ(refusal(dir, text, {"rigid-eccentric"}, {"delivery.club_speed_mps=65", "contact.restitution=0.8"}), "")
+      << "no layers are asked";
+}
+
+TEST(Library, ABallThatSaysNothingOfAContactIsRefusedByTheModelsThatAskIt) {
+  const fs::path dir = fresh_directory("library_silent");
+  const std::string text = kBlow + "[head]\nname = \"driver-460\"\n[ball]\nmodel = \"two-piece\"\n";
+  ASSERT_EQ(refusal(dir, text, {"fe-free-body"}, {"contact.face_friction=0.3"}), "") << "its layers are there";
+  const std::string silent = refusal(dir, text, {"rigid-eccentric"});
+  EXPECT_NE(silent.find("ball.model: 'two-piece' has no restitution and friction"), std::string::npos) << silent;
+  EXPECT_EQ(refusal(dir, text, {"rigid-eccentric"}, {"contact.restitution=0.8"}), "");
+  EXPECT_NE(refusal(dir, text, {"hertz-maw"}).find("has no constants of hertz-maw"), std::string::npos);
+}
+
+TEST(Library, TheContactThatNobodyStatesIsInTheResolvedCase) {
+  const fs::path dir = fresh_directory("library_contact_default");
+  write(dir / "case.toml", kEccentricBlow);
+  const Outcome o = command("check " + dir.string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("restitution = 0.86"), std::string::npos) << o.text;
+}
+
+TEST(Library, ASwungClubIsAskedAgainstWhatTheEntrySaw) {
+  const fs::path dir = fresh_directory("library_swung");
+  write(dir / "case.toml", "kind = \"impact\"\nmodels = [\"rigid-eccentric\"]\n[motion]\nfile = \"" +
+                               std::string(HOSEL_SOURCE_DIR) +
+                               "/cases/swing-driver/grip.csv\"\n[shaft]\nname = \"composite-driver\"\n"
+                               "[head]\nname = \"driver-2024\"\n[hosel]\nposition_mm = [-20, 55, 20]\nlie_deg = 58\n"
+                               "lean_deg = 0\n[solution]\nelements = 6\nstep_ms = 2\ngrip_point_mm = 230\n"
+                               "[ball]\nmodel = \"tour\"\nreduced = \"wedges\"\n");
+  const Outcome beyond = command("check " + dir.string());
+  EXPECT_EQ(beyond.status, 2) << "wedges saw 30 to 44 deg, and this is a driver";
+  EXPECT_NE(beyond.text.find("saw spin lofts"), std::string::npos) << beyond.text;
+  const Outcome all_the_same = command("check " + dir.string() + " --set ball.extrapolate=true");
+  EXPECT_EQ(all_the_same.status, 0) << all_the_same.text;
 }
 
 const std::string kContact = R"(what = "a driver's contact"

@@ -172,6 +172,7 @@ grip_point_mm = 230.0
 [ball]
 model = "tour"
 reduced = "driver"
+extrapolate = true
 [mesh]
 harmonics = 1
 sector = 1
@@ -806,6 +807,73 @@ TEST(Study, RowsBringKeysAndMeasuredValues) {
   const Outcome bad = command("run " + dir.string() + " --quiet --out " + out + "-bad");
   EXPECT_EQ(bad.status, 2);
   EXPECT_NE(bad.text.find("did you mean"), std::string::npos) << bad.text;
+}
+
+TEST(Study, AQuantityThatTheDesignVariesIsSetNowhereElse) {
+  const fs::path dir = fresh_directory("study_once");
+  const std::string head = "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n";
+  write(dir / "axis/case.toml",
+        head + "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [30, 40]\n" + kCentredBlow);
+  write(dir / "variant/case.toml",
+        head + "[[variant]]\nname = \"light\"\nset = [\"head.mass_kg=0.19\"]\n" + kCentredBlow);
+  write(dir / "rows/blows.csv", "delivery.club_speed_mps\n30\n40\n");
+  write(dir / "rows/case.toml", head + "rows.file = \"blows.csv\"\n" + kCentredBlow);
+  for (const auto& [study, key] : {std::pair{"axis", "delivery.club_speed_mps"},
+                                   {"variant", "head.mass_kg"},
+                                   {"rows", "delivery.club_speed_mps"}}) {
+    const std::string check = "check " + (dir / study).string();
+    const std::string other = key == std::string("head.mass_kg") ? "delivery.club_speed_mps=44" : "head.mass_kg=0.21";
+    ASSERT_EQ(command(check + " --set " + other).status, 0) << "another key may be set";
+    const Outcome twice = command(check + " --set " + key + "=1.25");
+    EXPECT_EQ(twice.status, 2) << study;
+    EXPECT_NE(twice.text.find(std::string("'") + key + "' is varied by this study"), std::string::npos) << twice.text;
+  }
+  const Outcome unit = command("check " + (dir / "axis").string() + " --set delivery.club_speed_mph=90");
+  EXPECT_NE(unit.text.find("(delivery.club_speed_mph)"), std::string::npos) << unit.text;
+  const std::string both = "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.2, 0.21]\n";
+  write(dir / "both/case.toml",
+        head + both + "[[variant]]\nname = \"light\"\nset = [\"head.mass_g=190\"]\n" + kCentredBlow);
+  EXPECT_NE(command("check " + (dir / "both").string()).text.find("twice, as 'head."), std::string::npos);
+  write(dir / "rows/blows.csv", "delivery.club_speed_mps,delivery.club_speed_mph\n30,90\n");
+  const Outcome units = command("check " + (dir / "rows").string());
+  EXPECT_EQ(units.status, 2);
+  EXPECT_NE(units.text.find("are one quantity"), std::string::npos) << units.text;
+}
+
+TEST(Study, WhatIsMeasuredIsAnOutput) {
+  const fs::path dir = fresh_directory("study_measured");
+  const auto refused = [&](const std::string& text) {
+    write(dir / "case.toml",
+          "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n" + text + kCentredBlow);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status == 0, o.text.find("is measured and no output of this study") == std::string::npos) << o.text;
+    return o.status != 0;
+  };
+  const std::string axis = "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [30, 40]\n";
+  ASSERT_FALSE(refused(axis + "[measured]\nball_speed_mph = 90\n")) << "another unit of the same";
+  EXPECT_TRUE(refused(axis + "[measured]\nball_sped_mps = 40\n"));
+  EXPECT_TRUE(refused(axis + "[measured]\nball_speed_deg = 40\n"));
+  EXPECT_TRUE(refused(axis + "[measured]\nbackspin_rpm = 4000\n"));
+  write(dir / "blows.csv", "delivery.club_speed_mps,dynamic_loft_deg\n30,12\n");
+  EXPECT_TRUE(refused("rows.file = \"blows.csv\"\n")) << "a key without its table is no measurement";
+}
+
+TEST(Study, NamesThatEndAlikeAreToldApart) {
+  const fs::path dir = fresh_directory("study_names");
+  const auto checked = [&](const std::string& where) {
+    write(dir / "case.toml",
+          "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
+          "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.19, 0.21]\n"
+          "[[axis]]\nkey = \"ball.mass_kg\"\nvalues = [0.044, 0.0459]\n"
+          "[[statement]]\ntext = \"heavy heads are fast\"\nholds = \"ball_speed_mps > 1\"\nwhere = \"" +
+              where + "\"\n" + kCentredBlow);
+    return command("run " + dir.string() + " --quiet --force --out " + (dir / "out").string());
+  };
+  const Outcome either = checked("mass_kg > 0.2");
+  EXPECT_EQ(either.status, 2);
+  EXPECT_NE(either.text.find("head_mass_kg"), std::string::npos) << either.text;
+  ASSERT_EQ(checked("head_mass_kg > 0.2").status, 0);
+  EXPECT_EQ(nlohmann::json::parse(content(dir / "out/summary.json"))["statements"][0]["points"], 2);
 }
 
 TEST(Study, DifferencesApartByAColumn) {
