@@ -219,10 +219,11 @@ std::string page(const LoopResult& r, const Shots& table) {
         "it<td>{}<td>{}</tr></table></div>",
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
-    s += fmt::format(
-        "<p>The base model's error is larger than the noise; {:.0f} % of that excess cannot come from the contact "
-        "law.</p>",
-        100 * b.inertia_share());
+    if (r.verdict != Verdict::no_residual)
+      s += fmt::format(
+          "<p>The base model's error is larger than the noise; {:.0f} % of that excess cannot come from the contact "
+          "law.</p>",
+          100 * b.inertia_share());
   }
 
   if (records && !r.rows.empty()) {

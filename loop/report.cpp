@@ -262,6 +262,7 @@ std::string sentence(const LoopResult& r) {
       return s;
     }
     case Verdict::insufficient:
+      if (r.minimum_detectable.empty()) return "Too little to name anything.";
       return "Too little to name anything: the smallest effects that these data would have shown are listed.";
     case Verdict::noise_contradicted: {
       std::string which = r.tails;

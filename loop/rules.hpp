@@ -1,9 +1,16 @@
 /// The rules of the loop and their figures; the README of this folder says why.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 namespace hosel::loop {
+
+/// What may come by chance: one in a thousand, and the logarithm of the evidence that is beyond it.
+inline constexpr double kByChance = 1e-3;
+inline const double kBeyondChance = -std::log(kByChance);
+/// Fewer rows have no form.
+inline constexpr int kFewestRows = 12;
 
 struct Rules {
   double gate = 0.01;             ///< level of the test for structure at all

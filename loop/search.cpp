@@ -301,7 +301,6 @@ Eigen::MatrixXd Search::about_zero(const Parametrisation& form) const {
 }
 
 void Search::linearise(std::vector<Eigen::MatrixXd> about_zero) {
-  constexpr double worth_a_second_look = 15;  // fall of the deviance
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index total = 0;
   for (std::size_t k = 0; k < of_form_.size(); ++k) {
@@ -316,7 +315,7 @@ void Search::linearise(std::vector<Eigen::MatrixXd> about_zero) {
       }
     };
     add(about_zero[k]);
-    if (effort_.pairs > 0 && base.deviance - f.deviance > worth_a_second_look)
+    if (effort_.pairs > 0 && base.deviance - f.deviance > rules_.further_gain)
       add(problem_.jacobian(Part::select, f.model, f.p).rightCols(n));
   }
   columns_.resize(z0_.size(), total);

@@ -10,7 +10,7 @@
 
 #include "app/import/cells.hpp"
 #include "app/reader.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "models/flight/flight.hpp"
 #include "solvers/errors.hpp"
 

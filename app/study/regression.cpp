@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "golf/quantities.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "loop/shots/shots.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"

@@ -12,7 +12,8 @@
 #include "golf/data_error.hpp"
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
+#include "loop/shots/inputs.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/random.hpp"
 
@@ -87,10 +88,12 @@ void FlightProblem::read() {
     const Column* c = shots.find_stem(stem(o));
     return c && c->numeric && std::isfinite(c->value[row]);
   };
+  std::vector<int> rows(shots.rows());
+  std::iota(rows.begin(), rows.end(), 0);
+  const std::vector<double> order = session_order(shots, rows);
   std::vector<Eigen::VectorXd> measured;
   for (std::size_t row = 0; row < shots.rows(); ++row) {
-    Trial t{.row = int(row), .by_own = {}, .by_group = {}};
-    t.order = shots.rows() > 1 ? double(row) / double(shots.rows() - 1) : 0;
+    Trial t{.row = int(row), .order = order[row], .by_own = {}, .by_group = {}};
     models::ShotUnknowns& sd = t.shot.sd;
     sd[models::kOwnDrag] = case_.unknown.drag;
     sd[models::kOwnLift] = case_.unknown.lift;
@@ -580,14 +583,14 @@ void FlightProblem::estimate_noise(const Fit* at) {
         if (std::isfinite(measured_(i, c))) value.push_back(r(i, c));
       const double middle = median(value);
       for (const double v : value) size.push_back(std::abs(v - middle));
-      sd = 1.4826 * median(size);
+      sd = robust_deviation(size);
       if (trials_.front().by_own.size()) {  // what is unknown is counted separately
         double known = 0;
         for (const int i : train_) known += std::pow(sigma(i, c), 2) - ch.noise * ch.noise;
         sd = std::sqrt(std::max(sd * sd - known / double(train_.size()), 0.04 * sd * sd));
       }
     }
-    ch.noise = std::max({sd, ch.resolution / std::sqrt(12.0), 1e-9});
+    ch.noise = std::max({sd, rounding_deviation(ch.resolution), 1e-9});
   }
 }
 

@@ -9,7 +9,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 namespace {

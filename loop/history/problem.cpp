@@ -8,8 +8,8 @@
 #include <set>
 
 #include "golf/dense.hpp"
+#include "loop/deviation.hpp"
 #include "loop/history/noise.hpp"
-#include "loop/median.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
@@ -27,10 +27,10 @@ double rough_noise(const std::vector<HistoryRecord>& records, int channel) {
       const double d = y(0) - 3 * y(1) + 3 * y(2) - y(3);
       if (std::isfinite(d)) size.push_back(std::abs(d));
     }
-  return 1.4826 * median(size) / std::sqrt(20.0);
+  return robust_deviation(size) / std::sqrt(20.0);
 }
 
-double noise_floor(const Channel& c) { return std::max(c.resolution / std::sqrt(12.0), 1e-9); }
+double noise_floor(const Channel& c) { return std::max(rounding_deviation(c.resolution), 1e-9); }
 
 }  // namespace
 
@@ -307,7 +307,7 @@ bool HistoryProblem::screen(const Selection& selection) {
       std::vector<double> size;
       for (Eigen::Index i = 0; i < rows; ++i)
         if (std::isfinite(here(i))) size.push_back(std::abs(here(i)));
-      const double scale = std::max(1.4826 * median(size), channel(c).noise);
+      const double scale = std::max(robust_deviation(size), channel(c).noise);
       for (Eigen::Index i = 0; i < rows; ++i) {
         if (!(std::abs(here(i)) > 7 * scale)) continue;
         const auto beside = [&](Eigen::Index k) {

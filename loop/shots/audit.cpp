@@ -12,7 +12,7 @@
 #include <set>
 
 #include "golf/dense.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "loop/shots/predictable.hpp"
 #include "loop/shots/relations.hpp"
 
@@ -52,7 +52,7 @@ std::string term_name(const Term& f, const std::vector<Source>& s) {
   return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
 }
 
-constexpr double kOutsideEdge = 14;  // price of a row outside, as a deviance: one in a thousand may be
+const double kOutsideEdge = 2 * kBeyondChance;  // price of a row outside, as a deviance
 
 struct Formula {
   std::string text;
@@ -125,7 +125,7 @@ class Audit {
         s.x[std::ptrdiff_t(k)] = c.value[rows[k]];
         if (std::isfinite(c.value[rows[k]])) seen.push_back(s.x[std::ptrdiff_t(k)]);
       }
-      if (seen.size() < 12) continue;
+      if (seen.size() < kFewestRows) continue;
       std::ranges::sort(seen);
       const std::set<double> different(seen.begin(), seen.end());
       if (different.size() < 4) continue;
@@ -280,7 +280,7 @@ class Audit {
     const Column& y = *sources_[std::size_t(target)].column;
     const auto attempt = [&](const std::set<int>& from, std::string text, auto f) {
       const auto rows = complete(target, from);
-      if (rows.size() < 12) return false;
+      if (rows.size() < kFewestRows) return false;
       Formula out;
       if (!judge(target, from, 0, rows, f, out)) return false;
       out.text = std::move(text);
@@ -417,7 +417,7 @@ class Audit {
                           return sources_[std::size_t(k)].column->role == Role::output;
                         });
       const auto composite = std::ranges::count_if(features, [](const Term& g) { return g.b >= 0; });
-      const double own = y.resolution / std::sqrt(12.0) + 1e-9 * y.spread;
+      const double own = rounding_deviation(y.resolution) + 1e-9 * y.spread;
       const double all_rounding = out.tolerance + 1e-9 * y.spread, share = std::pow(out.residual / all_rounding, 2),
                    terms = 6 * double(p + composite - seen), n_judged = double(judged.size());
       out.cost = n_judged * (share - 1 + 2 * std::log(std::max(1.0, out.residual / own))) + terms;
@@ -473,7 +473,11 @@ class Audit {
     for (const Term& f : all) everything.insert(f.a);
     std::vector<Eigen::Index> rows = complete(target, everything);
     if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
-    if (rows.size() > 400) rows.resize(400);
+    constexpr std::size_t most = 400;
+    if (const std::size_t all = rows.size(); all > most) {  // in the order of their values: evenly, not the first
+      for (std::size_t k = 0; k < most; ++k) rows[k] = rows[k * all / most];
+      rows.resize(most);
+    }
     const auto n = std::ptrdiff_t(rows.size());
     const auto ranks = [&](auto&& value) {
       Eigen::VectorXd v(n);

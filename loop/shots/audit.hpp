@@ -11,7 +11,6 @@ namespace hosel::loop {
 
 /// The logarithm of how much likelier a formula must be than what measures a column, beyond that of the number of
 /// formulas that were tried: by chance in one set of a thousand.
-constexpr double kBeyondChance = 6.9;
 
 struct DerivedColumn {
   std::string column;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -34,7 +34,7 @@ void leave_out(Column& c, const std::vector<std::vector<int>>& rows_of, const Sh
     for (const int i : rows)
       if (const double v = c.value[std::size_t(i)]; std::isfinite(v)) off[std::size_t(i)] = v - middle;
   }
-  const double deviation = std::max(1.4826 * median(differences) / std::sqrt(2.0), c.resolution);
+  const double deviation = std::max(robust_deviation(differences) / std::sqrt(2.0), c.resolution);
   for (std::size_t i = 0; i < off.size() && deviation > 0; ++i)
     if (std::abs(off[i]) > kFar * deviation) {
       out.notes.push_back(

@@ -11,7 +11,7 @@
 
 #include "golf/dense.hpp"
 #include "golf/quantities.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
@@ -20,10 +20,9 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kMostRows = 240;
-constexpr double kSure = 30;      // least fall of the deviance,
-constexpr double kShare = 0.15;   // and share of it,
-constexpr double kOverRival = 8;  // and lead over the library's best
-constexpr double kClean = 1.7;    // deviance per value that a slip of free size may leave
+constexpr double kSure = 30;     // least fall of the deviance,
+constexpr double kShare = 0.15;  // and share of it
+constexpr double kClean = 1.7;   // deviance per value that a slip of free size may leave
 
 /// Quantities whose sign is a convention.
 bool has_sign(const Column& c) {
@@ -42,7 +41,7 @@ Dimension dimension(const Column& c) {
 std::vector<Unit> likely_units(Dimension d) {
   std::vector<Unit> all;
   for (const Unit& u : units())
-    if (u.dimension == d) all.push_back(u);
+    if (u.dimension == d && u.suffix != "um") all.push_back(u);  // of no blow: it would be a column that is left out
   switch (d) {
     case Dimension::length:
       all.push_back({"inch", d, 0.0254});
@@ -88,7 +87,7 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   model_ = std::make_unique<ShotModel>(quick() ? *c.model : companion, true, std::move(shots), std::move(channels),
                                        values_.rightCols(std::ptrdiff_t(outputs_.size())));
   estimate_noise();
-  as_recorded_ = deviance(values_, Model{}, {});
+  as_recorded_ = deviance(values_, noise_, Model{}, {});
   try_constants();
   if (quick()) try_sizes();
   std::ranges::stable_sort(slips_, {}, &Slip::criterion);
@@ -98,17 +97,25 @@ void Columns::read() {
   const Shots& shots = case_.shots;
   for (int k = 0; k < kInputs; ++k)
     if (const Column* c = shots.find_stem(stem(Input(k))); c && c->role == Role::input) {
+      if (case_.loft_unknown && Input(k) == Input::dynamic_loft) continue;
       columns_.push_back(c);
       inputs_.push_back(Input(k));
     }
   for (int o = 0; o < kOutputs; ++o)
     if (const Column* c = shots.find_stem(stem(Output(o))); c && c->role == Role::output && !of_flight(Output(o))) {
+      if (case_.loft_unknown && Output(o) == Output::launch_angle) continue;  // it tells the loft
       columns_.push_back(c);
       outputs_.push_back(Output(o));
     }
+  std::vector<double> loft(shots.rows(), std::numeric_limits<double>::quiet_NaN());
+  if (case_.loft_unknown) {
+    const Inputs found = make_inputs(shots, case_.blow, case_.head_mass_declared, {}, true);
+    for (std::size_t t = 0; t < found.trials.size(); ++t)
+      loft[std::size_t(found.row_of[t])] = found.trials[t].blow.delivery.dynamic_loft;
+  }
   std::vector<int> complete;
   for (std::size_t i = 0; i < shots.rows(); ++i) {
-    bool needed = true, output = false;
+    bool needed = !case_.loft_unknown || std::isfinite(loft[i]), output = false;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const bool there = std::isfinite(columns_[k]->value[i]);
       if (k >= inputs_.size()) output = output || there;
@@ -119,6 +126,8 @@ void Columns::read() {
   const std::size_t n = std::min(complete.size(), kMostRows);
   for (std::size_t k = 0; k < n; ++k) rows_.push_back(complete[k * complete.size() / n]);
   order_ = session_order(shots, rows_);
+  if (case_.loft_unknown)
+    for (const int row : rows_) loft_.push_back(loft[std::size_t(row)]);
   values_.resize(std::ptrdiff_t(n), std::ptrdiff_t(columns_.size()));
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     std::vector<double> known;
@@ -134,6 +143,7 @@ void Columns::read() {
 
 Shot Columns::shot(Eigen::Index row, const Eigen::MatrixXd& values) const {
   Shot s{.blow = case_.blow, .order = order_[std::size_t(row)]};
+  if (case_.loft_unknown) s.blow.delivery.dynamic_loft = loft_[std::size_t(row)];
   for (std::size_t k = 0; k < inputs_.size(); ++k) set(s.blow, inputs_[k], values(row, std::ptrdiff_t(k)));
   return s;
 }
@@ -191,8 +201,8 @@ Eigen::MatrixXd Columns::sensitivity(const Eigen::MatrixXd& values, int column) 
 }
 
 /// Inverse factor of the covariance of a typical shot: instrument, and the inputs' noise through the base.
-Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values) const {
-  Eigen::MatrixXd cov = noise_.cwiseAbs2().asDiagonal();
+Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const {
+  Eigen::MatrixXd cov = noise.cwiseAbs2().asDiagonal();
   if (input_noise_.maxCoeff() > 0) {
     const Eigen::Index some = std::min<Eigen::Index>(values.rows(), 12), n = values.rows();
     Eigen::MatrixXd few(some, values.cols());
@@ -206,8 +216,9 @@ Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values) const {
   return dense::Cholesky(cov).lower_inverse();
 }
 
-double Columns::deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const {
-  const Eigen::MatrixXd r = residuals(values, model, p), W = whitening(values);
+double Columns::deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
+                         const Eigen::VectorXd& p) const {
+  const Eigen::MatrixXd r = residuals(values, model, p), W = whitening(values, noise);
   const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
   double sum = -2 * double(r.rows()) * W.diagonal().array().log().sum();
   for (Eigen::Index i = 0; i < r.rows(); ++i)
@@ -228,7 +239,7 @@ void Columns::estimate_noise() {
   Eigen::MatrixXd r = residuals(values_, {}, {});
   for (std::ptrdiff_t c = 0; c < m; ++c) {
     const Column& column = *columns_[inputs_.size() + std::size_t(c)];
-    const double rounding = column.resolution / std::sqrt(12.0);
+    const double rounding = rounding_deviation(column.resolution);
     if (const auto it = case_.noise.find(column.name); it != case_.noise.end())
       noise_[c] = std::hypot(it->second * column.si, rounding);
     else noise_[c] = std::max(smooth_scatter(*model_, all, int(c), r), rounding);
@@ -269,11 +280,24 @@ Eigen::MatrixXd Columns::corrected(const Slip& s) const {
   return values;
 }
 
+/// Noise of the corrected numbers: what was estimated is that of the written ones, and goes with them.
+Eigen::VectorXd Columns::noise_of(const Slip& slip) const {
+  Eigen::VectorXd noise = noise_;
+  const auto first = std::ptrdiff_t(inputs_.size());
+  for (const auto& [k, other] : {std::pair{slip.column, slip.second}, {slip.second, slip.column}}) {
+    if (k < first || !slip.member.empty() || case_.noise.contains(columns_[std::size_t(k)]->name)) continue;
+    if (slip.finding != "swapped") noise[k - first] *= std::abs(slip.factor);
+    else if (other >= first)
+      noise[k - first] = noise_[other - first] * columns_[std::size_t(k)]->si / columns_[std::size_t(other)]->si;
+  }
+  return noise;
+}
+
 void Columns::attempt(Slip slip) {
-  slip.deviance = deviance(corrected(slip), {}, {});
-  // The density of the written numbers: declared noise is scaled with them, estimated noise is that of what is written.
+  slip.deviance = deviance(corrected(slip), noise_of(slip), {}, {});
+  // The density of the written numbers.
   for (const int k : {slip.column, slip.second})
-    if (slip.member.empty() && k >= int(inputs_.size()) && case_.noise.contains(columns_[std::size_t(k)]->name))
+    if (slip.member.empty() && k >= int(inputs_.size()))
       slip.deviance -= 2 * double(values_.col(k).array().isFinite().count()) * std::log(std::abs(slip.factor));
   slips_.push_back(std::move(slip));
 }
@@ -338,7 +362,7 @@ bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const solve
   }
   if (count < 2) return false;
   const double about_mean = square - pull * pull / weight;
-  return about_mean > boost::math::quantile(boost::math::chi_squared(double(count - 1)), 0.999);
+  return about_mean > boost::math::quantile(complement(boost::math::chi_squared(double(count - 1)), kByChance));
 }
 
 }  // namespace
@@ -347,7 +371,7 @@ bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const solve
 /// recorded values, the best of them again about themselves.
 void Columns::try_sizes() {
   const Eigen::Index n = values_.rows(), m = std::ptrdiff_t(outputs_.size());
-  const Eigen::MatrixXd r = residuals(values_, {}, {}), W = whitening(values_);
+  const Eigen::MatrixXd r = residuals(values_, {}, {}), W = whitening(values_, noise_);
   const solvers::Loss loss = loss_of_shot(int(m)).uncapped();
 
   /// The size that brings whitened residuals z + j t down most: from the middle of what single shots ask for.
@@ -398,7 +422,7 @@ void Columns::try_sizes() {
   std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
   std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
   std::ranges::stable_sort(by_order, {}, [&](Eigen::Index i) { return order_[std::size_t(i)]; });
-  for (Eigen::Index k = n / 6; n >= 12 && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
+  for (Eigen::Index k = n / 6; n >= kFewestRows && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
     std::vector<char> member(static_cast<std::size_t>(n), 0);
     for (Eigen::Index i = k; i < n; ++i) member[std::size_t(by_order[std::size_t(i)])] = 1;
     parts.push_back(
@@ -412,7 +436,8 @@ void Columns::try_sizes() {
     if (g.name.size() < 2 || g.name.size() > 12) continue;
     std::vector<std::vector<char>> of(g.name.size(), std::vector<char>(static_cast<std::size_t>(n), 0));
     for (Eigen::Index i = 0; i < n; ++i)
-      of[std::size_t(g.of_row[std::size_t(rows_[std::size_t(i)])])][std::size_t(i)] = 1;
+      if (const int group = g.of_row[std::size_t(rows_[std::size_t(i)])]; group >= 0)  // the cell may be empty
+        of[std::size_t(group)][std::size_t(i)] = 1;
     for (std::size_t k = g.name.size() == 2; k < g.name.size(); ++k) {
       const auto inside = std::ranges::count(of[k], 1);
       // A smaller group that recorded something else is a finding about rows.
@@ -476,7 +501,7 @@ void Columns::try_sizes() {
   }
   for (Slip& slip : kept) {
     for (int pass = 0; pass < 3; ++pass) {
-      const Eigen::MatrixXd at = corrected(slip), V = whitening(at);
+      const Eigen::MatrixXd at = corrected(slip), V = whitening(at, noise_of(slip));
       Eigen::MatrixXd j = sensitivity(at, slip.column) * V.transpose();
       for (Eigen::Index i = 0; i < n; ++i) {
         const double x = values_(i, slip.column);
@@ -512,16 +537,16 @@ std::string Columns::text(const Slip& s, bool second) const {
 std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) const {
   if (slips_.empty()) return {};
   const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
-  const double log_scale = -2 * double(values_.rows()) * whitening(values_).diagonal().array().log().sum();
+  const double log_scale = -2 * double(values_.rows()) * whitening(values_, noise_).diagonal().array().log().sum();
   double library = as_recorded_;
   for (const Fit& f : rivals)
     if (quick() && !f.at_bound)
-      library = std::min(library, deviance(values_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
+      library = std::min(library, deviance(values_, noise_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
                                       case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
     const bool free = s.finding == "offset" || s.finding == "scale" || s.finding == "level-shift";
     const double base = as_recorded_ - log_scale;
-    return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > kOverRival &&
+    return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
            (!free || s.deviance - log_scale < kClean * values);
   };
   const auto best = std::ranges::find_if(slips_, holds);

@@ -40,8 +40,10 @@ class Columns {
   Eigen::MatrixXd residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
   Eigen::MatrixXd sensitivity(const Eigen::MatrixXd& values, int column) const;
   Eigen::MatrixXd sensitivity(double ContactLaw::*of) const;
-  double deviance(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
-  Eigen::MatrixXd whitening(const Eigen::MatrixXd& values) const;
+  double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
+                  const Eigen::VectorXd& p) const;
+  Eigen::MatrixXd whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
+  Eigen::VectorXd noise_of(const Slip& slip) const;
   Eigen::MatrixXd corrected(const Slip& slip) const;
   double neighbour(Eigen::Index row, int column, int rows) const;
   void attempt(Slip slip);
@@ -55,6 +57,7 @@ class Columns {
   std::vector<Output> outputs_;          ///< of the others
   std::vector<int> rows_;                ///< of the file
   std::vector<double> order_;            ///< place in the session
+  std::vector<double> loft_;             ///< found from the launch angle, where the case calls it unknown [rad]
   Eigen::MatrixXd values_;               ///< rows x columns as recorded, SI; missing outputs NaN
   Eigen::VectorXd noise_, input_noise_;  ///< per channel, per input [SI]
   std::unique_ptr<ShotModel> model_;

@@ -63,13 +63,8 @@ struct Box {
       const double slower = k == int(Input::club_speed) ? std::max(wide, 0.15 * hi) : wide;
       lo -= slower;
       hi += wide;
-      if (k == int(Input::impact_toe) || k == int(Input::impact_high)) {
-        lo = std::max(lo, -0.03);
-        hi = std::min(hi, 0.03);
-      }
-      if (k == int(Input::dynamic_loft))
-        lo = std::max(lo, radians(5.0)), hi = std::min(std::max(hi, lo + radians(4.0)), radians(62.0));
-      if (k == int(Input::club_speed)) lo = std::max(lo, 10.0);
+      lo = std::max(lo, quantity(Input(k)).low);
+      hi = std::min(hi, quantity(Input(k)).high);
       input.push_back(k);
       low.push_back(lo);
       high.push_back(hi);

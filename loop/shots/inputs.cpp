@@ -8,7 +8,7 @@
 #include <map>
 
 #include "golf/dense.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
@@ -115,7 +115,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     const double mid = median(x);
     std::vector<double> off;
     for (const double v : x) off.push_back(std::abs(v - mid));
-    const double mad = 1.4826 * median(off);
+    const double mad = robust_deviation(off);
     const double fence = mad > 0 ? 4 * mad : std::numeric_limits<double>::infinity();
     double sum = 0, square = 0, count = 0;
     for (const double v : x)

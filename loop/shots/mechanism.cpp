@@ -260,7 +260,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   const std::size_t count = std::min(all.size(), kMechanismRows);
   for (std::size_t k = 0; k < count; ++k) rows.push_back(all[k * all.size() / count]);
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
-  if (n < 12) return {};
+  if (n < kFewestRows) return {};
   const solvers::Loss loss = loss_of_shot(model.width());
   const Eigen::MatrixXd z = model.whitened(rows, base.model, base.p).reshaped(width, n),
                         after = model.whitened(rows, chosen.model, chosen.p).reshaped(width, n);

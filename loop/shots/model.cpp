@@ -46,7 +46,7 @@ static_assert(models::kFlightAnswers == kOutputs - kLaunchOutputs &&
 }  // namespace
 
 solvers::Loss loss_of_shot(int channels) {
-  const double knee = quantile(boost::math::chi_squared(channels), 0.999);
+  const double knee = quantile(complement(boost::math::chi_squared(channels), kByChance));
   return {solvers::Loss::Tail::logarithmic, knee, 12 * knee, channels};
 }
 

@@ -73,7 +73,7 @@ class Predictable {
       sd_[k] = std::sqrt(z_.col(k).squaredNorm() / double(n_));
       if (!(sd_[k] > 0)) sd_[k] = 1;  // a constant: a column of zeros, which foretells nothing
       z_.col(k) /= sd_[k];
-      error_[k] = std::hypot(own, c.resolution / std::sqrt(12.0)) / sd_[k];
+      error_[k] = std::hypot(own, rounding_deviation(c.resolution)) / sd_[k];
       told_[std::size_t(k)] = own > 0 && error_[k] < 0.5;  // else nothing can be told from its noise
     }
   }

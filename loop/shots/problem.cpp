@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 #include "loop/shots/experiment.hpp"
 #include "loop/shots/mechanism.hpp"
 #include "loop/shots/mixture.hpp"
@@ -16,7 +16,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewestRows = 4;  // training rows that can test anything
+constexpr std::size_t kFewestToTest = 4;  // training rows that can test anything
 
 constexpr double kMixture = 20;       // least gain of two populations over one
 constexpr double kKnownMixture = 11;  // the same where their scatter is the declared noise
@@ -72,7 +72,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     ShotChannel ch{{.name = c->name, .si = c->si, .resolution = c->resolution / c->si}, Output(o)};
     if (const auto it = case_.noise.find(c->name); it != case_.noise.end())
       // The record's last digit rounds: that much is added to the noise.
-      ch.declared = ch.noise = std::hypot(it->second, ch.resolution / std::sqrt(12.0));
+      ch.declared = ch.noise = std::hypot(it->second, rounding_deviation(ch.resolution));
     if (used_up) {
       seen = SeenLaunch{std::move(ch), {}};
       seen_in = c;
@@ -245,7 +245,7 @@ std::vector<std::string> ShotProblem::notes() const {
 std::optional<std::string> ShotProblem::too_few() const {
   if (width() == 0) return "no launch quantity has a value";
   if (model_->shots() == 0) return "no row can be used";
-  if (rows_.train.size() < kFewestRows)
+  if (rows_.train.size() < kFewestToTest)
     return fmt::format("{} training rows: too few to test anything", rows_.train.size());
   return {};
 }
@@ -391,7 +391,7 @@ void ShotProblem::estimate_noise(const Fit* at) {
         for (const int i : rows_.train)
           from_inputs += std::max(0.0, model_->sigma(i, c) * model_->sigma(i, c) - ch.noise * ch.noise) / rows;
     }
-    const double floor = std::max({ch.resolution / std::sqrt(12.0), 1e-3 * sd, 1e-9});
+    const double floor = std::max({rounding_deviation(ch.resolution), 1e-3 * sd, 1e-9});
     ch.noise = std::max(std::sqrt(std::max(sd * sd - from_inputs, 0.09 * sd * sd)), floor);
   }
 }

@@ -11,7 +11,7 @@
 #include <tuple>
 
 #include "golf/vector.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 namespace {

@@ -5,17 +5,15 @@
 #include <map>
 
 #include "golf/parallel.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 #include "solvers/kriging.hpp"
 
 namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 150;  // rows
-// Least fall of a channel's squared misses, in noise units. Rows that others foretell gain t by chance in exp(-t / 2)
-// of such channels at most: of five channels one in fewer than one set in a thousand.
-constexpr double kForetold = 17;
-constexpr int kParts = 5;  // of the rows, each foretold by the others
+constexpr int kParts = 5;                                                 // of the rows, each foretold by the others
 
 /// Columns that a remainder may follow, over the model's shots: standardised to some two units, inside the range of
 /// `rows`.
@@ -70,7 +68,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   if (seen.size() < kFewestForRemainder) return {};
   const double middle = median(r);
   for (const double v : r) size.push_back(std::abs(v - middle));
-  const double scale = 1.4826 * median(size);
+  const double scale = robust_deviation(size);
   if (!(scale > 0)) return {};
   const auto n = std::ptrdiff_t(seen.size());
   Eigen::MatrixXd x(n, in.x.cols()), y(n, 1);
@@ -95,7 +93,8 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
                  g = (scale * others[i] + middle) / sigma;
     fall += z * z - (z - g) * (z - g);
   }
-  if (!(fall > kForetold)) return {};
+  // Rows that others foretell gain t by chance in exp(-t / 2) of such channels at most.
+  if (!(fall > 2 * (kBeyondChance + std::log(model.width())))) return {};
   const solvers::Kriging process(x, y, solvers::Kriging::noisy());
   OfChannel out{.value = Eigen::VectorXd(model.shots()), .place = {.channel = c}};
   Eigen::VectorXd without = Eigen::VectorXd::Zero(in.x.cols());

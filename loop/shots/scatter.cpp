@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "golf/dense.hpp"
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 
@@ -40,7 +40,7 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
     const Eigen::VectorXd r = y - A * b;
     std::vector<double> size;
     for (std::ptrdiff_t i = 0; i < n; ++i) size.push_back(std::abs(r[i]));
-    scale = 1.4826 * median(size) * std::sqrt(double(n) / double(n - A.cols()));
+    scale = robust_deviation(size) * std::sqrt(double(n) / double(n - A.cols()));
     if (!(scale > 0)) break;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const double u = r[i] / (4.685 * scale);

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "loop/median.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 namespace {

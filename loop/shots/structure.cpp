@@ -66,7 +66,7 @@ bool beside(Eigen::VectorXd& x, const std::vector<const Eigen::VectorXd*>& lines
 void add_responses(const ShotModel& model, const std::vector<int>& rows, const Eigen::VectorXd& order,
                    std::vector<Regressor>& all) {
   const int n = model.shots(), m = model.width();
-  if (rows.size() < 12) return;
+  if (rows.size() < kFewestRows) return;
   Eigen::MatrixXd y(n, m);
   std::vector<double> out(static_cast<std::size_t>(m));
   for (int i = 0; i < n; ++i) {
@@ -81,7 +81,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
     std::vector<double> sorted;
     for (const int i : rows)
       if (std::isfinite(y(i, c))) sorted.push_back(y(i, c));
-    if (sorted.size() < 12) continue;
+    if (sorted.size() < kFewestRows) continue;
     std::ranges::sort(sorted);
     const auto at = [&](double q) { return sorted[std::size_t(q * double(sorted.size() - 1))]; };
     Eigen::VectorXd line = y.col(c);
@@ -195,7 +195,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     }
   }
 
-  if (rows.size() >= 12) {
+  if (rows.size() >= kFewestRows) {
     for (int k = 1; k < 12; ++k) {
       Eigen::VectorXd x(n);
       for (Eigen::Index i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
@@ -283,7 +283,7 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
   std::vector<int> by_order(rows.size());
   std::iota(by_order.begin(), by_order.end(), 0);
   std::ranges::stable_sort(by_order, {}, [&](int i) { return view.order[std::size_t(i)]; });
-  for (int c = 0; c < m && n >= 12; ++c) {
+  for (int c = 0; c < m && n >= kFewestRows; ++c) {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
     double square = 0;
     for (int k = 0; k + 1 < n; ++k) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -313,6 +314,59 @@ TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
     EXPECT_EQ(name(r.verdict), "unexplained");
     EXPECT_TRUE(r.adopted.empty() && r.ties.empty());
   }
+}
+
+/// `text` with a further column, by the number of the shot.
+std::string with_column(const std::string& text, const std::string& header,
+                        const std::function<std::string(int)>& cell) {
+  std::istringstream in(text);
+  std::string out, line;
+  for (int i = -1; std::getline(in, line); ++i) out += line + "," + (i < 0 ? header : cell(i)) + "\n";
+  return out;
+}
+
+TEST_F(Loop, ATextCellMayBeEmpty) {
+  const std::string text = with_column(csv({.second = 1.5}), "ball", [](int i) {
+    return i == 40 ? "" : i % 2 ? "old" : "new";
+  });
+  ShotCase c = case_of(csv({}));
+  c.shots = shots(text);
+  ASSERT_NE(c.shots.find("ball"), nullptr);
+  const LoopResult r = run(c);
+  EXPECT_EQ(r.used, 90);
+}
+
+TEST_F(Loop, ANoisyChannelWhoseNoiseIsNotDeclaredIsNoOtherUnit) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  for (int seed = 1; seed <= 4; ++seed) {
+    // The last column, sidespin, with a scatter of 1500 rpm.
+    std::istringstream in(csv({.seed = unsigned(seed)}));
+    std::string text, line;
+    for (int i = -1; std::getline(in, line); ++i) {
+      const auto at = line.rfind(',') + 1;
+      if (i >= 0)
+        line = line.substr(0, at) + std::to_string(std::lround(std::stod(line.substr(at)) + 1500 * gauss(random)));
+      text += line + "\n";
+    }
+    ShotCase c = case_of(csv({}));
+    c.shots = shots(text);
+    c.noise.erase("sidespin_rpm");
+    const LoopResult r = run(c);
+    ASSERT_GT(r.channels.back().noise, 1000) << "the scatter is there";
+    EXPECT_TRUE(r.columns.empty()) << r.columns[0].text;
+  }
+}
+
+TEST_F(Loop, AnUnknownLoftIsNotAccused) {
+  const std::string text = csv({.loft = 3});
+  ShotCase known = case_of(text);
+  ASSERT_FALSE(run(known).adopted.empty() && run(known).columns.empty()) << "the recorded loft is 3 deg off";
+  ShotCase c = case_of(text);
+  c.loft_unknown = true;
+  const LoopResult r = run(c);
+  EXPECT_TRUE(r.columns.empty()) << r.columns[0].text;
+  EXPECT_EQ(name(r.verdict), "no-residual") << sentence(r);
 }
 
 TEST_F(Loop, AScaledColumnIsNotTwoEffectsThatDoTheSame) {
