@@ -10,6 +10,8 @@
 
 #include "app/parse_toml.hpp"
 #include "app/reader.hpp"
+#include "app/resolved.hpp"
+#include "app/terminal.hpp"
 #include "post/file.hpp"
 #include "post/launch_table.hpp"
 #include "post/parse_json.hpp"
@@ -40,10 +42,23 @@ void leaves(const toml::node& node, const std::string& name, Leaves& out) {
 struct Run {
   json summary;
   Leaves inputs;
+  std::map<std::string, std::string> files;  ///< below OUT, as the case names them: name, content
 };
 
+/// What stands below a folder; nothing where there is none.
+std::map<std::string, std::string> files_below(const fs::path& run, const char* folder) {
+  std::map<std::string, std::string> out;
+  try {
+    if (!fs::exists(run / folder)) return out;
+    for (const auto& entry : fs::recursive_directory_iterator(run / folder))
+      if (!entry.is_directory())
+        out[entry.path().lexically_relative(run).generic_string()] = post::read_file(entry.path());
+  } catch (const std::runtime_error& e) { throw InputError(e.what()); }
+  return out;
+}
+
 Run read(const fs::path& directory) {
-  if (!fs::exists(directory / "summary.json") || !fs::exists(directory / "case.resolved.toml"))
+  if (!fs::exists(directory / "summary.json") || !fs::exists(directory / kResolvedCase))
     throw InputError(fmt::format("{}: no finished run (no summary.json)", directory.string()));
   Run run;
   try {
@@ -51,14 +66,15 @@ Run read(const fs::path& directory) {
   } catch (const std::exception& e) {
     throw InputError(fmt::format("{}: summary.json: {}", directory.string(), e.what()));
   }
-  const fs::path resolved = directory / "case.resolved.toml";
+  const fs::path resolved = directory / kResolvedCase;
   std::string text;
   try {
     text = post::read_file(resolved);
   } catch (const std::runtime_error& e) { throw InputError(e.what()); }
   toml::table inputs = parse_toml(text, resolved.string());
-  inputs.erase("defaults");  // they stand above
+  inputs.erase(kDefaultsTable);  // they stand above
   leaves(inputs, "", run.inputs);
+  run.files = files_below(directory, kInputsFolder);
   return run;
 }
 
@@ -136,6 +152,19 @@ void flatten(const json& j, const std::string& name, std::map<std::string, doubl
   for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
 }
 
+/// A line for each file whose content differs or that one run alone has.
+std::string different_files(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {
+  std::map<std::string, std::string> all = a;
+  all.insert(b.begin(), b.end());
+  std::string out;
+  for (const auto& [name, ignored] : all) {
+    const char* what = !b.contains(name) ? "in A only" : !a.contains(name) ? "in B only" : "its content differs";
+    if (!a.contains(name) || !b.contains(name) || a.at(name) != b.at(name))
+      out += fmt::format("  {}: {}\n", one_line(name), what);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
@@ -150,7 +179,10 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   };
   for (const auto& [key, ignored] : all)
     if (said(a, key) != said(b, key)) rows += fmt::format("  {:<36} {:>20} {:>20}\n", key, said(a, key), said(b, key));
-  out += rows.empty() ? "  the same\n" : fmt::format("  {:<36} {:>20} {:>20}\n", "", "A", "B") + rows;
+  const std::string files = different_files(a.files, b.files);
+  if (rows.empty() && files.empty()) out += "  the same\n";
+  if (!rows.empty()) out += fmt::format("  {:<36} {:>20} {:>20}\n", "", "A", "B") + rows;
+  out += files;
 
   std::map<std::string, double> x, y;
   flatten(a.summary, "", x);
@@ -162,7 +194,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   constexpr std::size_t most_launches = 12;  // a study's points are a table of their own
   if (std::max(left.size(), right.size()) > most_launches) left.clear(), right.clear();
   int launches = 0;
-  bool estimated_by_none = false;
+  bool compared = false, estimated_by_none = false;  // compared: a row has numbers
   for (const auto& [model, launch] : left) {
     if (!right.contains(model)) {
       rows += fmt::format("  {}: in A only\n", model);
@@ -183,6 +215,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
       const double of_a = estimated(launch), of_b = estimated(other), error = std::max(of_a, of_b);
       x.erase((known ? "models." : "") + model + "." + key);
       if (std::abs(q - p) <= kNothing * std::max({std::abs(p), std::abs(q), 1.0})) continue;
+      compared = true;
       if (!known && !launch.contains("numerical_error")) {
         estimated_by_none = true;
         rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12}\n", model + " " + key, p, q, q - p, "-");
@@ -206,11 +239,10 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   }
   for (const auto& [model, launch] : right)
     if (!left.contains(model)) rows += fmt::format("  {}: in B only\n", model);
-  if (launches > 0)
-    out += "launches\n" +
-           (rows.empty() ? "  the same\n"
-                         : fmt::format("  {:<36} {:>12} {:>12} {:>12} {:>12}\n", "", "A", "B", "B - A", "numerical") +
-                               rows + band);
+  if (launches > 0 || !rows.empty()) out += "launches\n";
+  if (rows.empty() && launches > 0) out += "  the same\n";
+  if (compared) out += fmt::format("  {:<36} {:>12} {:>12} {:>12} {:>12}\n", "", "A", "B", "B - A", "numerical");
+  out += rows + band;
   if (estimated_by_none) out += "  numerical -: runs of this kind tell no error of a launch\n";
   // Everything else that both runs say.
   struct Moved {

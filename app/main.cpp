@@ -203,7 +203,8 @@ int main(int argc, char** argv) {
   adopt_command->add_option("--as", a.from, "name of the entries, for cases")->required();
   adopt_command->add_flag("--force", a.force, "replace entries of this name");
   adopt_command->callback([&] { adopt(a); });
-  CLI::App* diff_command = cli.add_subcommand("diff", "compare two finished runs: inputs and launches that differ");
+  CLI::App* diff_command =
+      cli.add_subcommand("diff", "compare two finished runs: inputs, files of data and launches that differ");
   diff_command->add_option("A", a.from, "directory of a run")->required();
   diff_command->add_option("B", a.out, "directory of another")->required();
   diff_command->callback([&] { fmt::print("{}", app::difference(a.from, a.out)); });

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include "app/parse_toml.hpp"
+#include "app/resolved.hpp"
 #include "app/terminal.hpp"
 #include "build_info.hpp"
 #include "post/file.hpp"
@@ -20,18 +21,11 @@ namespace fs = std::filesystem;
 
 namespace detail {
 
-/// A run leaves copies of what its case names beside `case.resolved.toml`, in this folder, so that this case runs again
-/// wherever OUT has been taken.
-constexpr const char* kInputs = "inputs";
-constexpr const char* kResolved = "case.resolved.toml";
-/// The table in which a resolved case lists what it left to its defaults: dotted keys, with the value that each has.
-constexpr const char* kDefaults = "defaults";
-
 struct Document {
   fs::path directory, file;
   std::vector<std::string> overrides;
   std::shared_ptr<Inputs> inputs = std::make_shared<Inputs>();
-  fs::path copies = kInputs;  // folder below OUT for what this case names
+  fs::path copies = kInputsFolder;  // folder below OUT for what this case names
   bool keys_alone = false;
   std::vector<Declared> declared;
   std::set<std::string> quantities;           // stems of those among them that have a unit
@@ -65,8 +59,8 @@ fs::path copy_of(const detail::Document& d, const std::string& named) {
 
 /// The copy beside a resolved case; empty where the case is another one or there is none.
 fs::path copied(const detail::Document& d, const std::string& named) {
-  const fs::path copy = d.directory / detail::kInputs / copy_name(named);
-  return d.file.filename() == detail::kResolved && fs::exists(copy) ? copy : fs::path();
+  const fs::path copy = d.directory / kInputsFolder / copy_name(named);
+  return d.file.filename() == kResolvedCase && fs::exists(copy) ? copy : fs::path();
 }
 
 toml::table& as_table(void* node) { return *static_cast<toml::table*>(node); }
@@ -967,14 +961,14 @@ CaseFile::CaseFile(const fs::path& where, const CaseFile& by, const std::string&
     : document_(std::make_shared<detail::Document>()) {
   document_->inputs = by.document_->inputs;
   const fs::path folder = named.empty() ? fs::path() : by.document_->copies / copy_name(named);
-  document_->copies = named.empty() ? fs::path() : folder / detail::kInputs;  // a shipped one is there again
+  document_->copies = named.empty() ? fs::path() : folder / kInputsFolder;  // a shipped one is there again
   open(where);
-  if (!named.empty()) document_->inputs->case_file(document_->file, folder / detail::kResolved);
+  if (!named.empty()) document_->inputs->case_file(document_->file, folder / kResolvedCase);
 }
 
 fs::path CaseFile::case_beside(const std::string& named) const {
   const detail::Document& d = *document_;
-  if (const fs::path copy = copied(d, named); !copy.empty()) return copy / detail::kResolved;
+  if (const fs::path copy = copied(d, named); !copy.empty()) return copy / kResolvedCase;
   const fs::path beside = d.directory / named;
   return fs::exists(beside) ? beside : fs::path();
 }
@@ -1008,11 +1002,11 @@ CaseFile::CaseFile(const CaseFile& read, const std::vector<std::string>& overrid
 void CaseFile::begin() {
   detail::Document& d = *document_;
   d.root = *d.parsed;
-  if (toml::node* listed = d.root.get(detail::kDefaults)) {
+  if (toml::node* listed = d.root.get(kDefaultsTable)) {
     if (!listed->is_table())
-      throw InputError(fmt::format("{}: {}: expected a table", place(d, *listed), detail::kDefaults));
+      throw InputError(fmt::format("{}: {}: expected a table", place(d, *listed), kDefaultsTable));
     d.defaults = std::move(*listed->as_table());
-    d.root.erase(detail::kDefaults);
+    d.root.erase(kDefaultsTable);
   }
   // Another setting may decide other defaults.
   if (!d.overrides.empty() && !d.defaults.empty()) drop_defaults(d, d.root, "");
@@ -1083,7 +1077,7 @@ std::string CaseFile::resolved() const {
   list_defaults(*document_, document_->resolved, document_->root, "", defaults);
   if (!defaults.empty()) {
     out << "\n# Left to defaults: with another setting (--set) they are decided again, but for those changed above.\n";
-    out << toml::toml_formatter(toml::table{{detail::kDefaults, defaults}}, toml::format_flags{}) << '\n';
+    out << toml::toml_formatter(toml::table{{kDefaultsTable, defaults}}, toml::format_flags{}) << '\n';
   }
   return with_short_numbers(out.str());
 }

@@ -6,17 +6,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <mutex>
-
+#include "app/asked_model.hpp"
 #include "app/cases.hpp"
 #include "app/job.hpp"
 #include "app/read_blow.hpp"
-#include "app/read_options.hpp"
 #include "build_info.hpp"
-#include "golf/parallel.hpp"
 #include "golf/quantities.hpp"
-#include "models/checked_launch.hpp"
-#include "models/registry.hpp"
 #include "post/launch_table.hpp"
 #include "solvers/errors.hpp"
 
@@ -43,17 +38,9 @@ std::string check(const std::string& where, const Texts& set) {
 /// The blow of a case and one model, asked again and again with other inputs.
 class Model {
  public:
-  Model(const std::string& where, std::string name, const Texts& set) : name_(std::move(name)) {
-    check(where, set);
-    app::CaseFile file(app::find_case(where), set);
-    if (name_.empty()) name_ = app::read_models(file.root()).front();
-    const models::ModelEntry* entry = models::find(name_);
-    if (!entry) throw app::InputError(fmt::format("no model '{}'; `hosel list` shows them", name_));
-    blow_ = app::read_blow(file.root(), {name_});
-    model_ = entry->make(app::read_options(file.root(), {name_}, blow_));
-  }
+  Model(const std::string& where, const std::string& name, const Texts& set) : model_(where, name, set) {}
 
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return model_.name(); }
 
   /// Columns of `inputs` are named by `names`, each with its unit; rows are blows. Columns of the result: channels().
   py::array_t<double> launch(const Texts& names, const py::array_t<double, py::array::c_style>& inputs) const {
@@ -79,33 +66,24 @@ class Model {
           throw app::InputError(
               fmt::format("blow {}: {}: {:g} is {}", i, names[c], x, range.sentence(split_unit(names[c]).unit)));
       }
+    std::vector<Input> asked;
+    for (const auto& [input, si] : columns) asked.push_back(input);
+    std::vector<double> values;
+    for (py::ssize_t i = 0; i < in.shape(0); ++i)
+      for (std::size_t c = 0; c < columns.size(); ++c) values.push_back(in(i, py::ssize_t(c)) * columns[c].second);
+    std::vector<models::Answer> launches;
+    {
+      const py::gil_scoped_release released;
+      launches = model_.launches(std::size_t(in.shape(0)), asked, values);
+    }
     const auto channels = post::channels();
     py::array_t<double> answers({in.shape(0), py::ssize_t(channels.size())});
     auto out = answers.mutable_unchecked<2>();
-    std::mutex mutex;
-    py::ssize_t first = in.shape(0);  // of the blows that fail
-    std::string why;
-    {
-      const py::gil_scoped_release released;
-      for_all(tbb::blocked_range<py::ssize_t>(0, in.shape(0)), [&](const tbb::blocked_range<py::ssize_t>& range) {
-        std::vector<Blow> blows(std::size_t(range.size()), blow_);
-        for (py::ssize_t i = range.begin(); i < range.end(); ++i)
-          for (std::size_t c = 0; c < columns.size(); ++c)
-            set(blows[std::size_t(i - range.begin())], columns[c].first, in(i, py::ssize_t(c)) * columns[c].second);
-        const std::vector<models::Answer> launches = models::checked_launches(*model_, blows);
-        for (py::ssize_t i = range.begin(); i < range.end(); ++i) try {
-            const Launch& launch = launches[std::size_t(i - range.begin())].value();
-            for (std::size_t c = 0; c < channels.size(); ++c)
-              out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
-          } catch (const std::exception& e) {
-            const std::lock_guard lock(mutex);
-            if (i >= first) break;
-            first = i;
-            why = e.what();
-          }
-      });
-    }
-    if (!why.empty()) throw app::InputError(fmt::format("blow {}: {}", first, why));
+    for (py::ssize_t i = 0; i < in.shape(0); ++i) try {
+        const Launch& launch = launches[std::size_t(i)].value();
+        for (std::size_t c = 0; c < channels.size(); ++c)
+          out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
+      } catch (const std::exception& e) { throw app::InputError(fmt::format("blow {}: {}", i, e.what())); }
     return answers;
   }
 
@@ -122,9 +100,7 @@ class Model {
     return fmt::format("'{}' is no input of a blow with a unit (known: {})", name, fmt::join(known, ", "));
   }
 
-  std::string name_;
-  Blow blow_;
-  std::unique_ptr<models::ImpactModel> model_;
+  app::AskedModel model_;
 };
 
 }  // namespace
@@ -136,7 +112,7 @@ PYBIND11_MODULE(_hosel, m) {
   m.def("run", run, py::call_guard<py::gil_scoped_release>());
   m.def("check", check);
   py::class_<Model>(m, "Model")
-      .def(py::init<const std::string&, std::string, const Texts&>())
+      .def(py::init<const std::string&, const std::string&, const Texts&>())
       .def_property_readonly("name", &Model::name)
       .def("launch", &Model::launch)
       .def_static("channels", &Model::channels);

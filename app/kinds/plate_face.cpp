@@ -70,13 +70,24 @@ class PlateFaceJob final : public PointJob {
                               limits::impact_place, std::vector{-0.009, 0.0, 0.009});
     if (toe_.empty() || high_.empty()) places.fail("toe", "name at least one place");
     grid_ = read_face_grid(root);
+    if (!any_of_grid_on(plate_->design().outline)) {
+      const Vector2d reach = plate_->design().outline.extent();
+      root.fail("grid", fmt::format("none of the {} x {} places over {:g} x {:g} mm lies on the face (allowed: a grid "
+                                    "with a place on it; it reaches {:g} mm aside and {:g} mm up, and odd numbers of "
+                                    "columns and rows have its centre)",
+                                    grid_.columns, grid_.rows, 1e3 * grid_.width, 1e3 * grid_.height, 1e3 * reach.x(),
+                                    1e3 * reach.y()));
+    }
     Table sphere = root.default_table("sphere");
     sphere_ = models::steel_sphere(sphere.quantity({"radius", "of the pendulum's sphere"}, "mm", {1e-3, 0.1}, 0.011));
     speeds_ = sphere.quantities({"speeds", "of the sphere"}, "mps", 0, {0.01, 20}, models::pendulum_speeds());
     if (speeds_.size() < 2) sphere.fail("speeds", "a line needs two speeds");
     restitution_speed_ =
         root.quantity({"restitution_speed", "at which the ball's restitution is computed"}, "mps", {1, 100}, 48.77);
-    errors_ = root.flag({"numerical_error", "solve the first place twice more: coarser, and with more modes"}, true);
+    errors_ = root.flag({"numerical_error",
+                         "solve one place twice more, the face's centre where it is among [places], else the first: "
+                         "coarser, and with more modes"},
+                        true);
     vtk_ = root.flag({"vtk", "write the modes for ParaView"}, true);
     draw_ = root.flag({"figures", "draw pictures; a study of many faces may do without"}, true);
     alike_ = heel_toe_alike(blow_.club.head, plate_->design());
@@ -88,14 +99,16 @@ class PlateFaceJob final : public PointJob {
         places_.push_back({place, known ? std::size_t(twin - blows_.begin()) : blows_.size(), known});
         if (!known) blows_.push_back({place, fe_});
       }
-    middle_ = places_.size() / 2;
+    if (const auto at = std::ranges::find_if(places_, [](const Place& p) { return p.at.isZero(0); });
+        at != places_.end())
+      centre_ = std::size_t(at - places_.begin());
     companions_ = blows_.size();
     if (!errors_) return;
-    const Vector2d middle = places_[middle_].at;
-    if (const auto coarser = fe_.coarser()) blows_.push_back({middle, *coarser, "coarser"});
+    const Vector2d at = places_[again()].at;
+    if (const auto coarser = fe_.coarser()) blows_.push_back({at, *coarser, "coarser"});
     models::PlateDesign more = plate_->design();
     more.modes = std::min(27, 2 * more.modes);
-    blows_.push_back({middle, fe_, "more modes"});
+    blows_.push_back({at, fe_, "more modes"});
     blows_.back().fe.face = std::make_shared<const models::PlateOnDemand>(more);
   }
 
@@ -148,6 +161,15 @@ class PlateFaceJob final : public PointJob {
     std::size_t blow;
     bool image;  ///< the blow is at the mirrored place
   };
+
+  /// The place that is solved again for its numerical errors.
+  std::size_t again() const { return centre_.value_or(0); }
+
+  bool any_of_grid_on(const mesh::PlateOutline& outline) const {
+    for (std::size_t i = 0; i < grid_.size(); ++i)
+      if (outline.share({-grid_.toe_at(i), grid_.high_at(i)}) < 1) return true;
+    return false;
+  }
 
   static std::optional<Launch> launch_at(const Place& place, const std::vector<json>& points) {
     const auto launch = launch_from(points[place.blow]);
@@ -283,35 +305,38 @@ class PlateFaceJob final : public PointJob {
         strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;
     out.say(fmt::format("centre: characteristic time {:.1f} us, restitution {:.4f} (the rules' line {:.4f})",
                         1e6 * centre.time, e, models::rules_line(centre.time)));
-    out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us", 1e6 * longest,
-                        fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
     if (without > 0) {
       summary["places_without_characteristic_time"] = without;
       out.warn(fmt::format("{} places have no characteristic time: the pendulum bounces on the vibrating face there",
                            without));
     }
-    const double error = departure + time_error(slowest, longest);
-    std::string verdict = rules_verdict(longest, error);
-    if (without > 0 && longest < kRulesTime + kRulesTolerance)
-      verdict = "this face has no verdict by the rules' test: not every place has a characteristic time";
-    out.say(fmt::format(
-        "{}: {:.1f} +- {:.1f} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
-        verdict, 1e6 * longest, 1e6 * error, -1e3 * slowest.x() + 0.0, 1e3 * slowest.y() + 0.0, 1e6 * kRulesTime,
-        1e6 * kRulesTolerance));
-    out.page().answer("verdict", verdict.substr(std::string_view("this face ").size()),
-                      fmt::format("{:.1f} ± {:.1f} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest, 1e6 * error,
-                                  -1e3 * slowest.x() + 0.0, 1e3 * slowest.y() + 0.0));
-    summary["characteristic_time_error_us"] = 1e6 * error;
+    std::string verdict = "this face has no verdict by the rules' test: not every place has a characteristic time",
+                where, over = "no place of the grid has one";
+    if (inside > 0) {
+      const double error = departure + time_error(slowest, longest);
+      if (without == 0 || longest >= kRulesTime + kRulesTolerance) verdict = rules_verdict(longest, error);
+      const double toe = -1e3 * slowest.x() + 0.0, high = 1e3 * slowest.y() + 0.0;
+      out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us",
+                          1e6 * longest, fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
+      out.say(fmt::format(
+          "{}: {:.1f} +- {:.1f} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
+          verdict, 1e6 * longest, 1e6 * error, toe, high, 1e6 * kRulesTime, 1e6 * kRulesTolerance));
+      where = fmt::format("{:.1f} ± {:.1f} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest, 1e6 * error, toe, high);
+      over = fmt::format("at most {:.1f} µs over the face", 1e6 * longest);
+      summary["characteristic_time_error_us"] = 1e6 * error;
+      summary["largest_characteristic_time_us"] = 1e6 * longest;
+      summary["places_beyond_the_limit"] = beyond;
+      summary["largest_restitution"] = fastest;
+    } else {
+      out.say(verdict);
+    }
     summary["characteristic_time_verdict"] = verdict;
+    out.page().answer("verdict", verdict.substr(std::string_view("this face ").size()), where);
     out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * centre.time),
-                      fmt::format("at most {:.1f} µs over the face; limit {:.0f} + {:.0f}", 1e6 * longest,
-                                  1e6 * kRulesTime, 1e6 * kRulesTolerance));
+                      fmt::format("{}; limit {:.0f} + {:.0f}", over, 1e6 * kRulesTime, 1e6 * kRulesTolerance));
     out.page().answer("restitution", fmt::format("{:.4f}", e), fmt::format("{:g} m/s, centre", restitution_speed_));
     summary["characteristic_time_us"] = 1e6 * centre.time;
-    summary["largest_characteristic_time_us"] = 1e6 * longest;
-    summary["places_beyond_the_limit"] = beyond;
     summary["restitution"] = e;
-    summary["largest_restitution"] = fastest;
     summary["restitution_less_rules_line"] = e - models::rules_line(centre.time);
     post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 330};
     figure.panels = {
@@ -406,8 +431,6 @@ class PlateFaceJob final : public PointJob {
     }
     out.write("blows.csv", csv);
     out.show(table, "Balls struck over the face");
-    const json& middle = points[places_[middle_].blow];
-    const auto centre = launch_at(places_[middle_], points);
     out.say(fmt::format("largest stress in the face {:.0f} MPa; energy closes to {:.1e} of the initial", 1e-6 * stress,
                         closure));
     out.page().answer("largest stress", fmt::format("{:.0f} MPa", 1e-6 * stress), "von Mises, over these blows");
@@ -427,14 +450,17 @@ class PlateFaceJob final : public PointJob {
       summary["mean_ball_speed_mps"] = mean;
       summary["least_ball_speed_mps"] = least;
     }
-    if (centre) summary["centre"] = post::to_json(*centre);
+    if (centre_)
+      if (const auto centre = launch_at(places_[*centre_], points)) summary["centre"] = post::to_json(*centre);
+    const json& finer = points[places_[again()].blow];
+    const auto launch = launch_at(places_[again()], points);
     for (std::size_t i = companions_; i < blows_.size(); ++i) {
       const auto other = launch_from(points[i]);
-      if (!other || !centre) continue;
-      const double speed = std::abs(other->ball_speed() - centre->ball_speed()),
-                   spin = std::abs(other->spin.norm() - centre->spin.norm()),
+      if (!other || !launch) continue;
+      const double speed = std::abs(other->ball_speed() - launch->ball_speed()),
+                   spin = std::abs(other->spin.norm() - launch->spin.norm()),
                    peak = std::abs(points[i].at("peak_stress_Pa").get<double>() -
-                                   middle.at("peak_stress_Pa").get<double>());
+                                   finer.at("peak_stress_Pa").get<double>());
       out.say(fmt::format("{} at toe {:g}, high {:g} mm: {:.3f} m/s, {:.0f} rpm, {:.1f} MPa of difference",
                           blows_[i].companion, -1e3 * blows_[i].place.x(), 1e3 * blows_[i].place.y(), speed, rpm(spin),
                           1e-6 * peak));
@@ -483,8 +509,8 @@ class PlateFaceJob final : public PointJob {
   bool alike_ = false;  ///< head and face, from heel to toe
   std::vector<Struck> blows_;
   std::vector<Place> places_;
-  std::size_t middle_ = 0;      ///< of the places
-  std::size_t companions_ = 0;  ///< the first of the blows that tell numerical errors
+  std::optional<std::size_t> centre_;  ///< of the places, where the face's centre is among them
+  std::size_t companions_ = 0;         ///< the first of the blows that tell numerical errors
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "app/library.hpp"
 #include "app/read_blow.hpp"
@@ -49,11 +50,12 @@ struct Free {
 };
 
 struct Keep {
+  Table table;  ///< for errors
   std::string column, equals;
   double min, max;
 };
 
-/// Errors of one channel over one set of rows, model minus measured, in the channel's unit.
+/// Errors of one channel over one set of rows, at least one, model minus measured, in the channel's unit.
 struct Errors {
   double mean = 0, sd = 0, absolute = 0;
   std::size_t count = 0;
@@ -62,7 +64,6 @@ struct Errors {
 Errors errors(const std::vector<double>& values) {
   Errors e;
   e.count = values.size();
-  if (values.empty()) return {kNaN, kNaN, kNaN, 0};
   for (const double v : values) e.mean += v, e.absolute += std::abs(v);
   e.mean /= double(e.count);
   e.absolute /= double(e.count);
@@ -126,7 +127,9 @@ class TuneJob final : public Job {
       if (channels_[c].fitted) fitted_.push_back(c);
     if (fitted_.empty()) data.fail("compared_only", "leave at least one channel to be fitted");
     for (Table t : data.tables("keep")) {
-      Keep k{t.text({"column", "a column of the shots"}), t.text({"equals", "text that a kept row has there"}, ""),
+      Keep k{t, t.text({"column", "a column of the shots"}),
+             t.text({"equals", "text that a kept row has there, letter for letter; empty in a column of numbers: any"},
+                    ""),
              t.number({"min", "smallest number that a kept row has there"}, {}, -INFINITY),
              t.number({"max", "largest number that a kept row has there"}, {}, INFINITY)};
       keep_.push_back(k);
@@ -190,8 +193,10 @@ class TuneJob final : public Job {
  private:
   void read_data(Output& out) {
     loop::Shots shots;
+    post::Sheet sheet;
     try {
-      shots = loop::read_shots(post::read_csv(shots_file_), flies_);
+      sheet = post::read_csv(shots_file_);
+      shots = loop::read_shots(sheet, flies_);
       if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
     } catch (const DataError& e) { throw InputError(e.what()); }
     if (shots.repeated > 0)
@@ -210,15 +215,12 @@ class TuneJob final : public Job {
       if (rate && axis && c.channel.name == "sidespin") return rate->value[row] * std::sin(axis->value[row]);
       throw InputError(fmt::format("{}: no column for {}", shots_file_.string(), c.name));
     };
+    const std::vector<Kept> keep = kept_by(shots, sheet);
     std::map<std::string, int> left_out;
     for (std::size_t row = 0; row < shots.rows(); ++row) {
       std::string why;
-      for (const Keep& k : keep_) {
-        const loop::Column* c = shots.find(k.column);
-        if (!c) throw InputError(fmt::format("{}: no column '{}'", shots_file_.string(), k.column));
-        if (c->numeric ? !(c->native(row) >= k.min && c->native(row) <= k.max) : c->text[row] != k.equals)
-          why = fmt::format("{} outside what the case keeps", k.column);
-      }
+      for (const Kept& k : keep)
+        if (!k.keeps(row)) why = fmt::format("{} outside what the case keeps", k.column->name);
       Blow blow = blow_;
       for (const auto& [input, c] : inputs) {
         if (why.empty() && !std::isfinite(c->value[row])) why = fmt::format("no {}", c->name);
@@ -249,6 +251,46 @@ class TuneJob final : public Job {
     test_.assign(order.begin() + std::ptrdiff_t(cut), order.end());
     left_out_ = left_out;
     for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
+  }
+
+  /// A [[data.keep]] with its column.
+  struct Kept {
+    const loop::Column* column;
+    std::vector<std::string> cells;  ///< of each row, where the text counts
+    std::string equals;
+    double min, max;
+
+    bool keeps(std::size_t row) const {
+      if (!cells.empty() && cells[row] != equals) return false;
+      return !column->numeric || (column->native(row) >= min && column->native(row) <= max);
+    }
+  };
+
+  /// Throws InputError where a column cannot be chosen by what the case states.
+  std::vector<Kept> kept_by(const loop::Shots& shots, const post::Sheet& sheet) const {
+    std::map<std::size_t, std::size_t> row_at;  // by the line: rows of `shots` may stand in another order
+    for (std::size_t i = 0; i < sheet.rows(); ++i) row_at[sheet.lines[i]] = i;
+    std::vector<Kept> out;
+    for (const Keep& k : keep_) {
+      const loop::Column* c = shots.find(k.column);
+      if (!c) throw InputError(fmt::format("{}: no column '{}'", shots_file_.string(), k.column));
+      for (const auto& [key, bound, stated] :
+           {std::tuple{"min", k.min, k.min > -INFINITY}, std::tuple{"max", k.max, k.max < INFINITY}})
+        if (!c->numeric && stated)
+          k.table.fail(key, fmt::format("{:g}: the column '{}' of {} holds words (allowed: equals)", bound, k.column,
+                                        shots_file_.string()));
+      Kept kept{c, {}, k.equals, k.min, k.max};
+      if (!c->numeric || !k.equals.empty()) {
+        const auto at = std::ranges::find(sheet.names, k.column);
+        if (at == sheet.names.end())
+          k.table.fail("equals", fmt::format("'{}': the column '{}' is that of {} and has numbers (allowed: min, max)",
+                                             k.equals, k.column, join_file_.string()));
+        const auto& cells = sheet.columns[std::size_t(at - sheet.names.begin())];
+        for (const std::size_t line : shots.line) kept.cells.push_back(cells[row_at.at(line)]);
+      }
+      out.push_back(std::move(kept));
+    }
+    return out;
   }
 
   /// Where the hands load the shaft: found once a shot, for the club as the case has it.
@@ -426,6 +468,7 @@ class TuneJob final : public Job {
       }
       if (lost) out.say(fmt::format("{} {} rows have no answer from the model and are not counted below", lost, set));
       for (std::size_t c = 0; c < channels_.size(); ++c) {
+        if (after[c].empty()) continue;  // no rows, no errors
         const Errors b = errors(before[c]), a = errors(after[c]);
         table.add(set, channels_[c].name, a.count, fmt::format("{:.4g} +- {:.4g}", b.mean, b.sd),
                   fmt::format("{:.4g} +- {:.4g}", a.mean, a.sd), b.mean, b.sd, b.absolute, a.mean, a.sd, a.absolute);

@@ -7,9 +7,11 @@ from . import _hosel
 
 class Model:
     """A model of `hosel list` and the blow of a case: club, ball, contact, and a delivery that the inputs below replace.
+    Each blow is answered as `hosel.run` answers the case with these inputs: by the set of parameters that the case's
+    ball has for its loft.
 
     case: a case directory, or the name of a shipped case, of a kind that has one blow (impact, study of
-        blows).
+        blows). A case with a [motion] is an InputError: its delivery is what the swing says.
     name: the model; default: the first that the case names.
     set: overrides, "table.key=value".
     """
@@ -27,7 +29,8 @@ class Model:
         inputs: numbers or arrays that broadcast together, named as in a case with their unit: club_speed, attack_angle,
             club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass. What is not given is the case's.
         Returns a dict of arrays of the broadcast shape: ball_speed_mps, launch_angle_deg, azimuth_deg, backspin_rpm, ...
-        Raises InputError (a ValueError) naming the first blow that has no answer.
+        Raises InputError (a ValueError) naming the first blow that has no answer. A blow with which the case would be
+        refused (beyond what its ball saw) is looked for first: nothing is computed then.
         """
         arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in inputs.values())) if inputs else [np.zeros(())]
         shape = arrays[0].shape

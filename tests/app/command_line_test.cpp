@@ -72,6 +72,47 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_NE(none.text.find("no finished run"), std::string::npos) << none.text;
 }
 
+TEST(CommandLine, DiffNamesFilesOfOtherContent) {
+  const fs::path home = fresh_directory("diff_files"), shaft = home / "shaft";
+  write(shaft / "case.toml", "kind = \"modes\"\ncount = 2\nvtk = false\n[shaft.table]\nfile = \"profile.csv\"\n");
+  const auto run = [&](const std::string& name, const std::string& radius, const std::string& more) {
+    write(shaft / more,
+          "arc_length_mm,bending_stiffness_N_m2,torsional_stiffness_N_m2,mass_per_length_g_per_m,mean_"
+          "radius_mm\n0," +
+              radius + ",48,72,7.5\n1140,16,19,62,4.4\n");
+    const Outcome o = command("run '" + shaft.string() + "' --quiet --set shaft.table.file=" + more + " --out '" +
+                              (home / name).string() + "'");
+    ASSERT_EQ(o.status, 0) << o.text;
+  };
+  run("a", "62", "profile.csv");
+  run("b", "82", "profile.csv");
+  run("c", "62", "profile.csv");
+  run("d", "62", "other.csv");
+  const auto diff = [&](const std::string& other) {
+    return command("diff '" + (home / "a").string() + "' '" + (home / other).string() + "'").text;
+  };
+  const std::string stiffer = diff("b"), same = diff("c"), named = diff("d");
+  ASSERT_EQ(stiffer.find("0 of"), std::string::npos) << "the frequencies differ: " << stiffer;
+  EXPECT_EQ(stiffer.find("the same"), std::string::npos) << stiffer;
+  EXPECT_NE(stiffer.find("inputs\n  inputs/profile.csv: its content differs\n"), std::string::npos) << stiffer;
+  EXPECT_NE(same.find("inputs\n  the same\n"), std::string::npos) << same;
+  EXPECT_NE(named.find("  inputs/other.csv: in B only\n  inputs/profile.csv: in A only\n"), std::string::npos) << named;
+}
+
+TEST(CommandLine, DiffSaysWhichModelsOneRunAloneAsked) {
+  const fs::path home = fresh_directory("diff_models"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow);
+  for (const char* model : {"rigid-eccentric", "stick-slip"}) {
+    const Outcome o = command("run '" + blow.string() + "' --quiet --set 'models=[\"" + model + "\"]' --out '" +
+                              (home / model).string() + "'");
+    ASSERT_EQ(o.status, 0) << o.text;
+  }
+  const std::string none =
+      command("diff '" + (home / "rigid-eccentric").string() + "' '" + (home / "stick-slip").string() + "'").text;
+  ASSERT_NE(none.find("  models "), std::string::npos) << none;
+  EXPECT_NE(none.find("launches\n  rigid-eccentric: in A only\n  stick-slip: in B only\n"), std::string::npos) << none;
+}
+
 TEST(CommandLine, DiffSaysWhereItsErrorComesFrom) {
   const fs::path home = fresh_directory("diff_band"), blow = home / "blow";
   write(blow / "case.toml", kEccentricBlow + "[ball]\nmodel = \"tour\"\n[contact]\nface_friction = 0.3\n");

@@ -1,5 +1,6 @@
 // The library: every shipped entry is read, a case takes its values, and what an entry did not see is refused.
 #include "app/library.hpp"
+#include "app/asked_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include "command.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "golf/face_library.hpp"
+#include "models/registry.hpp"
 
 namespace {
 
@@ -293,6 +295,56 @@ TEST(Library, ABallsSetsAreChosenByLoft) {
             std::string::npos);
   EXPECT_NE(refusal(dir, blow, {"volumetric"}, {"delivery.dynamic_loft_deg=50"}).find("several sets"),
             std::string::npos);
+}
+
+/// One model asked about many blows takes each blow's own set, and refuses what the case is refused with.
+TEST(Library, AnAskedModelTakesTheSetOfEachBlow) {
+  const OwnLibrary own("library_asked");
+  std::string text = content(shipped_library() / "balls" / "range-one-piece.toml");
+  for (const auto& [name, saw, stiffness] : {std::tuple{"driver", "[0, 20]", "7e9"}, {"irons", "[20, 40]", "8e9"}}) {
+    std::string parts = kContact.substr(kContact.find("[volumetric]"));
+    parts.replace(0, 12, "[reduced.volumetric]");
+    parts.replace(parts.find("7e9"), 3, stiffness);
+    text += std::string("[[reduced]]\nname = \"") + name +
+            "\"\n[reduced.saw]\nimpact_speed_mps = [20, 40]\nspin_loft_deg"
+            " = " +
+            saw + "\n" + parts;
+  }
+  write(own.home / "balls" / "mine.toml", text);
+  const fs::path dir = fresh_directory("library_asked_case");
+  write(dir / "case.toml", kBlow + "[head]\nname = \"iron-7\"\n[ball]\nmodel = \"mine\"\n");
+  const std::string only = "models=[\"volumetric\"]";
+  const AskedModel model(dir.string(), "", {only});
+  ASSERT_EQ(model.name(), "volumetric");
+  const std::vector<Input> inputs{Input::club_speed, Input::dynamic_loft};
+  const auto launches = [&](const std::vector<double>& values) {
+    return model.launches(values.size() / 2, inputs, values);
+  };
+  const auto alone = [&](double loft, const std::string& set) {
+    CaseFile file(dir, {only, "delivery.club_speed_mps=40", "ball.extrapolate=true", "ball.reduced=" + set});
+    Blow blow = read_blow(file.root(), {"volumetric"});
+    blow.delivery.dynamic_loft = loft;
+    const hosel::models::Options options = read_options(file.root(), {"volumetric"}, blow);
+    return hosel::models::find("volumetric")->make(options)->launch(blow).ball_speed();
+  };
+  const double low = radians(12), high = radians(30);
+  ASSERT_GT(std::abs(alone(low, "driver") - alone(low, "irons")), 1e-3) << "the sets differ";
+  const auto both = launches({40, high, 40, low, 40, high});
+  EXPECT_EQ(both[0].value().ball_speed(), alone(high, "irons"));
+  EXPECT_EQ(both[1].value().ball_speed(), alone(low, "driver"));
+  EXPECT_EQ(both[2].value().ball_speed(), both[0].value().ball_speed());
+  const auto refused = [&](const std::vector<double>& values) {
+    try {
+      launches(values);
+    } catch (const InputError& e) { return std::string(e.what()); }
+    return std::string();
+  };
+  const std::string fast = refused({40, low, 40, high, 55, low, 56, low});
+  EXPECT_TRUE(fast.starts_with("blow 2: ")) << fast;
+  EXPECT_NE(fast.find("'driver' saw impact speeds"), std::string::npos) << fast;
+  const std::string steep = refused({40, high, 40, radians(50), 55, low});
+  EXPECT_TRUE(steep.starts_with("blow 1: ")) << steep;
+  EXPECT_NE(steep.find("several sets"), std::string::npos) << steep;
 }
 
 }  // namespace

@@ -111,6 +111,43 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
 }
 
+/// The face's centre is a place like any other: what is told of it is told where it was struck, whatever the order.
+TEST(PlateCase, TheCentreIsTheFacesOwn) {
+  const fs::path dir = fresh_directory("plate_centre");
+  write(dir / "case.toml", kFace);
+  const auto run = [&](const std::string& toes) {
+    const Outcome o = command("run '" + dir.string() + "' --force --set figures=false --set places.toe_mm=" + toes +
+                              " --out '" + (dir / "out").string() + "'");
+    EXPECT_EQ(o.status, 0) << o.text;
+    return std::pair(o.text, nlohmann::json::parse(content(dir / "out" / "summary.json")));
+  };
+  const auto [text, told] = run("[0,18]");
+  ASSERT_EQ(told["ball_speed_mps"].size(), 2u) << text;
+  const double middle = told["ball_speed_mps"][0], toe = told["ball_speed_mps"][1];
+  ASSERT_GT(middle, toe + 0.5) << text;
+  ASSERT_TRUE(told.contains("centre")) << text;
+  EXPECT_EQ(told["centre"]["ball_speed_mps"].get<double>(), middle);
+  EXPECT_NEAR(told["centre"]["azimuth_deg"].get<double>(), 0, 1e-6);
+  EXPECT_NE(text.find("more modes at toe 0, high 0 mm"), std::string::npos) << text;
+  const auto [aside, other] = run("[18,12]");
+  ASSERT_EQ(other["ball_speed_mps"][0].get<double>(), toe) << "the same blow";
+  EXPECT_FALSE(other.contains("centre")) << aside;
+  EXPECT_NE(aside.find("more modes at toe 18, high 0 mm"), std::string::npos) << aside;
+}
+
+TEST(PlateCase, AGridBesideTheFaceIsRefused) {
+  const fs::path dir = fresh_directory("plate_beside");
+  write(dir / "case.toml", kFace);
+  const std::string check = "check '" + dir.string() +
+                            "' --set grid.width_mm=200 --set grid.height_mm=200 --set grid.columns=4 --set grid.rows=";
+  ASSERT_EQ(command(check + "5").status, 0) << "its middle row lies on the face";
+  const Outcome o = command(check + "4");
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find("case.toml:17: grid: none of the 4 x 4 places over 200 x 200 mm lies on the face (allowed:"),
+            std::string::npos)
+      << o.text;
+}
+
 /// Numbers of a column of a CSV by its name.
 std::vector<double> column_of(const fs::path& file, const std::string& name) {
   std::istringstream table(content(file));

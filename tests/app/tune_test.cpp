@@ -249,6 +249,70 @@ max = 1.0
               told[0]["errors"][1]["after"]["mean"].get<double>() - 4000, 1e-6);
 }
 
+/// Twelve shots whose `ball_type` is 1 or 2 in turn and whose `make` is a word.
+std::filesystem::path chosen_shots(const char* name, const std::string& more) {
+  const auto d = scratch(name);
+  std::ofstream(d / "case.toml")
+      << "kind = \"tune\"\nmodel = \"rigid-planar\"\n[head]\nmass_kg = 0.26\n[data]\nshots = "
+         "\"shots.csv\"\n[data.noise]\nball_speed_mps = 0.25\n[[parameters]]\nname = "
+         "\"restitution\"\nmin = 0.5\nmax = 1.0\n[search]\nstarts = 1\n"
+      << more;
+  std::ofstream shots(d / "shots.csv");
+  // In another order than that of the shots' numbers: the text belongs to its row.
+  shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,ball_type,make\n";
+  for (int i = 12; i > 0; --i)
+    shots << i << ',' << 38 + i % 3 << ",-2,20," << (i % 4 == 1 ? 50 : 56) << ',' << (i % 4 == 1 ? 1 : 2)
+          << (i % 3 == 0 ? ",soft\n" : ",hard\n");
+  return d;
+}
+
+double tuned_restitution(const nlohmann::json& told) { return told["parameters"][0]["value"]; }
+
+std::string refused(const std::filesystem::path& directory) {
+  try {
+    run(directory);
+  } catch (const InputError& e) { return e.what(); }
+  return "";
+}
+
+TEST(Tune, RowsAreKeptByTheTextOfAColumnOfNumbers) {
+  const std::string keep = "[[data.keep]]\ncolumn = \"ball_type\"\n";
+  const auto all = run(chosen_shots("tune_keep_all", "")),
+             slow = run(chosen_shots("tune_keep_text", keep + "equals = \"1\"\n")),
+             same = run(chosen_shots("tune_keep_numbers", keep + "max = 1\n"));
+  ASSERT_EQ(all["rows"]["train"].get<int>() + all["rows"]["test"].get<int>(), 12);
+  EXPECT_EQ(slow["rows"]["train"].get<int>() + slow["rows"]["test"].get<int>(), 3);
+  EXPECT_EQ(slow["left_out"]["ball_type outside what the case keeps"], 9);
+  EXPECT_LT(tuned_restitution(slow), tuned_restitution(all) - 0.03);
+  EXPECT_EQ(tuned_restitution(slow), tuned_restitution(same)) << "the rows whose number is 1";
+  // A text and a bound both hold; another spelling of the number is another text.
+  EXPECT_NE(refused(chosen_shots("tune_keep_both", keep + "equals = \"1\"\nmin = 2\n")).find("0 training rows"),
+            std::string::npos);
+  EXPECT_NE(refused(chosen_shots("tune_keep_spelt", keep + "equals = \"1.0\"\n")).find("0 training rows"),
+            std::string::npos);
+}
+
+TEST(Tune, BoundsOnAColumnOfWordsAreRefused) {
+  const std::string keep = "[[data.keep]]\ncolumn = \"make\"\n";
+  const auto soft = run(chosen_shots("tune_words", keep + "equals = \"soft\"\n"));
+  ASSERT_EQ(soft["rows"]["train"].get<int>() + soft["rows"]["test"].get<int>(), 4);
+  for (const char* bound : {"min", "max"}) {
+    const std::string said = refused(chosen_shots("tune_words", keep + "equals = \"soft\"\n" + bound + " = 3\n"));
+    EXPECT_NE(said.find(std::string("data.keep[1].") + bound + ": 3: the column 'make'"), std::string::npos) << said;
+    EXPECT_NE(said.find("case.toml:18"), std::string::npos) << said;
+    EXPECT_NE(said.find("(allowed: equals)"), std::string::npos) << said;
+  }
+}
+
+TEST(Tune, AllRowsMayBeFitted) {
+  const auto s = run(chosen_shots("tune_all", "[split]\ntrain_fraction = 1\n"));
+  ASSERT_EQ(s["rows"]["train"], 12);
+  ASSERT_EQ(s["rows"]["test"], 0);
+  ASSERT_EQ(s["errors"].size(), 1U);
+  EXPECT_EQ(s["errors"][0]["set"], "train");
+  EXPECT_LT(s["errors"][0]["after"]["mae"].get<double>(), 4);
+}
+
 TEST(Tune, ALoadedClubStartsAsInABlow) {
   const std::string club = R"(
 [head]

@@ -35,6 +35,43 @@ class Launches(unittest.TestCase):
         for name in asked:
             self.assertAlmostEqual(float(asked[name]), said[name], delta=1e-9 * (1 + abs(said[name])), msg=name)
 
+    def test_each_blow_has_the_parameters_that_the_command_takes(self):
+        lofts, said, stiffness = [12.0, 20.0, 30.0], [], set()
+        with tempfile.TemporaryDirectory() as folder:
+            for loft in lofts:
+                run = hosel.run("driver-toe", Path(folder) / f"{loft}",
+                                set=['models=["volumetric"]', f"delivery.dynamic_loft_deg={loft}"])
+                said.append(run.launches()["volumetric"])
+                stiffness.add(run.case["volumetric"]["stiffness_N_per_m3"])
+        self.assertEqual(len(stiffness), 3)  # the ball has another set for each of these lofts
+        model = hosel.Model("driver-toe", "volumetric")
+        together = model.launch(dynamic_loft_deg=lofts)
+        for name, values in together.items():
+            for i, loft in enumerate(lofts):
+                self.assertEqual(values[i], said[i][name], msg=f"{name} at {loft} deg")
+                self.assertEqual(float(model.launch(dynamic_loft_deg=loft)[name]), said[i][name])
+
+    def test_a_blow_that_the_command_refuses_is_refused(self):
+        refused = "ball.model: 'tour' has several sets of parameters and none of them saw this loft"
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(hosel.InputError, refused):
+                hosel.run("driver-toe", Path(folder) / "out", set=FAST + ["delivery.dynamic_loft_deg=45"])
+        for name in ("rigid-eccentric", "volumetric"):
+            model = hosel.Model("driver-toe", name)
+            self.assertGreater(float(model.launch(dynamic_loft_deg=43)["ball_speed_mps"]), 20)
+            with self.assertRaisesRegex(hosel.InputError, f"blow 1: .*{refused}"):
+                model.launch(dynamic_loft_deg=[43, 45])
+
+    def test_a_swung_club_is_refused(self):
+        with self.assertRaisesRegex(hosel.InputError, "motion: a swing delivers the club here.*hosel.run"):
+            hosel.Model("loaded-club/blow", "shaft-coupled")
+
+    def test_what_is_stable_is_what_is_offered(self):
+        page = Path(__file__).resolve().parents[2] / "docs" / "stability.md"
+        row = next(line for line in page.read_text().splitlines() if "`hosel.__all__`" in line)
+        self.assertGreater(len(hosel.__all__), 5)
+        self.assertEqual(sorted(row.split("lists:")[1].replace("`", "").strip(" |").split(", ")), sorted(hosel.__all__))
+
     def test_a_table_prints_short(self):
         table = hosel.Table(club=np.array(["7i"] * 9), spin_rpm=np.arange(9.0))
         self.assertEqual(repr(table), "hosel.Table of 9 rows\n  club      7i, 7i, 7i, ..., 7i\n  spin_rpm  0, 1, 2, ..., 8")
