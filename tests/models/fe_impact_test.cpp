@@ -167,6 +167,45 @@ TEST(FeImpact, ObliqueBlowSpinsTheBallByTheMomentOfTheForce) {
   EXPECT_NEAR(out.launch.sidespin(), 0, 1e-6 * out.launch.backspin());
 }
 
+/// A ball thrown at a wall, which slides throughout.
+Blow thrown(const PatchFriction& friction) {
+  Blow blow = wall_blow(30);
+  blow.delivery.club_path = radians(35);
+  blow.contact.patch = friction;
+  return blow;
+}
+
+/// Static friction that is gone after a micrometre, of which a step slides a hundred: what it adds is its own, not that
+/// of a first step. What the records say of the force is what the ball felt.
+TEST(FeImpact, StaticFrictionOfAMicrometreDoesNotHangOnTheStep) {
+  std::vector<double> spins;
+  for (const int steps : {30, 120}) {
+    FeImpactOptions o = coarse(2);
+    o.penalty = 1000;
+    o.steps_per_contact = steps;
+    const double sliding = Impact(o).launch(thrown({.coefficient = 0.1})).spin_rate();
+    const double held = Impact(o).launch(thrown({.coefficient = 0.1, .at_rest = StaticFriction{0.6, 1}})).spin_rate();
+    ASSERT_GT(held, 1.3 * sliding) << "static friction that stays";
+    const Blow blow = thrown({.coefficient = 0.1, .at_rest = StaticFriction{0.6, 1e-6}});
+    Vec3 impulse = Vec3::Zero(), force = impulse;
+    double time = 0;
+    int slid = 0;
+    const FeOutcome out = Impact(o).run(blow, [&](const ImpactView& view) {
+      impulse += (view.state.time - time) / 2 * (force + view.report.force);
+      force = view.report.force, time = view.state.time;
+      for (const fem::ContactPoint& p : view.contact.points(view.state)) slid += p.slip > 5e-5;
+    });
+    ASSERT_GT(slid, 100);
+    spins.push_back(out.launch.spin_rate());
+    EXPECT_NEAR(spins.back(), sliding, 0.02 * sliding) << steps;
+    const double felt = blow.ball.mass * out.launch.velocity.y();
+    ASSERT_GT(std::abs(felt), 0.1);
+    // Forces enter the scheme with weights of its own: order h^2.
+    if (steps == 120) EXPECT_NEAR(impulse.y(), felt, 1e-3 * std::abs(felt));
+  }
+  EXPECT_NEAR(spins[0], spins[1], 0.01 * spins[1]);
+}
+
 /// The contact ends between two steps: how many there are hardly moves its end. Read at whole steps it jumps by up to
 /// one, 2.3 % here.
 TEST(FeImpact, ContactEndsBetweenTheSteps) {
