@@ -18,9 +18,9 @@
 namespace hosel::models {
 namespace {
 
-/// None where the coefficient is zero.
+/// None where nothing holds, not even a point at rest.
 std::unique_ptr<const fem::FrictionLaw> friction_law(const PatchFriction& friction, double sticking) {
-  if (!(friction.coefficient > 0)) return nullptr;
+  if (!(friction.coefficient > 0 || (friction.at_rest && friction.at_rest->coefficient > 0))) return nullptr;
   if (friction.transition_speed)
     return std::make_unique<fem::RegularisedFriction>(friction.coefficient, *friction.transition_speed);
   if (friction.at_rest) return std::make_unique<fem::SlipWeakening>(friction.coefficient, *friction.at_rest, sticking);

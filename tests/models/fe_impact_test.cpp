@@ -206,6 +206,18 @@ TEST(FeImpact, StaticFrictionOfAMicrometreDoesNotHangOnTheStep) {
   EXPECT_NEAR(spins[0], spins[1], 0.01 * spins[1]);
 }
 
+/// No sliding friction is the limit of very little: what holds a point at rest is there in both.
+TEST(FeImpact, StaticFrictionHoldsWithoutSlidingFriction) {
+  FeImpactOptions o = coarse(2);
+  o.steps_per_contact = 30;
+  const auto spin = [&](double sliding) {
+    return Impact(o).launch(thrown({.coefficient = sliding, .at_rest = StaticFriction{0.6, 1e-3}})).spin_rate();
+  };
+  const double little = spin(1e-9);
+  ASSERT_GT(little, 100);
+  EXPECT_NEAR(spin(0), little, 1e-4 * little);
+}
+
 /// The contact ends between two steps: how many there are hardly moves its end. Read at whole steps it jumps by up to
 /// one, 2.3 % here.
 TEST(FeImpact, ContactEndsBetweenTheSteps) {
