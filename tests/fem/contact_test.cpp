@@ -202,6 +202,36 @@ TEST(Contact, AnAcceptedStateIsReportedAsItWasSolved) {
   }
 }
 
+/// A ball that meets a wall along its normal and hardly slides: friction that is regularised by velocity takes the work
+/// of the sliding alone, not of the approach.
+TEST(Contact, RegularisedFrictionWorksAlongTheSlipAlone) {
+  constexpr double kTime = 1e-5, kAcross = 0.01;
+  System system;
+  const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
+  Mat3 axes;
+  axes << -1, 0, 0, 0, 1, 0, 0, 0, -1;
+  HarmonicSolid ball(system.dof_map,
+                     mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
+                     cartesian_basis(2, 1), {full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
+  SurfaceCarrier wall;
+  wall.position = Vec3(-kRadius - 1e-6, 0, 0);
+  Contact contact(ball, std::make_unique<FaceSurface>(Face{}), wall,
+                  {contact_method("penalty")->make(1e11, 1e-7), std::make_unique<RegularisedFriction>(0.3, 1e-3)},
+                  full_circle(14), Symmetry::none, 3);
+  State s = system.dof_map.rest();
+  contact.start(s);
+  ball.set_velocity(s, Vec3(-20, kAcross, 0), Vec3::Zero());
+  s.q = system.dof_map.advanced(s.q, kTime * s.v);
+  s.time = kTime;
+  contact.commit(s);
+  double most = 0;
+  for (const ContactPoint& p : contact.points(s)) most += p.area * (p.traction - p.push).norm() * kAcross * kTime;
+  ASSERT_GT(contact.report(s).points, 20);
+  ASSERT_GT(most, 0);
+  EXPECT_GT(contact.energies(s).friction, 0);
+  EXPECT_LE(contact.energies(s).friction, most);
+}
+
 /// Pressure is the gradient of the method's energy, by the surface's own unknown as by all others.
 TEST(Contact, ForceIsTheGradientOfTheEnergy) {
   for (const NamedContactMethod& method : contact_methods())
