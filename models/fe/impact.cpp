@@ -101,6 +101,10 @@ void assemble_free(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o
     throw std::invalid_argument(
         "fe impact: harmonics = 0 is the axisymmetric ball: a blow with loft, offset or curved face needs harmonics of "
         "2 or more");
+  if (o.harmonics == 0 && head.face.bulge != head.face.roll)
+    throw std::invalid_argument(
+        "fe impact: harmonics = 0 is the axisymmetric ball: a face of unlike bulge and roll needs harmonics of 2 or "
+        "more");
   if (o.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
   if (wall) {

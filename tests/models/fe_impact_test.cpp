@@ -360,6 +360,13 @@ TEST(FeImpact, MultipliersGoOnFromACheckpointToTheSameBits) {
 
 TEST(FeImpact, RefusesWhatItCannotDo) {
   EXPECT_THROW(Impact(coarse(0)).run(iron_blow()), std::invalid_argument);
+  // One angle of a face that is curved one way alone is not its face.
+  Blow ridge = wall_blow(20);
+  ridge.club.head.face = {.bulge = 0.02, .roll = 0.02};
+  EXPECT_NO_THROW(Impact(coarse(0)).assemble(ridge));
+  ridge.club.head.face.roll = INFINITY;
+  EXPECT_NO_THROW(Impact(coarse(2)).assemble(ridge));
+  EXPECT_THROW(Impact(coarse(0)).assemble(ridge), std::invalid_argument);
   FeImpactOptions o = coarse(2);
   o.penalty = 0;
   EXPECT_THROW(Impact{o}, std::invalid_argument);
