@@ -108,6 +108,10 @@ void assemble_free(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o
   if (o.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
   if (wall) {
+    if (!blow.delivery.head_angular_velocity.isZero(0))
+      throw std::invalid_argument(
+          "fe impact: a head of infinite mass is a wall that does not turn: leave its angular "
+          "velocity out");
     fem::SurfaceCarrier carrier;
     carrier.position = e.face_centre;
     carrier.attitude = e.face_axes;

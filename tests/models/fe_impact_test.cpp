@@ -360,13 +360,17 @@ TEST(FeImpact, MultipliersGoOnFromACheckpointToTheSameBits) {
 
 TEST(FeImpact, RefusesWhatItCannotDo) {
   EXPECT_THROW(Impact(coarse(0)).run(iron_blow()), std::invalid_argument);
-  // One angle of a face that is curved one way alone is not its face.
+  // One angle of a face that is curved one way alone is not its face; a wall that turns is none.
   Blow ridge = wall_blow(20);
   ridge.club.head.face = {.bulge = 0.02, .roll = 0.02};
   EXPECT_NO_THROW(Impact(coarse(0)).assemble(ridge));
   ridge.club.head.face.roll = INFINITY;
   EXPECT_NO_THROW(Impact(coarse(2)).assemble(ridge));
   EXPECT_THROW(Impact(coarse(0)).assemble(ridge), std::invalid_argument);
+  Blow turning = wall_blow(20);
+  EXPECT_NO_THROW(Impact(coarse(2)).assemble(turning));
+  turning.delivery.head_angular_velocity = Vec3(0, 0, 50);
+  EXPECT_THROW(Impact(coarse(2)).assemble(turning), std::invalid_argument);
   FeImpactOptions o = coarse(2);
   o.penalty = 0;
   EXPECT_THROW(Impact{o}, std::invalid_argument);
