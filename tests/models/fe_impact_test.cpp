@@ -17,6 +17,8 @@
 
 #include "fem/materials/hyperelastic.hpp"
 #include "golf/units.hpp"
+#include "models/checked_launch.hpp"
+#include "solvers/errors.hpp"
 
 // Absent where the BLAS is not OpenBLAS, which opens as many threads as there are cores unless it is told otherwise.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -216,6 +218,36 @@ TEST(FeImpact, StaticFrictionHoldsWithoutSlidingFriction) {
   const double little = spin(1e-9);
   ASSERT_GT(little, 100);
   EXPECT_NEAR(spin(0), little, 1e-4 * little);
+}
+
+/// Two layers of unlike density: the inertia of the mesh is what the layers say, and the gate of energy counts the spin
+/// with it, whatever the blow's ball says.
+TEST(FeImpact, EnergyIsCountedWithTheInertiaOfTheMesh) {
+  FeImpactOptions o = coarse(2);
+  BallLayer core = o.ball.layers.front();
+  core.radius = 0.6;
+  core.material.density *= 6;
+  o.ball.layers.insert(o.ball.layers.begin(), core);
+  const Blow blow = wall_blow(30);
+  ASSERT_EQ(blow.ball.inertia_factor, 0.4);
+  const double meant = o.ball.inertia_factor(), mr2 = blow.ball.mass * blow.ball.radius * blow.ball.radius;
+  ASSERT_LT(meant, 0.3);
+  const Impact impact(o);
+  const ImpactBodies bodies = impact.assemble(blow);
+  const double meshed = bodies.ball->motion(bodies.system.dof_map.rest()).inertia.trace() / 3 / mr2;
+  EXPECT_NEAR(meshed, meant, 0.005 * meant);  // two rings
+  EXPECT_DOUBLE_EQ(coarse(2).ball.inertia_factor(), 0.4);
+  // The ball has the energy of the meeting: 0.7 of it in its flight off the wall, the rest in its spin.
+  Launch l;
+  l.velocity = Vec3(30 * (1 + std::sqrt(0.7)), 0, 0);
+  l.head_velocity = blow.delivery.velocity();
+  const auto spun = [&](double factor) {
+    l.spin = Vec3(0, 30 * std::sqrt(0.3 * blow.ball.mass / (factor * mr2)), 0);
+    return l;
+  };
+  EXPECT_NO_THROW(check_launch(impact, blow, spun(1.01 * meant)));
+  EXPECT_THROW(check_launch(impact, blow, spun(0.95 * meant)), solvers::NonConvergence);
+  EXPECT_THROW(check_launch(Impact(coarse(2)), blow, spun(1.01 * meant)), solvers::NonConvergence);
 }
 
 /// The contact ends between two steps: how many there are hardly moves its end. Read at whole steps it jumps by up to
