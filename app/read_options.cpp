@@ -34,7 +34,14 @@ void check_inertia(Table& ball, const Ball& body, const models::FeBall& layers) 
 models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchFriction& friction,
                                 std::shared_ptr<const models::PlateOnDemand>& made) {
   models::FeImpactOptions o;
-  if (auto plate = read_optional_plate(root)) o.face = made = std::make_shared<const models::PlateOnDemand>(*plate);
+  if (auto plate = read_optional_plate(root)) {
+    if (asked && root.has("motion"))
+      root.table("face").fail(
+          "plate",
+          "a swing turns the head about the face's normal, by its dynamic lie, and a plate does not "
+          "turn with it: give a lumped face (`hosel list`)");
+    o.face = made = std::make_shared<const models::PlateOnDemand>(*plate);
+  }
   if (auto ball = root.optional_table("ball")) {
     o.ball = read_fe_ball(*ball, o.ball);
     if (asked && !root.has("plate")) check_inertia(*ball, body, o.ball);  // the stand-in of a plate takes the factor

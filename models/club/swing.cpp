@@ -63,6 +63,7 @@ Club turned_about_normal(Club club, double angle) {
   club.head.inertia = (turn * club.head.inertia * turn.transpose()).eval();
   club.geometry.hosel = turn * club.geometry.hosel;
   club.geometry.shaft_axis = turn * club.geometry.shaft_axis;
+  if (club.head.compliance) club.head.compliance->turn -= angle;
   return club;
 }
 

@@ -170,6 +170,18 @@ TEST(Library, AnInertiaThatTheLayersDoNotHaveIsRefused) {
   EXPECT_EQ(refusal(dir, file.resolved(), {"fe-free-body"}), "");
 }
 
+/// The head of a swing is described in a frame turned about the face's normal: a lumped face turns with it, a plate
+/// cannot.
+TEST(Library, APlateInASwungBlowIsRefused) {
+  const fs::path dir = fresh_directory("library_swung_plate");
+  const std::string text = kBlow +
+                           "[head]\nname = \"driver-460\"\n[contact]\nface_friction = 0.3\n"
+                           "[face.plate]\nthickness = {map = \"constant\", value_mm = 2.8}\n";
+  EXPECT_EQ(refusal(dir, text, {"fe-free-body"}), "");
+  const std::string said = refusal(dir, text + "[motion]\nfile = \"grip.csv\"\n", {"fe-free-body"});
+  EXPECT_NE(said.find("face.plate: a swing turns the head about the face's normal"), std::string::npos) << said;
+}
+
 const std::string kContact = R"(what = "a driver's contact"
 [provenance]
 source = "a test"
