@@ -1,6 +1,9 @@
 #include "app/read_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "app/check_memory.hpp"
@@ -14,11 +17,35 @@
 namespace hosel::app {
 namespace {
 
-models::FeImpactOptions read_fe(Table root, PatchFriction& friction,
+/// A finite-element ball turns as its layers do. What a resolved case has as the default is not the case's own word.
+void check_inertia(Table& ball, const Ball& body, const models::FeBall& layers) {
+  if (!ball.has("inertia_factor")) return;
+  const std::optional<std::string> named = named_entry(ball, "model", Shelf::balls);
+  const double standard = (named ? library_ball(*named).body : Ball{}).inertia_factor, meshed = layers.inertia_factor();
+  // A mesh of two rings has 0.3 % less.
+  if (body.inertia_factor == standard || std::abs(body.inertia_factor - meshed) <= 0.01 * meshed) return;
+  ball.fail("inertia_factor",
+            fmt::format("is {:.4g}, and the layers have {:.4g}: a finite-element ball turns as its layers do; leave "
+                        "the key out, or give the layers such densities",
+                        body.inertia_factor, meshed));
+}
+
+/// `asked`: a finite-element model is among those of the case.
+models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchFriction& friction,
                                 std::shared_ptr<const models::PlateOnDemand>& made) {
   models::FeImpactOptions o;
-  if (auto plate = read_optional_plate(root)) o.face = made = std::make_shared<const models::PlateOnDemand>(*plate);
-  if (auto ball = root.optional_table("ball")) o.ball = read_fe_ball(*ball, o.ball);
+  if (auto plate = read_optional_plate(root)) {
+    if (asked && root.has("motion"))
+      root.table("face").fail(
+          "plate",
+          "a swing turns the head about the face's normal, by its dynamic lie, and a plate does not "
+          "turn with it: give a lumped face (`hosel list`)");
+    o.face = made = std::make_shared<const models::PlateOnDemand>(*plate);
+  }
+  if (auto ball = root.optional_table("ball")) {
+    o.ball = read_fe_ball(*ball, o.ball);
+    if (asked && !root.has("plate")) check_inertia(*ball, body, o.ball);  // the stand-in of a plate takes the factor
+  }
   if (root.has("accuracy")) {
     o.resolve(accuracy_named(
         root.choice({"accuracy", "mesh, harmonics and steps together; keys of [mesh] and [time] override each"},
@@ -248,7 +275,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
         t->fail("kind", "shaft-coupled knows a rigid joint and a hinge about YG; for others use fe-full-club");
       options.shaft_beam.hinged = joint.hinge_across();
     }
-  if (fe || there) options.fe = read_fe(root, blow.contact.patch, options.plate);
+  if (fe || there) options.fe = read_fe(root, blow.ball, fe, blow.contact.patch, options.plate);
   return options;
 }
 

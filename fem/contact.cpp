@@ -205,7 +205,7 @@ void Contact::visit(const State& s, Visit&& visit) const {
     visit_station(m, s, i, scratch, [&](const Kinematics& k) { visit(m, k); });
 }
 
-Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
+Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives, double slid) const {
   Local out;
   const SurfacePoint at = surface_->at(k.place);
   const Past& past = past_[k.number];
@@ -215,7 +215,7 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   if (derivatives) out.stiffness = spring.stiffness * (at.slope * at.slope.transpose() - spring.depth * at.curvature);
   if (!laws_.friction) return out;
 
-  Slip slip{.pressure = out.pressure, .step = k.place - past.place, .path = past.slip};
+  Slip slip{.pressure = out.pressure, .path = slid};
   slip.tangent = Mat3::Identity() - at.normal * at.normal.transpose();
   slip.velocity = slip.tangent * k.velocity;
   // A point that touches first within this step slides from where its straight path met the surface.
@@ -224,6 +224,7 @@ Contact::Local Contact::evaluate(const Kinematics& k, bool derivatives) const {
   const double share = fresh ? -inside / (past.gap - inside) : 1;
   const Vec3 path = slip.tangent * (k.place - (fresh ? past.place : past.anchor));
   slip.stretch = share * path;
+  slip.step = fresh ? slip.stretch : slip.tangent * (k.place - past.place);
   out.friction = laws_.friction->at(slip, derivatives);
   out.force -= out.friction.traction;
   if (!derivatives) return out;
@@ -431,7 +432,7 @@ Energies Contact::energies(const State& s) const {
     if (!k.pressed) return;
     const NormalSpring spring = normal(k.number, k.gap);
     out.contact += k.station->area * (0.5 * spring.stiffness * spring.depth * spring.depth +
-                                      (past_[k.number].offset + evaluate(k, false).friction.stored));
+                                      (past_[k.number].offset + accepted(k).friction.stored));
   });
   out.friction = friction_work_;
   return out;
@@ -444,7 +445,7 @@ void Contact::commit(const State& s) {
     if (!k.pressed) {
       // What the tangential spring still held is lost where a point lets go.
       friction_work_ += area * past.stored;
-      past = {.place = k.place, .anchor = k.place, .gap = k.gap, .slip = past.slip};
+      past = {.place = k.place, .anchor = k.place, .gap = k.gap, .slip = past.slip, .slip_before = past.slip};
       multipliers_[k.number] = 0;
       return;
     }
@@ -459,6 +460,7 @@ void Contact::commit(const State& s) {
             .traction = traction,
             .stored = friction.stored,
             .slip = past.slip + friction.slip,
+            .slip_before = past.slip,
             .touching = true,
             .sliding = friction.sliding,
             .multiplier = multiplier,
@@ -472,7 +474,8 @@ void Contact::save(std::vector<double>& out) const {
   for (const Past& p : past_) {
     out.insert(out.end(), p.place.begin(), p.place.end());
     out.insert(out.end(), p.anchor.begin(), p.anchor.end());
-    out.insert(out.end(), {p.gap, p.traction, p.stored, p.slip, p.touching ? 1.0 : 0.0, p.sliding ? 1.0 : 0.0});
+    out.insert(out.end(),
+               {p.gap, p.traction, p.stored, p.slip, p.slip_before, p.touching ? 1.0 : 0.0, p.sliding ? 1.0 : 0.0});
     if (laws_.method->multipliers()) out.insert(out.end(), {p.multiplier, p.offset});
   }
 }
@@ -495,6 +498,7 @@ void Contact::restore(std::span<const double>& in) {
     p.traction = next();
     p.stored = next();
     p.slip = next();
+    p.slip_before = next();
     p.touching = next() != 0;
     p.sliding = next() != 0;
     if (!laws_.method->multipliers()) continue;
@@ -511,7 +515,7 @@ ContactReport Contact::report(const State& s) const {
   visit(s, [&](const Moved& m, const Kinematics& k) {
     out.nearest = std::min(out.nearest, k.gap);
     if (!k.pressed) return;
-    const Local local = evaluate(k, false);
+    const Local local = accepted(k);
     const double area = k.station->area;
     out.force += area * (m.R * in_body(k, local.force));
     out.normal_force += area * local.pressure;
@@ -532,7 +536,7 @@ ContactReport Contact::report(const State& s) const {
 std::vector<ContactPoint> Contact::points(const State& s) const {
   std::vector<ContactPoint> out;
   visit(s, [&](const Moved& m, const Kinematics& k) {
-    const Local local = k.pressed ? evaluate(k, false) : Local{};
+    const Local local = k.pressed ? accepted(k) : Local{};
     const Past& past = past_[k.number];
     const Vec3 push = local.force + local.friction.traction;
     out.push_back({reference_.col(static_cast<Index>(k.number)), m.node + m.R * k.arm, m.R * in_body(k, local.force),

@@ -102,6 +102,7 @@ class Contact final : public Term {
     Vec3 place = Vec3::Zero();
     Vec3 anchor = Vec3::Zero();  // of the tangential path
     double gap = 0, traction = 0, stored = 0, slip = 0;
+    double slip_before = 0;  // with which the step that led here was solved
     bool touching = false, sliding = false;
     double multiplier = 0, offset = 0;  // see NormalState
     NormalState normal() const { return {gap, multiplier, offset}; }
@@ -140,7 +141,10 @@ class Contact final : public Term {
   Mat3 free_translation() const;
   Mat3 free_rotation(const Mat3& R) const;
   Eigen::Ref<const Directions, 0, Eigen::OuterStride<>> functions(std::size_t angle) const;
-  Local evaluate(const Kinematics& k, bool derivatives) const;
+  Local evaluate(const Kinematics& k, bool derivatives) const { return evaluate(k, derivatives, past_[k.number].slip); }
+  /// At the state that was accepted last: with the path that its step began with, as it was solved.
+  Local accepted(const Kinematics& k) const { return evaluate(k, false, past_[k.number].slip_before); }
+  Local evaluate(const Kinematics& k, bool derivatives, double path) const;
   /// What the method makes of a point at a gap with the multiplier of the step at hand.
   NormalSpring normal(std::size_t number, double gap) const { return laws_.method->at(gap, multipliers_[number]); }
   /// Derivatives of -force at a station: changes^T forces, and what the turn of the carrier adds. Three rows a point,

@@ -7,16 +7,23 @@
 namespace hosel {
 
 FaceCompliance::Shape FaceCompliance::shape(double yc, double zc) const {
-  const Eigen::Vector2d curvature(1 / (half_width * half_width), 1 / (half_height * half_height)), at(yc, zc);
-  const PlateShape<double> plate(curvature.x(), curvature.y(), yc, zc);
+  const Eigen::Matrix2d C = ellipse();
+  const PlateShape<double> plate(C(0, 0), C(1, 1), C(0, 1), yc, zc);
   if (!(plate.height > 0)) return {};
-  const Eigen::Vector2d slope = -2 * curvature.cwiseProduct(at);
+  const Eigen::Vector2d slope = -2 * C * Eigen::Vector2d(yc, zc);
   Shape s;
   s.value = plate.value;
   s.slope = {plate.slope_y, plate.slope_z};
-  s.second = 2 * slope * slope.transpose();
-  s.second.diagonal() -= 4 * plate.height * curvature;
+  s.second = 2 * slope * slope.transpose() - 4 * plate.height * C;
   return s;
+}
+
+Eigen::Matrix2d FaceCompliance::ellipse() const {
+  const double y = 1 / (half_width * half_width), z = 1 / (half_height * half_height), c = std::cos(turn),
+               s = std::sin(turn);
+  Eigen::Matrix2d C;
+  C << c * c * y + s * s * z, c * s * (y - z), c * s * (y - z), s * s * y + c * c * z;
+  return C;
 }
 
 std::vector<std::string> FaceCompliance::faults() const {

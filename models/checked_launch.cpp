@@ -71,7 +71,8 @@ void check_launch(const ImpactModel& model, const Blow& blow, const Launch& l) {
   Delivery d = blow.delivery;
   if (dynamic_cast<const RigidPlanar*>(&model)) d.club_path = d.face_angle = 0;  // it knows the plane of the loft alone
   const Head& head = blow.club.head;
-  const Ball& ball = blow.ball;
+  Ball ball = blow.ball;
+  if (const Impact* impact = model.impact()) ball.inertia_factor = impact->options().ball.inertia_factor();
   const Mat3 attitude = d.face_to_global();
   const auto hinged = hinged_about_butt(model);
   const Vec3 frame = hinged ? butt_velocity(blow) : d.velocity();

@@ -12,10 +12,10 @@ namespace hosel::fem {
 struct Slip {
   double pressure = 0;           ///< [Pa]
   Vec3 stretch = Vec3::Zero();   ///< tangential path from the point's anchor [m]
-  Vec3 step = Vec3::Zero();      ///< path since the last accepted state [m]
+  Vec3 step = Vec3::Zero();      ///< tangential path while touching, since the last accepted state [m]
   Vec3 velocity = Vec3::Zero();  ///< tangential [m/s]
   Mat3 tangent = Mat3::Zero();   ///< projector on the tangent plane
-  double path = 0;               ///< slid until the last accepted state [m]
+  double path = 0;               ///< slid before the step [m]
 };
 
 /// What it answers.

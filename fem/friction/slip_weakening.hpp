@@ -8,7 +8,8 @@ namespace hosel::fem {
 
 /// Coulomb's law with a coefficient that falls from the static to the sliding one with the path that the point has
 /// slid: junctions break after a slip of their own size, about a micrometre between hard solids. [@slip-distance]
-/// The path is that of the last accepted state, so that a step has one answer however fast friction falls.
+/// A step has the mean coefficient over what it slides beyond the limit at its start, where a point touches first
+/// weighted with the pressure that grows there: its impulse does not hang on how many steps cover the fall.
 class SlipWeakening final : public FrictionLaw {
  public:
   /// `sliding`: coefficient [-]; `stiffness` of the sticking spring per reference area [N/m^3].

@@ -63,6 +63,7 @@ Club turned_about_normal(Club club, double angle) {
   club.head.inertia = (turn * club.head.inertia * turn.transpose()).eval();
   club.geometry.hosel = turn * club.geometry.hosel;
   club.geometry.shaft_axis = turn * club.geometry.shaft_axis;
+  if (club.head.compliance) club.head.compliance->turn -= angle;
   return club;
 }
 
@@ -112,9 +113,11 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
   };
   using Kind = GripDrive::Kind;
   if (drive_.kind == Kind::prescribed) system_.prescribed.push_back(std::make_unique<fem::ImposedMotion>(grip, motion));
-  else if (drive_.kind == Kind::hands)
-    system_.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, grip, drive_.hands));
-  else if (drive_.kind == Kind::forced)
+  else if (drive_.kind == Kind::hands) {
+    auto hands = std::make_unique<fem::SpringJoint>("hands", motion, grip, drive_.hands);
+    hands_ = hands.get();
+    system_.terms.push_back(std::move(hands));
+  } else if (drive_.kind == Kind::forced)
     system_.terms.push_back(std::make_unique<fem::NodeLoad>("hands", grip, drive_.wrench, fem::NodeLoad::Moment::body));
 }
 
@@ -261,6 +264,11 @@ SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) con
     const fem::Wrench w = drive_.wrench(s.time);
     out.force = w.force;
     out.moment = w.moment;
+  } else if (hands_) {
+    fem::Vector inertia = fem::Vector::Zero(system_.dof_map.size()), force = inertia;
+    hands_->residual(s, inertia, force);
+    out.force = -force.segment<3>(root.translation.v);
+    out.moment = -force.segment<3>(root.rotation.v);
   }
   return out;
 }

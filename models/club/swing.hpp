@@ -116,6 +116,7 @@ class Swing {
   fem::System system_;
   fem::Beam* shaft_ = nullptr;
   fem::RigidBody* head_ = nullptr;
+  const fem::SpringJoint* hands_ = nullptr;  // of a drive by hands
   fem::Node head_node_;
   Mat3 face_to_grip_;
   double length_ = 0;

@@ -1,6 +1,7 @@
 #include "models/fe/fe_ball.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -30,6 +31,16 @@ double FeBall::instant_young() const {
     inner = layer.radius;
   }
   return sum;
+}
+
+double FeBall::inertia_factor() const {
+  double mass = 0, moment = 0, inner = 0;
+  for (const auto& layer : layers) {
+    mass += layer.material.density * (std::pow(layer.radius, 3) - std::pow(inner, 3));
+    moment += layer.material.density * (std::pow(layer.radius, 5) - std::pow(inner, 5));
+    inner = layer.radius;
+  }
+  return 0.4 * (moment / mass);
 }
 
 MeshedBall meshed(const FeBall& ball, const Ball& body, const mesh::MeridianOptions& options) {

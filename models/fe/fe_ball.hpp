@@ -24,6 +24,8 @@ struct FeBall {
   std::vector<std::string> faults() const;
   /// Young's modulus at an instant, of the stiffest measure that contact time follows: volume mean [Pa].
   double instant_young() const;
+  /// I / (m r^2) of the layers.
+  double inertia_factor() const;
 };
 
 /// The layers on a mesh that weighs what the ball weighs.

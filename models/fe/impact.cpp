@@ -18,9 +18,9 @@
 namespace hosel::models {
 namespace {
 
-/// None where the coefficient is zero.
+/// None where nothing holds, not even a point at rest.
 std::unique_ptr<const fem::FrictionLaw> friction_law(const PatchFriction& friction, double sticking) {
-  if (!(friction.coefficient > 0)) return nullptr;
+  if (!(friction.coefficient > 0 || (friction.at_rest && friction.at_rest->coefficient > 0))) return nullptr;
   if (friction.transition_speed)
     return std::make_unique<fem::RegularisedFriction>(friction.coefficient, *friction.transition_speed);
   if (friction.at_rest) return std::make_unique<fem::SlipWeakening>(friction.coefficient, *friction.at_rest, sticking);
@@ -101,9 +101,17 @@ void assemble_free(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o
     throw std::invalid_argument(
         "fe impact: harmonics = 0 is the axisymmetric ball: a blow with loft, offset or curved face needs harmonics of "
         "2 or more");
+  if (o.harmonics == 0 && head.face.bulge != head.face.roll)
+    throw std::invalid_argument(
+        "fe impact: harmonics = 0 is the axisymmetric ball: a face of unlike bulge and roll needs harmonics of 2 or "
+        "more");
   if (o.harmonics == 0 && (e.approach - e.normal_speed * e.normal).norm() > 1e-9 * e.normal_speed)
     throw std::invalid_argument("fe impact: harmonics = 0 is the axisymmetric ball: it cannot be struck obliquely");
   if (wall) {
+    if (!blow.delivery.head_angular_velocity.isZero(0))
+      throw std::invalid_argument(
+          "fe impact: a head of infinite mass is a wall that does not turn: leave its angular "
+          "velocity out");
     fem::SurfaceCarrier carrier;
     carrier.position = e.face_centre;
     carrier.attitude = e.face_axes;

@@ -20,7 +20,9 @@ class RigidFace final : public StruckFace {
 class LumpedFace final : public StruckFace {
  public:
   explicit LumpedFace(const FaceCompliance& face) : face_(face) {}
-  bool symmetric(Mirror mirror, const Face&) const override { return mirror != Mirror::none; }
+  bool symmetric(Mirror mirror, const Face&) const override {
+    return mirror != Mirror::none && face_.ellipse()(0, 1) == 0;
+  }
 
   FaceInSystem add(fem::System& system, const FaceBlow& struck) const override {
     const Head& head = struck.blow.club.head;

@@ -273,7 +273,8 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
     if (!(at >= 0 && at <= length_ + 1e-9)) throw std::invalid_argument("a sensor lies off the free shaft");
     using Quantity = BenchSensor::Quantity;
     if (sensor.quantity == Quantity::strain_lead || sensor.quantity == Quantity::strain_droop) {
-      // Strain of the fibre on the XG (YG) side: moment of what acts outboard, over EI, times the radius.
+      // Strain of the fibre on the XG (YG) side: moment of what acts outboard, over EI, times the radius. Local y is
+      // XG and local z is -YG: lead bends about z.
       const ShaftStation st = club.shaft->at(sensor.arc_length);
       const bool lead = sensor.quantity == Quantity::strain_lead;
       VectorXd g = VectorXd::Zero(n);
@@ -284,7 +285,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
         g.segment<3>(6 * i) = about.cross(Vec3(x + at * Vec3::UnitZ()));
         g.segment<3>(6 * i + 3) = about;
       }
-      read_[kBending].row(row) = st.outer_radius / (lead ? st.bending_stiffness_y : st.bending_stiffness_z) *
+      read_[kBending].row(row) = st.outer_radius / (lead ? st.bending_stiffness_z : st.bending_stiffness_y) *
                                  g.transpose() * W;
       continue;
     }

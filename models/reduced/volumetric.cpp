@@ -66,6 +66,7 @@ struct Setting {
   T ball_mass = 0, radius = 0, core_inertia = 0, cover_inertia = 0;
   T mass = 0, inverse_mass = 0, by = 0, bz = 0, curvature = 0, speed = 0;
   T face_mass = 0, face_stiffness = 0, face_damping = 0, shape_y = 0, shape_z = 0;  // of a yielding face
+  T shape_yz = 0;
   M3<T> to_global, inertia, inverse_inertia;
   V3<T> cg, cg_start, start_velocity, start_spin;
   V6<T> carried, held;  // the carrier's acceleration, and what it takes from the shaft
@@ -77,7 +78,7 @@ struct Setting {
     f(a.cover_inertia, b.cover_inertia), f(a.mass, b.mass), f(a.inverse_mass, b.inverse_mass), f(a.by, b.by);
     f(a.bz, b.bz), f(a.curvature, b.curvature), f(a.speed, b.speed), f(a.face_mass, b.face_mass);
     f(a.face_stiffness, b.face_stiffness), f(a.face_damping, b.face_damping), f(a.shape_y, b.shape_y);
-    f(a.shape_z, b.shape_z), f(a.to_global, b.to_global), f(a.inertia, b.inertia);
+    f(a.shape_z, b.shape_z), f(a.shape_yz, b.shape_yz), f(a.to_global, b.to_global), f(a.inertia, b.inertia);
     f(a.inverse_inertia, b.inverse_inertia), f(a.cg, b.cg), f(a.cg_start, b.cg_start);
     f(a.start_velocity, b.start_velocity), f(a.start_spin, b.start_spin), f(a.carried, b.carried), f(a.held, b.held);
   }
@@ -123,8 +124,10 @@ Setting<double> setting_of(const Blow& blow, const VolumetricLaw& law, const Sha
     s.face_mass = face->mass;
     s.face_stiffness = face->stiffness;
     s.face_damping = face->damping;
-    s.shape_y = 1 / (face->half_width * face->half_width);
-    s.shape_z = 1 / (face->half_height * face->half_height);
+    const Eigen::Matrix2d ellipse = face->ellipse();
+    s.shape_y = ellipse(0, 0);
+    s.shape_z = ellipse(1, 1);
+    s.shape_yz = ellipse(0, 1);
   }
   s.carried.setZero();
   s.held.setZero();
@@ -393,7 +396,7 @@ class Contact {
       // times travel and radius is a tenth at most.
       const T w = y[kFree];
       for (int round = 0; round <= 8; ++round) {
-        const PlateShape<T> moved(s_.shape_y, s_.shape_z, py, pz);
+        const PlateShape<T> moved(s_.shape_y, s_.shape_z, s_.shape_yz, py, pz);
         i.shape = moved.value;
         D = s.x() + 0.5 * (by * py * py + bz * pz * pz) + w * moved.value;
         ty = by * py + w * moved.slope_y;

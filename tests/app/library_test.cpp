@@ -192,6 +192,36 @@ TEST(Library, ASwungClubIsAskedAgainstWhatTheEntrySaw) {
   EXPECT_EQ(all_the_same.status, 0) << all_the_same.text;
 }
 
+/// A finite-element ball turns as its layers do: another factor that the case states would be that of another ball.
+TEST(Library, AnInertiaThatTheLayersDoNotHaveIsRefused) {
+  const fs::path dir = fresh_directory("library_inertia");
+  const std::string text = kBlow +
+                           "[head]\nname = \"driver-460\"\n[ball]\nmodel = \"two-piece\"\n[contact]\n"
+                           "face_friction = 0.3\n";
+  CaseFile file = case_of(dir, text);
+  Blow blow = read_blow(file.root(), {"fe-free-body"});
+  const double layers = read_options(file.root(), {"fe-free-body"}, blow).fe.ball.inertia_factor();
+  ASSERT_LT(layers, 0.393);
+  ASSERT_EQ(blow.ball.inertia_factor, 0.4) << "the library's, of which nothing is said";
+  const std::string said = refusal(dir, text, {"fe-free-body"}, {"ball.inertia_factor=0.44"});
+  EXPECT_NE(said.find("ball.inertia_factor: is 0.44, and the layers have 0.391"), std::string::npos) << said;
+  EXPECT_EQ(refusal(dir, text, {"fe-free-body"}, {"ball.inertia_factor=0.391"}), "");
+  EXPECT_EQ(refusal(dir, text, {"rigid-eccentric"}, {"ball.inertia_factor=0.44"}), "") << "no layers are asked";
+  EXPECT_EQ(refusal(dir, file.resolved(), {"fe-free-body"}), "");
+}
+
+/// The head of a swing is described in a frame turned about the face's normal: a lumped face turns with it, a plate
+/// cannot.
+TEST(Library, APlateInASwungBlowIsRefused) {
+  const fs::path dir = fresh_directory("library_swung_plate");
+  const std::string text = kBlow +
+                           "[head]\nname = \"driver-460\"\n[contact]\nface_friction = 0.3\n"
+                           "[face.plate]\nthickness = {map = \"constant\", value_mm = 2.8}\n";
+  EXPECT_EQ(refusal(dir, text, {"fe-free-body"}), "");
+  const std::string said = refusal(dir, text + "[motion]\nfile = \"grip.csv\"\n", {"fe-free-body"});
+  EXPECT_NE(said.find("face.plate: a swing turns the head about the face's normal"), std::string::npos) << said;
+}
+
 const std::string kContact = R"(what = "a driver's contact"
 [provenance]
 source = "a test"

@@ -81,12 +81,16 @@ struct Scene {
 };
 
 using MakeLaw = std::unique_ptr<const FrictionLaw> (*)();
-constexpr std::array<MakeLaw, 4> kLaws = {
+constexpr std::array<MakeLaw, 5> kLaws = {
     [] { return std::unique_ptr<const FrictionLaw>(); },
     [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<Coulomb>(0.01, 5e10)); },
     [] {
       return std::unique_ptr<const FrictionLaw>(
           std::make_unique<SlipWeakening>(0.005, StaticFriction{0.02, 2e-6}, 5e10));
+    },
+    [] {  // over more than a step slides
+      return std::unique_ptr<const FrictionLaw>(
+          std::make_unique<SlipWeakening>(0.001, StaticFriction{0.004, 2e-5}, 5e10));
     },
     [] { return std::unique_ptr<const FrictionLaw>(std::make_unique<RegularisedFriction>(0.3, 1)); }};
 /// Small, so that the patch lies where it bends.
@@ -108,14 +112,124 @@ TEST(Contact, Tangent) {
 /// Static friction until the point has slid; a third of what it has beyond sliding friction is left after the distance.
 TEST(Contact, FrictionFallsWithThePathThatAPointHasSlid) {
   const SlipWeakening law(0.1, {0.4, 2e-6}, 1e12);
-  const auto limit = [&](double path) {
-    return law.at({.pressure = 1e6, .stretch = {0, 1, 0}, .path = path}, false).traction.norm();
+  const auto coefficient = [](double path) { return 0.1 + 0.3 * std::exp(-path / 2e-6); };
+  // Of a step that slides so far beyond the limit at its start.
+  const auto over = [&](double path, double beyond) {
+    const Vec3 stretch(0, coefficient(path) * 1e6 / 1e12 + beyond, 0);
+    return law.at({.pressure = 1e6, .stretch = stretch, .path = path}, false);
   };
-  EXPECT_DOUBLE_EQ(limit(0), 0.4e6);
-  EXPECT_DOUBLE_EQ(limit(2e-6), (0.1 + 0.3 / std::exp(1.0)) * 1e6);
-  EXPECT_NEAR(limit(1e-3), 0.1e6, 1);
+  EXPECT_NEAR(over(0, 0).traction.norm(), 0.4e6, 1e-6);
+  EXPECT_NEAR(over(2e-6, 0).traction.norm(), (0.1 + 0.3 / std::exp(1.0)) * 1e6, 1e-6);
+  EXPECT_NEAR(over(1e-3, 0).traction.norm(), 0.1e6, 1);
+  EXPECT_FALSE(over(0, -1e-9).sliding);
+  // The mean over what it slides: two steps have the impulse of one of both, by Simpson's rule the integral's.
+  for (const double beyond : {1e-11, 1e-7, 3e-6, 1e-3}) {
+    ASSERT_TRUE(over(0, beyond).sliding);
+    const double whole = over(0, beyond).traction.norm() * beyond,
+                 parts = over(0, beyond / 3).traction.norm() * beyond / 3 +
+                         over(beyond / 3, 2 * beyond / 3).traction.norm() * 2 * beyond / 3;
+    EXPECT_NEAR(parts, whole, 1e-9 * whole);
+    if (beyond > 1e-5) continue;
+    const double integral = 1e6 * beyond / 6 * (coefficient(0) + 4 * coefficient(beyond / 2) + coefficient(beyond));
+    EXPECT_NEAR(whole, integral, 2e-3 * integral);  // the rule's (3 / 2)^4 / 2880 of 0.3
+  }
+  EXPECT_NEAR(over(0, 1e-3).traction.norm(), 0.1e6 * (1 + 3 * 2e-3), 1);
+  // A point that touches first: its pressure grows from zero along the slip.
+  for (const double beyond : {1e-8, 1e-6, 1e-5, 1e-3}) {
+    const Vec3 stretch(0, 0.4e-6 + beyond, 0);
+    const Friction first = law.at({.pressure = 1e6, .stretch = stretch, .step = stretch}, false);
+    double sum = 0;  // of coefficient times pressure over the slip, which is half of the pressure times the slip
+    constexpr int kParts = 20000;
+    for (int i = 0; i < kParts; ++i) sum += coefficient((i + 0.5) / kParts * beyond) * (i + 0.5) / kParts / kParts;
+    EXPECT_NEAR(first.traction.norm(), 2e6 * sum, 1e-4 * first.traction.norm()) << beyond;
+  }
   EXPECT_FALSE(SlipWeakening(0.1, {0.05, 2e-6}, 1e12).faults().empty());
   EXPECT_FALSE(SlipWeakening(0.1, {0.4, 0}, 1e12).faults().empty());
+}
+
+/// Derivatives of the mean over a step, where it slides a little and where it slides far.
+TEST(Contact, FrictionThatFallsWithinAStepHasItsDerivatives) {
+  const SlipWeakening law(0.1, {0.4, 2e-6}, 1e12);
+  const Vec3 along = Vec3(0, 0.6, 0.8);
+  for (const bool fresh : {false, true})
+    for (const double beyond : {1e-10, 1e-8, 1e-7, 2e-6, 1e-4}) {
+      Slip at{.pressure = 1e6, .path = 1e-6};
+      at.stretch = ((0.1 + 0.3 * std::exp(-0.5)) * 1e-6 + beyond) * along;
+      if (fresh) at.step = at.stretch;
+      const Friction f = law.at(at, true);
+      ASSERT_TRUE(f.sliding);
+      const double size = at.stretch.norm(), h = std::min(1e-4 * size, beyond / 2);
+      const auto change = [&](const Vec3& stretch, double pressure) -> Vec3 {
+        const auto moved = [&](double sign) {
+          Slip to = at;
+          to.stretch += sign * stretch;
+          if (fresh) to.step = to.stretch;
+          to.pressure += sign * pressure;
+          return law.at(to, false).traction;
+        };
+        return (moved(1) - moved(-1)) / 2;
+      };
+      for (const Vec3& d : {along, Vec3(0, -0.8, 0.6)}) {
+        const Vec3 slope = change(h * d, 0) / h;
+        EXPECT_LT((slope - f.by_stretch * d).norm(), 1e-4 * slope.norm()) << beyond;
+      }
+      const double step = h / size * at.pressure;
+      const Vec3 slope = change(Vec3::Zero(), step) / step;
+      EXPECT_LT((slope - f.by_pressure).norm(), 1e-4 * slope.norm()) << beyond;
+    }
+}
+
+/// What is reported of an accepted state is what its step was solved with, though the points have slid further since.
+TEST(Contact, AnAcceptedStateIsReportedAsItWasSolved) {
+  for (const NamedContactMethod& method : contact_methods()) {
+    Scene scene(false, std::make_unique<SlipWeakening>(0.001, StaticFriction{0.004, 2e-5}, 5e10), std::nullopt,
+                method.name);
+    Vector inertia = Vector::Zero(scene.system.dof_map.size()), force = inertia;
+    scene.contact->residual(scene.s, inertia, force);
+    const auto slid = [&] {
+      double sum = 0;
+      for (const ContactPoint& p : scene.contact->points(scene.s)) sum += p.slip;
+      return sum;
+    };
+    const double before = slid();
+    scene.contact->commit(scene.s);
+    ASSERT_GT(slid(), before + 1e-6);
+    const Vec3 solved = force.segment<3>(scene.x.v);
+    EXPECT_LT((scene.contact->report(scene.s).force - solved).norm(), 1e-9 * solved.norm());
+    Vec3 sum = Vec3::Zero();
+    for (const ContactPoint& p : scene.contact->points(scene.s)) sum += p.area * p.traction;
+    EXPECT_LT((sum - solved).norm(), 1e-9 * solved.norm());
+  }
+}
+
+/// A ball that meets a wall along its normal and hardly slides: friction that is regularised by velocity takes the work
+/// of the sliding alone, not of the approach.
+TEST(Contact, RegularisedFrictionWorksAlongTheSlipAlone) {
+  constexpr double kTime = 1e-5, kAcross = 0.01;
+  System system;
+  const Solid solid{.elastic = Hyperelastic::neo_hooke(Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
+  Mat3 axes;
+  axes << -1, 0, 0, 0, 1, 0, 0, 0, -1;
+  HarmonicSolid ball(system.dof_map,
+                     mesh::sphere_meridian({kRadius}, {.sector = 2, .rings = 2, .pole = .5, .skin = .5, .core = .4}),
+                     cartesian_basis(2, 1), {full_circle(10), 2}, {solid}, {Vec3::Zero(), axes});
+  SurfaceCarrier wall;
+  wall.position = Vec3(-kRadius - 1e-6, 0, 0);
+  Contact contact(ball, std::make_unique<FaceSurface>(Face{}), wall,
+                  {contact_method("penalty")->make(1e11, 1e-7), std::make_unique<RegularisedFriction>(0.3, 1e-3)},
+                  full_circle(14), Symmetry::none, 3);
+  State s = system.dof_map.rest();
+  contact.start(s);
+  ball.set_velocity(s, Vec3(-20, kAcross, 0), Vec3::Zero());
+  s.q = system.dof_map.advanced(s.q, kTime * s.v);
+  s.time = kTime;
+  contact.commit(s);
+  double most = 0;
+  for (const ContactPoint& p : contact.points(s)) most += p.area * (p.traction - p.push).norm() * kAcross * kTime;
+  ASSERT_GT(contact.report(s).points, 20);
+  ASSERT_GT(most, 0);
+  EXPECT_GT(contact.energies(s).friction, 0);
+  EXPECT_LE(contact.energies(s).friction, most);
 }
 
 /// Pressure is the gradient of the method's energy, by the surface's own unknown as by all others.

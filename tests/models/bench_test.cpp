@@ -114,6 +114,30 @@ TEST(Bench, BareUniformShaftIsTheCantileverOfBeamTheory) {
   EXPECT_NEAR(strain, -3 * 0.75 / 40 * 1e-3, 2e-3 * 3 * 0.75 / 40 * 1e-3);  // a point load is no sum of inertia forces
 }
 
+/// Lead bends the shaft about YG, which is local z, droop about XG, local y: strain is moment over that stiffness.
+TEST(Bench, StrainOfAShaftThatIsStifferOneWay) {
+  Club club;
+  club.shaft = composite_shaft({{0, 40, 40, 0.06, 1e-3}, {1, 40, 40, 0.06, 1e-3}});
+  for (ShaftStation& s : club.shaft->stations) s.bending_stiffness_z = 80;
+  using Quantity = BenchSensor::Quantity;
+  const Bench bench(
+      club, false, {.elements = 16, .shear = false},
+      {{Quantity::lead, 1.0}, {Quantity::strain_lead, 0.25}, {Quantity::droop, 1.0}, {Quantity::strain_droop, 0.25}});
+  const BenchModes m = bench.modes({}, 100);
+  // Pushed sideways at the tip with 3 N, along XG and along YG.
+  for (const int way : {0, 1}) {
+    double place = 0, strain = 0;
+    for (int k = 0; k < m.omega.size(); ++k) {
+      const double amplitude = 3 * m.tip(way, k) / (m.omega[k] * m.omega[k]);
+      place += m.sensors(2 * way, k) * amplitude;
+      strain += m.sensors(2 * way + 1, k) * amplitude;
+    }
+    const double stiffness = way == 0 ? 80 : 40, expected = 3 * 0.75 / stiffness * 1e-3;
+    EXPECT_NEAR(place, 3.0 / (3 * stiffness), 1e-5) << way;
+    EXPECT_NEAR(std::abs(strain), expected, 2e-3 * expected) << way;  // a point load is no sum of inertia forces
+  }
+}
+
 TEST(Bench, GravityAndTurningStiffenAsThePendulumOnASpring) {
   // A stiff, light stick of 1 m with a point mass, clamped softly about YG.
   Club club;

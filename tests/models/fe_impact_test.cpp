@@ -17,6 +17,8 @@
 
 #include "fem/materials/hyperelastic.hpp"
 #include "golf/units.hpp"
+#include "models/checked_launch.hpp"
+#include "solvers/errors.hpp"
 
 // Absent where the BLAS is not OpenBLAS, which opens as many threads as there are cores unless it is told otherwise.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -167,6 +169,87 @@ TEST(FeImpact, ObliqueBlowSpinsTheBallByTheMomentOfTheForce) {
   EXPECT_NEAR(out.launch.sidespin(), 0, 1e-6 * out.launch.backspin());
 }
 
+/// A ball thrown at a wall, which slides throughout.
+Blow thrown(const PatchFriction& friction) {
+  Blow blow = wall_blow(30);
+  blow.delivery.club_path = radians(35);
+  blow.contact.patch = friction;
+  return blow;
+}
+
+/// Static friction that is gone after a micrometre, of which a step slides a hundred: what it adds is its own, not that
+/// of a first step. What the records say of the force is what the ball felt.
+TEST(FeImpact, StaticFrictionOfAMicrometreDoesNotHangOnTheStep) {
+  std::vector<double> spins;
+  for (const int steps : {30, 120}) {
+    FeImpactOptions o = coarse(2);
+    o.penalty = 1000;
+    o.steps_per_contact = steps;
+    const double sliding = Impact(o).launch(thrown({.coefficient = 0.1})).spin_rate();
+    const double held = Impact(o).launch(thrown({.coefficient = 0.1, .at_rest = StaticFriction{0.6, 1}})).spin_rate();
+    ASSERT_GT(held, 1.3 * sliding) << "static friction that stays";
+    const Blow blow = thrown({.coefficient = 0.1, .at_rest = StaticFriction{0.6, 1e-6}});
+    Vec3 impulse = Vec3::Zero(), force = impulse;
+    double time = 0;
+    int slid = 0;
+    const FeOutcome out = Impact(o).run(blow, [&](const ImpactView& view) {
+      impulse += (view.state.time - time) / 2 * (force + view.report.force);
+      force = view.report.force, time = view.state.time;
+      for (const fem::ContactPoint& p : view.contact.points(view.state)) slid += p.slip > 5e-5;
+    });
+    ASSERT_GT(slid, 100);
+    spins.push_back(out.launch.spin_rate());
+    EXPECT_NEAR(spins.back(), sliding, 0.02 * sliding) << steps;
+    const double felt = blow.ball.mass * out.launch.velocity.y();
+    ASSERT_GT(std::abs(felt), 0.1);
+    // Forces enter the scheme with weights of its own: order h^2.
+    if (steps == 120) EXPECT_NEAR(impulse.y(), felt, 1e-3 * std::abs(felt));
+  }
+  EXPECT_NEAR(spins[0], spins[1], 0.01 * spins[1]);
+}
+
+/// No sliding friction is the limit of very little: what holds a point at rest is there in both.
+TEST(FeImpact, StaticFrictionHoldsWithoutSlidingFriction) {
+  FeImpactOptions o = coarse(2);
+  o.steps_per_contact = 30;
+  const auto spin = [&](double sliding) {
+    return Impact(o).launch(thrown({.coefficient = sliding, .at_rest = StaticFriction{0.6, 1e-3}})).spin_rate();
+  };
+  const double little = spin(1e-9);
+  ASSERT_GT(little, 100);
+  EXPECT_NEAR(spin(0), little, 1e-4 * little);
+}
+
+/// Two layers of unlike density: the inertia of the mesh is what the layers say, and the gate of energy counts the spin
+/// with it, whatever the blow's ball says.
+TEST(FeImpact, EnergyIsCountedWithTheInertiaOfTheMesh) {
+  FeImpactOptions o = coarse(2);
+  BallLayer core = o.ball.layers.front();
+  core.radius = 0.6;
+  core.material.density *= 6;
+  o.ball.layers.insert(o.ball.layers.begin(), core);
+  const Blow blow = wall_blow(30);
+  ASSERT_EQ(blow.ball.inertia_factor, 0.4);
+  const double meant = o.ball.inertia_factor(), mr2 = blow.ball.mass * blow.ball.radius * blow.ball.radius;
+  ASSERT_LT(meant, 0.3);
+  const Impact impact(o);
+  const ImpactBodies bodies = impact.assemble(blow);
+  const double meshed = bodies.ball->motion(bodies.system.dof_map.rest()).inertia.trace() / 3 / mr2;
+  EXPECT_NEAR(meshed, meant, 0.005 * meant);  // two rings
+  EXPECT_DOUBLE_EQ(coarse(2).ball.inertia_factor(), 0.4);
+  // The ball has the energy of the meeting: 0.7 of it in its flight off the wall, the rest in its spin.
+  Launch l;
+  l.velocity = Vec3(30 * (1 + std::sqrt(0.7)), 0, 0);
+  l.head_velocity = blow.delivery.velocity();
+  const auto spun = [&](double factor) {
+    l.spin = Vec3(0, 30 * std::sqrt(0.3 * blow.ball.mass / (factor * mr2)), 0);
+    return l;
+  };
+  EXPECT_NO_THROW(check_launch(impact, blow, spun(1.01 * meant)));
+  EXPECT_THROW(check_launch(impact, blow, spun(0.95 * meant)), solvers::NonConvergence);
+  EXPECT_THROW(check_launch(Impact(coarse(2)), blow, spun(1.01 * meant)), solvers::NonConvergence);
+}
+
 /// The contact ends between two steps: how many there are hardly moves its end. Read at whole steps it jumps by up to
 /// one, 2.3 % here.
 TEST(FeImpact, ContactEndsBetweenTheSteps) {
@@ -309,6 +392,17 @@ TEST(FeImpact, MultipliersGoOnFromACheckpointToTheSameBits) {
 
 TEST(FeImpact, RefusesWhatItCannotDo) {
   EXPECT_THROW(Impact(coarse(0)).run(iron_blow()), std::invalid_argument);
+  // One angle of a face that is curved one way alone is not its face; a wall that turns is none.
+  Blow ridge = wall_blow(20);
+  ridge.club.head.face = {.bulge = 0.02, .roll = 0.02};
+  EXPECT_NO_THROW(Impact(coarse(0)).assemble(ridge));
+  ridge.club.head.face.roll = INFINITY;
+  EXPECT_NO_THROW(Impact(coarse(2)).assemble(ridge));
+  EXPECT_THROW(Impact(coarse(0)).assemble(ridge), std::invalid_argument);
+  Blow turning = wall_blow(20);
+  EXPECT_NO_THROW(Impact(coarse(2)).assemble(turning));
+  turning.delivery.head_angular_velocity = Vec3(0, 0, 50);
+  EXPECT_THROW(Impact(coarse(2)).assemble(turning), std::invalid_argument);
   FeImpactOptions o = coarse(2);
   o.penalty = 0;
   EXPECT_THROW(Impact{o}, std::invalid_argument);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kElements = 12;
 constexpr double kGrowth = 0.9;
 
-struct SwingEnd {
+struct SwingTaken {
   Club club = test::driver_club();
   std::vector<SwingSample> samples;
   LoadedShaft loaded;      // half a millisecond before the end
@@ -22,8 +22,8 @@ struct SwingEnd {
 };
 
 /// The test's swing to t = 0, its club taken over at -0.5 ms.
-SwingEnd swing_end(double lie = 0, const HeadJoint& joint = {}) {
-  SwingEnd out;
+SwingTaken taken_swing(double lie = 0, const HeadJoint& joint = {}) {
+  SwingTaken out;
   out.club = turned_about_normal(out.club, lie);
   const GripMotion grip(test::swing_track(), 0);
   Swing swing(out.club, {.elements = kElements, .growth = kGrowth, .step = 2.5e-4, .tolerance = 1e-9, .joint = joint},
@@ -83,10 +83,10 @@ struct Flight {
 };
 
 TEST(LoadedShaft, InATurnedFaceFrameTheDeliveryIsTheWholePose) {
-  const SwingEnd level = swing_end();
+  const SwingTaken level = taken_swing();
   const double lie = dynamic_lie(level.from.head);
   EXPECT_GT(std::abs(lie), radians(0.5));
-  const SwingEnd end = swing_end(lie);
+  const SwingTaken end = taken_swing(lie);
   EXPECT_NEAR(end.from.lead, level.from.lead, 1e-9);
   EXPECT_LT((end.from.head.position - level.from.head.position).norm(), 1e-9);
   const Delivery d = delivery_of(end.from.head);
@@ -100,7 +100,7 @@ TEST_P(LoadedJoint, TheSwingGoesOnUnderEveryGrip) {
   // Taken over half a millisecond before the end and let fly under the grip's own motion or wrench, head and shaft
   // arrive where the swing itself does.
   const HeadJoint joint{.kind = GetParam()};
-  const SwingEnd end = swing_end(dynamic_lie(swing_end(0, joint).from.head), joint);
+  const SwingTaken end = taken_swing(dynamic_lie(taken_swing(0, joint).from.head), joint);
   if (joint.gives()) {
     ASSERT_GT(Eigen::AngleAxisd(end.loaded.nodes.back().rotation).angle(), radians(3)) << "the hinge has turned";
   }
@@ -169,7 +169,7 @@ TEST(LoadedShaft, ASteadyShaftStaysAsItIsOnItsHead) {
 }
 
 TEST(LoadedShaft, RefusesAnotherMesh) {
-  const SwingEnd end = swing_end();
+  const SwingTaken end = taken_swing();
   Blow blow{.delivery = delivery_of(end.from.head), .club = end.club, .ball = {}, .contact = {}};
   const ShaftMount mount{.elements = kElements + 1, .loaded = end.loaded};
   EXPECT_THROW(Impact(FeImpactOptions{}, mount).assemble(blow), std::invalid_argument);

@@ -114,6 +114,28 @@ TEST(Swing, WhatTheShaftCarriesAtTheGripIsTheHandsWrench) {
   EXPECT_LT(moment_error, 0.02 * bend);
 }
 
+/// Springs that hardly give hold the club with the wrench of the motion that they follow.
+TEST(Swing, StiffHandsHoldWithThePrescribedWrench) {
+  const SwingOptions options{.elements = 10, .step = 5e-4};
+  const double begin = -0.3;
+  fem::JointStiffness firm;
+  firm.translation = Vec3::Constant(1e6);
+  firm.rotation = Vec3::Constant(1e5);
+  firm.translation_damping = Vec3::Constant(1000);
+  firm.rotation_damping = Vec3::Constant(50);
+  Swing driven(driver_club(), options, {.motion = motion()}),
+      held(driver_club(), options, {.kind = GripDrive::Kind::hands, .motion = motion(), .hands = firm});
+  const fem::State from = driven.start(begin, driven.equilibrium(begin));
+  SwingSample exact, by_hands;
+  driven.run(from, 0, [&](const SwingSample& x) { exact = x; });
+  held.run(from, 0, [&](const SwingSample& x) { by_hands = x; });
+  ASSERT_GT(exact.force.norm(), 200);
+  ASSERT_GT(exact.moment.norm(), 2);
+  EXPECT_GT((by_hands.grip.position - exact.grip.position).norm(), 1e-4);  // they give
+  EXPECT_LT((by_hands.force - exact.force).norm(), 0.05 * exact.force.norm());
+  EXPECT_LT((by_hands.moment - exact.moment).norm(), 0.05 * exact.moment.norm());
+}
+
 TEST(Swing, TheHandsWrenchFedBackReproducesTheGrip) {
   const double step = 2.5e-4;
   Swing driven(driver_club(), {.elements = 10, .step = step}, {.motion = motion()});

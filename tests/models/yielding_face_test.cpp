@@ -10,6 +10,8 @@
 #include "fem/yielding_face.hpp"
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
+#include "models/club/swing_end.hpp"
+#include "models/reduced/volumetric.hpp"
 #include "tests/support/coarse_impact.hpp"
 #include "tests/support/two_masses.hpp"
 
@@ -170,6 +172,54 @@ TEST(YieldingFace, RigidIsItsLimit) {
   ASSERT_GT(b.peak_force, 5e3);
   EXPECT_LT((a.velocity - b.velocity).norm(), 1e-8 * b.velocity.norm());
   EXPECT_LT((a.spin - b.spin).norm(), 1e-7 * b.spin.norm());
+}
+
+/// An elliptic face keeps its axes in the head: where it was struck it yields as before, whatever frame describes it.
+TEST(YieldingFace, ATurnedFaceYieldsWhereItDid) {
+  const double lie = radians(4.19);
+  Blow blow;
+  blow.club = test::driver_club();
+  Head& head = blow.club.head;
+  head.face = {.bulge = 0.3, .roll = 0.3};
+  head.compliance = {.mass = 0.01, .stiffness = 8e6, .half_width = 0.045, .half_height = 0.028};
+  blow.delivery = {.club_speed = 45, .impact_toe = 0.02, .impact_high = 0.008};
+  Blow turned = blow;
+  turned.club = turned_about_normal(blow.club, lie);
+  turn_place(lie, turned.delivery);
+  const auto shape = [](const FaceCompliance& face, const Delivery& d) {
+    return face.shape(-d.impact_toe, d.impact_high);
+  };
+  const FaceCompliance before = *head.compliance, after = *turned.club.head.compliance;
+  const double meant = shape(before, blow.delivery).value;
+  ASSERT_GT(std::abs(shape(before, turned.delivery).value - meant), 0.01) << "the turn matters there";
+  EXPECT_NEAR(shape(after, turned.delivery).value, meant, 1e-12);
+  const FaceCompliance::Shape s = shape(after, turned.delivery);
+  const double y = -turned.delivery.impact_toe, z = turned.delivery.impact_high, h = 1e-6;
+  for (int k = 0; k < 2; ++k) {
+    const auto more = after.shape(y + (k == 0) * h, z + (k == 1) * h),
+               less = after.shape(y - (k == 0) * h, z - (k == 1) * h);
+    EXPECT_NEAR(s.slope[k], (more.value - less.value) / (2 * h), 1e-6 * s.slope.norm());
+    EXPECT_LT((s.second.col(k) - (more.slope - less.slope) / (2 * h)).norm(), 1e-6 * s.second.norm());
+  }
+  // The blow along the normal is the same one, seen from a frame turned about it.
+  const Mat3 turn = Eigen::AngleAxisd(-lie, Vec3::UnitX()).toRotationMatrix();
+  FeImpactOptions coarse;
+  coarse.harmonics = 2;
+  coarse.mesh = {.sector = 2, .rings = 2, .pole = 0.5, .skin = 0.6, .core = 0.4};
+  coarse.penalty = 200;
+  coarse.steps_per_contact = 30;
+  const Volumetric reduced(VolumetricLaw::published_driver());
+  const Impact meshed(coarse);
+  for (const ImpactModel* model :
+       {static_cast<const ImpactModel*>(&reduced), static_cast<const ImpactModel*>(&meshed)}) {
+    const Launch a = model->launch(blow), b = model->launch(turned);
+    Blow unturned = turned;
+    unturned.club.head.compliance = before;
+    const Vec3 off = model->launch(unturned).velocity - turn * a.velocity;
+    ASSERT_GT(off.norm(), 1e-4 * a.ball_speed());
+    EXPECT_LT((b.velocity - turn * a.velocity).norm(), 0.02 * off.norm());
+    EXPECT_LT((b.spin - turn * a.spin).norm(), 1e-3 * a.spin_rate());
+  }
 }
 
 }  // namespace
