@@ -55,6 +55,10 @@ AskedModel::AskedModel(const std::string& where, const std::string& name, const 
     root.fail("motion",
               "a swing delivers the club here, and a model is asked about stated deliveries: hosel.run answers this "
               "case, hosel.Study varies its keys");
+  if (root.has("matched_launch") && root.flag({"matched_launch"}, false))
+    root.fail("matched_launch",
+              "the loft of each blow would be sought, and a model is asked about stated deliveries: hosel.run answers "
+              "this case");
   CaseFile whole(file_, overrides);
   read_job(whole);
   if (name_.empty()) name_ = read_models(root).front();
@@ -84,7 +88,7 @@ const AskedModel::Set& AskedModel::set_for(const Blow& blow) const {
   const std::lock_guard lock(mutex_);
   if (const auto it = sets_.find(called); it != sets_.end()) return *it->second;
   Blow made = blow_;
-  made.contact = read_contact(root);
+  made.contact = read_contact(root, {name_});
   const models::Options options = read_options(root, {name_}, made);
   return *(sets_[called] = std::make_unique<const Set>(made.contact, models::find(name_)->make(options)));
 }

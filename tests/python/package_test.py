@@ -66,6 +66,12 @@ class Launches(unittest.TestCase):
         with self.assertRaisesRegex(hosel.InputError, "motion: a swing delivers the club here.*hosel.run"):
             hosel.Model("loaded-club/blow", "shaft-coupled")
 
+    def test_a_loft_that_is_sought_is_refused(self):
+        sought = ["matched_launch=true", "measured.launch_angle_deg=12"]
+        self.assertTrue(hosel.check("driver-toe", set=sought)["matched_launch"])  # the case itself is whole
+        with self.assertRaisesRegex(hosel.InputError, "matched_launch: the loft of each blow"):
+            hosel.Model("driver-toe", "rigid-eccentric", set=sought)
+
     def test_what_is_stable_is_what_is_offered(self):
         page = Path(__file__).resolve().parents[2] / "docs" / "stability.md"
         row = next(line for line in page.read_text().splitlines() if "`hosel.__all__`" in line)
