@@ -474,8 +474,8 @@ class Audit {
     std::vector<Eigen::Index> rows = complete(target, everything);
     if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
     constexpr std::size_t most = 400;
-    if (const std::size_t all = rows.size(); all > most) {  // in the order of their values: evenly, not the first
-      for (std::size_t k = 0; k < most; ++k) rows[k] = rows[k * all / most];
+    if (const std::size_t count = rows.size(); count > most) {  // in the order of their values: evenly, not the first
+      for (std::size_t k = 0; k < most; ++k) rows[k] = rows[k * count / most];
       rows.resize(most);
     }
     const auto n = std::ptrdiff_t(rows.size());
