@@ -13,6 +13,7 @@
 
 #include "golf/dense.hpp"
 #include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 #include "loop/shots/predictable.hpp"
 #include "loop/shots/relations.hpp"
 

@@ -12,6 +12,7 @@
 #include "golf/dense.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
 #include "models/rigid/rigid_eccentric.hpp"

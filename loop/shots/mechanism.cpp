@@ -6,6 +6,7 @@
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "golf/units.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {

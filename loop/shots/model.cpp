@@ -8,6 +8,7 @@
 
 #include "golf/dense.hpp"
 #include "golf/quantities.hpp"
+#include "loop/rules.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
 #include "solvers/errors.hpp"
 

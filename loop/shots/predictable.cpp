@@ -12,6 +12,8 @@
 #include <set>
 
 #include "golf/dense.hpp"
+#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {

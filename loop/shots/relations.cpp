@@ -12,6 +12,7 @@
 
 #include "golf/vector.hpp"
 #include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {

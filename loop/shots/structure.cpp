@@ -9,6 +9,7 @@
 #include <set>
 
 #include "loop/result.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
