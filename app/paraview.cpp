@@ -42,7 +42,7 @@ void open_in_paraview(const fs::path& out) {
   }
   fmt::print("{}\n", fmt::join(folders, "\n"));
   std::fflush(stdout);
-  setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, ":")).c_str(), 1);
+  setenv("HOSEL_VTK", fmt::format("{}", fmt::join(folders, "\n")).c_str(), 1);
   const std::string argument = "--script=" + shipped("post/paraview/open.py", "paraview/open.py").string();
   execl(program.c_str(), program.c_str(), argument.c_str(), static_cast<char*>(nullptr));
   throw std::runtime_error("ParaView could not be started");

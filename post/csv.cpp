@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
+#include <cstdlib>
 
 #include "post/file.hpp"
 
@@ -118,11 +118,11 @@ Sheet parse_csv(std::string text, const std::string& name) {
 
 std::optional<double> number(const std::string& cell) {
   const char* begin = cell.data();
-  if (*begin == '+') ++begin;
+  if (*begin == '+' && *++begin == '-') return {};
   double x = 0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (end != cell.data() + cell.size() || begin == end) return {};
-  if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+  if (error == std::errc::result_out_of_range) return std::strtod(begin, nullptr);  // zero or infinite, with its sign
   return error == std::errc() ? std::optional(x) : std::nullopt;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "golf/units.hpp"
 #include "post/labels.hpp"
@@ -13,8 +12,6 @@
 
 namespace hosel::post {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using OfLaunch = std::function<std::optional<double>(const Launch&)>;
 
@@ -76,7 +73,7 @@ std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const Co
     for (const MapQuantity& q : map_quantities(maps[m])) columns.push_back(column(m, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
       out.add(maps[m].title, 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
-      for (const auto& c : columns) out.more(if_finite(c.empty() ? kNone : c[p]));
+      for (const auto& c : columns) out.more(if_finite(c.empty() ? kNaN : c[p]));
     }
   }
   return out.csv();
@@ -96,7 +93,7 @@ std::vector<double> values(const FaceMap& map, const MapQuantity& q) {
   out.reserve(map.launches.size());
   for (std::size_t p = 0; p < map.launches.size(); ++p) {
     const auto x = q.value(map, p);
-    out.push_back(x ? *x / q.si : kNone);
+    out.push_back(x ? *x / q.si : kNaN);
   }
   if (nowhere(out)) out.clear();
   return out;

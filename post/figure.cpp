@@ -162,7 +162,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     // A field that is constant to round-off is shown as one colour, not as noise.
     const double size = std::max(std::abs(low), std::abs(high));
     if (p.map_symmetric) {
-      high = size > 1e-9 ? size : 1;
+      high = size > 1e-9 && std::isfinite(size) ? size : 1;
       low = -high;
     } else if (!(high - low > 1e-9 * size)) {
       low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;

@@ -147,7 +147,8 @@ std::string json_for_viewer(const MovingBlow& blow) {
   for (const MovingBlow::Instant& i : blow.frames.front().bodies)
     words += i.place.size() + i.stress.size() + i.pressure.size();
   std::size_t every = 1;
-  while (blow.frames.size() / every * words * 2 * 4 / 3 > kMost && every < blow.frames.size()) every *= 2;
+  const auto kept = [&] { return (blow.frames.size() + every - 1) / every; };
+  while (kept() * words * 2 * 4 / 3 > kMost && kept() > 1) every *= 2;
   std::vector<const MovingBlow::Frame*> frames;
   for (std::size_t i = 0; i < blow.frames.size(); i += every) frames.push_back(&blow.frames[i]);
 

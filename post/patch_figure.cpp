@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace hosel::post {
 namespace fs = std::filesystem;
@@ -19,7 +20,8 @@ PatchHistory read_patch(const fs::path& vtk, const Mat3& ball_axes, const Mat3& 
   std::vector<fs::path> frames;
   for (const auto& entry : fs::directory_iterator(vtk / "patch"))
     if (entry.path().extension() == ".vtp") frames.push_back(entry.path());
-  std::ranges::sort(frames);
+  // By their number: five digits stand behind four.
+  std::ranges::sort(frames, {}, [](const fs::path& f) { return std::pair(f.native().size(), f.native()); });
 
   struct Frame {
     double time;

@@ -199,6 +199,13 @@ std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, co
   return out;
 }
 
+std::vector<NamedFigure> mass_figures(const FaceGrid& g, const std::vector<double>& mass) {
+  return {{"equivalent_head_mass_centre_g", 1e3 * at(g, mass, 0, 0)},
+          {"equivalent_head_mass_mean_g", 1e3 * mean(mass)},
+          {"equivalent_head_mass_min_g", 1e3 * std::ranges::min(mass)},
+          {"equivalent_head_mass_max_g", 1e3 * std::ranges::max(mass)}};
+}
+
 double mirror_error(const FaceGrid& g, const FaceMap& map) {
   struct Kept {
     std::function<double(const Launch&)> value;
@@ -227,24 +234,6 @@ double mirror_error(const FaceGrid& g, const FaceMap& map) {
   compare({{[](const Launch& l) { return l.launch_angle(); }, 1}, {[](const Launch& l) { return l.azimuth(); }, -1}});
   compare({{[](const Launch& l) { return l.backspin(); }, 1}, {[](const Launch& l) { return l.sidespin(); }, -1}});
   return worst;
-}
-
-std::vector<std::size_t> coarse_points(const FaceGrid& g) {
-  std::vector<std::size_t> out;
-  for (const int j : {0, (g.rows - 1) / 2, g.rows - 1})
-    for (const int i : {0, (g.columns - 1) / 2, g.columns - 1}) out.push_back(std::size_t(j * g.columns + i));
-  return out;
-}
-
-FaceGrid coarse(const FaceGrid& g) { return {g.width, g.height, 3, 3}; }
-
-FaceMap coarse(const FaceGrid& g, const FaceMap& map) {
-  FaceMap out{.title = map.title, .launches = {}, .distances = map.distances};
-  for (const std::size_t p : coarse_points(g)) {
-    out.launches.push_back(map.launches[p]);
-    if (!map.flights.empty()) out.flights.push_back(map.flights[p]);
-  }
-  return out;
 }
 
 }  // namespace hosel::post

@@ -26,15 +26,12 @@ std::vector<std::string> shaft_effect_names();
 /// taken linear in 1/M, which is exact for one impulse with a fixed restitution.
 std::vector<double> equivalent_mass(const FaceMap& club, const FaceMap& free, const FaceMap& heavier, double mass,
                                     double extra);
+/// Such masses in figures: at the face's centre, mean, least and most.
+std::vector<NamedFigure> mass_figures(const FaceGrid& grid, const std::vector<double>& mass);
 
 /// How far a map is from its own mirror image heel to toe: the largest difference of a quantity that a
 /// mirror keeps (ball speed, launch angle, backspin) or turns round (azimuth, sidespin), relative to
 /// the largest value of its kind in the map. Zero for a symmetric head struck squarely.
 double mirror_error(const FaceGrid& grid, const FaceMap& map);
-
-/// The map at its corners, edge middles and centre, as a 3 x 3 grid of the same size.
-FaceMap coarse(const FaceGrid& grid, const FaceMap& map);
-std::vector<std::size_t> coarse_points(const FaceGrid& grid);
-FaceGrid coarse(const FaceGrid& grid);
 
 }  // namespace hosel::post

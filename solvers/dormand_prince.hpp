@@ -45,14 +45,17 @@ class DormandPrince {
       rate_(from_.y, from_.slope, piece_);
     }
     for (;;) {
-      const double h = std::min(next_, latest - from_.t);
+      const bool last = next_ >= latest - from_.t;
+      const double h = last ? latest - from_.t : next_;
       if (!(h > 1e-13 * std::max(1.0, from_.t)))
         throw NonConvergence("Dormand and Prince: the step has shrunk to nothing");
       const double error = take(h);
       // Of the fifth order; a margin, and no jumps. What is not finite fails.
       const double change = std::isfinite(error) ? 0.9 * std::pow(std::max(error, 1e-10), -0.2) : 0;
       next_ = h * std::clamp(change, 0.2, error <= 1 ? 5.0 : 0.9);
-      if (error <= 1) break;
+      if (!(error <= 1)) continue;
+      if (last) to_.t = latest;  // the sum of start and step may miss it by rounding
+      break;
     }
     ++steps;
     stop_at_corner();
@@ -90,7 +93,8 @@ class DormandPrince {
     for (std::size_t i = 0; i < N; ++i) {
       const double size = std::max(std::abs(from_.y[i]), std::abs(to_.y[i]));
       const double e = std::abs(error[i]) / (relative_ * size + absolute_[i]);
-      if (!(e <= most)) most = e;  // NaN stays
+      if (std::isnan(e)) return e;
+      most = std::max(most, e);
     }
     return most;
   }

@@ -51,7 +51,8 @@ struct Ledger {
   double strain_total() const;
 };
 
-/// All that a run needs to go on exactly where it was.
+/// All that a run needs to go on where it was: exactly, unless it foresees accelerations (`predict_acceleration`),
+/// whose first step then begins from another guess.
 struct Checkpoint {
   fem::State state;
   Vector auxiliary;

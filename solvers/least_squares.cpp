@@ -119,7 +119,8 @@ std::optional<Minimum> minimise(const LeastSquares& problem, const Eigen::Vector
   how.function_tolerance = until.cost;
   how.parameter_tolerance = until.parameters;
   how.logging_type = ceres::SILENT;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // its warnings come all the same; the summary says what failed
+  // Its warnings come all the same; the summary says what failed.
+  [[maybe_unused]] static const int quiet = FLAGS_minloglevel = google::GLOG_FATAL;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &search, &summary);
   if (!summary.IsSolutionUsable()) return {};
@@ -172,11 +173,13 @@ Identifiability identifiability(const Eigen::MatrixXd& whitened, const std::vect
   Eigen::VectorXd scale(n);
   for (int i = 0; i < n; ++i) scale[i] = bounds[i].scale;
   const Eigen::MatrixXd scaled = whitened * scale.asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV);
+  const Eigen::VectorXd& strength = svd.singularValues();  // of no more directions than there are data
   Identifiability out;
   for (int k = 0; k < n; ++k)
-    if (!(svd.singularValues()[k] > 1)) out.blind.push_back(svd.matrixV().col(k));  // sd above the bounds' distance
-  const Eigen::MatrixXd spread = covariance(scaled, 1e-12 * svd.singularValues()[0]);
+    if (!(k < strength.size() && strength[k] > 1))
+      out.blind.push_back(svd.matrixV().col(k));  // sd above the bounds' distance
+  const Eigen::MatrixXd spread = covariance(scaled, 1e-12 * strength[0]);
   out.sd = spread.diagonal().cwiseSqrt().cwiseProduct(scale);
   out.correlation = Eigen::MatrixXd::Identity(n, n);
   for (int i = 0; i < n; ++i)
@@ -191,7 +194,7 @@ Identifiability identifiability(const Eigen::MatrixXd& whitened, const std::vect
   for (int i = 0; i < n; ++i)
     if (const double length = unit.col(i).norm(); length > 0) unit.col(i) /= length;
   const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(unit).singularValues();
-  out.condition = values[n - 1] > 0 ? values[0] / values[n - 1] : INFINITY;
+  out.condition = values.size() == n && values[n - 1] > 0 ? values[0] / values[n - 1] : INFINITY;
   return out;
 }
 

@@ -181,14 +181,6 @@ void SparseTangent::add_all(const std::vector<std::vector<Index>>& equations,
   });
 }
 
-Vector SparseTangent::multiply(const Vector& x) const {
-  Vector y = Vector::Zero(size());
-  for (std::size_t c = 0; c < free_.size(); ++c)
-    for (int k = starts_[c]; k < starts_[c + 1]; ++k)
-      y[rows_[static_cast<std::size_t>(k)]] += values_[static_cast<std::size_t>(k)] * x[static_cast<Index>(c)];
-  return y;
-}
-
 double SparseTangent::round_off(const fem::System& system, const fem::State& state) const {
   Vector size = Vector::Ones(system.dof_map.size());
   for (const auto& b : system.dof_map.blocks())

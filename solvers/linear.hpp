@@ -41,7 +41,6 @@ class SparseTangent final : public fem::TangentSink {
   /// On all cores, each with columns of its own: sums do not depend on how many there are.
   void add_all(const std::vector<std::vector<Index>>& equations, const std::vector<Eigen::MatrixXd>& blocks) override;
 
-  Vector multiply(const Vector& reduced) const;
   /// Norm of the residual that round-off alone may leave: eps | |A| |x| |, with x the configuration's
   /// numbers (1 for rotations).
   double round_off(const fem::System& system, const fem::State& state) const;

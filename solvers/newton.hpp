@@ -58,7 +58,6 @@ class Newton {
   Newton(const fem::System& system, SparseTangent& tangent, NewtonOptions options);
   NewtonReport solve(const NewtonProblem& problem);
   void forget() { factors_.forget(); }  ///< the next solve assembles afresh
-  Factorisation& factors() { return factors_; }
 
  private:
   SparseTangent& tangent_;

@@ -22,15 +22,6 @@ bool whole(const post::FaceMap& map) {
 }
 
 /// Of the equivalent head mass [kg] over a grid.
-std::vector<post::NamedFigure> mass_figures(const std::vector<double>& mass, std::size_t centre) {
-  double sum = 0;
-  for (const double x : mass) sum += x;
-  return {{"equivalent_head_mass_centre_g", 1e3 * mass[centre]},
-          {"equivalent_head_mass_mean_g", 1e3 * sum / double(mass.size())},
-          {"equivalent_head_mass_min_g", 1e3 * std::ranges::min(mass)},
-          {"equivalent_head_mass_max_g", 1e3 * std::ranges::max(mass)}};
-}
-
 /// Of an effect's figures, those that a page begins with.
 constexpr std::array<std::string_view, 6> kAnswers = {"ball_speed_gain_centre_mps",  "ball_speed_gain_mean_mps",
                                                       "sidespin_difference_toe_rpm", "sidespin_difference_heel_rpm",
@@ -63,8 +54,7 @@ class FaceReport {
     layer.figures = post::shaft_effect(grid_, layer.map, reference.map);
     if (extra > 0 && whole(reference.heavier)) {
       const auto mass = post::equivalent_mass(layer.map, reference.map, reference.heavier, reference.head.mass, extra);
-      for (post::NamedFigure& f : mass_figures(mass, post::coarse_points(grid_)[4]))
-        layer.figures.push_back(std::move(f));
+      for (post::NamedFigure& f : post::mass_figures(grid_, mass)) layer.figures.push_back(std::move(f));
       std::vector<double> grams;
       for (const double x : mass) grams.push_back(1e3 * x);
       const std::string label = "equivalent extra head mass [g]";
@@ -239,7 +229,8 @@ std::vector<FaceLayer> face_layers(const StudyTable& table, const std::vector<js
 std::vector<std::string> face_figure_names(bool with_mass) {
   std::vector<std::string> names = post::shaft_effect_names();
   if (with_mass)
-    for (const post::NamedFigure& f : mass_figures({0}, 0)) names.push_back(f.name);
+    for (const post::NamedFigure& f : post::mass_figures({.columns = 2, .rows = 2}, {0, 0, 0, 0}))
+      names.push_back(f.name);
   return names;
 }
 

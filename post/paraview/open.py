@@ -1,7 +1,7 @@
 """Opens every series of a run: warped by its displacement, the ball coloured by stress and in the middle of the view, the
 face of a map by the ball's speed.
 
-`hosel open OUT` starts ParaView with it. HOSEL_VTK names the folders of series, separated by colons.
+`hosel open OUT` starts ParaView with it. HOSEL_VTK names the folders of series, one a line.
 """
 import glob
 import os
@@ -10,7 +10,7 @@ from paraview.simple import *  # noqa: F403  (the way ParaView scripts are writt
 
 view = GetActiveViewOrCreate("RenderView")
 opened = []
-for folder in os.environ["HOSEL_VTK"].split(":"):
+for folder in os.environ["HOSEL_VTK"].split("\n"):
     for path in sorted(glob.glob(os.path.join(folder, "*.pvd"))):
         name = os.path.splitext(os.path.basename(path))[0]
         source = PVDReader(registrationName=name, FileName=path)

@@ -139,6 +139,16 @@ TEST(LeastSquares, BlindDirectionIsNamed) {
   EXPECT_GT(known.sd[0], 2);
 }
 
+TEST(LeastSquares, FewerDataThanParametersLeaveDirectionsBlind) {
+  const Eigen::MatrixXd one{{3.0, 0.0}};
+  const auto known = solvers::identifiability(one, {{0, 2}, {0, 2}});
+  ASSERT_EQ(known.blind.size(), 1u);
+  EXPECT_NEAR(std::abs(known.blind[0][1]), 1, 1e-12);
+  EXPECT_NEAR(known.sd[0], 1 / 3.0, 1e-12);
+  EXPECT_TRUE(std::isinf(known.sd[1]));
+  EXPECT_TRUE(std::isinf(known.condition));
+}
+
 // ---- the kinds, end to end
 
 std::filesystem::path scratch(const char* name) {

@@ -203,7 +203,7 @@ TEST(FeImpact, StaticFrictionOfAMicrometreDoesNotHangOnTheStep) {
     const double felt = blow.ball.mass * out.launch.velocity.y();
     ASSERT_GT(std::abs(felt), 0.1);
     // Forces enter the scheme with weights of its own: order h^2.
-    if (steps == 120) EXPECT_NEAR(impulse.y(), felt, 1e-3 * std::abs(felt));
+    if (steps == 120) { EXPECT_NEAR(impulse.y(), felt, 1e-3 * std::abs(felt)); }
   }
   EXPECT_NEAR(spins[0], spins[1], 0.01 * spins[1]);
 }

@@ -32,6 +32,15 @@ TEST(Table, WritesRfc4180WithEachColumnsOwnDigits) {
             "'=1+1,,3,\n");
 }
 
+TEST(Csv, ANumberKeepsItsSignAndHasOne) {
+  EXPECT_EQ(number("+5"), 5.0);
+  EXPECT_EQ(number("1e-400"), 0.0);
+  EXPECT_EQ(number("-1e400"), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(number("1e400"), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(number("+-5"));
+  EXPECT_FALSE(number("+"));
+}
+
 TEST(Table, TheStrictReaderReadsWhatItWrites) {
   const Sheet sheet = parse_csv(of_every_sort().csv(), "written");
   ASSERT_EQ(sheet.rows(), 2U);

@@ -59,6 +59,20 @@ TEST(DormandPrince, StopsAtACorner) {
   EXPECT_LT(5 * told, blind);
 }
 
+TEST(DormandPrince, EndsWhereItIsAsked) {
+  using State = std::array<double, 1>;
+  auto s = solver_of<1>([](const State& y, State& dy, long) { dy[0] = -y[0]; }, kSmooth, 1e-5);
+  int rounded = 0;
+  for (int k = 1; k <= 2000; ++k) {
+    const double latest = 1.5e-4 * k;
+    s.start(0, {1}, 1e-3);
+    while (s.time() < latest) ASSERT_NO_THROW(s.step(latest)) << latest;
+    ASSERT_EQ(s.time(), latest);
+    rounded += s.before() + (latest - s.before()) < latest;
+  }
+  EXPECT_GT(rounded, 0) << "no sum of a start and its step misses the end";
+}
+
 TEST(DormandPrince, TakesAStepAgain) {
   using State = std::array<double, 1>;
   auto s = solver_of<1>([](const State& y, State& dy, long) { dy[0] = -y[0]; }, kSmooth, 1e-8);
@@ -78,6 +92,15 @@ TEST(DormandPrince, GivesUpWhereThereIsNoAnswer) {
                         kSmooth, 1e-6);
   s.start(0, {1}, 0.1);
   EXPECT_THROW(s.step(1), hosel::solvers::NonConvergence);
+  // Of one of two components, and not of the last.
+  using Two = std::array<double, 2>;
+  auto half = solver_of<2>(
+      [](const Two& y, Two& dy, long) {
+        dy = {y[1] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : 1, 1};
+      },
+      kSmooth, 1e-6);
+  half.start(0, {0, 0}, 0.1);
+  EXPECT_THROW(while (half.time() < 1) half.step(1), hosel::solvers::NonConvergence);
   // y' = y^2 runs away at t = 1.
   auto pole = solver_of<1>([](const State& y, State& dy, long) { dy[0] = y[0] * y[0]; }, kSmooth, 1e-6);
   pole.start(0, {1}, 0.1);
