@@ -161,11 +161,8 @@ post::RecorderOptions read_recorder(Table root) {
   post::RecorderOptions o;
   if (auto t = root.optional_table("output")) {
     o.vtk = t->flag({"vtk", "write series for ParaView"}, o.vtk);
-    o.steps_per_frame = int(t->integer({"steps_per_frame",
-                                        "time steps from one frame to the next; every eighth frame is a checkpoint, "
-                                        "which renews a blow's factors and so moves "
-                                        "its launch by less than Newton's tolerance"},
-                                       1, 100000, o.steps_per_frame));
+    o.steps_per_frame =
+        int(t->integer({"steps_per_frame", "time steps from one frame to the next"}, 1, 100000, o.steps_per_frame));
     o.angles = int(t->integer({"angles", "points around the ball's surface in the files"}, 8, 256, o.angles));
     if (o.angles % 2 != 0) t->fail("angles", "takes an even number");
     o.face_width = t->quantity({"face_width", "of the drawn face"}, "mm", {0.005, 0.5}, o.face_width);

@@ -28,7 +28,15 @@ class CalibrateFaceJob final : public Job {
           {.toe = tap.quantity({"toe", "of the tap, from the face's centre towards the toe"}, "mm", {-0.1, 0.1}, 0.0),
            .high = tap.quantity({"high", "of the tap, from the face's centre up"}, "mm", {-0.1, 0.1}, 0.0),
            .time = tap.quantity({"time", "measured characteristic time there"}, "us", {1e-5, 1e-3})});
-    if (target_.taps.empty()) root.fail("tap", "at least one [[tap]] with its characteristic time");
+    using Tap = models::FaceTarget::Tap;
+    const auto any = [&](double Tap::*off) {
+      return std::ranges::any_of(target_.taps, [&](const Tap& tap) { return tap.*off != 0; });
+    };
+    if (target_.taps.size() < 3 || !any(&Tap::toe) || !any(&Tap::high))
+      root.fail(
+          "tap",
+          "at least three [[tap]], one of them off the centre towards toe or heel, one up or down: with restitution "
+          "and mass they tell five parameters");
     Table target = root.table("target");
     target_.tap_sigma = target.quantity({"tap_sigma", "standard error of the characteristic times"}, "us",
                                         Range::positive(), target_.tap_sigma);

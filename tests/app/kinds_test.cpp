@@ -180,6 +180,20 @@ TEST(CalibrateFace, TheFaceOfItsOwnTimesIsFound) {
   }
 }
 
+/// Five parameters: restitution and mass are two data, and each half width wants a tap off the centre its way.
+TEST(CalibrateFace, TapsThatCannotTellItsParametersAreRefused) {
+  const fs::path dir = fresh_directory("calibrate_face_taps");
+  const std::string shipped = content(fs::path(HOSEL_SOURCE_DIR) / "cases/calibrate-face/case.toml");
+  for (const char* way : {"high_mm", "toe_mm "}) {
+    std::string text = shipped;
+    for (std::size_t at; (at = text.find(way)) != std::string::npos;) text.erase(at, text.find('\n', at) - at);
+    write(dir / "case.toml", text);
+    const Outcome o = command("check " + dir.string());
+    EXPECT_EQ(o.status, 2) << o.text;
+    EXPECT_NE(o.text.find("at least three [[tap]]"), std::string::npos) << o.text;
+  }
+}
+
 std::string one_piece(double c10, double branch) {
   return fmt::format(
       "[ball]\nmass_kg = 0.04593\nradius_mm = 21.335\n[[ball.layers]]\nlaw = \"neo-hooke\"\nc10_MPa = {}\n"
