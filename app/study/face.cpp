@@ -21,7 +21,6 @@ bool whole(const post::FaceMap& map) {
   return std::ranges::all_of(map.launches, [](const auto& l) { return l.has_value(); });
 }
 
-/// Of the equivalent head mass [kg] over a grid.
 /// Of an effect's figures, those that a page begins with.
 constexpr std::array<std::string_view, 6> kAnswers = {"ball_speed_gain_centre_mps",  "ball_speed_gain_mean_mps",
                                                       "sidespin_difference_toe_rpm", "sidespin_difference_heel_rpm",
