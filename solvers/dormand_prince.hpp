@@ -45,7 +45,7 @@ class DormandPrince {
       rate_(from_.y, from_.slope, piece_);
     }
     for (;;) {
-      const bool last = next_ >= latest - from_.t;
+      const bool last = next_ >= (latest - from_.t) * (1 - 1e-9);  // no sliver remains
       const double h = last ? latest - from_.t : next_;
       if (!(h > 1e-13 * std::max(1.0, from_.t)))
         throw NonConvergence("Dormand and Prince: the step has shrunk to nothing");

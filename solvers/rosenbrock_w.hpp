@@ -131,9 +131,10 @@ class RosenbrockW {
         }
         if (a.closing) {
           // The step that ends on the event: secant method on the step size, kept inside the bracket.
-          if (!std::isfinite(f)) {
+          const bool last = a.tries++ == 60;
+          if (last && !std::isfinite(f)) {
             failure[l] = "the gap at the event is no number";
-          } else if (a.tries++ == 60 || std::abs(f) <= o.event_tolerance) {
+          } else if (last || std::abs(f) <= o.event_tolerance) {
             set_lane(moved, l, true);
             ended[l] = true;
             a.time += a.step;
