@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "app/cases.hpp"
 #include "app/job.hpp"
@@ -30,7 +31,7 @@ std::string setting(Input input, double value) {
 }
 
 std::string set_name(Table root) {
-  const std::optional<NamedContact> contact = named_contact(root);
+  const std::optional<NamedContact> contact = named_contact(std::move(root));
   return contact ? contact->name : "";
 }
 

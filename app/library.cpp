@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "app/of_file.hpp"
 #include "app/read_blow.hpp"
@@ -155,7 +156,7 @@ HeadEntry read_head_entry(Table root) {
   return e;
 }
 
-NamedContact read_contact_entry(Table root) { return read_parts(root, ""); }
+NamedContact read_contact_entry(Table root) { return read_parts(std::move(root), ""); }
 
 /// A file of the library, read whole: what is left over is an error.
 template <class Entry>
@@ -273,7 +274,7 @@ void check_entry(Shelf shelf, const fs::path& file) {
 std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf shelf) {
   if (!table.has(key)) return {};
   const std::string meaning = fmt::format("a {} of the library (`hosel list`)", singular(shelf));
-  const std::string wanted = table.choice({key, meaning}, names_on(shelf));
+  std::string wanted = table.choice({key, meaning}, names_on(shelf));
   if (shelf == Shelf::faces && wanted == kRigidFace) return wanted;
   const LibraryEntry entry = find_entry(shelf, wanted);
   if (!entry.shipped) {

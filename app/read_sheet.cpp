@@ -57,7 +57,7 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
   if (!wanted.empty()) wanted += ")";
   for (const std::string& n : sheet.names) there += (there.empty() ? "" : ", ") + n;
   constexpr std::size_t most = 200;
-  if (there.size() > most) there = there.substr(0, most) + " ...";
+  if (there.size() > most) there.replace(most, there.npos, " ...");
   throw InputError(fmt::format("{}:1: no column '{}'{}; there are: {}{}", sheet.file, stem, wanted, there,
                                sheet.names.size() == 1 ? "; cells are separated by commas" : ""));
 }

@@ -8,13 +8,13 @@
 namespace hosel::app {
 namespace {
 
-std::atomic<int> asked = 0;                            // the signal that has come; read by every thread
+std::atomic<int> delivered = 0;                        // the signal that has come; read by every thread
 static_assert(std::atomic<int>::is_always_lock_free);  // what a handler may write
 std::mutex guard;
 int watching = 0;  // StopSignals alive: points of a sweep may have one each
 struct sigaction before_int, before_term;
 
-extern "C" void note(int number) { asked = number; }
+extern "C" void note(int number) { delivered = number; }
 
 }  // namespace
 
@@ -42,7 +42,7 @@ StopSignals::~StopSignals() {
 }
 
 void StopSignals::check() const {
-  if (asked) throw Stopped(asked);
+  if (delivered) throw Stopped(delivered);
 }
 
 }  // namespace hosel::app

@@ -49,9 +49,10 @@ int look(dl_phdr_info* file, std::size_t, void* data) {
   }
   if (!here) return 0;
   for (const auto& s : segments)
-    if (s.p_type == PT_NOTE && search.found.empty())
-      search.found =
-          build_id({reinterpret_cast<const char*>(file->dlpi_addr + s.p_vaddr), s.p_memsz}, s.p_align < 8 ? 4 : 8);
+    if (s.p_type == PT_NOTE && search.found.empty()) {
+      const auto* notes = reinterpret_cast<const char*>(file->dlpi_addr + s.p_vaddr);  // NOLINT: told as a number
+      search.found = build_id({notes, s.p_memsz}, s.p_align < 8 ? 4 : 8);
+    }
   return 1;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "golf/dense.hpp"
 #include "golf/units.hpp"
@@ -31,11 +32,11 @@ std::vector<Touching> all_around(const std::vector<ContactPoint>& points, const 
   constexpr int kTurns = 16;
   if (points.empty()) return {};
   std::vector<Mat3> images{Mat3::Identity()};
-  const auto [first, last] = std::ranges::minmax(points, {}, &ContactPoint::angle);
-  if (first.angle < last.angle && last.angle < kPi) {  // a half circle
+  const auto [first, last] = std::ranges::minmax(points | std::views::transform(&ContactPoint::angle));
+  if (first < last && last < kPi) {  // a half circle
     const Vec3 across = placement.axes.col(2);
     images.push_back(Mat3::Identity() - 2 * across * across.transpose());
-  } else if (first.angle == last.angle) {
+  } else if (first == last) {
     for (int i = 1; i < kTurns; ++i)
       images.push_back(Eigen::AngleAxisd(2 * kPi * i / kTurns, placement.axes.col(0)).toRotationMatrix());
   }

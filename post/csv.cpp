@@ -118,7 +118,10 @@ Sheet parse_csv(std::string text, const std::string& name) {
 
 std::optional<double> number(const std::string& cell) {
   const char* begin = cell.data();
-  if (*begin == '+' && *++begin == '-') return {};
+  if (*begin == '+') {
+    ++begin;
+    if (*begin == '-') return {};
+  }
   double x = 0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (end != cell.data() + cell.size() || begin == end) return {};

@@ -65,12 +65,12 @@ struct Table {
     if constexpr (std::is_constructible_v<std::string_view, const Cell&>) row.emplace_back(std::string(cell));
     else if constexpr (std::is_integral_v<Cell>) row.emplace_back(static_cast<long long>(cell));
     else if constexpr (std::is_floating_point_v<Cell>) row.emplace_back(double(cell));
-    else if constexpr (std::is_same_v<Cell, std::nullopt_t>) row.emplace_back();
     else if constexpr (std::ranges::range<const Cell>)
       for (const auto& each : cell) put(each);
     else if (cell) put(*cell);
     else row.emplace_back();
   }
+  void put(std::nullopt_t) { rows.back().emplace_back(); }
   void check() const;
 };
 

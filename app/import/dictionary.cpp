@@ -172,7 +172,7 @@ std::string Dictionary::club_key(const std::string& name) const {
       if (says(kind, letters)) return digits + letter;
     return plain(said);
   };
-  const std::string own = key(name);
+  std::string own = key(name);
   for (const NominalClub& c : clubs_)
     for (const std::string& n : c.names)
       if (key(n) == own) return key(c.names.front());

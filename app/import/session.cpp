@@ -467,7 +467,7 @@ class Reading {
       if (std::string& day = u.cells.back(); role_[c] == "session" && !day.empty() &&
                                              std::isdigit(static_cast<unsigned char>(day.front())) &&
                                              day.find(':') != day.npos)
-        day = day.substr(0, day.find_first_of(" T"));
+        day.erase(std::min(day.find_first_of(" T"), day.size()));
       u.filled += !u.cells.back().empty();
     }
     if (role_[c] == "carry") {

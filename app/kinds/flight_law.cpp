@@ -207,7 +207,7 @@ class FlightLawJob final : public Job {
   }
 
   void judge(Output& out, const PathFit& found, const std::vector<models::MeasuredPath>& training,
-             std::vector<models::MeasuredPath> held, nlohmann::json& summary) {
+             const std::vector<models::MeasuredPath>& held, nlohmann::json& summary) {
     const int groups = int(data_.groups.size());
     const std::vector<GroupWind> calm(std::size_t(groups), GroupWind::Zero());
     const std::vector<models::ShotUnknowns> none(held.size(), models::ShotUnknowns::Zero());

@@ -28,7 +28,7 @@ struct Site {
 };
 
 /// Huber's mean and its standard error, the scale by the median deviation.
-std::pair<double, double> robust_mean(std::vector<double> x) {
+std::pair<double, double> robust_mean(const std::vector<double>& x) {
   const auto middle = [](std::vector<double> v) {
     std::ranges::nth_element(v, v.begin() + std::ptrdiff_t(v.size() / 2));
     return v[v.size() / 2];

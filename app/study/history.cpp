@@ -44,7 +44,8 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
     for (std::size_t d = 0; d < table.design.size(); ++d) {
       const std::size_t point = d * table.models.size() + m;
       if (!points[point].contains("history")) continue;
-      post::Series line{.label = table.design.said(d)}, share = line;
+      const std::string label = table.design.said(d);
+      post::Series line{.label = label}, share{.label = label};
       for (const nlohmann::json& s : points[point]["history"]) {
         const double time = 1e3 * s.at(0).get<double>(), normal = s.at(1).get<double>(), along = s.at(2).get<double>();
         histories.add(point, table.models[m], table.design.cells(d), time, normal, along);

@@ -149,7 +149,7 @@ struct SurfaceLaw {
     const auto surface = [&](const Terms& c) {
       return T(c[0] + y * (c[1] + c[2] * y + c[5] * x) + x * (c[3] + c[4] * x));
     };
-    const Coefficients<T> in = {surface(drag), surface(lift)};
+    Coefficients<T> in = {surface(drag), surface(lift)};
     if (a == 2 && b == 2) return in;
     const T share = reynolds.share(re) * spin.share(s);
     const Coefficients<T> out = published();
@@ -188,7 +188,7 @@ struct TableLaw {
                              r.lift[i - 1] + share * (r.lift[i] - r.lift[i - 1])};
     };
     const auto [below, above] = rows_beside(piece / (kMost * kMost));
-    const Coefficients<T> low = row(rows[below], std::size_t(piece / kMost % kMost));
+    Coefficients<T> low = row(rows[below], std::size_t(piece / kMost % kMost));
     if (below == above) return low;
     const Coefficients<T> high = row(rows[above], std::size_t(piece % kMost));
     const T share = (reynolds - rows[below].reynolds) / (rows[above].reynolds - rows[below].reynolds);
