@@ -214,14 +214,15 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
       };
       const double of_a = estimated(launch), of_b = estimated(other), error = std::max(of_a, of_b);
       x.erase((known ? "models." : "") + model + "." + key);
-      if (std::abs(q - p) <= kNothing * std::max({std::abs(p), std::abs(q), 1.0})) continue;
+      const double off = post::difference(c, q, p);
+      if (std::abs(off) <= kNothing * std::max({std::abs(p), std::abs(q), 1.0})) continue;
       compared = true;
       if (!known && !launch.contains("numerical_error")) {
         estimated_by_none = true;
-        rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12}\n", model + " " + key, p, q, q - p, "-");
+        rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12}\n", model + " " + key, p, q, off, "-");
         continue;
       }
-      if (band.empty() && std::abs(q - p) <= error) {
+      if (band.empty() && std::abs(off) <= error) {
         const json& larger = of_a >= of_b ? launch : other;
         const bool own = larger.contains("numerical_error") && larger["numerical_error"].contains(key);
         band = fmt::format(
@@ -233,8 +234,8 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
                   "`accuracy` to see how far B - A moves"
                 : "");
       }
-      rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12.2g}  {}\n", model + " " + key, p, q, q - p,
-                          tidy(error), std::abs(q - p) > error ? "beyond" : "within");
+      rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12.2g}  {}\n", model + " " + key, p, q, off,
+                          tidy(error), std::abs(off) > error ? "beyond" : "within");
     }
   }
   for (const auto& [model, launch] : right)

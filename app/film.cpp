@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "app/parse_toml.hpp"
 #include "app/reader.hpp"
+#include "app/resolved.hpp"
 #include "app/shipped.hpp"
 #include "post/file.hpp"
 
@@ -50,6 +52,19 @@ fs::path needed(const char* name, const char* package, const fs::path& outside) 
   return program;
 }
 
+/// Of the folders of several models that of the last which the case names: it answers the case.
+fs::path answering(const fs::path& out, const std::vector<fs::path>& folders) {
+  const fs::path file = out / kResolvedCase;
+  if (folders.size() > 1 && fs::is_regular_file(file)) {
+    const toml::table resolved = parse_toml(post::read_file(file), file.string());
+    const toml::array* models = resolved["models"].as_array();
+    for (std::size_t k = models ? models->size() : 0; k-- > 0;)
+      for (const fs::path& folder : folders)
+        if (folder.parent_path().filename() == (*models)[k].value_or(std::string())) return folder;
+  }
+  return folders.back();
+}
+
 }  // namespace
 
 fs::path film(const fs::path& out, const fs::path& file) {
@@ -64,16 +79,16 @@ fs::path film(const fs::path& out, const fs::path& file) {
   if (folders.empty())
     throw InputError(fmt::format("{}: no series of a blow (vtk/ball.pvd) in this run", out.string()));
   std::ranges::sort(folders);
+  const fs::path filmed = answering(out, folders);
   needed("pvbatch", "paraview", out);
   needed("xvfb-run", "xvfb xauth", out);
   const fs::path ffmpeg = needed("ffmpeg", "ffmpeg", out);
 
   const fs::path place = to.parent_path().empty() ? fs::path(".") : to.parent_path();
   const post::WorkFolder work(place);
-  run_program(
-      shipped("scripts/pvbatch", "scripts/pvbatch"),
-      {shipped("post/paraview/film.py", "paraview/film.py").string(), fs::absolute(folders.back()).string(), "."},
-      work.path());
+  run_program(shipped("scripts/pvbatch", "scripts/pvbatch"),
+              {shipped("post/paraview/film.py", "paraview/film.py").string(), fs::absolute(filmed).string(), "."},
+              work.path());
   const std::string made = gif ? "film.gif" : "film.mp4";
   std::vector<std::string> words = {"-nostdin",        "-loglevel", "error",   "-framerate",
                                     gif ? "12" : "15", "-i",        "%04d.png"};

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 
 #include "app/of_file.hpp"
 #include "app/reader.hpp"
@@ -26,12 +24,13 @@ std::string digest_of(const fs::path& file) {
 
 }  // namespace
 
-void Inputs::file(const fs::path& file, const fs::path& copy) {
+void Inputs::file(const fs::path& file, const std::string& name, const fs::path& copy) {
   static OfFile<std::string> digests;
   const std::string digest = digests.get(file, [&] { return digest_of(file); });
   const std::lock_guard lock(mutex_);
   const auto [it, fresh] = digests_.emplace(file, digest);
   if (!fresh && it->second != digest) refuse_changed(file);
+  read_.insert(name + '\n' + digest + '\n');
   if (!copy.empty() && digest != "none") copies_[copy] = file;
 }
 
@@ -60,14 +59,9 @@ std::string Inputs::fingerprint() const {
   const std::lock_guard lock(mutex_);
   if (fingerprint_.empty()) {
     std::string text = program_version() + '\n' + all_ + '\n';
-    // By name and content: the same case elsewhere is the same run. A resolved case reads copies: their name counts for
-    // the original too.
-    std::map<fs::path, std::string> copied;
-    for (const auto& [copy, file] : copies_) copied.emplace(file, copy.filename().string());
-    std::set<std::string> read;
-    for (const auto& [file, digest] : digests_)
-      read.insert((copied.contains(file) ? copied.at(file) : file.filename().string()) + '\n' + digest + '\n');
-    for (const std::string& one : read) text += one;
+    // By the name that the case has and by content: the same case elsewhere is the same run, and so is one that reads
+    // copies.
+    for (const std::string& one : read_) text += one;
     fingerprint_ = post::digest(text);
   }
   return fingerprint_;

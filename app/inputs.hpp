@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,9 +16,9 @@ namespace hosel::app {
 class Inputs {
  public:
   /// A file that a case names; a missing one counts as such. Throws InputError where it is no longer what it was when
-  /// this run named it first. `copy`: where below OUT a copy belongs, for the resolved case to run again; empty:
-  /// nowhere.
-  void file(const std::filesystem::path& file, const std::filesystem::path& copy = {});
+  /// this run named it first. `name`: as the case has it, since two may end alike. `copy`: where below OUT a copy
+  /// belongs, for the resolved case to run again; empty: nowhere.
+  void file(const std::filesystem::path& file, const std::string& name, const std::filesystem::path& copy = {});
   /// A case file itself. What it says counts by what is resolved of it; it is listed since no run may overwrite it.
   void case_file(const std::filesystem::path& file, const std::filesystem::path& copy = {});
   /// A case, read to its end. Counts until the fingerprint is asked for.
@@ -38,6 +39,7 @@ class Inputs {
  private:
   mutable std::mutex mutex_;
   std::map<std::filesystem::path, std::string> digests_;  // in the order of their names, whichever thread came first
+  std::set<std::string> read_;                            // names and digests
   std::vector<std::filesystem::path> cases_;
   std::map<std::filesystem::path, std::filesystem::path> copies_;
   std::vector<std::string> told_;

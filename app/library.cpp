@@ -115,8 +115,9 @@ BallEntry read_ball_entry(Table root) {
   Table ball = root.table("ball");
   e.body = read_ball(ball);
   e.layers = read_layers(ball);
+  std::vector<std::string> taken;
   for (Table t : root.tables("reduced"))
-    e.reduced.push_back(read_parts(t, t.text({"name", "of this set, for `[ball] reduced`"})));
+    e.reduced.push_back(read_parts(t, t.name({"name", "of this set, for `[ball] reduced`"}, taken)));
   return e;
 }
 

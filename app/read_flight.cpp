@@ -115,26 +115,31 @@ models::LaunchError read_launch_error(Table table, std::vector<std::string>& tak
 
 }  // namespace
 
+models::FlightConditions read_conditions(Table table) {
+  models::FlightConditions c;
+  c.law = read_law(table);
+  c.air = read_air(table);
+  if (auto wind = table.optional_table("wind")) c.wind = read_wind(*wind);
+  if (auto ground = table.optional_table("ground")) {
+    c.ground.height = ground->quantity({"height", "of the ground where the ball lands, above the ball at launch"}, "m",
+                                       {-500, 500}, 0);
+    c.ground.slope = ground->quantity({"slope", "of the ground where the ball lands, uphill towards the target"}, "deg",
+                                      {-radians(45), radians(45)}, 0);
+  }
+  return c;
+}
+
 FlightSetup read_flight(Table table) {
   FlightSetup s;
   using Unit = post::DistanceUnit;
   s.unit = table.one_of<Unit>({"units", "of distances in tables and figures"},
                               {{"yards", Unit::yards}, {"metres", Unit::metres}}, "yards");
-  s.conditions.law = read_law(table);
+  s.conditions = read_conditions(table);
   for (const std::string& name :
        table.texts({"beside", "further laws drawn and tabled beside the first"}, std::vector<std::string>{}))
     s.others.push_back(published(table, "beside", name));
-  s.conditions.air = read_air(table);
   s.options.tolerance =
       table.number({"tolerance", "relative tolerance of the trajectory"}, {1e-12, 1e-3}, s.options.tolerance);
-  if (auto wind = table.optional_table("wind")) s.conditions.wind = read_wind(*wind);
-  if (auto ground = table.optional_table("ground")) {
-    s.conditions.ground.height = ground->quantity(
-        {"height", "of the ground where the ball lands, above the ball at launch"}, "m", {-500, 500}, 0);
-    s.conditions.ground.slope =
-        ground->quantity({"slope", "of the ground where the ball lands, uphill towards the target"}, "deg",
-                         {-radians(45), radians(45)}, 0);
-  }
   if (auto turf = table.optional_table("turf")) {
     models::BounceRoll t;
     t.friction = turf->number({"friction", "of the ball on the turf while it bounces"}, {0, 2}, t.friction);

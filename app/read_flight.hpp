@@ -26,6 +26,8 @@ struct FlightSetup {
 
 /// Density, or the weather that makes it.
 models::Air read_air(Table table);
+/// Law, air, wind and ground: all of a flight that is compared with a measured one.
+models::FlightConditions read_conditions(Table table);
 FlightSetup read_flight(Table table);
 std::optional<FlightSetup> read_optional_flight(Table root);
 

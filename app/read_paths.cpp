@@ -114,7 +114,7 @@ RadarPaths read_paths(Table table, const Ball& ball) {
   std::map<std::string, models::Air> airs;
   for (Table t : table.tables("site")) {
     const std::string event = t.text({"event", "value of the column `event` that this air belongs to"});
-    airs[event] = read_air(t);
+    if (!airs.try_emplace(event, read_air(t)).second) t.fail("event", fmt::format("'{}' is there twice", event));
   }
   if (!std::filesystem::exists(file)) {
     out.missing = file;

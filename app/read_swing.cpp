@@ -35,8 +35,8 @@ MotionInput read_motion(Table table) {
   const bool span = table.has_quantity("begin") || table.has_quantity("end");
   in.present = std::filesystem::exists(in.file);
   if (span) {
-    in.begin = table.quantity({"begin", "first instant used; default: the record's"}, "s");
-    in.end = table.quantity({"end", "last instant used (impact); default: the record's"}, "s");
+    in.begin = table.quantity({"begin", "first instant used, with `end`; without both: the record's"}, "s");
+    in.end = table.quantity({"end", "last instant used (impact), with `begin`; without both: the record's"}, "s");
     if (!(in.end > in.begin)) table.fail("end", "the motion ends before it begins");
   }
   if (!in.present) return in;

@@ -605,7 +605,7 @@ fs::path Table::file(Key key) {
   const std::string name = read_text(key.name, {});
   const fs::path copy = copied(*document_, name), path = copy.empty() ? document_->directory / name : copy;
   if (!fs::is_regular_file(path)) fail(key.name, fmt::format("no file '{}'", path.string()));
-  document_->inputs->file(path, copy_of(*document_, name));
+  document_->inputs->file(path, copy_name(name), copy_of(*document_, name));
   return path;
 }
 
@@ -646,7 +646,7 @@ fs::path Table::data_path(std::string_view key, const std::string& name) {
     }
   }
   // A measured file is found again by HOSEL_DATA.
-  document_->inputs->file(file, file == own ? copy_of(*document_, name) : fs::path());
+  document_->inputs->file(file, copy_name(name), file == own ? copy_of(*document_, name) : fs::path());
   return file;
 }
 
@@ -708,7 +708,7 @@ void Table::tell(std::string_view text) {
   document_->inputs->tell(lines);
 }
 
-void Table::note_file(const fs::path& file) { document_->inputs->file(file); }
+void Table::note_file(const fs::path& file) { document_->inputs->file(file, file.filename().string()); }
 
 std::vector<Table> Table::tables(std::string_view key) {
   Access access{*document_, as_table(node_)};

@@ -165,18 +165,19 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
   const Station& station = stations_[number];
   const Edge& edge = edges_[station.edge];
   const Index angles = static_cast<Index>(angles_.size());
+  const bool rates = laws_.friction && laws_.friction->rate_dependent();  // else no law asks for velocities
   t.U.setZero();
-  t.V.setZero();
-  for (std::size_t i = 0; i < edge.places.size(); ++i) {
-    t.U.data()[edge.places[i]] = s.q[edge.dofs[i] + to_q_];
-    t.V.data()[edge.places[i]] = s.v[edge.dofs[i]];
-  }
+  for (std::size_t i = 0; i < edge.places.size(); ++i) t.U.data()[edge.places[i]] = s.q[edge.dofs[i] + to_q_];
   t.u.noalias() = t.U * station.shape;
-  t.v.noalias() = t.V * station.shape;
   t.arms.colwise() = -m.node;
   t.arms += reference_.middleCols(static_cast<Index>(number) * angles, angles);
   t.arms.reshaped().noalias() += functions_ * t.u;
-  t.velocities.reshaped().noalias() = functions_ * t.v;
+  if (rates) {
+    t.V.setZero();
+    for (std::size_t i = 0; i < edge.places.size(); ++i) t.V.data()[edge.places[i]] = s.v[edge.dofs[i]];
+    t.v.noalias() = t.V * station.shape;
+    t.velocities.reshaped().noalias() = functions_ * t.v;
+  }
   Kinematics k;
   k.station = &station;
   k.number = number * angles_.size();
@@ -186,11 +187,11 @@ void Contact::visit_station(const Moved& m, const State& s, std::size_t number, 
     k.gap = surface_->gap(k.place);
     k.pressed = normal(k.number, k.gap).depth > 0;
     if (k.pressed) {  // elsewhere nothing acts
-      k.relative.noalias() = m.to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
-      k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
-      if (own_) {
-        k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
-        k.velocity.x() += k.travel.slope.dot(k.rate.tail<2>()) + k.travel.shape.dot(m.own_rate);
+      if (own_) k.travel = surface_->travel_at(k.arm - carrier_.centre, m.own);
+      if (rates) {
+        k.relative.noalias() = m.to_body * (t.velocities.col(static_cast<Index>(k.angle)) - m.node_velocity);
+        k.velocity = k.rate = k.relative - m.spin.cross(k.arm);
+        if (own_) k.velocity.x() += k.travel.slope.dot(k.rate.tail<2>()) + k.travel.shape.dot(m.own_rate);
       }
     }
     visit(std::as_const(k));
@@ -428,12 +429,15 @@ void Contact::tangent(const State& s, const Weights& weights, TangentSink& sink)
 
 Energies Contact::energies(const State& s) const {
   Energies out;
-  visit(s, [&](const Moved&, const Kinematics& k) {
-    if (!k.pressed) return;
-    const NormalSpring spring = normal(k.number, k.gap);
-    out.contact += k.station->area * (0.5 * spring.stiffness * spring.depth * spring.depth +
-                                      (past_[k.number].offset + accepted(k).friction.stored));
-  });
+  const Moved m = moved(s);
+  Scratch scratch(*this);
+  for (const std::size_t i : within_reach(m, s))
+    visit_station(m, s, i, scratch, [&](const Kinematics& k) {
+      if (!k.pressed) return;
+      const NormalSpring spring = normal(k.number, k.gap);
+      out.contact += k.station->area * (0.5 * spring.stiffness * spring.depth * spring.depth +
+                                        (past_[k.number].offset + accepted(k).friction.stored));
+    });
   out.friction = friction_work_;
   return out;
 }

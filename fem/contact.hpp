@@ -119,11 +119,11 @@ class Contact final : public Term {
     Vec3 place;  // in the surface's axes, as if it had not moved
     double gap = 0;
     bool pressed = false;
-    // Where it is:
-    Vec3 relative;  // R^T (velocity of the point - of the node)
-    Vec3 rate;      // of the arm
-    Vec3 velocity;  // of the place
-    Travel travel;  // of a surface with unknowns
+    // Where it is, the velocities for a friction that depends on them:
+    Vec3 relative = Vec3::Zero();  // R^T (velocity of the point - of the node)
+    Vec3 rate = Vec3::Zero();      // of the arm
+    Vec3 velocity = Vec3::Zero();  // of the place
+    Travel travel;                 // of a surface with unknowns
   };
   struct Local {  // at one point, in the surface's axes, per area
     double pressure = 0;

@@ -91,8 +91,6 @@ class HarmonicSolid final : public Term {
   static double mass(const mesh::Meridian& mesh, const std::vector<Solid>& materials);
   const std::vector<double>& dissipated() const { return dissipated_; }  ///< by layer, cumulative [J]
   std::vector<double> strain_by_layer(const State& accepted) const;      ///< [J]
-  /// Largest |strain| measure max |eigenvalue of F^T F - 1|/2 over all points.
-  double largest_strain(const State& s) const;
 
  private:
   struct Point {  // Gauss point of the meridian
@@ -162,9 +160,13 @@ class HarmonicSolid final : public Term {
   /// What each element found last: storage that is not asked for anew in every iteration.
   struct Found {
     Eigen::MatrixXd force, inertia;
-    Mat3 twist;  // integral of P F^T in Cartesian components
+    Mat3 twist;         // integral of P F^T in Cartesian components
+    double energy = 0;  // [J]
   };
   mutable std::vector<Found> found_;
+  mutable Vector found_at_;  // the unknowns of which `found_` is, and their time
+  mutable double found_time_ = NAN;
+  bool is_found(const State& s) const;
   mutable std::vector<Eigen::MatrixXd> stiffness_;
   std::vector<std::size_t> start_of_point_;  // place in `starts_` of each meridian point
 };

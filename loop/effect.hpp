@@ -117,5 +117,8 @@ std::span<const EffectEntry> effects();
 std::vector<EffectEntry> effects_with(std::span<const EffectEntry> own);
 /// nullptr where no effect has this name.
 const EffectEntry* find_effect(std::string_view name, std::span<const EffectEntry> own = {});
+/// What would settle these ties, each quantity once.
+std::vector<std::string> sensors_of(const std::vector<std::vector<std::string>>& ties,
+                                    std::span<const EffectEntry> own);
 
 }  // namespace hosel::loop

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -132,6 +133,16 @@ const EffectEntry* find_effect(std::string_view name, std::span<const EffectEntr
     for (const EffectEntry& e : some)
       if (e.name == name) return &e;
   return nullptr;
+}
+
+std::vector<std::string> sensors_of(const std::vector<std::vector<std::string>>& ties,
+                                    std::span<const EffectEntry> own) {
+  std::vector<std::string> all;
+  for (const auto& tie : ties)
+    for (const std::string& name : tie)
+      if (const EffectEntry* e = find_effect(name, own); e && !std::ranges::count(all, e->sensor))
+        all.emplace_back(e->sensor);
+  return all;
 }
 
 }  // namespace hosel::loop

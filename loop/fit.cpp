@@ -191,10 +191,10 @@ Fit beside(const Fit& f, const Parametrisation* more) {
   return out;
 }
 
-Eigen::MatrixXd covariance(const Problem& problem, const Fit& f) {
+Eigen::MatrixXd covariance(const Problem& problem, Part part, const Fit& f) {
   const solvers::Loss loss = problem.stages().back().loss;
-  Eigen::MatrixXd J = problem.jacobian(Part::select, f.model, f.p);
-  const Eigen::VectorXd z = whitened(problem, Part::select, f.model, f.p);
+  Eigen::MatrixXd J = problem.jacobian(part, f.model, f.p);
+  const Eigen::VectorXd z = whitened(problem, part, f.model, f.p);
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(J.cols(), J.cols());
   double blocks = 0;
   for (Eigen::Index i = 0; i < z.size(); i += loss.block) {

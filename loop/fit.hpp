@@ -39,9 +39,9 @@ double improbability(const Fit& fit);
 /// What candidates compare by: the deviance, and what the parameters, the complexity of the forms and the sizes cost.
 double criterion(const Fit& fit, const Rules& rules);
 
-/// Covariance of the parameters [SI] on the selection's data; infinite along null vectors. Where the noise of a channel
+/// Covariance of the parameters [SI] on a part of the data; infinite along null vectors. Where the noise of a channel
 /// is not known, by the scatter of the scores.
-Eigen::MatrixXd covariance(const Problem& problem, const Fit& fit);
+Eigen::MatrixXd covariance(const Problem& problem, Part part, const Fit& fit);
 
 /// Orthonormal basis of the column space.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);

@@ -174,6 +174,8 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
     });
     std::erase_if(ranked, [&](const auto& r) { return std::ranges::count(sets[k].effects, r.second->effect) > 0; });
     std::ranges::stable_sort(ranked, {}, [](const auto& r) { return r.first; });
+    std::set<const Parametrisation*> once;  // a form is looked at in several places
+    std::erase_if(ranked, [&](const auto& r) { return !once.insert(r.second).second; });
     for (std::size_t j = 0; j < std::min(ranked.size(), effort_.grown); ++j) {
       std::vector<std::string> names;
       for (const Parametrisation* form : f.model.with(ranked[j].second).forms)

@@ -323,7 +323,7 @@ void conclude(const Study& study, LoopResult& result) {
   result.base_score = score(problem, s.base);
   for (std::size_t k = 0; k < std::min(s.candidates.size(), problem.effort().reported); ++k) {
     ScoredCandidate c{.candidate = s.candidates[k], .sd = {}};
-    const Eigen::VectorXd variance = covariance(problem, c.candidate.fit).diagonal();
+    const Eigen::VectorXd variance = covariance(problem, Part::select, c.candidate.fit).diagonal();
     for (const double v : variance) c.sd.push_back(std::sqrt(v));
     c.holdout_score = score(problem, c.candidate.fit);
     result.candidates.push_back(std::move(c));
@@ -334,7 +334,7 @@ void conclude(const Study& study, LoopResult& result) {
   result.likeness = likeness(problem, after, study.candidates);
   result.next = problem.next_experiment(result);
   result.selection.chosen = some_kept ? kept.fit : chosen;
-  result.covariance = covariance(problem, result.selection.chosen);
+  result.covariance = covariance(problem, Part::train, result.selection.chosen);
 }
 
 }  // namespace hosel::loop

@@ -1,7 +1,9 @@
 #include "models/matched_launch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "golf/units.hpp"
 #include "models/checked_launch.hpp"
 #include "solvers/errors.hpp"
 
@@ -18,7 +20,10 @@ MatchedLaunch match_launch_angle(const ImpactModel& model, Blow blow, double lau
     if (out.blows++ > 0 && loft != last_loft) slope = (angle - last_angle) / (loft - last_loft);
     last_loft = loft;
     last_angle = angle;
-    loft += (launch_angle - angle) / slope;
+    // Where the launch angle hardly follows, or falls, a secant leads anywhere.
+    if (!(slope > 0.05)) slope = kLaunchPerLoft;
+    loft += std::clamp((launch_angle - angle) / slope, -0.5, 0.5);
+    if (std::abs(loft) >= kPi / 2) break;
   }
   throw solvers::NonConvergence("no loft of this blow gives the launch angle that was measured");
 }

@@ -19,7 +19,7 @@ std::optional<double> tangential_restitution(const Blow& blow, const Launch& lau
 
 std::optional<double> launch_ratio(const Blow& blow, const Launch& launch) {
   const Vec3 normal = first_contact(blow).normal;
-  const double path = blow.delivery.attack_angle, face = std::atan2(normal.z(), normal.x());
+  const double path = blow.delivery.attack_angle, face = std::atan2(normal.z(), std::hypot(normal.x(), normal.y()));
   if (std::abs(face - path) < 1e-9) return std::nullopt;
   return (launch.launch_angle() - path) / (face - path);
 }

@@ -103,7 +103,8 @@ std::vector<double> differences(const FaceMap& map, const FaceMap& reference, co
   std::vector<double> a = values(map, q);
   const std::vector<double> b = values(reference, q);
   if (a.empty() || b.empty()) return {};
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  const Channel* channel = q.of_flight ? nullptr : find_channel(q.name);
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = channel ? difference(*channel, a[i], b[i]) : a[i] - b[i];
   return a;
 }
 

@@ -24,7 +24,8 @@ constexpr std::array kChannels = {
 
 /// Model minus measurement over the measurement's standard deviation.
 double off_by(const Launch& launch, const MeasuredValue& m) {
-  return ((launch.*m.channel->value)() - m.value) / m.uncertainty;
+  const double si = m.channel->si;
+  return difference(*m.channel, (launch.*m.channel->value)() / si, m.value / si) * si / m.uncertainty;
 }
 }  // namespace
 
@@ -56,6 +57,10 @@ std::vector<std::string> outside(const LaunchColumn& column, const Measured& mea
 }
 
 std::span<const Channel> channels() { return kChannels; }
+
+double difference(const Channel& channel, double a, double b) {
+  return channel.unit == "deg" ? std::remainder(a - b, 360) : a - b;
+}
 
 const Channel* find_channel(std::string_view name) {
   const auto it = std::ranges::find(kChannels, name, &Channel::name);

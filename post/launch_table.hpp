@@ -29,6 +29,8 @@ struct Channel {
 std::span<const Channel> channels();
 const Channel* find_channel(std::string_view name);  ///< nullptr where unknown
 std::string channel_names();                         ///< for messages
+/// a minus b, both in the channel's unit; of angles the shorter way round, in -180 to 180 deg.
+double difference(const Channel& channel, double a, double b);
 
 /// One measured quantity of a launch.
 struct MeasuredValue {

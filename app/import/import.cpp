@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <ranges>
 #include <set>
 
 #include "app/import/cells.hpp"
 #include "app/import/session.hpp"
+#include "app/offer.hpp"
 #include "app/reader.hpp"
+#include "app/terminal.hpp"
 #include "post/csv.hpp"
 #include "post/file.hpp"
 
@@ -32,9 +33,6 @@ void write_csv(const fs::path& file, const std::vector<const Understood*>& colum
   }
   post::write_file(file, text);
 }
-
-/// A text as a TOML basic string.
-std::string toml_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
 /// The table of what was understood.
 void show(Session& x) {
@@ -289,7 +287,7 @@ void import_shots(const ImportOptions& o) {
       "# Made by `hosel import` from {}. shots.csv holds what the loop uses, kept.csv the rest.\n"
       "kind  = \"loop\"\ntitle = {}\n\n[model]\nbase = \"{}\"\n\n"
       "[ball]\nmass_kg        = 0.04593\nradius_mm      = 21.335\ninertia_factor = 0.4\n",
-      toml_text(names), toml_text(title + (o.club.empty() ? "" : ", " + o.club)),
+      toml_text(printable(names)), toml_text(printable(title + (o.club.empty() ? "" : ", " + o.club))),
       turns ? "rigid-eccentric" : "rigid-planar");
   if (turns) {
     const NominalHead& head = d.heads().at(*heads.begin());

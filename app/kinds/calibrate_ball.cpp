@@ -130,7 +130,7 @@ class CalibrateBallJob final : public Job {
     if (!fit.shots.empty()) out.draw(shot_figure(fit), "shots");
     withdraw_offers(out);
     if (fit.converged) offer_found(out, fit);
-    if (!fit.converged) out.say("the fit has not converged: " + fit.report);
+    if (!fit.converged) out.warn("the fit has not converged: " + fit.report);
     out.write_summary(summary);
   }
 

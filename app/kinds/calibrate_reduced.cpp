@@ -39,6 +39,8 @@ class CalibrateReducedJob final : public Job {
       changes.insert(changes.end(), file.overrides().begin(), file.overrides().end());  // the command line's last word
       CaseFile own(file, changes);
       sets_.push_back(read_set(own.root(), i));
+      if (std::ranges::count(sets_, sets_.back().name, &Set::name) > 1)
+        root.fail("sets", fmt::format("'{}' is there twice", sets_.back().name));
       for (std::size_t k = 0; k < count; ++k)
         if (k != i) read_set(own.root(), k);  // every set's keys are known
       own.root().leave({"kind", "title"});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 
 #include "app/kinds/impact_page.hpp"
 #include "app/library.hpp"
@@ -106,9 +107,11 @@ class ImpactJob final : public Job {
       note_oblique(blow, columns.back(), said);
       if (matched_) note_match(out, columns.back(), blow, said);
     }
-    if (own_.flight)
-      for (std::size_t c = compared; c < columns.size(); ++c)
-        columns[c].flight = own_.flight->follow(columns[c].launch, own_.blow.ball);
+    for (std::size_t c = compared; own_.flight && c < columns.size(); ++c) {
+      columns[c].flight = landed(*own_.flight, columns[c].launch, own_.blow.ball);
+      if (!columns[c].flight)
+        out.warn(fmt::format("{}: the ball does not rise to the ground of [flight]", columns[c].title));
+    }
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
     const post::TextTable table = post::launch_table(columns, measured_, ranges_, out.units());
@@ -119,7 +122,9 @@ class ImpactJob final : public Job {
       if (!c.flight) continue;
       nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
       // Where the errors of the answer's carry come from; the other columns have theirs in the summary.
-      if (&c == &columns.back()) said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
+      if (&c == &columns.back()) try {
+          said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
+        } catch (const std::invalid_argument& e) { out.warn(fmt::format("{}: {}", c.title, e.what())); }
     }
     for (const fs::path& f : files) out.say(fmt::format("ParaView: {}", f.string()));
     out.say(table.text());
@@ -244,6 +249,13 @@ class ImpactJob final : public Job {
       out.warn(fmt::format("{}: the launch angle is {:+.2f} deg off the one that it was to match", column.title, off));
   }
 
+  /// A launch is an answer too where its ball does not reach the landing.
+  static std::optional<post::ShotFlight> landed(const FlightSetup& flight, const Launch& launch, const Ball& ball) {
+    try {
+      return flight.follow(launch, ball);
+    } catch (const std::invalid_argument&) { return {}; }
+  }
+
   /// Columns without records: the same models, another ball, face, friction.
   void compare(const Side& side, std::vector<post::LaunchColumn>& columns, nlohmann::json& said) const {
     const std::size_t first = columns.size(), count = side.models.size();
@@ -254,7 +266,7 @@ class ImpactJob final : public Job {
       blows[k] = at_measured_launch(entry, side.blow);
       columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
                             models::checked_launch(*entry.model, blows[k])};
-      if (side.flight) columns[first + k].flight = side.flight->follow(columns[first + k].launch, side.blow.ball);
+      if (side.flight) columns[first + k].flight = landed(*side.flight, columns[first + k].launch, side.blow.ball);
     });
     for (std::size_t k = 0; k < count; ++k) {
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
@@ -355,7 +367,8 @@ class ImpactJob final : public Job {
   static nlohmann::json numerical_error(const Launch& launch, const Launch& coarser) {
     nlohmann::json j;
     for (const post::Channel& c : post::channels())
-      j[fmt::format("{}_{}", c.name, c.unit)] = std::abs((launch.*c.value)() - (coarser.*c.value)()) / c.si;
+      j[fmt::format("{}_{}", c.name, c.unit)] =
+          std::abs(post::difference(c, (launch.*c.value)() / c.si, (coarser.*c.value)() / c.si));
     return j;
   }
 

@@ -30,8 +30,11 @@ void answer(Output& out, const ImpactStory& s) {
     const post::Channel* of = post::find_channel(channel);
     std::string text;
     if (c.coarser)
-      text = fmt::format("± {:.{}f} by the numerics", std::abs((l.*of->value)() - ((*c.coarser).*of->value)()) / si,
-                         decimals);
+      text =
+          fmt::format("± {:.{}f} by the numerics",
+                      std::abs(post::difference(*of, (l.*of->value)() / of->si, ((*c.coarser).*of->value)() / of->si)) *
+                          of->si / si,
+                      decimals);
     if (const post::MeasuredValue* seen = post::find(s.measured, of))
       text += fmt::format("{}measured {:.{}f} {}", text.empty() ? "" : "; ", seen->value / si, decimals, unit);
     return text;

@@ -58,7 +58,7 @@ class LandingTimesJob final : public Job {
     Table root = file.root();
     root.text({"title", "of tables, pages and figures"}, "");
     if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
-    conditions_ = read_flight(root.table("flight")).conditions;
+    conditions_ = read_conditions(root.table("flight"));
     Table t = root.table("times");
     const auto path = t.data_file({"file",
                                    "CSV with event, speed_mps, launch_deg, azimuth_deg, landing_time_s, "
@@ -68,9 +68,10 @@ class LandingTimesJob final : public Job {
                               angle = t.quantities({"launch_angle", "least and most"}, "deg", 2, {-kPi / 2, kPi / 2}),
                               time = t.quantities({"time", "in the air, least and most"}, "s", 2, {0, 60});
     const double followed = t.number({"followed", "least share of its time that a shot was followed"}, {0, 2}, 0.8);
+    std::vector<std::string> taken;
     for (Table s : t.tables("site")) {
       Site site{.event = s.text({"event", "value of the column `event`"}),
-                .name = s.text({"name", "of the site"}),
+                .name = s.name({"name", "of the site"}, taken),
                 .air = {},
                 .shots = {}};
       site.air = read_air(s);

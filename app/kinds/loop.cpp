@@ -69,7 +69,7 @@ class LoopJob final : public Job {
     }
     head.compliance = declared.club.head.compliance;
     case_.inertia_declared = head.inertia.allFinite();
-    if (const auto flight = read_optional_flight(root)) case_.flight = flight->conditions;
+    if (auto flight = root.optional_table("flight")) case_.flight = read_conditions(*flight);
 
     Table data = root.table("data");
     const std::vector<std::string> unknown =

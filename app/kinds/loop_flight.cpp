@@ -30,9 +30,9 @@ class LoopFlightJob final : public Job {
     Table root = file.root();
     read_loop_case(root, case_, acts_on_flights);
     if (auto ball = root.optional_table("ball")) case_.ball = read_ball(*ball);
-    FlightSetup setup = read_flight(root.default_table("flight"));
-    if (setup.turf) root.table("flight").fail("turf", "the loop compares flights, which end at the first landing");
-    case_.conditions = std::move(setup.conditions);
+    Table flight = root.default_table("flight");
+    if (flight.has("turf")) flight.fail("turf", "the loop compares flights, which end at the first landing");
+    case_.conditions = read_conditions(flight);
     if (root.has("paths")) {
       if (root.has("data")) root.fail("data", "the flights are those of [paths]: leave out one of the two");
       read_radar(root);

@@ -95,8 +95,8 @@ class MaterialPointJob final : public Job {
     post::Figure figure;
     figure.panels.push_back(panel);
     out.draw(figure, "curve");
-    nlohmann::json summary{
-        {"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}, {"work_J_per_m3", work}};
+    nlohmann::json summary{{"path", what_}, {"final_stress_Pa", last}, {"dissipated_J_per_m3", dissipated}};
+    if (what_ != "uniaxial") summary["work_J_per_m3"] = work;
     out.page().answer("stress at the end", fmt::format("{:.4g} MPa", 1e-6 * last),
                       what_ == "uniaxial" ? "nominal, in tension" : "of shear");
     out.page().answer("turned into heat", fmt::format("{:.4g} kJ/m³", 1e-3 * dissipated), "per volume");

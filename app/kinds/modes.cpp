@@ -25,8 +25,10 @@ class ModesJob final : public Job {
     ball_ = read_ball(ball);
     layers_ = read_fe_ball(ball, models::range_ball());
     for (const double h : root.numbers({"harmonics", "Fourier harmonics whose modes are wanted"}, 0, {0, 12},
-                                       std::vector<double>{0, 1, 2, 3}))
+                                       std::vector<double>{0, 1, 2, 3})) {
+      if (h != std::floor(h)) root.fail("harmonics", "whole numbers are wanted");
       harmonics_.push_back(int(h));
+    }
     count_ = root.integer({"count", "modes of each harmonic"}, 1, 200, 6);
     if (auto mesh = root.optional_table("mesh")) {
       mesh_.sector =

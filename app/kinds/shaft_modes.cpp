@@ -29,6 +29,7 @@ class ShaftModesJob final : public Job {
     club_.geometry = read_club_geometry(root, false);
     support_ = root.choice({"support", "of the butt"}, {"clamped", "free"}, "clamped");
     clamped_ = root.quantity({"clamped_length", "of the butt that the clamp holds"}, "mm", Range::non_negative(), 0);
+    if (support_ == "free" && clamped_ > 0) root.fail("clamped_length_mm", "a free butt is in no clamp");
     if (clamped_ >= club_.shaft->length()) root.fail("clamped_length_mm", "the clamp holds the whole shaft");
     count_ = static_cast<int>(root.integer({"count", "how many modes"}, 1, 100, 8));
     elements_ = static_cast<int>(root.integer({"elements", "finite elements along the free shaft"}, 1, 300, 40));

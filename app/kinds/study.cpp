@@ -214,11 +214,11 @@ class StudyJob final : public PointJob {
   /// Whether the blows of a grid make maps.
   bool maps_face() const { return table_.design.grid() && !studied_; }
 
-  /// Whose answers are judged together: a map's where its figures are known, else all of a model's.
+  /// Whose answers are judged together: a map's that has a reference, else all of a model's.
   std::vector<StudyGroup> groups(const StudyTable& table, const std::vector<FaceLayer>& layers) const {
     std::vector<StudyGroup> out;
     for (const FaceLayer& l : layers)
-      if (!l.figures.empty()) out.push_back({l.map.title, l.model, l.points, l.figures});
+      if (l.reference) out.push_back({l.map.title, l.model, l.points, l.figures});
     if (!out.empty()) return out;
     std::vector<std::size_t> all(table.design.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
@@ -296,9 +296,11 @@ class StudyJob final : public PointJob {
       std::string name = table_.design.said(d);
       if (name.empty()) name = table_.design.cells(d).front();
       const Launch launch = asked.launch->in_place_of({});
-      flights.push_back({name, setup.follow(launch, asked.blow.ball, 0.05)});
-      said[name] = post::to_json(flights.back().shot);
-      said[name]["budget"] = report_flight(out, setup, name, launch, asked.blow.ball, &by_law, draw_);
+      try {
+        flights.push_back({name, setup.follow(launch, asked.blow.ball, 0.05)});
+        said[name] = post::to_json(flights.back().shot);
+        said[name]["budget"] = report_flight(out, setup, name, launch, asked.blow.ball, &by_law, draw_);
+      } catch (const std::invalid_argument& e) { out.warn(fmt::format("{}: {}", name, e.what())); }
     }
     out.write("flights.csv", by_law.csv());
     if (draw_ && flights.size() > 1)

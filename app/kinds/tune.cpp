@@ -337,7 +337,8 @@ class TuneJob final : public Job {
   }
 
   double error(std::size_t row, std::size_t c, const std::vector<double>& model) const {  // channel's unit
-    return (model[c] - measured_[row][c]) / channels_[c].si;
+    const double off = model[c] - measured_[row][c];
+    return (channels_[c].channel.unit == "deg" ? std::remainder(off, 2 * kPi) : off) / channels_[c].si;
   }
 
   bool whitened(const std::vector<std::size_t>& rows, const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
@@ -374,22 +375,26 @@ class TuneJob final : public Job {
                        {"max", "{:.8g}"},
                        {}},
                       {.first_width = 28, .least_width = 14, .even = false}};
+    const auto finite = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); };
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[std::size_t(i)];
       const double si = f.si(), value = fit.parameters[i] / si, sd = known.sd[i] / si;
       const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
       const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
-      found.add(f.column(), f.parameter->name, f.parameter->unit, start[i] / si, value, sd, sd * std::max(1.0, scatter),
-                f.bounds.low / si, f.bounds.high / si, edge ? "at its bound" : "");
+      found.add(f.column(), f.parameter->name, f.parameter->unit, start[i] / si, value, post::if_finite(sd),
+                post::if_finite(sd * std::max(1.0, scatter)), f.bounds.low / si, f.bounds.high / si,
+                edge ? "at its bound" : "");
       const SplitName split = split_unit(f.column());
       out.page().answer(post::spoken(split.stem),
                         fmt::format("{:.4g}{}", value, split.unit ? " " + post::symbol(split.unit->suffix) : ""),
-                        edge ? "at its bound" : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
+                        edge                 ? "at its bound"
+                        : !std::isfinite(sd) ? "the data do not show it"
+                                             : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
       summary["parameters"].push_back({{"name", f.column()},
                                        {"start", start[i] / si},
                                        {"value", value},
-                                       {"sd", sd},
-                                       {"sd_by_scatter", sd * std::max(1.0, scatter)},
+                                       {"sd", finite(sd)},
+                                       {"sd_by_scatter", finite(sd * std::max(1.0, scatter))},
                                        {"at_bound", edge}});
     }
     out.tell("");
@@ -409,7 +414,7 @@ class TuneJob final : public Job {
       }
     }
     out.write("correlation.csv", correlation.csv());
-    summary["condition"] = known.condition;
+    summary["condition"] = finite(known.condition);
     summary["inseparable"] = tied;
     summary["blind"] = nlohmann::json::array();
     out.say(fmt::format(

@@ -92,7 +92,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       double mean = 0, square = 0, largest = 0;
       std::size_t where = 0, count = 0;
       for (std::size_t d = 0; d < mine.y.size(); ++d) {
-        const double difference = mine.y[d] - theirs.y[d];
+        const double difference = table.difference(o, mine.y[d], theirs.y[d]);
         if (!std::isfinite(difference) || (reference.by && table.design.cells(d)[*reference.by] != group)) continue;
         if (count++ == 0 || std::abs(difference) > std::abs(largest)) largest = difference, where = d;
         mean += difference;

@@ -71,6 +71,11 @@ class Design {
   }
   /// A column's distinct cells, in the order of the design.
   std::vector<std::string> levels(std::size_t column) const;
+  /// Whether every level of the column's factor has a cell of its own there; a grid's place has it in two columns.
+  bool tells_apart(std::size_t column) const {
+    const DesignFactor& f = factors_[place(column).first];
+    return f.kind == DesignFactor::Kind::grid || levels(column).size() == f.levels.size();
+  }
   /// What a point changes: variants and rows first, then `between`, then sample, grid and axes.
   std::vector<std::string> set(std::size_t point, const std::vector<std::string>& between) const;
   std::vector<MeasuredRange> measured(std::size_t point) const;

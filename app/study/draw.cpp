@@ -43,7 +43,8 @@ class StudyView {
     return out;
   }
   double value(const StudySeries& s, std::size_t d, bool difference) const {
-    return difference ? s.y[d] - against_[s.model * table_.outputs.size() + s.output].y[d] : s.y[d];
+    return difference ? table_.difference(s.output, s.y[d], against_[s.model * table_.outputs.size() + s.output].y[d])
+                      : s.y[d];
   }
   /// Whether every column but those that are free stands at the middle of its values.
   bool in_middle(std::size_t d, const std::set<std::size_t>& free) const {

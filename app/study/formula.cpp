@@ -49,6 +49,7 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& names)
   parser_.SetExpr(text);
   for (const auto& [name, value] : parser_.GetUsedVar()) used_.push_back(name);
   parser_.Eval();
+  for (auto& [name, x] : values_) x = NAN;
 }
 
 void Formula::set(const std::string& name, double value) {

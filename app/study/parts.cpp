@@ -203,6 +203,8 @@ StudyParts read_parts(Table root, const StudyTable& table) {
       columns);
   if (out.all.empty() || *out.over == 0)
     root.fail("parts_over", "a column beside the variants, of a study with a [[part]]");
+  if (!table.design.tells_apart(*out.over))
+    root.fail("parts_over", "some of its values stand there twice: a column that tells them apart, as their `name`");
   if (root.has("parts_from"))
     out.from =
         number_of(root, "parts_from", "value",

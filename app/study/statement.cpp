@@ -37,7 +37,8 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
     StudyStatement s{.text = t.text({"text", "the statement, a sentence"}),
                      .holds = t.text({"holds", "a formula of outputs and axes that is true where the statement holds"}),
                      .where = t.text({"where", "a formula that is true at the points of which it speaks"}, ""),
-                     .names = called};
+                     .names = called,
+                     .figures = figures};
     for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
       if (formula->empty() && key == std::string_view("where")) continue;
       check_formula(t, key, *formula, names);
@@ -50,9 +51,6 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
 nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<StudyStatement>& statements,
                      const std::vector<StudySeries>& references, const std::vector<StudyGroup>& groups) {
   const auto columns = table.design.columns();
-  std::vector<std::string> figures;
-  if (!groups.empty())
-    for (const post::NamedFigure& f : groups.front().figures) figures.push_back(f.name);
   std::vector<std::vector<double>> numbers;
   for (std::size_t c = 0; c < columns.size(); ++c) numbers.push_back(table.design.numbers(c));
   post::Table verdicts{{{"text", "{}", "statement"}}, {.margin = 2, .least_width = 10, .even = false}};
@@ -64,7 +62,7 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
   for (const StudyStatement& s : statements)
     for (const StudyGroup& group : groups) {
       const std::size_t m = group.model;
-      const auto names = variables(s.names, figures, !references.empty());
+      const auto names = variables(s.names, s.figures, !references.empty());
       Formula holds(s.holds, names), where(s.where.empty() ? "1" : s.where, names);
       const auto set = [&](const std::string& name, double x) {
         holds.set(name, x);
@@ -92,7 +90,7 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
           if (references.empty()) continue;
           const double r = references[m * table.outputs.size() + o].y[d];
           set("reference." + name, r);
-          set("difference." + name, y - r);
+          set("difference." + name, table.difference(o, y, r));
         }
       };
       over(group.points);

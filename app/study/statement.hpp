@@ -18,6 +18,8 @@ namespace hosel::app {
 struct StudyStatement {
   std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
   FormulaNames names;              ///< what it calls columns and outputs
+  std::vector<std::string>
+      figures;  ///< of a map, that it may name; where a map has none, what needs them is not judged
 };
 
 /// Points that are judged together, of one model.
@@ -25,7 +27,7 @@ struct StudyGroup {
   std::string name;  ///< of the model, or of the map; empty: there is one model
   std::size_t model = 0;
   std::vector<std::size_t> points;
-  std::vector<post::NamedFigure> figures = {};  ///< of all of them
+  std::vector<post::NamedFigure> figures = {};  ///< of all of them; empty where the map is not whole
 };
 
 /// `[[statement]]`; formulas that cannot be read, or that name something else than `names`, are errors.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "post/labels.hpp"
+#include "post/launch_table.hpp"
 
 namespace hosel::app {
 using nlohmann::json;
@@ -39,6 +40,12 @@ std::string StudyTable::spoken_entry(std::size_t output) const {
   std::string tables = entry.substr(0, std::min(entry.find(".figures."), entry.find(".statements.")));
   if (tables == entry) tables = entry.substr(0, entry.rfind('.'));
   return fmt::format("{}: {}", post::spoken(tables), name);
+}
+
+double StudyTable::difference(std::size_t output, double a, double b) const {
+  const std::string stem = split_unit(outputs[output]).stem;
+  const post::Channel* channel = post::find_channel(stem.substr(stem.rfind('.') + 1));
+  return channel ? post::difference(*channel, a, b) : a - b;
 }
 
 void StudyTable::fill(const std::vector<json>& points) {

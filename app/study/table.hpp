@@ -50,6 +50,8 @@ struct StudyTable {
   }
   /// Whether that column of `models` is the same named model at every point.
   bool one_model(std::size_t model) const;
+  /// a minus b of an output; of a launch's angles the shorter way round.
+  double difference(std::size_t output, double a, double b) const;
   const StudySeries& at(std::size_t model, std::size_t output) const { return series[model * outputs.size() + output]; }
 
  private:

@@ -44,13 +44,6 @@ S adjugate(const S& s) {
   return out;
 }
 inline Sym inverse(const Sym& s, double det) { return adjugate(s) / det; }
-/// a a as a symmetric tensor.
-inline Sym square(const Sym& a) {
-  return (Sym() << a[0] * a[0] + a[3] * a[3] + a[5] * a[5], a[3] * a[3] + a[1] * a[1] + a[4] * a[4],
-          a[5] * a[5] + a[4] * a[4] + a[2] * a[2], a[0] * a[3] + a[3] * a[1] + a[5] * a[4],
-          a[3] * a[5] + a[1] * a[4] + a[4] * a[2], a[0] * a[5] + a[3] * a[4] + a[5] * a[2])
-      .finished();
-}
 /// Components (ab, cd) of 1/2 (A_ac A_bd + A_ad A_bc).
 inline Mat6 symmetric_product(const Sym& s) {
   const Mat3 a = to_matrix(s);

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "golf/data_error.hpp"
 #include "golf/dense.hpp"
@@ -33,6 +34,60 @@ int flight_answer(Output o) {
   static_assert(int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle &&
                 int(Output::flight_time) - kLaunchOutputs == models::kTime);
   return int(o) - kLaunchOutputs;
+}
+
+/// A flight that the others of its group do not foretell.
+struct Stranger {
+  int flight = 0;
+  double squared = 0;        ///< squared distance of its readings from what the others foretell [standard deviations]
+  Eigen::Index reading = 0;  ///< the one that is farthest off
+};
+
+/// Those of the flights of one group whose squared distance is beyond `limit` of their number of readings, the farthest
+/// first. Each is judged by all others that are left, whatever their order, and leaves before the next is.
+/// `factor`: L of the residuals' covariance; `of`: the flight of each residual.
+template <class Limit>
+std::vector<Stranger> strangers(const Eigen::MatrixXd& factor, Eigen::VectorXd residuals, std::vector<int> of,
+                                const Limit& limit) {
+  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(factor.rows(), factor.cols());
+  factor.triangularView<Eigen::Lower>().solveInPlace(P);
+  P = (P.transpose() * P).eval();
+  std::vector<Eigen::Index> place(of.size());  // of what is left, in the group
+  std::iota(place.begin(), place.end(), Eigen::Index(0));
+  std::vector<Stranger> all;
+  while (!of.empty()) {
+    const Eigen::VectorXd v = P * residuals;
+    std::map<int, std::vector<Eigen::Index>> flights;
+    for (std::size_t k = 0; k < of.size(); ++k) flights[of[k]].push_back(Eigen::Index(k));
+    Stranger most;
+    double excess = 1;
+    for (const auto& [flight, own] : flights) {
+      const Eigen::VectorXd vk = v(own);
+      const double squared = vk.dot(dense::Cholesky(P(own, own)).solve(vk));
+      if (!(squared > excess * limit(own.size()))) continue;
+      excess = squared / limit(own.size());
+      const Eigen::VectorXd off = vk.cwiseAbs().cwiseQuotient(P.diagonal()(own).cwiseSqrt());
+      Eigen::Index worst = 0;
+      off.maxCoeff(&worst);
+      most = {flight, squared, place[std::size_t(own[std::size_t(worst)])]};
+    }
+    if (!(most.squared > 0)) break;
+    all.push_back(most);
+    std::vector<Eigen::Index> left;
+    for (std::size_t k = 0; k < of.size(); ++k)
+      if (of[k] != most.flight) left.push_back(Eigen::Index(k));
+    // What is left without it: the inverse of a part of the covariance.
+    const std::vector<Eigen::Index>& gone = flights[most.flight];
+    const Eigen::MatrixXd across = P(gone, left);
+    P = (P(left, left) - across.transpose() * dense::Cholesky(P(gone, gone)).solve(across)).eval();
+    residuals = residuals(left).eval();
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      of[k] = of[std::size_t(left[k])];
+      place[k] = place[std::size_t(left[k])];
+    }
+    of.resize(left.size());
+  }
+  return all;
 }
 
 const char* path_axis(int axis) { return axis == 0 ? "along" : axis == 1 ? "right" : "up"; }
@@ -138,7 +193,7 @@ void FlightProblem::read() {
     for (const std::string& name : case_.group_by) {
       const Column* c = shots.find(name);
       if (!c) throw DataError(fmt::format("{}:1: no column '{}' to group by", shots.file, name));
-      group += (group.empty() ? "" : "/") + (c->numeric ? fmt::format("{:g}", c->native(row)) : c->text[row]);
+      group += (group.empty() ? "" : "/") + (c->numeric ? fmt::format("{:.12g}", c->native(row)) : c->text[row]);
     }
     Eigen::VectorXd y(width());
     bool any = false;
@@ -199,7 +254,7 @@ void FlightProblem::split() {
   const double wanted = case_.split.holdout_fraction * double(usable.size());
   for (const std::size_t k : solvers::shuffled(names.size(), random)) {
     const double more = double(std::ranges::count(cluster, names[k]));
-    if (have + more > wanted + 0.5) continue;
+    if (have + more > wanted + 0.5 * more) continue;
     held.insert(names[k]);
     have += more;
   }
@@ -505,24 +560,31 @@ bool FlightProblem::screen(const Selection& selection) {
   const Fit& at = selection.richest;
   std::set<int> now = out_;
   const double n = double(train_.size() + holdout_.size());
+  const auto limit = [n](std::size_t readings) {
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(readings)), one_in / n));
+  };
   std::vector<Flag> flags = flags_;
   for (const Part part : {Part::train, Part::holdout}) {
-    const Eigen::VectorXd z = loop::whitened(*this, part, at.model, at.p);
-    if (!z.size()) continue;
-    for (std::size_t k = 0; k < trials(part).size(); ++k) {
-      const int i = trials(part)[k];
-      const auto zi = z.segment(Eigen::Index(k) * width(), width());
-      const auto observed = (measured_.row(i).array().isFinite()).count();
-      const double limit =
-          boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(observed)), one_in / n));
-      if (!(zi.squaredNorm() > limit)) continue;
-      Eigen::Index worst = 0;
-      zi.cwiseAbs().maxCoeff(&worst);
-      now.insert(i);
-      const Trial& t = trials_[std::size_t(i)];
-      flags.push_back({t.row, t.shot.id, channel(int(worst)).name,
-                       fmt::format("nothing explains this flight: {:.1f} standard deviations off", zi.norm()),
-                       int(flags.size()) + 1});
+    Eigen::MatrixXd e;
+    if (trials(part).empty() || !errors(trials(part), at.model, at.p, e)) continue;
+    std::map<int, Eigen::Index> place;
+    for (std::size_t k = 0; k < trials(part).size(); ++k) place[trials(part)[k]] = Eigen::Index(k);
+    for (const Block& b : blocks(part)) {
+      Eigen::VectorXd r(Eigen::Index(b.readings.size()));
+      std::vector<int> of;
+      for (const auto& [flight, c] : b.readings) {
+        r[Eigen::Index(of.size())] = e(place.at(b.trials[std::size_t(flight)]), c);
+        of.push_back(flight);
+      }
+      for (const Stranger& s : strangers(b.factor, std::move(r), std::move(of), limit)) {
+        const int i = b.trials[std::size_t(s.flight)];
+        now.insert(i);
+        const Trial& t = trials_[std::size_t(i)];
+        flags.push_back(
+            {t.row, t.shot.id, channel(b.readings[std::size_t(s.reading)].second).name,
+             fmt::format("nothing explains this flight: {:.1f} standard deviations off", std::sqrt(s.squared)),
+             int(flags.size()) + 1});
+      }
     }
   }
   if (double(now.size()) > std::max(2.0, most * double(trials_.size()))) return true;  // no exceptions: not the rows
@@ -603,7 +665,7 @@ double FlightProblem::update_noise(const Fit& selected, const Fit&) {
   for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
   // What is unknown weighs otherwise about an effect.
   const bool anew = !updated_ && !selected.model.forms.empty();
-  updated_ = true;
+  updated_ = updated_ || anew;
   return anew ? std::numeric_limits<double>::infinity() : change;
 }
 
@@ -652,14 +714,9 @@ NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
   if (too_few()) {
     next.text = "more flights";
   } else if (so_far.verdict == Verdict::ambiguous) {
-    std::vector<std::string> names, sensors;
-    for (const auto& tie : so_far.ties)
-      for (const std::string& e : tie) {
-        names.push_back(e);
-        sensors.emplace_back(find_effect(e, case_.own)->sensor);
-      }
-    next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
-    next.text = fmt::format("these flights cannot separate {}: measure {}", fmt::join(names, ", "), *next.sensor);
+    next.sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, case_.own), "; or "));
+    next.text = fmt::format("these flights cannot separate {}: measure {}",
+                            fmt::join(so_far.ties | std::views::join, ", "), *next.sensor);
   } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const Location& l = so_far.unexplained.front();
     next.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",

@@ -100,7 +100,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     close();
     first += record.measured.rows();
   }
-  if (power.size() < 16) return {std::sqrt(square / std::max(1.0, count)), 0};
+  if (power.size() < 16) return {std::sqrt(square / std::max(1.0, count)), 0, count};
   Colour best;
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> level(power.size());
@@ -113,7 +113,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     if (spread < least * (1 - 1e-3)) {  // colour only where it helps
       least = spread;
       // The median of an exponential variate of mean one is ln 2.
-      best = {std::sqrt(std::exp(middle) / std::numbers::ln2), rho};
+      best = {std::sqrt(std::exp(middle) / std::numbers::ln2), rho, count};
     }
     if (white) break;
   }

@@ -10,6 +10,7 @@ namespace hosel::loop {
 struct Colour {
   double sigma = 0;  ///< standard deviation
   double rho = 0;    ///< correlation of neighbours, 0 to 0.98
+  double count = 0;  ///< of the readings it is found from
 };
 
 /// From the training stretches of a channel's residuals (rows of the problem x channels), by the medians of their

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 #include "golf/dense.hpp"
@@ -329,7 +330,7 @@ bool HistoryProblem::screen(const Selection& selection) {
 
 Scatter HistoryProblem::scatter(int c, const Eigen::MatrixXd& residuals, int) const {
   const Colour noise = colour(*this, residuals, c, channel(c).colour == 0);
-  return {noise.sigma / channel(c).noise, 2 / std::sqrt(double(measured_.rows()))};
+  return {noise.sigma / channel(c).noise, 2 / std::sqrt(std::max(1.0, noise.count))};
 }
 
 /// The richest model sees the least of an effect in the noise.
@@ -391,17 +392,11 @@ NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
     next.text =
         fmt::format("repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left);
   } else if (so_far.verdict == Verdict::ambiguous) {
-    std::vector<std::string> names, sensors;
-    for (const auto& tie : so_far.ties)
-      for (const std::string& e : tie) {
-        names.push_back(e);
-        sensors.emplace_back(find_effect(e, own_)->sensor);
-      }
-    next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
+    next.sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, own_), "; or "));
     next.text = fmt::format(
         "this record cannot separate {}: measure {}; or record the same club with a known mass at the tip and with a "
         "shorter free length",
-        fmt::join(names, ", "), *next.sensor);
+        fmt::join(so_far.ties | std::views::join, ", "), *next.sensor);
   } else if (so_far.verdict == Verdict::insufficient) {
     next.text = "a longer or stronger record: the list of smallest effects says what this one could have shown";
   } else if (so_far.verdict == Verdict::noise_contradicted) {

@@ -217,11 +217,19 @@ Eigen::MatrixXd Columns::whitening(const Eigen::MatrixXd& values, const Eigen::V
   return dense::Cholesky(cov).lower_inverse();
 }
 
+/// Twice the logarithm of the density's scale: of every channel the values that are there.
+double Columns::log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const {
+  double sum = 0;
+  for (Eigen::Index c = 0, m = whitening.rows(); c < m; ++c)
+    sum -= 2 * double(values.col(values.cols() - m + c).array().isFinite().count()) * std::log(whitening(c, c));
+  return sum;
+}
+
 double Columns::deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                          const Eigen::VectorXd& p) const {
   const Eigen::MatrixXd r = residuals(values, model, p), W = whitening(values, noise);
   const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
-  double sum = -2 * double(r.rows()) * W.diagonal().array().log().sum();
+  double sum = log_scale(values, W);
   for (Eigen::Index i = 0; i < r.rows(); ++i)
     sum += loss(r.row(i).allFinite() ? (W * r.row(i).transpose()).squaredNorm() : 1e6 * double(r.cols()));
   return sum;
@@ -538,7 +546,7 @@ std::string Columns::text(const Slip& s, bool second) const {
 std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) const {
   if (slips_.empty()) return {};
   const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
-  const double log_scale = -2 * double(values_.rows()) * whitening(values_, noise_).diagonal().array().log().sum();
+  const double scale = log_scale(values_, whitening(values_, noise_));
   double library = as_recorded_;
   for (const Fit& f : rivals)
     if (quick() && !f.at_bound)
@@ -546,9 +554,9 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) c
                                       case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
     const bool free = s.finding == "offset" || s.finding == "scale" || s.finding == "level-shift";
-    const double base = as_recorded_ - log_scale;
+    const double base = as_recorded_ - scale;
     return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
-           (!free || s.deviance - log_scale < kClean * values);
+           (!free || s.deviance - scale < kClean * values);
   };
   const auto best = std::ranges::find_if(slips_, holds);
   if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie || best->disputed)

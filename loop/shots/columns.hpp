@@ -42,6 +42,7 @@ class Columns {
   Eigen::MatrixXd sensitivity(double ContactLaw::*of) const;
   double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                   const Eigen::VectorXd& p) const;
+  double log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
   Eigen::VectorXd noise_of(const Slip& slip) const;
   Eigen::MatrixXd corrected(const Slip& slip) const;

@@ -1,6 +1,7 @@
 #include "loop/shots/experiment.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +18,20 @@ const Candidate* find(const Selection& s, const std::vector<std::string>& effect
   return it == s.candidates.end() ? nullptr : &*it;
 }
 
-/// Two sets of effects that differ in one name of a tie.
+/// Two sets of effects that differ in one name of a tie that is told.
 struct Rivals {
   const Candidate *a = nullptr, *b = nullptr;
   std::string one, two;  ///< the names in which they differ
 };
 
-std::vector<Rivals> rivals(const Selection& s) {
+std::vector<Rivals> rivals(const LoopResult& so_far) {
+  const Selection& s = so_far.selection;
+  const auto told = [&](const std::string& one, const std::string& two) {
+    return std::ranges::any_of(so_far.ties, [&](const auto& tie) {
+      return std::ranges::count(tie, one) > 0 && std::ranges::count(tie, two) > 0;
+    });
+  };
+
   std::vector<Rivals> all;
   for (std::size_t t = 0; t < s.ties.size(); ++t) {
     const auto with = [&](const std::string& name) {
@@ -34,7 +42,7 @@ std::vector<Rivals> rivals(const Selection& s) {
     for (std::size_t i = 0; i < s.ties[t].size(); ++i)
       for (std::size_t j = i + 1; j < s.ties[t].size(); ++j) {
         const Rivals r{with(s.ties[t][i]), with(s.ties[t][j]), s.ties[t][i], s.ties[t][j]};
-        if (r.a && r.b) all.push_back(r);
+        if (r.a && r.b && told(r.one, r.two)) all.push_back(r);
       }
   }
   return all;
@@ -207,7 +215,6 @@ class Contest {
 
 NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
                       const LoopResult& so_far) {
-  const Selection& selection = so_far.selection;
   NextExperiment next;
   switch (so_far.verdict) {
     case Verdict::unexplained:
@@ -256,7 +263,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   std::vector<std::size_t> chosen;                                     // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
   std::vector<std::string> sentences, sensors;
-  for (const Rivals& r : rivals(selection)) {
+  for (const Rivals& r : rivals(so_far)) {
     const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
                            two = family(problem, r.b->fit, r.two, so_far.forms);
     Contest apart(model, one, two, noise);
@@ -281,18 +288,14 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     }
     const double after = std::sqrt(apart.squared());
     if (apart.squared() < 0.8 * wanted) {
-      std::string sensor;
-      for (const std::string& name : {r.one, r.two})
-        if (const EffectEntry* e = find_effect(name, c.own)) {
-          const std::string s(e->sensor);
-          if (sensor.find(s) == std::string::npos) sensor += (sensor.empty() ? "" : "; or ") + s;
-          if (!std::ranges::count(sensors, s)) sensors.push_back(s);
-        }
+      const std::vector<std::string> of_pair = sensors_of({{r.one, r.two}}, c.own);
+      for (const std::string& s : of_pair)
+        if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
       sentences.push_back(fmt::format(
           "shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by {:.1f} "
           "after {} more shots, and 4.8 are needed. Measure {}",
-          r.one, r.two, before, after, more.size(), sensor));
+          r.one, r.two, before, after, more.size(), fmt::join(of_pair, "; or ")));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
       sentences.push_back(
@@ -309,6 +312,10 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     for (std::size_t j = 0; j < box.input.size(); ++j)
       shot.emplace_back(box.column[j]->name, get(sites[k].blow, Input(box.input[j])) / box.column[j]->si);
     next.shots.push_back(shot);
+  }
+  if (sentences.empty()) {  // no set of candidates stands for the other name
+    sensors = sensors_of(so_far.ties, c.own);
+    if (!sensors.empty()) sentences.push_back(fmt::format("Measure {}", fmt::join(sensors, "; or ")));
   }
   if (!sensors.empty()) next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
   next.text = sentences.empty() ? "no design found" : fmt::format("{}", fmt::join(sentences, ". "));

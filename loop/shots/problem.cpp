@@ -354,7 +354,7 @@ double ShotProblem::update_noise(const Fit& selected, const Fit&) {
   regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
   // Noisy inputs and launches weigh otherwise once they are carried through the effects.
   const bool anew = !updated_ && (!inputs_.covariance.empty() || case_.flight) && !selected.model.forms.empty();
-  updated_ = true;
+  updated_ = updated_ || anew;
   return anew ? std::numeric_limits<double>::infinity() : change;
 }
 

@@ -58,6 +58,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
                    LoopResult& whole) {
   const Groups g = groups(*c.shots.find(c.split.by));
   std::vector<UsedRow> pooled;
+  std::vector<std::pair<double, double>> expected(whole.channels.size());  // sum of squares, their number
   for (std::size_t k = 0; k < g.name.size(); ++k) {
     std::set<int> held;
     for (std::size_t i = 0; i < g.of_row.size(); ++i)
@@ -67,6 +68,11 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
     const LoopResult fold = pass(others, columns, derived, held);
     for (const UsedRow& u : fold.rows)
       if (u.holdout) pooled.push_back(u);
+    for (std::size_t j = 0; j < std::min(expected.size(), fold.channels.size()); ++j)
+      if (const ChannelResult& ch = fold.channels[j]; std::isfinite(ch.expected)) {
+        expected[j].first += ch.before.holdout * std::pow(ch.expected, 2);
+        expected[j].second += ch.before.holdout;
+      }
     if (fold.corrected && whole.corrected)
       for (const Corrected::Row& r : fold.corrected->rows) whole.corrected->rows.push_back(r);
     if (fold.holdout > 0)
@@ -76,13 +82,15 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
                       fold.ties.empty() ? "" : fmt::format(", tied {}", fmt::join(fold.ties.front(), " or "))));
   }
   std::ranges::stable_sort(pooled, {}, &UsedRow::row);
-  for (std::size_t k = 0; k < whole.channels.size(); ++k)
+  for (std::size_t k = 0; k < whole.channels.size(); ++k) {
+    whole.channels[k].expected = std::sqrt(expected[k].first / expected[k].second);
     for (const auto& [of, into] : {std::pair{&UsedRow::before, &whole.channels[k].before},
                                    {&UsedRow::after, &whole.channels[k].after},
                                    {&UsedRow::with_remainder, &whole.channels[k].with_remainder}}) {
       const Errors held = errors(pooled, of, k);
       *into = {into->train_rmse, held.holdout_rmse, held.holdout_bias, into->train, held.holdout};
     }
+  }
   whole.holdout = int(pooled.size());
   whole.rows = std::move(pooled);
 }
@@ -110,7 +118,7 @@ LoopResult run(const ShotCase& c) {
     const auto outputs = [](const std::vector<DerivedColumn>& d) {
       std::set<std::string> names;
       for (const DerivedColumn& x : d)
-        if (!x.input) names.insert(x.column);
+        if (!x.input && x.share == 1) names.insert(x.column);
       return names;
     };
     const bool refit = outputs(again) != outputs(derived);

@@ -344,7 +344,7 @@ Groups groups(const Column& column) {
   for (std::size_t i = 0; i < n; ++i) {
     std::string label;
     if (column.numeric) {
-      if (!std::isnan(column.value[i])) label = fmt::format("{:g}", column.native(i));
+      if (!std::isnan(column.value[i])) label = fmt::format("{:.12g}", column.native(i));
     } else {
       label = column.text[i];
     }

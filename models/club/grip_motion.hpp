@@ -16,7 +16,7 @@ struct GripTrack {
   std::vector<Eigen::Quaterniond> attitudes;
 
   /// Sentences naming what no motion can have: time backwards, a gap longer than `longest_gap` [s], a
-  /// turn of more than a quarter circle between neighbours; empty if all is well.
+  /// turn of more than an eighth of a circle between neighbours; empty if all is well.
   std::vector<std::string> faults(double longest_gap) const;
   /// Leaves the samples up to the first at `end` [s] or after it.
   void cut(double end);

@@ -191,7 +191,8 @@ CondensedPlate PlateFace::condensed(const Vector2d& place, Mirror mirror) const 
   const Eigen::Index n = stiffness_.rows();
   // Candidates: modes, then static deflections under patches and under what moves the pressure's centre.
   std::vector<fem::Vector> candidates;
-  for (int i = 0; i < design_.modes; ++i) candidates.push_back(modes_.col(i));
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(design_.modes, modes_.cols()); ++i)
+    candidates.push_back(modes_.col(i));  // a coarse plate has fewer
   for (const double radius : kPatches) candidates.push_back(solve(patch_load(place, radius)));
   const double aside = 0.5 * kPatches.back();
   for (const Vector2d& d : {Vector2d(aside, 0), Vector2d(0, aside)})

@@ -70,7 +70,6 @@ class Bench {
   Bench(const Club& club, bool with_head, const BenchOptions& options, const std::vector<BenchSensor>& sensors);
 
   BenchModes modes(const ClubChange& change, int count = 24) const;
-  double free_length() const { return length_; }
 
  private:
   Eigen::Matrix<double, 6, 6> head_mass(const ClubChange& change) const;

@@ -97,6 +97,8 @@ Condensed condense(const MatrixXd& M, const MatrixXd& K, const std::vector<int>&
 ShaftImpedance shaft_impedance(const Club& club, const ShaftImpedanceOptions& options) {
   if (!club.shaft || club.shaft->stations.size() < 2)
     throw std::invalid_argument("shaft-coupled: the club has no shaft");
+  if (!std::ranges::all_of(club.shaft->stations, [](const ShaftStation& s) { return s.shear_stiffness > 0; }))
+    throw std::invalid_argument("shaft-coupled: the shaft's table has no shear stiffness");
   const Shaft& shaft = *club.shaft;
   for (const ShaftStation& s : shaft.stations)
     if (!s.centres.none())

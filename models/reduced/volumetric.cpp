@@ -99,6 +99,7 @@ Setting<double> setting_of(const Blow& blow, const VolumetricLaw& law, const Sha
   const Structure structure(blow);
   const FirstContact first = first_contact(blow);
   first.closing_speed();  // a head that moves away strikes nothing
+  if (shaft && structure.wall) throw std::invalid_argument("shaft-coupled: a head of infinite mass feels no shaft");
   Setting<double> s;
   s.to_global = first.face_axes;
   const auto local = [&](const Vec3& v) -> Vec3 { return s.to_global.transpose() * v; };
@@ -325,8 +326,6 @@ class Contact {
     Instant i;
     at(y, i);
     launch(y, out.launch);
-    out.core_spin = s_.to_global * core;
-    out.cover_spin = s_.to_global * cover;
     out.ball_displacement = s_.to_global * ConstVec(y + kBall);
     out.head_displacement = s_.to_global * ConstVec(y + kHead);
     out.head_rotation = s_.to_global * i.R * s_.to_global.transpose();
@@ -345,8 +344,9 @@ class Contact {
     }
     e.kinetic_before = wall_ ? s_.ball_mass * s_.start_velocity.squaredNorm() / 2
                              : head_energy(s_.start_velocity, s_.start_spin);
-    e.kinetic_after = (s_.ball_mass * vb.squaredNorm() + s_.core_inertia * core.squaredNorm() +
-                       s_.cover_inertia * cover.squaredNorm()) /
+    // Of a wall in its own frame, as before.
+    e.kinetic_after = (s_.ball_mass * Vec3(wall_ ? Vec3(vb - s_.start_velocity) : Vec3(vb)).squaredNorm() +
+                       s_.core_inertia * core.squaredNorm() + s_.cover_inertia * cover.squaredNorm()) /
                           2 +
                       head_energy(vh, i.R.transpose() * wh);
     e.stored_contact = law_.stiffness * overlap_potential(i.depth, s_.radius, s_.curvature, law_.volume_exponent);

@@ -83,10 +83,9 @@ struct EnergyLedger {
 struct VolumetricResult {
   Launch launch;
   EnergyLedger energy;
-  Vec3 core_spin = Vec3::Zero(), cover_spin = Vec3::Zero();  ///< at separation, global frame [rad/s]
-  Vec3 ball_displacement = Vec3::Zero();                     ///< of the ball's centre during contact, global frame [m]
-  Vec3 head_displacement = Vec3::Zero();                     ///< of the head's cg during contact, global frame [m]
-  Mat3 head_rotation = Mat3::Identity();                     ///< of the head during contact, global frame
+  Vec3 ball_displacement = Vec3::Zero();  ///< of the ball's centre during contact, global frame [m]
+  Vec3 head_displacement = Vec3::Zero();  ///< of the head's cg during contact, global frame [m]
+  Mat3 head_rotation = Mat3::Identity();  ///< of the head during contact, global frame
   double face_travel = 0, face_rate = 0;  ///< of a yielding face at its centre, inwards, at the end [m], [m/s]
   long steps = 0, rate_calls = 0;
 };

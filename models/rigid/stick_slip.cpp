@@ -37,6 +37,8 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
   Vec2 slide = Vec2::Zero();  // mu d
   if (std::isinf(mu)) {
     slide = stop;  // an impulse, at once
+  } else if (mu == 0) {
+    p_slide = INFINITY;  // nothing stops it
   } else if (stop.norm() > 0) {
     const double a = stop.squaredNorm(), b = stop.dot(hold), c = hold.squaredNorm() - mu * mu;
     const double inner = b * b - a * c, q = inner >= 0 ? (-b + std::sqrt(inner)) / a : 0;

@@ -142,6 +142,9 @@ TEST(Bounds, WhatNoShaftSwingOrBallHas) {
   };
   refused("loop-bench --set 'shaft.table.bending_stiffness_N_m2=[1e300,1e300]'", "EI [N m2] is 1e+300 at 0 m");
   refused("shaft-modes --set shaft.bending_scale=1e300", "EI [N m2] is ");
+  refused("frequency-machine --set support=free", "clamped_length_mm: a free butt is in no clamp");
+  refused("ball-modes --set harmonics=[1.5]", "harmonics: whole numbers are wanted");
+  refused("loop-flights --set flight.tolerance=1e-9", "tolerance: unknown key");
   refused("shaft-modes --set shaft.mass_scale=1e300", "the mass per length [kg/m] is ");
   refused("swing-driver --set motion.smoothing_ms=1e-9", "too few samples between its knots");
   refused("swing-driver --set solution.step_ms=1e-300", "solution.step_ms: 1e-300 is out of range");

@@ -221,6 +221,22 @@ TEST(CommandLine, OpenSaysWhatIsMissing) {
   EXPECT_NE(started.find((home / "vtk").string()), std::string::npos) << started;
 }
 
+/// Of two models the last that the case names answers it, whatever the order of their names.
+TEST(CommandLine, FilmIsOfTheModelThatAnswers) {
+  const fs::path home = fresh_directory("film_of"), bin = fresh_directory("film_of_bin");
+  for (const char* model : {"fe-free-body", "fe-full-club"}) write(home / model / "vtk" / "ball.pvd", "");
+  write(home / "case.resolved.toml", "models = [\"fe-full-club\", \"rigid-planar\", \"fe-free-body\"]\n");
+  fs::create_directories(bin / "cache/hosel/paraview-python/usr");
+  for (const char* name : {"pvbatch", "xvfb-run", "ffmpeg"}) {
+    write(bin / name, "#!/bin/sh\necho \"$@\"\nexit 1\n");
+    fs::permissions(bin / name, fs::perms::owner_all);
+  }
+  const std::string said = bash("XDG_CACHE_HOME='" + (bin / "cache").string() + "' PATH='" + bin.string() +
+                                ":/usr/bin:/bin' " HOSEL_COMMAND " film '" + home.string() + "'");
+  EXPECT_NE(said.find((home / "fe-free-body").string()), std::string::npos) << said;
+  EXPECT_EQ(said.find((home / "fe-full-club").string()), std::string::npos) << said;
+}
+
 TEST(CommandLine, FilmSaysWhatIsMissing) {
   const fs::path home = fresh_directory("film");
   EXPECT_NE(command("film '" + home.string() + "'").text.find("no series of a blow"), std::string::npos);

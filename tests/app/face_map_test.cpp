@@ -266,6 +266,23 @@ position_mm = [-15.0, 55.0, 10.0]
   EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "hosel-fe-full-club.png"));
 }
 
+/// A map that is not whole has no figures: what is said of them is not judged, and the run tells what it has.
+TEST(FaceMap, StatementsAboutAMapThatIsNotWholeAreNotJudged) {
+  const fs::path dir = fresh_directory("face_map_not_whole");
+  std::string text = kMap;
+  text.replace(text.find("head.mass_kg=0.2025"), 19, "delivery.attack_angle_deg=-85");
+  text.replace(text.find("delivery.attack_angle_deg=-85"), 29,
+               "delivery.club_path_deg=89\", \"delivery.face_angle_deg=-60");
+  write(dir / "case.toml", text);
+  const Outcome o = command("run " + dir.string() + " --set grid.columns=3 --set grid.rows=3 --quiet --out " +
+                            (dir / "out").string());
+  ASSERT_EQ(o.status, 3) << o.text;
+  const auto s = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  EXPECT_EQ(s.at("failed"), 9);
+  ASSERT_EQ(s.at("statements").size(), 1u);
+  EXPECT_EQ(s["statements"][0].at("verdict"), "not judged");
+}
+
 TEST(FaceMap, EquivalentMassNeedsMapsAndAReference) {
   const fs::path dir = fresh_directory("face_map_mass");
   std::string text = kMap;

@@ -321,6 +321,19 @@ TEST(ImpactCase, OneCoreGivesTheBytesOfAll) {
   expect_same_files(one, expected);
 }
 
+/// A launch is an answer where its flight has no landing.
+TEST(ImpactCase, ABallThatDoesNotReachTheGroundHasALaunch) {
+  const fs::path dir = fresh_directory("impact_no_landing");
+  write(dir / "case.toml", kEccentricBlow + "[flight]\nlaw = \"ferguson-2022\"\nground.height_m = 400\n");
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto s = nlohmann::json::parse(content(dir / "out/summary.json"));
+  EXPECT_GT(s.at("models").at("rigid-eccentric").at("ball_speed_mps").get<double>(), 40);
+  EXPECT_FALSE(s.contains("flights"));
+  ASSERT_EQ(s.at("doubts").size(), 1u) << s.dump();
+  EXPECT_NE(s["doubts"][0].get<std::string>().find("does not rise to the ground"), std::string::npos);
+}
+
 TEST(ImpactCase, AComparedColumnIsTheCaseThatItSays) {
   const fs::path dir = fresh_directory("impact_compared");
   const std::string flight = "[flight]\nlaw = \"ferguson-2022\"\n";

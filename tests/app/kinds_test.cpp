@@ -288,6 +288,9 @@ TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
   EXPECT_NEAR(d.at("density_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(d.at("left_s").get<double>(), added, 1e-6);
   EXPECT_NEAR(d.at("error_s").get<double>(), std::sqrt(2.0) * 0.02 / std::sqrt(40), 1e-6);
+  const Outcome twice = command("check " + dir.string() + " --set times.site[2].name=low");
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_NE(twice.text.find("'low' is there twice"), std::string::npos) << twice.text;
 }
 
 }  // namespace

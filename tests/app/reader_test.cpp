@@ -169,6 +169,24 @@ TEST(Reader, ACopyOfWhatACaseNamesIsTheSameInput) {
   EXPECT_NE(fingerprint(dir / "changed/case.resolved.toml"), original);
 }
 
+/// Two files that end alike are two inputs.
+TEST(Reader, FilesOfOneNameInTwoFoldersAreNotExchanged) {
+  const fs::path dir = fresh_directory("reader_exchanged");
+  write(dir / "case.toml", "first = \"one/a.csv\"\nsecond = \"two/a.csv\"\n");
+  const auto fingerprint = [&](const std::string& first, const std::string& second) {
+    write(dir / "data/one/a.csv", first);
+    write(dir / "data/two/a.csv", second);
+    setenv("HOSEL_DATA", (dir / "data").c_str(), 1);
+    CaseFile read(dir);
+    for (const char* key : {"first", "second"}) read.root().data_file({key, "of a test"});
+    unsetenv("HOSEL_DATA");
+    read.finish();
+    return read.inputs()->fingerprint();
+  };
+  const std::string original = fingerprint("x\n1\n", "x\n2\n");
+  EXPECT_NE(fingerprint("x\n2\n", "x\n1\n"), original);
+}
+
 /// The number that an override sets; its text where it is none.
 std::string set_to(const CaseFile& file, const std::string& text) {
   CaseFile again(file, {"other.x=" + text});

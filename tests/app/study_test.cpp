@@ -324,6 +324,37 @@ restitution_slope_s_per_m = 0.0
   EXPECT_NEAR(part["half_width_95"].get<double>(), 1.96 * std::hypot(heavier - own, livelier - own), 1e-9);
 }
 
+/// Two rows of one value cannot be told apart by it.
+TEST(Study, PartsOverAColumnNeedItsValuesToDiffer) {
+  const fs::path dir = fresh_directory("study_parts_twice");
+  write(dir / "rows.csv", "delivery.club_speed_mps,contact.restitution\n40,0.8\n40,0.81\n45,0.8\n");
+  write(dir / "case.toml", R"(kind = "study"
+models = ["rigid-planar"]
+outputs = ["ball_speed_mps"]
+parts_over = "delivery.club_speed_mps"
+parts_from = "45"
+[rows]
+file = "rows.csv"
+[[variant]]
+name = "heavy"
+set = ["head.mass_kg=0.21"]
+[[variant]]
+name = "light"
+set = ["head.mass_kg=0.19"]
+[[part]]
+name = "heavier"
+of = "heavy"
+minus = "light"
+[delivery]
+club_speed_mps = 40
+[head]
+mass_kg = 0.2
+)");
+  const Outcome o = command("check " + dir.string());
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find("stand there twice"), std::string::npos) << o.text;
+}
+
 TEST(Study, ALineCutShortIsComputedAgain) {
   const fs::path dir = sweep_case("sweep_torn", kSample);
   const std::string sweep = (dir / "sweep").string(), out = (dir / "out").string();

@@ -228,6 +228,46 @@ max = 0.8
     EXPECT_TRUE(std::filesystem::exists(d / "out" / name)) << name;
 }
 
+/// A parameter that moves nothing is told so, in a summary like any other.
+TEST(Tune, WhatTheDataDoNotShowIsTold) {
+  const auto d = scratch("tune_blind");
+  std::ofstream(d / "case.toml") << R"(kind = "tune"
+model = "rigid-planar"
+[head]
+mass_kg = 0.26
+[data]
+shots = "shots.csv"
+[data.noise]
+ball_speed_mps = 0.25
+[[parameters]]
+name = "restitution"
+min = 0.5
+max = 1.0
+[[parameters]]
+name = "tangential_restitution"
+min = -0.2
+max = 0.8
+)";
+  std::ofstream shots(d / "shots.csv");
+  shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps\n";
+  for (int i = 0; i < 12; ++i) {
+    Blow b;  // without a loft nothing is tangential
+    b.club.head.mass = 0.26;
+    b.delivery.club_speed = 40 + 0.5 * i;
+    b.delivery.dynamic_loft = b.delivery.attack_angle = 0;
+    b.contact.restitution = 0.8;
+    shots << i + 1 << ',' << b.delivery.club_speed << ",0,0,"
+          << models::find("rigid-planar")->make({})->launch(b).ball_speed() + (i % 2 ? 0.1 : -0.1) << '\n';
+  }
+  shots.close();
+  const nlohmann::json s = run(d);
+  EXPECT_NEAR(s["parameters"][0]["value"].get<double>(), 0.8, 0.01);
+  EXPECT_TRUE(s["parameters"][0]["sd"].is_number());
+  EXPECT_TRUE(s["parameters"][1]["sd"].is_null());
+  EXPECT_TRUE(s["condition"].is_null());
+  EXPECT_FALSE(s["blind"].empty());
+}
+
 TEST(Tune, AChannelThatIsOnlyComparedMovesNothing) {
   const auto d = scratch("tune_compared");
   std::ofstream(d / "case.toml") << R"(kind = "tune"

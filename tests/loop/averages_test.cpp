@@ -116,6 +116,8 @@ TEST(Averages, AWanderingSwingIsNoEffect) {
     for (const ChannelResult& c : r.channels) {
       EXPECT_EQ(c.noise_source, "repeats");
       EXPECT_LT(c.before.holdout_rmse, 2 * c.noise) << c.name;
+      // Seven means scatter by a quarter about what is expected of them.
+      EXPECT_NEAR(c.before.holdout_rmse / c.expected, 1, 0.75) << c.name;
     }
   }
   EXPECT_TRUE(misled);  // else the sets have not what this is about

@@ -3,6 +3,7 @@
 // made by an integration of the test's own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -165,6 +166,33 @@ TEST(FlightBase, NamesDragAndItsSize) {
   const LoopResult r = run(drives({.drag = 0.06}, 90, 2));
   EXPECT_EQ(what(r, "drag-level"), Said::alone) << told(r);
   EXPECT_NEAR(value(r, "relative_drag"), 0.06, 0.015);
+}
+
+/// One carry of a hole is wrong: it is that one, wherever it stands.
+TEST(FlightBase, AWrongFlightIsFoundWhereverItStands) {
+  for (const bool first : {true, false}) {
+    FlightCase c = drives({}, 60, 4);
+    const auto hole = std::ranges::find(c.shots.columns, "hole", &Column::name),
+               carry = std::ranges::find(c.shots.columns, "carry_m", &Column::name);
+    ASSERT_NE(carry, c.shots.columns.end());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < hole->text.size(); ++i)
+      if (hole->text[i] == "h2" && (!first || wrong == 0)) wrong = i;
+    carry->value[wrong] += 14;
+    const LoopResult r = run(c);
+    ASSERT_EQ(r.flagged.size(), 1U) << first << ": " << told(r);
+    EXPECT_EQ(r.flagged.front().row, int(wrong));
+    EXPECT_EQ(r.flagged.front().column, "carry_m");
+  }
+}
+
+TEST(FlightBase, OneOfTwoClustersIsHeldOut) {
+  FlightCase c = drives({}, 60, 3, 0);
+  for (Column& column : c.shots.columns)
+    if (column.name == "hole")
+      for (std::size_t i = 0; i < column.text.size(); ++i) column.text[i] = i % 2 ? "odd" : "even";
+  c.split.by = "hole";
+  EXPECT_EQ(run(c).holdout, 30);
 }
 
 }  // namespace

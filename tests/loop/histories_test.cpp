@@ -231,6 +231,15 @@ TEST(Histories, NoiseThatIsNotTheDeclaredIsSaid) {
   EXPECT_EQ(r.verdict, Verdict::noise_contradicted);
 }
 
+TEST(Histories, AChannelThatEndsEarlyHasTheErrorOfItsReadings) {
+  const Bench b = bench({});
+  const HistoryProblem problem(*b.model, b.c.setting, b.c.records, Split{.holdout_fraction = 0});
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Random(problem.measured().rows(), problem.width());
+  noise.col(1).tail(noise.rows() - 64).setConstant(NAN);
+  EXPECT_DOUBLE_EQ(problem.scatter(0, noise, 0).error, 2 / std::sqrt(double(noise.rows())));
+  EXPECT_DOUBLE_EQ(problem.scatter(1, noise, 0).error, 2 / std::sqrt(64.0));
+}
+
 TEST(Histories, ZeroParametersAreTheBaseBitForBit) {
   const Bench b = bench({});
   std::vector<Prediction> base, zero;

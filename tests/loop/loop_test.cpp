@@ -625,6 +625,35 @@ TEST_F(Loop, TwoNamesOfOneRestitutionAreATie) {
   EXPECT_TRUE(r.adopted.empty());
   ASSERT_EQ(r.ties.size(), 1U);
   EXPECT_EQ(r.ties[0].front(), "restitution-law");
+  EXPECT_TRUE(r.next.sensor || !r.next.shots.empty()) << r.next.text;
+}
+
+TEST_F(Loop, FourTimesTheRowsHalveTheDeviation) {
+  const auto deviation = [&](int shots) {
+    const LoopResult r = run(case_of(csv({.shots = shots, .tangential = 0.1})));
+    EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"}) << shots;
+    return r.covariance.size() == 1 ? std::sqrt(r.covariance(0, 0)) : NAN;
+  };
+  EXPECT_NEAR(deviation(300) / deviation(1200), 2, 0.2);
+}
+
+TEST_F(Loop, AColumnThatIsHalfEmptyIsAccusedOfNothing) {
+  std::string text = csv({.shots = 240, .tangential = 0.2});
+  bool every_second = false;
+  std::string blank;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); every_second = !every_second)
+    blank += (every_second ? line.substr(0, line.rfind(',', line.rfind(',') - 1)) + ",," : line) + "\n";
+  ShotCase c = case_of(blank);
+  c.noise.erase("backspin_rpm");
+  c.noise.erase("sidespin_rpm");
+  const LoopResult r = run(c);
+  EXPECT_TRUE(r.columns.empty()) << sentence(r);
+  EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"}) << sentence(r);
+}
+
+TEST(Groups, NumbersOfManyDigitsAreApart) {
+  EXPECT_EQ(groups(Column{.name = "date", .numeric = true, .value = {20240607, 20240608, 20240607}}).name.size(), 2U);
 }
 
 TEST_F(Loop, LongSetsKeepTheirName) {

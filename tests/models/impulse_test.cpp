@@ -5,6 +5,7 @@
 
 #include "golf/units.hpp"
 #include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 #include "models/rigid/rigid_planar.hpp"
 #include "models/rigid/stick_slip.hpp"
 
@@ -81,6 +82,24 @@ TEST(StickSlip, IsRigidPlanarWhereTheBallSlides) {
   const Launch p = RigidPlanar().launch(b), s = StickSlip().launch(b);
   EXPECT_LT((p.velocity - s.velocity).norm(), 1e-12 * p.ball_speed());
   EXPECT_LT((p.spin - s.spin).norm(), 1e-12 * p.spin_rate());
+}
+
+/// Without friction nothing acts along the face, whether the ball slips from the start or not at all.
+TEST(StickSlip, WithoutFrictionThePushIsAlongTheNormal) {
+  for (const double loft : {0.0, 30.0}) {
+    Blow b = eccentric(loft);
+    b.delivery.attack_angle = b.delivery.club_path = b.delivery.face_angle = 0;
+    b.delivery.head_angular_velocity.setZero();
+    b.club.head.cg = Vec3(-0.035, 0, 0);
+    b.delivery.impact_toe = 0.01;
+    b.delivery.impact_high = 0;
+    b.contact.friction = b.contact.tangential_restitution = 0;
+    if (loft == 0) b.club.head.face = {};  // flat: no slip
+    const Launch e = RigidEccentric().launch(b), s = StickSlip().launch(b);
+    ASSERT_GT(e.ball_speed(), 1);
+    EXPECT_LT(s.spin.norm(), 1e-9);
+    EXPECT_LT((e.velocity - s.velocity).norm(), 1e-12 * e.ball_speed()) << loft;
+  }
 }
 
 TEST(StickSlip, SlipEndsAtZeroAndReturnsByTheRestitution) {

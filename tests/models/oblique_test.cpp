@@ -10,6 +10,7 @@
 #include "models/matched_launch.hpp"
 #include "models/rigid/hertz_maw.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {
@@ -61,6 +62,27 @@ TEST(Oblique, LaunchRatioOfARollingSphere) {
   EXPECT_NEAR(*ratio, 0.8, 0.02);  // Henrikson et al. (2020) quote 0.80 to 0.81
   blow.delivery.dynamic_loft = blow.delivery.attack_angle;
   EXPECT_FALSE(launch_ratio(blow, RigidEccentric().launch(blow)));
+}
+
+/// Where the blow is aimed changes nothing of it.
+TEST(Oblique, LaunchRatioDoesNotKnowWhereTheTargetIs) {
+  Blow blow = eccentric_blow(), aside = blow;
+  aside.delivery.club_path += radians(25);
+  aside.delivery.face_angle += radians(25);
+  aside.delivery.head_angular_velocity = Eigen::AngleAxisd(-radians(25), Vec3::UnitZ()) *
+                                         blow.delivery.head_angular_velocity;
+  const Launch straight = RigidEccentric().launch(blow), turned = RigidEccentric().launch(aside);
+  ASSERT_NEAR(degrees(turned.azimuth() - straight.azimuth()), 25, 1e-9);
+  EXPECT_NEAR(*launch_ratio(aside, turned), *launch_ratio(blow, straight), 1e-9);
+}
+
+/// A launch angle that follows no loft.
+struct OneAngle final : ImpactModel {
+  Launch launch(const Blow&) const override { return {.velocity = Vec3(60, 0, 10)}; }
+};
+
+TEST(Oblique, ALaunchAngleThatFollowsNoLoftIsNotMatched) {
+  EXPECT_THROW(match_launch_angle(OneAngle(), eccentric_blow(), radians(20), 1e-6), solvers::NonConvergence);
 }
 
 TEST(Oblique, MatchedLaunchFindsTheLoftThatWasHidden) {

@@ -181,6 +181,18 @@ TEST(ShaftCoupled, ConvergedInFunctionsAndModes) {
   EXPECT_NEAR(standard - free, best - free, 0.01 * std::abs(best - free));
 }
 
+TEST(ShaftCoupled, AWallFeelsNoShaft) {
+  Blow b = driver();
+  b.club.head.mass = INFINITY;
+  EXPECT_THROW(ShaftCoupled().launch(b), std::invalid_argument);
+}
+
+TEST(ShaftCoupled, AShaftWithoutShearStiffnessIsRefused) {
+  Blow b = driver();
+  for (ShaftStation& s : b.club.shaft->stations) s.shear_stiffness = 0;
+  EXPECT_THROW(ShaftCoupled().launch(b), std::invalid_argument);
+}
+
 TEST(ShaftCoupled, ClubWithoutShaftIsRefused) {
   Blow b = driver();
   b.club.shaft.reset();

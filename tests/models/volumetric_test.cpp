@@ -144,6 +144,15 @@ TEST(Volumetric, MomentaAndEnergyBalance) {
     }
 }
 
+TEST(Volumetric, EnergyBalancesOnAWall) {
+  Blow b = eccentric();
+  b.club.head.mass = INFINITY;
+  b.delivery.head_angular_velocity.setZero();  // a wall that turns puts work in
+  const VolumetricResult r = volumetric_impact(b, {}, {Integrator::rosenbrock, 1e-10});
+  ASSERT_GT(r.launch.ball_speed(), 1.5 * b.delivery.club_speed);
+  EXPECT_LT(std::abs(r.energy.gap()), 1e-8);
+}
+
 /// Off centre, with friction and a curved face that yields: exact momenta, closed ledger, and a faster ball.
 TEST(Volumetric, BalancesOnAYieldingFace) {
   Blow b = eccentric();
