@@ -637,21 +637,6 @@ TEST_F(Loop, FourTimesTheRowsHalveTheDeviation) {
   EXPECT_NEAR(deviation(300) / deviation(1200), 2, 0.2);
 }
 
-TEST_F(Loop, AColumnThatIsHalfEmptyIsAccusedOfNothing) {
-  std::string text = csv({.shots = 240, .tangential = 0.2});
-  bool every_second = false;
-  std::string blank;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); every_second = !every_second)
-    blank += (every_second ? line.substr(0, line.rfind(',', line.rfind(',') - 1)) + ",," : line) + "\n";
-  ShotCase c = case_of(blank);
-  c.noise.erase("backspin_rpm");
-  c.noise.erase("sidespin_rpm");
-  const LoopResult r = run(c);
-  EXPECT_TRUE(r.columns.empty()) << sentence(r);
-  EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"}) << sentence(r);
-}
-
 TEST(Groups, NumbersOfManyDigitsAreApart) {
   EXPECT_EQ(groups(Column{.name = "date", .numeric = true, .value = {20240607, 20240608, 20240607}}).name.size(), 2U);
 }
