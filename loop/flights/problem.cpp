@@ -576,7 +576,7 @@ bool FlightProblem::screen(const Selection& selection) {
         r[Eigen::Index(of.size())] = e(place.at(b.trials[std::size_t(flight)]), c);
         of.push_back(flight);
       }
-      for (const Stranger& s : strangers(b.factor, std::move(r), std::move(of), limit)) {
+      for (const Stranger& s : strangers(b.factor, r, of, limit)) {
         const int i = b.trials[std::size_t(s.flight)];
         now.insert(i);
         const Trial& t = trials_[std::size_t(i)];
