@@ -31,7 +31,6 @@ std::vector<Rivals> rivals(const LoopResult& so_far) {
       return std::ranges::count(tie, one) > 0 && std::ranges::count(tie, two) > 0;
     });
   };
-
   std::vector<Rivals> all;
   for (std::size_t t = 0; t < s.ties.size(); ++t) {
     const auto with = [&](const std::string& name) {
