@@ -119,13 +119,14 @@ models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchF
 
 }  // namespace
 
-void read_ball_mesh(Table& mesh, mesh::MeridianOptions& m) {
-  mesh.decided_by("accuracy");
-  m.sector = int(mesh.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, m.sector));
-  m.rings = int(mesh.integer({"rings", "rings of elements outside the core block"}, 1, 64, m.rings));
-  m.pole =
-      mesh.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1}, m.pole);
-  m.skin = mesh.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, m.skin);
+void read_ball_mesh(Table& table, mesh::MeridianOptions& mesh) {
+  table.decided_by("accuracy");
+  mesh.sector =
+      int(table.integer({"sector", "elements per 45 degrees of the surface before grading"}, 1, 64, mesh.sector));
+  mesh.rings = int(table.integer({"rings", "rings of elements outside the core block"}, 1, 64, mesh.rings));
+  mesh.pole = table.number({"pole", "size of surface elements at the contact pole over the ungraded ones"}, {0.01, 1},
+                           mesh.pole);
+  mesh.skin = table.number({"skin", "thickness of the outermost ring over the innermost's"}, {0.01, 1}, mesh.skin);
 }
 
 void read_steps(Table& time, models::FeImpactOptions& o) {

@@ -10,6 +10,7 @@ namespace {
 
 std::atomic<int> delivered = 0;                        // the signal that has come; read by every thread
 static_assert(std::atomic<int>::is_always_lock_free);  // what a handler may write
+std::atomic<bool> obeyed = false;                      // it has stopped a run
 std::mutex guard;
 int watching = 0;  // StopSignals alive: points of a sweep may have one each
 struct sigaction before_int, before_term;
@@ -39,10 +40,18 @@ StopSignals::~StopSignals() {
   if (--watching) return;
   sigaction(SIGINT, &before_int, nullptr);
   sigaction(SIGTERM, &before_term, nullptr);
+  if (obeyed.exchange(false)) delivered = 0;  // the next run of this process is not asked to stop
 }
 
 void StopSignals::check() const {
-  if (delivered) throw Stopped(delivered);
+  if (!delivered) return;
+  obeyed = true;
+  throw Stopped(delivered);
+}
+
+int StopSignals::too_late() {
+  const std::lock_guard lock(guard);
+  return watching ? 0 : delivered.exchange(0);
 }
 
 }  // namespace hosel::app

@@ -25,6 +25,8 @@ class StopSignals {
   StopSignals& operator=(const StopSignals&) = delete;
   /// Throws Stopped where a signal has come. From any thread.
   void check() const;
+  /// After a run: the signal that came after its last check, forgotten by this; 0 where none did, or a run is at work.
+  static int too_late();
 };
 
 }  // namespace hosel::app

@@ -4,8 +4,9 @@ include(CMakePackageConfigHelpers)
 get_property(floors GLOBAL PROPERTY HOSEL_FLOORS)
 # Eigen's alignment is part of the binary interface and follows the instruction set that the library is built for:
 # whoever links it takes the same value, whatever its own flags are.
-separate_arguments(flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
-execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${flags} -dM -E -x c++ /dev/null OUTPUT_VARIABLE macros)
+string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+separate_arguments(flags UNIX_COMMAND "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
+execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${flags} -dM -E -x c++ /dev/null OUTPUT_VARIABLE macros COMMAND_ERROR_IS_FATAL ANY)
 if(macros MATCHES "__AVX512F__")
   set(alignment 64)
 elseif(macros MATCHES "__AVX__")

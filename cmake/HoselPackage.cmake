@@ -52,7 +52,7 @@ file(CHMOD ${PROJECT_BINARY_DIR}/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/prerm)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, bash-completion")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "paraview, g++, cmake, libeigen3-dev, libsuitesparse-dev, libsundials-dev, libceres-dev, libtbb-dev, libboost-dev, libvtk9-dev, libfmt-dev, libspdlog-dev, libcli11-dev, libtomlplusplus-dev, nlohmann-json3-dev")
+    "paraview, g++, cmake, libeigen3-dev, libsuitesparse-dev, libsundials-dev, libceres-dev, libtbb-dev, libboost-dev, libvtk9-dev, libfmt-dev, libspdlog-dev, libcli11-dev, libtomlplusplus-dev, libmuparser-dev, nlohmann-json3-dev")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "finite elements for the impact of a golf club on a ball")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
     "hosel computes what a ball does after a blow, and how much of that is due

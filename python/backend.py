@@ -6,6 +6,7 @@ Uses the build folder build/release (HOSEL_BUILD names another), so that what is
 import base64
 import hashlib
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -17,13 +18,20 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 
 
+def _configured_for(build):
+    """The interpreter that a build folder compiles the module for."""
+    cache = build / "CMakeCache.txt"
+    found = re.search(r"^Python_EXECUTABLE:\w+=(.+)$", cache.read_text() if cache.exists() else "", re.MULTILINE)
+    return found and os.path.realpath(found[1])
+
+
 def _compiled():
     build = Path(os.environ.get("HOSEL_BUILD", ROOT / "build" / "release"))
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     # The interpreter behind a virtual environment: CMake remembers it, and the environment may go.
     python = f"-DPython_EXECUTABLE={os.path.realpath(sys.executable)}"
     module = build / "python" / "hosel" / f"_hosel{suffix}"
-    if not module.exists():
+    if not module.exists() or _configured_for(build) != os.path.realpath(sys.executable):
         subprocess.run(["cmake", "--preset", "release", "-B", build, python], cwd=ROOT, check=True)
     subprocess.run(["cmake", "--build", build, "--target", "hosel_python"], cwd=ROOT, check=True)
     return module

@@ -6,13 +6,18 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <csignal>
+#include <new>
+
 #include "app/asked_model.hpp"
 #include "app/cases.hpp"
 #include "app/job.hpp"
 #include "app/read_blow.hpp"
+#include "app/stop.hpp"
 #include "build_info.hpp"
 #include "golf/quantities.hpp"
 #include "post/launch_table.hpp"
+#include "solvers/blas.hpp"
 #include "solvers/errors.hpp"
 
 namespace py = pybind11;
@@ -23,10 +28,12 @@ namespace {
 using Texts = std::vector<std::string>;
 
 void run(const std::string& where, const std::filesystem::path& out, const Texts& set, bool force, bool quiet) {
+  app::StopSignals::too_late();  // of an earlier run, which ended with an error
   app::CaseFile file(app::find_case(where), set);
   const auto job = app::read_job(file);
   app::Output output({.directory = out, .force = force, .quiet = quiet}, file);
   job->run(output);
+  if (const int signal = app::StopSignals::too_late()) std::raise(signal);
 }
 
 std::string check(const std::string& where, const Texts& set) {
@@ -74,6 +81,7 @@ class Model {
     std::vector<models::Answer> launches;
     {
       const py::gil_scoped_release released;
+      const solvers::BlasThreads before;
       launches = model_.launches(std::size_t(in.shape(0)), asked, values);
     }
     const auto channels = post::channels();
@@ -83,6 +91,8 @@ class Model {
         const Launch& launch = launches[std::size_t(i)].value();
         for (std::size_t c = 0; c < channels.size(); ++c)
           out(i, py::ssize_t(c)) = (launch.*channels[c].value)() / channels[c].si;
+      } catch (const std::bad_alloc&) { throw; } catch (const solvers::NonConvergence& e) {
+        throw solvers::NonConvergence(fmt::format("blow {}: {}", i, e.what()));
       } catch (const std::exception& e) { throw app::InputError(fmt::format("blow {}: {}", i, e.what())); }
     return answers;
   }
@@ -108,11 +118,20 @@ class Model {
 PYBIND11_MODULE(_hosel, m) {
   py::register_exception<app::InputError>(m, "InputError", PyExc_ValueError);
   py::register_exception<solvers::NonConvergence>(m, "NonConvergence", PyExc_RuntimeError);
+  // Ctrl-C, as Python has it; a SIGTERM stays a RuntimeError.
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const app::Stopped& e) {
+      PyErr_SetString(e.signal() == SIGINT ? PyExc_KeyboardInterrupt : PyExc_RuntimeError, e.what());
+    }
+  });
   m.attr("__version__") = HOSEL_VERSION;
-  m.def("run", run, py::call_guard<py::gil_scoped_release>());
-  m.def("check", check);
+  using Alone = py::call_guard<py::gil_scoped_release, solvers::BlasThreads>;
+  m.def("run", run, Alone());
+  m.def("check", check, Alone());
   py::class_<Model>(m, "Model")
-      .def(py::init<const std::string&, const std::string&, const Texts&>())
+      .def(py::init<const std::string&, const std::string&, const Texts&>(), Alone())
       .def_property_readonly("name", &Model::name)
       .def("launch", &Model::launch)
       .def_static("channels", &Model::channels);

@@ -8,4 +8,14 @@ namespace hosel::solvers {
 /// depend on the machine. Does nothing where the BLAS is not OpenBLAS. From any thread.
 void keep_blas_in_one_thread();
 
+/// For a process whose BLAS is not ours alone: when the last of these dies, it has the threads that it had before the
+/// first. From any thread.
+class BlasThreads {
+ public:
+  BlasThreads();
+  ~BlasThreads();
+  BlasThreads(const BlasThreads&) = delete;
+  BlasThreads& operator=(const BlasThreads&) = delete;
+};
+
 }  // namespace hosel::solvers

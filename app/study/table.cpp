@@ -54,6 +54,11 @@ void StudyTable::fill(const std::vector<json>& points) {
     for (const json& p : points)
       if (!p.contains("error")) all.update(p);
     for (const auto& [name, value] : all.items()) outputs.push_back(name);
+  } else if (asked.empty()) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (const std::string& o : outputs)
+        if (!points[i].contains("error") && !points[i].contains(o))
+          throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary", i, o));
   }
   series.clear();
   for (std::size_t m = 0; m < models.size(); ++m)
@@ -88,11 +93,7 @@ std::string StudyTable::csv(const std::vector<json>& points) const {
     if (!other) table.more(model_of(i));
     table.more(design.cells(i / models.size()));
     const bool failed = points[i].contains("error");
-    for (const std::string& o : outputs) {
-      if (!failed && asked.empty() && !points[i].contains(o))
-        throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary", i, o));
-      table.more(failed || !points[i].contains(o) ? "" : points[i][o].dump());
-    }
+    for (const std::string& o : outputs) { table.more(failed || !points[i].contains(o) ? "" : points[i][o].dump()); }
     table.more(failed ? points[i]["error"].get<std::string>() : "");
   }
   return table.csv();

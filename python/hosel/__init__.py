@@ -1,4 +1,4 @@
-"""hosel in Python: cases run, results read into NumPy, models asked about arrays of blows.
+"""hosel in Python: runs cases, reads results into NumPy, evaluates models for arrays of blows.
 
     import hosel
     run = hosel.run("driver-toe", "out/toe", set=["accuracy=look"])
@@ -13,7 +13,7 @@
     found["models.volumetric.ball_speed_mps"]
 
 Keys carry their unit as in a case: `club_speed_mph`, `impact_toe_mm`. Bad input is a ValueError with the sentence that
-the command would print; a solver that finds no answer is a hosel.NonConvergence.
+the command would print; a solver that does not converge is a hosel.NonConvergence.
 """
 
 from ._hosel import InputError, NonConvergence, __version__

@@ -1,23 +1,24 @@
-"""One model asked about many blows."""
+"""One model evaluated for many blows."""
 
 import numpy as np
 
 from . import _hosel
+from .running import texts
 
 
 class Model:
     """A model of `hosel list` and the blow of a case: club, ball, contact, and a delivery that the inputs below replace.
-    Each blow is answered as `hosel.run` answers the case with these inputs: by the set of parameters that the case's
+    Each blow is computed as `hosel.run` computes the case with these inputs: with the set of parameters that the case's
     ball has for its loft.
 
     case: a case directory, or the name of a shipped case, of a kind that has one blow (impact, study of
-        blows). A case with a [motion] is an InputError: its delivery is what the swing says.
+        blows). A case with a [motion] is an InputError: its delivery follows from the swing.
     name: the model; default: the first that the case names.
     set: overrides, "table.key=value".
     """
 
     def __init__(self, case, name="", set=()):
-        self._model = _hosel.Model(str(case), name, list(set))
+        self._model = _hosel.Model(str(case), name, texts("set", set))
 
     @property
     def name(self):
@@ -27,10 +28,10 @@ class Model:
         """The launches of blows with these inputs, computed on all cores.
 
         inputs: numbers or arrays that broadcast together, named as in a case with their unit: club_speed, attack_angle,
-            club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass. What is not given is the case's.
+            club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass. Inputs that are not given are the case's.
         Returns a dict of arrays of the broadcast shape: ball_speed_mps, launch_angle_deg, azimuth_deg, backspin_rpm, ...
-        Raises InputError (a ValueError) naming the first blow that has no answer. A blow with which the case would be
-        refused (beyond what its ball saw) is looked for first: nothing is computed then.
+        Raises InputError (a ValueError) or NonConvergence naming the first blow that has no answer. All blows are checked
+        first: if the case would be refused with one (outside the range of its ball's data), nothing is computed.
         """
         arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in inputs.values())) if inputs else [np.zeros(())]
         shape = arrays[0].shape

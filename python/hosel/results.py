@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -30,10 +31,17 @@ class Table(dict):
         return "\n".join(lines)
 
     def where(self, **equal):
-        """The rows in which each named column has the given value."""
+        """The rows in which each named column has the given value. Raises ValueError where a text is compared with a column
+        of numbers, or a number with a column of texts (names 1, 2, 3 are numbers)."""
         keep = np.ones(len(next(iter(self.values()))), dtype=bool)
         for name, value in equal.items():
-            keep &= self[name] == value
+            column = self[name]
+            if column.dtype.kind == "f" and np.isnan(column).all():  # empty cells are of either kind
+                keep &= False
+                continue
+            if _kind(column) and _kind(column) != _kind(value):
+                raise ValueError(f"column {name!r} holds {_kind(column)}, such as {column[0]}; {value!r} is none of them")
+            keep &= column == value
         return Table((name, column[keep]) for name, column in self.items())
 
     def grid(self, x, y, value):
@@ -62,18 +70,38 @@ class Table(dict):
         return ax
 
 
+def _kind(values):
+    return {"U": "texts", **dict.fromkeys("biuf", "numbers")}.get(np.asarray(values).dtype.kind)
+
+
+# A number as hosel's tables have it: 1_000 is a word.
+_NUMBER = re.compile(r"\s*(\+|-)?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*|\s*(\+|-)?(inf|infinity|nan)\s*", re.ASCII | re.IGNORECASE)
+# A text that a spreadsheet would compute is written with an apostrophe in front.
+_GUARDED = re.compile(r"' *[=@+\-\t\r\n]")
+
+
 def _column(cells):
-    try:
+    if all(not c or _NUMBER.fullmatch(c) for c in cells):
         return np.array([float(c) if c else np.nan for c in cells])
-    except ValueError:
-        return np.array(cells)
+    return np.array([c[1:] if _GUARDED.match(c) and not _NUMBER.fullmatch(c[1:]) else c for c in cells])
 
 
 def read_table(file):
-    """A CSV file with a header line."""
-    with open(file, newline="") as lines:
-        rows = list(csv.reader(lines))
-    header, rows = rows[0], [r for r in rows[1:] if r]
+    """A CSV file in UTF-8 with a header line. Raises ValueError, with the line, where it is no table: a row of another length
+    than the header, a name that stands twice."""
+    with open(file, newline="", encoding="utf-8-sig") as lines:
+        reader = csv.reader(lines)
+        header, rows = next(reader, None), []
+        if not header:
+            raise ValueError(f"{file}:1: no header line")
+        for name in header:
+            if header.count(name) > 1:
+                raise ValueError(f"{file}:1: column {name!r} stands twice")
+        for row in reader:
+            if row and len(row) != len(header):
+                raise ValueError(f"{file}:{reader.line_num}: {len(row)} cells where the header has {len(header)}")
+            if row:
+                rows.append(row)
     return Table((name, _column([r[i] for r in rows])) for i, name in enumerate(header))
 
 
@@ -82,19 +110,24 @@ class Run:
 
     summary: summary.json. case: case.resolved.toml as a dict, every default filled in;
     its "defaults" are those, by dotted key. tables: names of the CSV files; run["history.csv"] reads one.
-    figures: the drawn figures. series: the ParaView series (.pvd).
+    figures: the drawn figures. series: the ParaView series (.pvd). directory: its absolute path.
+    skipped: the measured file without which nothing was computed (HOSEL_DATA names their folder), else None.
     """
 
     def __init__(self, directory):
-        self.directory = Path(directory)
+        self.directory = Path(directory).resolve()
         if not (self.directory / "summary.json").exists():
             raise FileNotFoundError(f"{self.directory}: no finished run (no summary.json)")
-        self.summary = json.loads((self.directory / "summary.json").read_text())
-        self.case = tomllib.loads((self.directory / "case.resolved.toml").read_text())
+        self.summary = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
+        self.case = tomllib.loads((self.directory / "case.resolved.toml").read_text(encoding="utf-8"))
 
     def _files(self, *patterns):
         found = [f for p in patterns for f in self.directory.rglob(p)]
         return sorted(str(f.relative_to(self.directory)) for f in found)
+
+    @property
+    def skipped(self):
+        return self.summary.get("skipped")
 
     @property
     def tables(self):

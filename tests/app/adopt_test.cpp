@@ -6,6 +6,7 @@
 
 #include "app/library.hpp"
 #include "app/offer.hpp"
+#include "app/parse_toml.hpp"
 #include "command.hpp"
 
 namespace {
@@ -33,8 +34,9 @@ struct Adopt : testing::Test {
   Outcome adopt(const fs::path& out, const std::string& more) { return command("adopt " + out.string() + " " + more); }
 };
 
-/// A face that laboratory data calibrated yields in a blow of another kind as the calibration found it.
-TEST_F(Adopt, ACalibratedFaceIsStruck) {
+/// A face that laboratory data calibrated yields in a blow of another kind as the calibration found it; its name is its
+/// own.
+TEST_F(Adopt, ACalibratedFaceIsStruckAndKeepsItsName) {
   const fs::path out = finished("calibrate-face");
   const Outcome made = adopt(out, "--as my-face");
   ASSERT_EQ(made.status, 0) << made.text;
@@ -73,17 +75,12 @@ TEST_F(Adopt, ACalibratedFaceIsStruck) {
   EXPECT_NE(fast.text.find("`extrapolate = true`"), std::string::npos) << fast.text;
   const std::string listed = command("list").text;
   EXPECT_NE(listed.find(file.string()), std::string::npos) << listed;
-}
-
-TEST_F(Adopt, NamesAreKept) {
-  const fs::path out = finished("calibrate-face");
   EXPECT_EQ(adopt(out, "--as 'My Face'").status, 2);
   EXPECT_NE(adopt(out, "--as modern-driver").text.find("shipped library has a face of this name"), std::string::npos);
-  ASSERT_EQ(adopt(out, "--as mine").status, 0);
-  const Outcome again = adopt(out, "--as mine");
+  const Outcome again = adopt(out, "--as my-face");
   EXPECT_EQ(again.status, 2);
   EXPECT_NE(again.text.find("--force replaces it"), std::string::npos) << again.text;
-  EXPECT_EQ(adopt(out, "--as mine --force").status, 0);
+  EXPECT_EQ(adopt(out, "--as my-face --force").status, 0);
 }
 
 TEST_F(Adopt, OnlyWhatAFinishedRunOffers) {
@@ -140,7 +137,12 @@ TEST(Offer, AnyTitleIsThatOfAnEntry) {
   NamedContact contact;
   contact.law = ContactLaw{};
   offer(out, Shelf::contacts, {.what = "a law", .source = "a test"}, contact_tables(contact));
-  EXPECT_TRUE(fs::exists(dir / "out" / "entries" / "contact.toml")) << content(dir / "out" / "log.txt");
+  const fs::path file = dir / "out" / "entries" / "contact.toml";
+  ASSERT_TRUE(fs::exists(file)) << content(dir / "out" / "log.txt");
+  const toml::table entry = parse_toml(content(file), file.string());
+  const std::string title("a\x7F \xEF\xBF\xBF \xE2\x80\xA8 \xF0\x9F\x8F\x8C \" \\ ' \0 \xC3\xA9", 26);
+  EXPECT_EQ(entry["provenance"]["case"].value_or(std::string()), title);
+  EXPECT_EQ(entry["what"].value_or(std::string()), "a law");
 }
 
 /// Every digit of a ball goes through its file.

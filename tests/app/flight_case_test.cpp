@@ -1,9 +1,14 @@
 // [flight] in a case: where the ball goes after any blow, in the units asked for.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "command.hpp"
+#include "csv_file.hpp"
 #include "post/csv.hpp"
 
 namespace {
@@ -56,6 +61,42 @@ TEST(FlightCase, WeatherWindAndHeightActAsTheyDo) {
   EXPECT_GT(carry("flight_high", "altitude_m = 1600.0\n"), calm + 5);
   EXPECT_LT(carry("flight_head", "[flight.wind]\nspeed_mps = 5.0\ntowards_deg = 180.0\n"), calm - 5);
   EXPECT_GT(carry("flight_drop", "[flight.ground]\nheight_m = -10.0\n"), calm + 3);
+}
+
+/// A wind that is the same at every height is the ball seen from a frame that moves with it: the calm flight of a ball
+/// that is launched slower by the wind, carried on by wind times time.
+TEST(FlightCase, AUniformWindIsAMovingFrame) {
+  const fs::path dir = fresh_directory("flight_frame");
+  constexpr double speed = 60, up = 14 * std::numbers::pi / 180, spin = 3000;
+  const double along = speed * std::cos(up), rise = speed * std::sin(up);
+  std::string text =
+      "kind = \"study\"\noutputs = [\"carry_m\", \"apex_m\", \"flight_time_s\"]\n[launch]\nball_speed_mps = 60\n"
+      "launch_angle_deg = 14\nbackspin_rpm = 3000\n[flight]\nlaw = \"ferguson-2022\"\nunits = \"metres\"\n";
+  const std::vector<double> winds = {6, -4};  // helping, into the face
+  for (const double wind : winds) {
+    text += fmt::format(
+        "[[variant]]\nname = \"wind {}\"\nset = [\"flight.wind={{speed_mps={}, towards_deg={}, "
+        "profile='uniform'}}\"]\n",
+        wind, std::abs(wind), wind > 0 ? 0 : 180);
+    text += fmt::format(
+        "[[variant]]\nname = \"frame {}\"\nset = [\"launch={{ball_speed_mps={:.15g}, launch_angle_deg={:.15g}, "
+        "backspin_rpm={}}}\"]\n",
+        wind, std::hypot(along - wind, rise), std::atan2(rise, along - wind) * 180 / std::numbers::pi, spin);
+  }
+  write(dir / "case.toml", text);
+  const Outcome o = command("run " + dir.string() + " --quiet --set figures=false --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile points(dir / "out" / "points.csv");
+  ASSERT_EQ(points.rows(), 2 * winds.size());
+  for (std::size_t k = 0; k < winds.size(); ++k) {
+    const std::size_t blown = 2 * k, calm = blown + 1;
+    const double time = points.number("flight_time_s", calm), carried = winds[k] * time;
+    ASSERT_GT(std::abs(carried), 15);
+    // Two flights by steps of their own: some millimetres each.
+    EXPECT_NEAR(points.number("carry_m", blown), points.number("carry_m", calm) + carried, 0.01);
+    EXPECT_NEAR(points.number("apex_m", blown), points.number("apex_m", calm), 0.01);
+    EXPECT_NEAR(points.number("flight_time_s", blown), time, 1e-3);
+  }
 }
 
 TEST(FlightCase, FollowsEveryVariant) {

@@ -2,10 +2,6 @@
 // twice, nothing mixed, nothing unconverged passed off as a result.
 #include <gtest/gtest.h>
 
-#include <spawn.h>
-#include <unistd.h>
-#include <csignal>
-
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -16,10 +12,10 @@
 #include <thread>
 
 #include "build_info.hpp"
+#include "child.hpp"
 #include "command.hpp"
+#include "csv_file.hpp"
 #include "post/file.hpp"
-
-extern char** environ;
 
 namespace {
 
@@ -78,19 +74,9 @@ void expect_killed_is_whole(const fs::path& dir, const std::string& study, std::
   const fs::path points = dir / "killed" / "shards" / "1-of-1" / "points.jsonl";
   for (int kill_number = 0; kill_number < kills; ++kill_number) {
     const std::size_t until = (fs::exists(points) ? lines(points) : 1) + 1 + random() % few;
-    std::string program = HOSEL_COMMAND, run = "run", quiet = "--quiet", option = "--out";
-    std::string where = study, out = killed;
-    char* argv[] = {program.data(), run.data(), where.data(), quiet.data(), option.data(), out.data(), nullptr};
-    pid_t child = 0;
-    ASSERT_EQ(posix_spawn(&child, program.c_str(), nullptr, nullptr, argv, environ), 0);
-    while (!fs::exists(points) || lines(points) < until) {
-      int status = 0;
-      ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "ended before the kill";
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-    kill(child, SIGKILL);
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
+    Child run(HOSEL_COMMAND " run " + study + " --quiet --out " + killed);
+    ASSERT_TRUE(run.until([&] { return fs::exists(points) && lines(points) >= until; })) << "ended before the kill";
+    const int status = run.end(SIGKILL);
     ASSERT_TRUE(WIFSIGNALED(status));  // the kill came while it was at work
     ASSERT_FALSE(fs::exists(dir / "killed" / "points.csv"));
   }
@@ -221,28 +207,23 @@ TEST(Study, FindsAKeyAndStatesALaunch) {
   write(dir / "case/case.toml", kSolved);
   const Outcome run = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
   ASSERT_EQ(run.status, 0) << run.text;
-  std::istringstream table(content(dir / "out" / "points.csv"));
-  std::string line;
-  std::getline(table, line);
-  ASSERT_EQ(line,
+  const std::string table = content(dir / "out" / "points.csv");
+  ASSERT_EQ(table.substr(0, table.find('\n')),
             "point,model,variant,head.mass_kg,ball_speed_mps,launch_angle_deg,backspin_rpm,carry_yd,speed of the club,"
             "error");
-  std::size_t points = 0;
-  while (std::getline(table, line)) {
-    std::istringstream cells(line);
-    std::vector<std::string> c;
-    for (std::string cell; std::getline(cells, cell, ',');) c.push_back(cell);
-    const double mass = std::stod(c[3]), ball = 0.04593;
-    EXPECT_NEAR(std::stod(c[8]), 60 * (mass + ball) / (1.8 * mass), 1e-6) << line;
-    EXPECT_NEAR(std::stod(c[4]), c[2] == "stated" ? 54 : 60, 1e-6) << line;
-    if (c[2] == "stated") {
-      EXPECT_NEAR(std::stod(c[5]), 12, 1e-9) << line;
-      EXPECT_NEAR(std::stod(c[6]), 2500, 1e-6) << line;
-      EXPECT_GT(std::stod(c[7]), 100) << line;
+  const CsvFile points(dir / "out" / "points.csv");
+  for (std::size_t i = 0; i < points.rows(); ++i) {
+    const double mass = points.number("head.mass_kg", i), ball = 0.04593;
+    const bool stated = points.text("variant", i) == "stated";
+    EXPECT_NEAR(points.number("speed of the club", i), 60 * (mass + ball) / (1.8 * mass), 1e-6) << i;
+    EXPECT_NEAR(points.number("ball_speed_mps", i), stated ? 54 : 60, 1e-6) << i;
+    if (stated) {
+      EXPECT_NEAR(points.number("launch_angle_deg", i), 12, 1e-9) << i;
+      EXPECT_NEAR(points.number("backspin_rpm", i), 2500, 1e-6) << i;
+      EXPECT_GT(points.number("carry_yd", i), 100) << i;
     }
-    ++points;
   }
-  EXPECT_EQ(points, 42u);
+  EXPECT_EQ(points.rows(), 42u);
   const auto refused = [&](const std::string& set, const std::string& says) {
     const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "refused").string() + set);
     EXPECT_NE(o.status, 0) << set;
@@ -440,24 +421,17 @@ TEST(Study, MixedCasesAndVersionsAreRefused) {
 TEST(Study, LatinHypercubeFillsEveryStratumOnce) {
   const fs::path dir = sweep_case("sweep_latin", kSample);
   ASSERT_EQ(command("run " + (dir / "sweep").string() + " --quiet --out " + (dir / "out").string()).status, 0);
-  std::ifstream in(dir / "out" / "points.csv");
-  std::string line;
-  std::getline(in, line);
-  ASSERT_TRUE(line.starts_with("point,delivery.club_speed_mps,delivery.impact_toe_mm,")) << line;
+  ASSERT_TRUE(content(dir / "out/points.csv").starts_with("point,delivery.club_speed_mps,delivery.impact_toe_mm,"));
+  const CsvFile points(dir / "out" / "points.csv");
+  ASSERT_EQ(points.rows(), 400u);
   std::vector<int> speed(400), toe(400);
   double sum = 0;
-  int rows = 0;
-  for (; std::getline(in, line); ++rows) {
-    std::stringstream cells(line);
-    std::string number, a, b;
-    std::getline(cells, number, ',');
-    std::getline(cells, a, ',');
-    std::getline(cells, b, ',');
-    ++speed.at(std::size_t((std::stod(a) - 30) / 20 * 400));
-    ++toe.at(std::size_t((std::stod(b) + 20) / 40 * 400));
-    sum += (std::stod(a) - 40) * std::stod(b);
+  for (std::size_t i = 0; i < points.rows(); ++i) {
+    const double a = points.number("delivery.club_speed_mps", i), b = points.number("delivery.impact_toe_mm", i);
+    ++speed.at(std::size_t((a - 30) / 20 * 400));
+    ++toe.at(std::size_t((b + 20) / 40 * 400));
+    sum += (a - 40) * b;
   }
-  ASSERT_EQ(rows, 400);
   for (int i = 0; i < 400; ++i) {
     EXPECT_EQ(speed[std::size_t(i)], 1);
     EXPECT_EQ(toe[std::size_t(i)], 1);
@@ -1201,17 +1175,16 @@ TEST(Study, AnEditHalfWayMixesNothing) {
   const fs::path dir = sweep_case("sweep_edit", kSample);
   const std::string sweep = (dir / "sweep").string();
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "whole").string()).status, 0);
-  Outcome o;
-  std::thread run([&] { o = command("run " + sweep + " --quiet --out " + (dir / "out").string()); });
+  Child run(HOSEL_COMMAND " run " + sweep + " --quiet --out " + (dir / "out").string());
   const fs::path points = dir / "out/shards/1-of-1/points.jsonl";
-  while (!fs::exists(points) || lines(points) < 20) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  ASSERT_TRUE(run.until([&] { return fs::exists(points) && lines(points) >= 20; }));
   std::string blow = kEccentricBlow;
   blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
   write(dir / "blow/case.toml", blow);
   const bool in_time = !fs::exists(dir / "out/points.csv");
-  run.join();
+  const int status = run.wait();
   ASSERT_TRUE(in_time) << "the sweep had ended before the edit";
-  EXPECT_EQ(o.status, 0) << o.text;
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   EXPECT_EQ(content(dir / "out/points.csv"), content(dir / "whole/points.csv"));
 }
 

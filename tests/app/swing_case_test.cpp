@@ -15,6 +15,7 @@
 #include "golf/vector.hpp"
 #include "solvers/random.hpp"
 #include "tests/app/command.hpp"
+#include "tests/app/csv_file.hpp"
 
 namespace hosel::test {
 namespace {
@@ -129,21 +130,15 @@ TEST(SwingCase, AClubThatIsHeldStillWeighsWhatItWeighs) {
   std::ofstream(dir / "grip.csv") << motion;
   const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
   ASSERT_EQ(o.status, 0) << o.text;
-  std::ifstream file(dir / "out/swing.csv");
-  std::string row;
-  std::getline(file, row);
-  int rows = 0;
+  const CsvFile swing(dir / "out/swing.csv");
   const double weight = (0.2 + 1.1 * 0.055) * 9.80665;
-  while (std::getline(file, row)) {
-    std::stringstream cells(row);
-    std::vector<double> x;
-    for (std::string cell; std::getline(cells, cell, ',');) x.push_back(std::stod(cell));
+  for (std::size_t i = 0; i < swing.rows(); ++i) {
     // What Newton leaves of the equilibrium at the start.
-    EXPECT_NEAR(std::hypot(x.at(5), x.at(6), x.at(7)), weight, 1e-4 * weight);
-    EXPECT_LT(x.at(4), 1e-4);
-    ++rows;
+    EXPECT_NEAR(std::hypot(swing.number("force_x_N", i), swing.number("force_y_N", i), swing.number("force_z_N", i)),
+                weight, 1e-4 * weight);
+    EXPECT_LT(swing.number("head_speed_mps", i), 1e-4);
   }
-  EXPECT_GT(rows, 40);
+  EXPECT_GT(swing.rows(), 40u);
 }
 
 TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
@@ -154,13 +149,8 @@ TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
     std::ofstream(dir / "case.toml") << kCase << grip;
     const Outcome o = command("run " + dir.string() + " --out " + (dir / name).string());
     EXPECT_EQ(o.status, 0) << o.text;
-    std::ifstream file(dir / name / "swing.csv");
-    std::string row, last;
-    while (std::getline(file, row)) last = row;
-    std::stringstream cells(last);
-    std::vector<double> out;
-    for (std::string cell; std::getline(cells, cell, ',');) out.push_back(std::stod(cell));
-    return out;
+    const CsvFile swing(dir / name / "swing.csv");
+    return std::pair(swing.numbers("lead_mm").back(), swing.numbers("droop_mm").back());
   };
   const auto prescribed = run("prescribed", "");
   const auto forced =
@@ -168,10 +158,10 @@ TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
   const auto hands = run("hands",
                          "[grip]\ndrive = \"hands\"\nstiffness_N_per_m = [1e8, 1e8, "
                          "1e8]\nrotational_stiffness_N_m_per_rad = [1e6, 1e6, 1e6]\n");
-  const double bent = std::hypot(prescribed.at(1), prescribed.at(2));
+  const double bent = std::hypot(prescribed.first, prescribed.second);
   EXPECT_GT(bent, 5);  // mm
-  EXPECT_LT(std::hypot(forced.at(1) - prescribed.at(1), forced.at(2) - prescribed.at(2)), 0.02 * bent);
-  EXPECT_LT(std::hypot(hands.at(1) - prescribed.at(1), hands.at(2) - prescribed.at(2)), 0.02 * bent);
+  EXPECT_LT(std::hypot(forced.first - prescribed.first, forced.second - prescribed.second), 0.02 * bent);
+  EXPECT_LT(std::hypot(hands.first - prescribed.first, hands.second - prescribed.second), 0.02 * bent);
   std::ofstream(dir / "case.toml") << kCase << "[grip]\ndrive = \"forced\"\nwrench = \"short.csv\"\n";
   std::ofstream(dir / "short.csv") << "time_s,force_x_N,force_y_N,force_z_N,moment_x_N_m,moment_y_N_m,moment_z_N_m\n0,"
                                       "0,0,0,0,0,0\n0.1,0,0,0,0,0,0\n";

@@ -64,6 +64,32 @@ TEST(Beam, ResidualIsTheGradientOfTheEnergyAndTheTangentItsDerivative) {
   test::check_gradient(weightless, dof_map, s.state, 1e-5, 1e-8);
 }
 
+/// The change of strain rates with the configuration is left out of the tangent: it vanishes where nothing moves. By
+/// the velocities, and at rest by the configuration, the tangent is the residual's.
+TEST(Beam, DampedTangentIsThatOfTheResidual) {
+  Scrambled s(1e-3);
+  const Vector f = test::total_residual(*s.beam, s.state);
+  Scrambled undamped(0);
+  const Vector elastic = test::total_residual(*undamped.beam, s.state);
+  ASSERT_GT((f - elastic).norm(), 1e-3 * f.norm());
+  const Eigen::Index n = s.dof_map.size();
+  test::DenseSink sink(n), without(n);
+  s.beam->tangent(s.state, {0, 1, 0}, sink);
+  undamped.beam->tangent(s.state, {0, 1, 0}, without);
+  ASSERT_GT((sink.matrix - without.matrix).norm(), 1e-2 * sink.matrix.norm()) << "the damping is seen";
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    // Quadratic in v: central differences are exact.
+    const Vector d = test::random_vector(n, seed);
+    State plus = s.state, minus = s.state;
+    plus.v += d;
+    minus.v -= d;
+    const Vector difference = 0.5 * (test::total_residual(*s.beam, plus) - test::total_residual(*s.beam, minus));
+    EXPECT_LT((difference - sink.matrix * d).norm(), 1e-10 * difference.norm());
+  }
+  s.state.v.setZero();
+  test::check_tangent(*s.beam, s.dof_map, s.state, 1e-5, 1e-8);
+}
+
 TEST(Beam, HeldSectionsToo) {
   Scrambled s(0, std::numeric_limits<double>::infinity());
   ASSERT_GT(s.beam->strains(s.state).front().gamma.tail<2>().norm(), 0.01) << "far from what holding would leave";

@@ -104,7 +104,8 @@ TEST(Contact, Tangent) {
         const ContactReport report = scene.contact->report(scene.s);
         ASSERT_GT(report.points, 20);
         ASSERT_GT(report.normal_force, 10);
-        // The curvature of the gap function is taken to first order: relative size gap / face radius.
+        // The curvature of the gap function is taken to first order: relative size gap / face radius. The penalty is
+        // most of it: what friction adds is looked at for itself, at one point, below.
         test::check_tangent(*scene.contact, scene.system.dof_map, scene.s, 1e-9, 2e-3, 1e-5);
       }
 }
@@ -145,6 +146,58 @@ TEST(Contact, FrictionFallsWithThePathThatAPointHasSlid) {
   }
   EXPECT_FALSE(SlipWeakening(0.1, {0.05, 2e-6}, 1e12).faults().empty());
   EXPECT_FALSE(SlipWeakening(0.1, {0.4, 0}, 1e12).faults().empty());
+}
+
+/// One point under Coulomb's and the regularised law: the traction by hand, and its derivatives by differences, where
+/// it sticks and where it slides.
+TEST(Contact, FrictionAtAPointHasItsDerivatives) {
+  constexpr double kPressure = 1e6, kCoefficient = 0.3, kSpring = 1e12, kSpeed = 2;
+  const Vec3 normal = Vec3(1, 2, -2) / 3, along = Vec3(2, 1, 2) / 3, across = normal.cross(along);
+  const Coulomb coulomb(kCoefficient, kSpring);
+  const RegularisedFriction regularised(kCoefficient, kSpeed);
+  struct Case {
+    const FrictionLaw* law;
+    double stretch, speed, traction;
+    bool sliding;
+  };
+  // Of Coulomb's law the limit is a stretch of 0.3 um.
+  for (const Case& c :
+       {Case{&coulomb, 1e-7, 0, 1e5, false}, Case{&coulomb, 2.9e-7, 0, 2.9e5, false},
+        Case{&coulomb, 3.1e-7, 0, 3e5, true}, Case{&coulomb, 5e-6, 0, 3e5, true},
+        Case{&regularised, 0, 0.02, 3e5 * std::tanh(0.04), true}, Case{&regularised, 0, 1, 3e5 * std::tanh(2.0), true},
+        Case{&regularised, 0, 20, 3e5 * std::tanh(40.0), true}}) {
+    SCOPED_TRACE(testing::Message() << (c.law == &coulomb ? "Coulomb" : "regularised") << ", stretch " << c.stretch
+                                    << " m, speed " << c.speed << " m/s");
+    const Slip at{.pressure = kPressure,
+                  .stretch = c.stretch * along,
+                  .step = c.stretch * along,
+                  .velocity = c.speed * along,
+                  .tangent = Mat3::Identity() - normal * normal.transpose()};
+    const Friction f = c.law->at(at, true);
+    EXPECT_LT((f.traction - c.traction * along).norm(), 1e-9 * c.traction);
+    if (c.law == &coulomb) { EXPECT_EQ(f.sliding, c.sliding); }
+    const auto slope = [&](double pressure, double stretch, double speed, const Vec3& d) -> Vec3 {
+      const auto moved = [&](double sign) {
+        Slip to = at;
+        to.pressure += sign * pressure;
+        to.stretch += sign * stretch * d;
+        to.velocity += sign * speed * d;
+        return c.law->at(to, false).traction;
+      };
+      return (moved(1) - moved(-1)) / 2;
+    };
+    // Central differences over 1e-4 of the size: 1e-8 of a derivative of the traction's own size.
+    const double h = 1e-4;
+    EXPECT_LT((slope(h * kPressure, 0, 0, along) / h - kPressure * f.by_pressure).norm(), 1e-6 * c.traction);
+    for (const Vec3& d : {along, across}) {
+      if (c.stretch > 0) {
+        EXPECT_LT((slope(0, h * c.stretch, 0, d) / h - c.stretch * f.by_stretch * d).norm(), 1e-6 * c.traction);
+      }
+      if (c.speed > 0) {
+        EXPECT_LT((slope(0, 0, h * c.speed, d) / h - c.speed * f.by_velocity * d).norm(), 1e-6 * c.traction);
+      }
+    }
+  }
 }
 
 /// Derivatives of the mean over a step, where it slides a little and where it slides far.

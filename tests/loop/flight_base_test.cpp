@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ostream>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "loop/flights/run.hpp"
 
@@ -162,11 +165,42 @@ TEST(FlightBase, TheReferenceIsTheFlight) {
   EXPECT_NEAR(f.landing_angle, r.angle, 1e-3);
 }
 
-TEST(FlightBase, NamesDragAndItsSize) {
-  const LoopResult r = run(drives({.drag = 0.06}, 90, 2));
-  EXPECT_EQ(what(r, "drag-level"), Said::alone) << told(r);
-  EXPECT_NEAR(value(r, "relative_drag"), 0.06, 0.015);
+/// An effect that is hidden, with its parameters.
+struct Named {
+  const char* effect;
+  Hidden hidden;
+  std::vector<std::pair<const char*, double>> sizes;
+  int flights = 30;  ///< a tilt and a wind from the side part at some more
+};
+void PrintTo(const Named& n, std::ostream* out) { *out << n.effect; }
+
+class FlightBaseNames : public testing::TestWithParam<Named> {};
+
+TEST_P(FlightBaseNames, WhatIsHiddenAndItsSize) {
+  const Named& n = GetParam();
+  const LoopResult r = run(drives(n.hidden, n.flights, 2, 0.5));
+  EXPECT_EQ(what(r, n.effect), Said::alone) << told(r);
+  const auto& sd = r.candidates.front().sd;
+  for (std::size_t k = 0; k < n.sizes.size(); ++k) {
+    const auto [parameter, size] = n.sizes[k];
+    EXPECT_NEAR(value(r, parameter), size, 3 * sd.at(k)) << parameter;
+    EXPECT_LT(sd.at(k), std::abs(size) / 3) << parameter;
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Loop, FlightBaseNames,
+    testing::Values(Named{"drag-level", {.drag = 0.1}, {{"relative_drag", 0.1}}},
+                    Named{"lift-law", {.lift = -0.12}, {{"relative_lift", -0.12}}},
+                    Named{"air-density", {.density = -0.1}, {{"relative_density", -0.1}}},
+                    Named{"wind", {.wind_along = -3, .wind_right = 2}, {{"wind_along", -3}, {"wind_to_the_right", 2}}},
+                    Named{"spin-axis-bias", {.axis = radians(4)}, {{"tilt", radians(4)}}, 40},
+                    Named{"spin-decay", {.decay = 0.1}, {{"change_of_rate", 0.1}}}),
+    [](const auto& p) {
+      std::string name = p.param.effect;
+      std::ranges::replace(name, '-', '_');
+      return name;
+    });
 
 /// One carry of a hole is wrong: it is that one, wherever it stands.
 TEST(FlightBase, AWrongFlightIsFoundWhereverItStands) {

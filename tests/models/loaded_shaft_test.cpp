@@ -169,10 +169,22 @@ TEST(LoadedShaft, ASteadyShaftStaysAsItIsOnItsHead) {
 }
 
 TEST(LoadedShaft, RefusesAnotherMesh) {
-  const SwingTaken end = taken_swing();
-  Blow blow{.delivery = delivery_of(end.from.head), .club = end.club, .ball = {}, .contact = {}};
-  const ShaftMount mount{.elements = kElements + 1, .loaded = end.loaded};
-  EXPECT_THROW(Impact(FeImpactOptions{}, mount).assemble(blow), std::invalid_argument);
+  Blow blow;
+  blow.club = test::driver_club();
+  blow.delivery.club_speed = 45;
+  // Straight, as a shaft of this mesh stands on the head.
+  LoadedShaft straight;
+  for (const mesh::LineNode& node : shaft_line(blow.club, 0, kElements, kGrowth))
+    straight.nodes.push_back({.position = node.position});
+  for (const int more : {0, 1}) {
+    const ShaftMount mount{.elements = kElements + more, .growth = kGrowth, .loaded = straight};
+    const Impact impact(FeImpactOptions{}, mount);
+    if (more == 0) {
+      EXPECT_NO_THROW(impact.assemble(blow));
+    } else {
+      EXPECT_THROW(impact.assemble(blow), std::invalid_argument);
+    }
+  }
 }
 
 }  // namespace

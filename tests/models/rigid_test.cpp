@@ -59,7 +59,7 @@ TEST_P(Eccentric, ReferenceRow) {
     EXPECT_NEAR(got[i], row.expected[i], 1e-6 * std::max(1.0, std::abs(row.expected[i]))) << "value " << i;
 }
 
-// verification/rigid-eccentric.md: independently computed, printed to 1e-7 or 1e-5.
+// Computed by a program that shares no code with this one, printed to 1e-7 or 1e-5.
 INSTANTIATE_TEST_SUITE_P(
     Reference, Eccentric,
     testing::Values(

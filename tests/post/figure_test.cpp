@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/support/fresh_directory.hpp"
+
 namespace hosel::post {
 namespace {
 
@@ -32,7 +34,8 @@ Figure two_panels() {
 
 /// Quotes at the begin of a name or after each other, what is no character, and more than a picture has room for.
 TEST(Figure, AnyNameIsDrawn) {
-  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_names";
+  const test::FreshDirectory home("figure_names");
+  const auto stem = home.path() / "names";
   std::string accents;
   for (int i = 0; i < 1000; ++i) accents += "\xC3\xA9";
   for (const std::string& name :
@@ -46,7 +49,7 @@ TEST(Figure, AnyNameIsDrawn) {
       if (p.map.empty()) p.y_names = {name, "plain"};
     }
     EXPECT_EQ(draw(f, stem, true), "") << name;
-    std::ifstream svg(stem.parent_path() / panel_files(f, "hosel_figure_names").front().picture);
+    std::ifstream svg(stem.parent_path() / panel_files(f, "names").front().picture);
     const std::string text{std::istreambuf_iterator<char>(svg), {}};
     EXPECT_NE(text.find("</svg>"), std::string::npos) << name;
     EXPECT_EQ(text.find("\xEF\xBF\xBF"), std::string::npos) << name;
@@ -56,7 +59,8 @@ TEST(Figure, AnyNameIsDrawn) {
 }
 
 TEST(Figure, PictureIsDrawn) {
-  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure";
+  const test::FreshDirectory home("figure");
+  const auto stem = home.path() / "figure";
   ASSERT_EQ(draw(two_panels(), stem), "");
   std::ifstream png(stem.string() + ".png", std::ios::binary);
   std::string magic(8, 0);
@@ -66,7 +70,8 @@ TEST(Figure, PictureIsDrawn) {
 }
 
 TEST(Figure, EachPanelIsAFileOfItsOwn) {
-  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_panels";
+  const test::FreshDirectory home("figure_panels");
+  const auto stem = home.path() / "figure";
   Figure f = two_panels();
   f.panels.insert(f.panels.begin(), Panel{.title = "nothing was measured", .series = {{.label = "measured"}}});
   ASSERT_EQ(draw(f, stem), "");
@@ -83,7 +88,8 @@ TEST(Figure, EachPanelIsAFileOfItsOwn) {
 }
 
 TEST(Figure, PointsAndPlacesTellTheirValues) {
-  const auto stem = std::filesystem::path(testing::TempDir()) / "hosel_figure_told";
+  const test::FreshDirectory home("figure_told");
+  const auto stem = home.path() / "figure";
   Figure f = two_panels();
   f.panels[0].series[1].label = "<b>";
   f.panels[0].series[1].y[0] = NAN;  // not drawn: the next one keeps its own values

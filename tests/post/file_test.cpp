@@ -3,32 +3,27 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "post/checkpoint.hpp"
+#include "tests/support/fresh_directory.hpp"
 
 namespace hosel::post {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path fresh(const char* name) {
-  const fs::path dir = fs::path(testing::TempDir()) / (std::string(name) + std::to_string(getpid()));
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  return dir;
-}
-
 std::size_t entries(const fs::path& dir) {
   return std::size_t(std::distance(fs::directory_iterator(dir), fs::directory_iterator{}));
 }
 
 TEST(File, WritersSideBySideLeaveOneOfTheirFiles) {
-  const fs::path dir = fresh("hosel_file_race");
+  const test::FreshDirectory home("file_race");
+  const fs::path& dir = home.path();
   const std::string a(300'000, 'a'), b(200'000, 'b');
   std::jthread one([&] {
     for (int i = 0; i < 30; ++i) write_file(dir / "x", a, false);
@@ -41,7 +36,8 @@ TEST(File, WritersSideBySideLeaveOneOfTheirFiles) {
 }
 
 TEST(File, ARefusedWriteLeavesTheOldFileAndSaysWhy) {
-  const fs::path dir = fresh("hosel_file_limit");
+  const test::FreshDirectory home("file_limit");
+  const fs::path& dir = home.path();
   write_file(dir / "x", "old");
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
@@ -60,7 +56,8 @@ TEST(File, ARefusedWriteLeavesTheOldFileAndSaysWhy) {
 }
 
 TEST(History, GoesOnOnlyWithWhatItWrote) {
-  const fs::path file = fresh("hosel_history") / "history.csv";
+  const test::FreshDirectory home("history");
+  const fs::path file = home.path() / "history.csv";
   const auto write = [](History& h, int from, int to) {
     for (int i = from; i < to; ++i) h.write(std::vector{0.1 * i, double(i)});
   };
@@ -90,13 +87,60 @@ TEST(History, GoesOnOnlyWithWhatItWrote) {
   EXPECT_THROW(History(file, {"time_s", "x_m"}, &mark), std::runtime_error);
 }
 
+/// No number twice, so that none can stand in another's place.
 SavedImpact some_impact() {
   SavedImpact s;
-  s.impact.solver.state.time = 1e-4;
-  s.impact.solver.state.q = Eigen::VectorXd::Random(40);
-  s.impact.solver.state.v = s.impact.solver.state.a = s.impact.solver.auxiliary = Eigen::VectorXd::Random(40);
-  s.impact.solver.ledger.strain = {{"ball", 1.5}};
-  s.impact.solver.history = {1, 2, 3};
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto one = [&] { return uniform(random); };
+  const auto many = [&](auto&& x) {
+    for (double& value : x) value = one();
+  };
+  solvers::Checkpoint& solver = s.impact.solver;
+  for (Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) {
+    x->resize(40);
+    many(*x);
+  }
+  solvers::Ledger& l = solver.ledger;
+  l.strain = {{"ball", one()}, {"shaft", one()}};
+  for (double* x : {&solver.state.time,
+                    &solver.step,
+                    &solver.last_step,
+                    &l.time,
+                    &l.kinetic,
+                    &l.contact,
+                    &l.friction,
+                    &l.viscous,
+                    &l.numerical,
+                    &l.external,
+                    &l.initial,
+                    &l.closure,
+                    &solver.friction_before,
+                    &solver.viscous_before,
+                    &solver.external_before,
+                    &s.impact.so_far.penetration,
+                    &s.impact.so_far.creep,
+                    &s.impact.last_touch,
+                    &s.impact.last_nearest,
+                    &s.impact.last_gap})
+    *x = one();
+  solver.history = {one(), one(), one()};
+  s.impact.so_far.counts = {101, 102, 103, 104, 105, one()};
+  int steps = 110;
+  for (solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) {
+    p->value = one();
+    p->time = one();
+    many(p->times);
+    many(p->values);
+    p->steps = ++steps;
+  }
+  s.impact.touched = true;
+  s.impact.release.apart = true;
+  s.impact.release.known = 3;
+  many(s.impact.release.time);
+  many(s.impact.release.force);
+  many(s.face_centre);
+  many(s.face_axes.reshaped());
   s.section = BallSection{.time = 2e-4, .force = 9e3, .points = {{0.01, -0.02}, {0, 0.02}}, .von_mises = {1e6, 2e6}};
   s.section->cells = {{0, 1, 1, 0}};
   s.section->seams = {{1, 0, 1}};
@@ -111,25 +155,87 @@ SavedImpact some_impact() {
   return s;
 }
 
+/// Every number of an impact but those of what is drawn, in one row.
+std::vector<double> all_numbers(const SavedImpact& s) {
+  const solvers::Checkpoint& solver = s.impact.solver;
+  const solvers::Ledger& l = solver.ledger;
+  const solvers::GeneralizedAlpha::Counts& n = s.impact.so_far.counts;
+  std::vector<double> out;
+  const auto add = [&](const auto& x) { out.insert(out.end(), x.begin(), x.end()); };
+  for (const Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) add(*x);
+  add(solver.history);
+  for (const solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) {
+    add(std::array{p->value, p->time, double(p->steps)});
+    add(p->times);
+    add(p->values);
+  }
+  add(s.impact.release.time);
+  add(s.impact.release.force);
+  add(s.face_centre);
+  add(s.face_axes.reshaped());
+  for (const auto& [body, energy] : l.strain) out.push_back(energy);
+  add(std::array{solver.state.time,
+                 solver.step,
+                 solver.last_step,
+                 l.time,
+                 l.kinetic,
+                 l.contact,
+                 l.friction,
+                 l.viscous,
+                 l.numerical,
+                 l.external,
+                 l.initial,
+                 l.closure,
+                 solver.friction_before,
+                 solver.viscous_before,
+                 solver.external_before,
+                 s.impact.so_far.penetration,
+                 s.impact.so_far.creep,
+                 double(n.steps),
+                 double(n.rejected),
+                 double(n.iterations),
+                 double(n.factorisations),
+                 double(n.dense_factorisations),
+                 n.worst_residual,
+                 s.impact.last_touch,
+                 s.impact.last_nearest,
+                 s.impact.last_gap,
+                 double(s.impact.release.known)});
+  return out;
+}
+
 TEST(Checkpoint, ReadsBackToTheLastBit) {
-  const fs::path file = fresh("hosel_checkpoint") / "checkpoint.cbor";
+  const test::FreshDirectory home("checkpoint");
+  const fs::path file = home.path() / "checkpoint.cbor";
   const SavedImpact saved = some_impact();
   save_checkpoint(file, "run", saved);
   const auto back = load_checkpoint(file, "run");
   ASSERT_TRUE(back);
-  EXPECT_EQ(back->impact.solver.state.q, saved.impact.solver.state.q);
+  const std::vector<double> numbers = all_numbers(saved), read = all_numbers(*back);
+  ASSERT_EQ(std::set(numbers.begin(), numbers.end()).size(), numbers.size()) << "no number twice";
+  ASSERT_EQ(read.size(), numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_EQ(read[i], numbers[i]) << i;
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(back->impact.solver.ledger.strain[i].first, saved.impact.solver.ledger.strain[i].first);
+  EXPECT_TRUE(back->impact.touched && !back->impact.over && back->impact.release.apart);
   ASSERT_TRUE(back->section);
   EXPECT_EQ(svg(*back->section), svg(*saved.section));
   EXPECT_EQ(json_for_viewer(back->moving), json_for_viewer(saved.moving));
   EXPECT_GT(json_for_viewer(back->moving).size(), 300u);
   EXPECT_TRUE(back->moving.wants(8) && !back->moving.wants(6));
   EXPECT_EQ(back->history.rows, 12);
+  EXPECT_EQ(back->history.digest, "history");
   EXPECT_EQ(back->series.at("ball").times, saved.series.at("ball").times);
+  EXPECT_EQ(back->series.at("ball").digest, "ball");
+  const fs::path again = home.path() / "again.cbor";
+  save_checkpoint(again, "run", *back);
+  EXPECT_EQ(read_file(again), read_file(file));
   EXPECT_FALSE(load_checkpoint(file, "another case")) << "of another case or another build";
 }
 
 TEST(Checkpoint, FiveHundredDamagedOnesAreNotGoneOnFrom) {
-  const fs::path file = fresh("hosel_checkpoint_bits") / "checkpoint.cbor";
+  const test::FreshDirectory home("checkpoint_bits");
+  const fs::path file = home.path() / "checkpoint.cbor";
   save_checkpoint(file, "run", some_impact());
   const std::string good = read_file(file);
   std::mt19937 random(7);
@@ -145,7 +251,8 @@ TEST(Checkpoint, FiveHundredDamagedOnesAreNotGoneOnFrom) {
 }
 
 TEST(Checkpoint, OnesMadeByHandAreNotGoneOnFrom) {
-  const fs::path file = fresh("hosel_checkpoint_hand") / "checkpoint.cbor";
+  const test::FreshDirectory home("checkpoint_hand");
+  const fs::path file = home.path() / "checkpoint.cbor";
   save_checkpoint(file, "run", some_impact());
   const std::string good = read_file(file);
   const std::size_t end = good.find('\n'), digest_at = good.rfind(' ', end) + 1;

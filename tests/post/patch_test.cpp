@@ -10,6 +10,7 @@
 #include "post/impact_recorder.hpp"
 #include "post/patch_figure.hpp"
 #include "tests/support/coarse_impact.hpp"
+#include "tests/support/fresh_directory.hpp"
 
 namespace hosel::post {
 namespace {
@@ -22,8 +23,8 @@ TEST(PatchSeries, ReadsBackWhatTheContactDid) {
   blow.delivery.club_speed = 30;
   blow.delivery.club_path = radians(30);
   blow.contact.patch.coefficient = 0.3;
-  const fs::path dir = fs::path(testing::TempDir()) / "hosel_patch";
-  fs::remove_all(dir);
+  const test::FreshDirectory home("patch");
+  const fs::path& dir = home.path();
   ImpactRecorder recorder(dir, blow, {.steps_per_frame = 2, .angles = 8}, "patch");
   struct Seen {
     std::vector<fem::ContactPoint> points;

@@ -17,6 +17,7 @@
 #include <sstream>
 
 #include "post/vtk_series.hpp"
+#include "tests/support/fresh_directory.hpp"
 
 namespace hosel::post {
 namespace {
@@ -36,12 +37,6 @@ VtkMesh one_hexahedron() {
   return m;
 }
 
-fs::path fresh_folder(const char* name) {
-  const fs::path dir = fs::path(testing::TempDir()) / name;
-  fs::remove_all(dir);
-  return dir;
-}
-
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);
   std::stringstream s;
@@ -50,7 +45,8 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST(VtkSeries, VolumeReadsBack) {
-  const fs::path dir = fresh_folder("hosel_vtk_volume");
+  const test::FreshDirectory home("vtk_volume");
+  const fs::path& dir = home.path();
   VtkSeries series(dir, "ball", VtkSeries::Form::volume);
   series.write(0, one_hexahedron());
   series.write(2.5e-4, one_hexahedron());
@@ -82,7 +78,8 @@ TEST(VtkSeries, VolumeReadsBack) {
 }
 
 TEST(VtkSeries, SurfaceAndLinesReadBack) {
-  const fs::path dir = fresh_folder("hosel_vtk_surface");
+  const test::FreshDirectory home("vtk_surface");
+  const fs::path& dir = home.path();
   VtkMesh m;
   m.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   m.cells = {{CellShape::triangle, {0, 1, 2}}, {CellShape::line, {0, 1}}};
@@ -98,7 +95,8 @@ TEST(VtkSeries, SurfaceAndLinesReadBack) {
 }
 
 TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
-  const fs::path dir = fresh_folder("hosel_vtk_resume");
+  const test::FreshDirectory home("vtk_resume");
+  const fs::path& dir = home.path();
   const auto form = VtkSeries::Form::volume;
   // Times that nine digits do not tell apart: all that is kept is counted, not compared.
   const double t1 = 1.00000000001, t2 = 1.00000000002;
@@ -129,7 +127,8 @@ TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
 }
 
 TEST(VtkSeries, RefusesAnArrayOfTheWrongLength) {
-  VtkSeries series(fresh_folder("hosel_vtk_wrong"), "ball", VtkSeries::Form::volume);
+  const test::FreshDirectory home("vtk_wrong");
+  VtkSeries series(home.path(), "ball", VtkSeries::Form::volume);
   VtkMesh m = one_hexahedron();
   m.point_fields[0].values.pop_back();
   EXPECT_THROW(series.write(0, m), std::invalid_argument);

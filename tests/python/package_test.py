@@ -1,8 +1,19 @@
 """The Python package: what it computes is what the command computes, and bad input is an error with a sentence."""
 
+import contextlib
+import ctypes
+import importlib.util
+import os
+import signal
+import subprocess
 import sys
+import sysconfig
 import tempfile
+import threading
+import time
 import unittest
+import unittest.mock
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +21,67 @@ import numpy as np
 import hosel
 
 FAST = ['models=["rigid-eccentric"]']
+ROOT = Path(__file__).resolve().parents[2]
+# A flat face, and nothing from the library.
+BLOW = """kind = "impact"
+models = ["rigid-eccentric"]
+[delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 10.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 0.0]
+inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
+"""
+# The first blow is an everyday one; the model gives the second more energy than it had.
+OFFSET = ["contact.normal_force_offset=0.3"]
+LOFTS = [10.0, -40.0]
+
+
+@contextlib.contextmanager
+def meanwhile(work):
+    """Calls work() again and again in another thread."""
+    done = threading.Event()
+
+    def go_on():
+        while not done.is_set():
+            work()
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=go_on)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+
+
+class InFolder(unittest.TestCase):
+    """A folder of its own, and in it the case `blow`."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name).resolve()
+        self.out = self.folder / "out"
+        self.blow = self.folder / "blow"
+        self.blow.mkdir()
+        (self.blow / "case.toml").write_text(BLOW)
+
+    def table(self, text, encoding="utf-8"):
+        (self.folder / "t.csv").write_bytes(text.encode(encoding))
+        return hosel.read_table(self.folder / "t.csv")
+
+    def many_points(self, name):
+        """A study of 4,000 blows, as the case NAME."""
+        values = [k / 10 for k in range(100)]
+        (self.folder / name).mkdir()
+        (self.folder / name / "case.toml").write_text(
+            'kind = "study"\ncase = "../blow"\noutputs = ["models.rigid-eccentric.ball_speed_mps"]\n'
+            f'[[axis]]\nkey = "delivery.impact_toe_mm"\nvalues = {values}\n'
+            f'[[axis]]\nkey = "delivery.impact_high_mm"\nvalues = {values[:40]}\n')
+        return self.folder / name
 
 
 class Launches(unittest.TestCase):
@@ -159,7 +231,196 @@ class Studies(unittest.TestCase):
                 self.study.rows(self.out, columns)
 
 
-class Results(unittest.TestCase):
+class Points(InFolder):
+    BALL = "models.rigid-eccentric.ball_speed_mps"
+
+    def test_a_point_without_an_answer_is_nan_with_its_reason(self):
+        study = hosel.Study(self.blow, set=OFFSET, outputs=[self.BALL])
+        found = study.rows(self.out, {"delivery.dynamic_loft_deg": LOFTS})
+        self.assertGreater(found.array[self.BALL][0], 40)
+        self.assertEqual(found.errors[0], "")
+        self.assertTrue(np.isnan(found.array[self.BALL][1]))
+        self.assertRegex(found.errors[1], "more energy than the blow")
+        self.assertEqual(found.run.summary["failed"], 1)
+
+    def test_an_entry_that_a_point_lacks_is_nan(self):
+        ratio, angles = "models.rigid-eccentric.launch_ratio", {"delivery.attack_angle_deg": [0.0, 10.0]}
+        found = hosel.Study(self.blow).grid(self.out, angles)  # where loft equals attack angle the ratio is of nothing
+        self.assertGreater(found.array[ratio][0], 0.5)
+        self.assertTrue(np.isnan(found.array[ratio][1]))
+        self.assertGreater(found.array[self.BALL][1], 40)
+        self.assertTrue((found.errors == "").all())
+        with self.assertRaisesRegex(hosel.InputError, "point 1 has no number 'models.rigid-eccentric.launch_ratio'"):
+            hosel.Study(self.blow, outputs=[ratio]).grid(self.folder / "named", angles)
+
+    def test_points_have_names(self):
+        toe = "delivery.impact_toe_mm"
+        found = hosel.Study(self.blow, outputs=[self.BALL]).rows(self.out, {"name": ["heel", "toe"], toe: [-10.0, 20.0]})
+        self.assertEqual(list(found.coords["name"]), ["heel", "toe"])
+        self.assertEqual(list(found.coords[toe]), [-10, 20])
+        self.assertEqual(found.outputs, [self.BALL])
+
+    def test_a_bare_text_is_no_list(self):
+        for wrong in (lambda: hosel.Study(self.blow, outputs=self.BALL), lambda: hosel.Study(self.blow, set=FAST[0]),
+                      lambda: hosel.Model(self.blow, set=FAST[0]), lambda: hosel.check(self.blow, set=FAST[0]),
+                      lambda: hosel.run(self.blow, self.out, set=FAST[0])):
+            with self.assertRaisesRegex(TypeError, "a list of texts"):
+                wrong()
+        self.assertFalse(self.out.exists())
+
+    def test_a_blow_that_does_not_converge_is_no_bad_input(self):
+        model = hosel.Model(self.blow, set=OFFSET)
+        self.assertGreater(float(model.launch()["ball_speed_mps"]), 40)
+        with self.assertRaisesRegex(hosel.NonConvergence, "blow 1: the answer has more energy"):
+            model.launch(dynamic_loft_deg=LOFTS)
+
+    def test_missing_data_are_said(self):
+        with unittest.mock.patch.dict(os.environ, HOSEL_DATA="/nowhere"):
+            with self.assertWarnsRegex(UserWarning, "radar-law: skipped, /nowhere/.*HOSEL_DATA"):
+                run = hosel.run("radar-law", self.out)
+            self.assertRegex(run.skipped, "^/nowhere/")
+            with self.assertRaisesRegex(FileNotFoundError, "/nowhere/.*HOSEL_DATA"):
+                hosel.Study("radar-law").grid(self.folder / "study", {"paths.noise_m": [3.0, 4.0]})
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertIsNone(hosel.run(self.blow, self.folder / "whole").skipped)
+
+
+class Process(InFolder):
+    """What a run leaves behind in the process that called it."""
+
+    def test_control_c_stops_this_run_and_no_other(self):
+        many, before, sent = self.many_points("many"), signal.getsignal(signal.SIGINT), []
+
+        def interrupt():
+            if not sent and list(self.out.glob("shards/*/points.jsonl")):
+                sent.append(os.kill(os.getpid(), signal.SIGINT))
+
+        with self.assertRaises(KeyboardInterrupt), meanwhile(interrupt):
+            hosel.run(many, self.out)
+        self.assertFalse((self.out / "summary.json").exists())  # stopped on its way
+        self.assertEqual(signal.getsignal(signal.SIGINT), before)
+        self.assertEqual(hosel.run(many, self.out).summary["points"], 4000)
+        self.assertIn("points are on disk already", (self.out / "log.txt").read_text())
+
+    def test_other_threads_work_while_a_case_is_read(self):
+        many, ticks = self.many_points("many"), []
+        with meanwhile(lambda: ticks.append(time.perf_counter())):
+            start = time.perf_counter()
+            hosel.check(many)
+            end = time.perf_counter()
+        self.assertGreater(end - start, 0.05)
+        # Who holds the interpreter makes one gap of the whole reading; a busy machine makes some, none half as long.
+        self.assertLess(max(np.diff([start, *(t for t in ticks if start < t < end), end])), 0.5 * (end - start))
+
+    def test_linear_algebra_has_its_threads_again(self):
+        try:
+            blas = ctypes.CDLL("libopenblas.so.0")
+        except OSError:
+            self.skipTest("no OpenBLAS")
+        before = blas.openblas_get_num_threads()
+        self.addCleanup(blas.openblas_set_num_threads, before)
+        blas.openblas_set_num_threads(2)
+        if blas.openblas_get_num_threads() != 2:
+            self.skipTest("an OpenBLAS of one thread")
+        seen = set()
+        with meanwhile(lambda: seen.add(blas.openblas_get_num_threads())):
+            hosel.run(self.many_points("many"), self.out)
+        self.assertIn(1, seen)
+        self.assertEqual(blas.openblas_get_num_threads(), 2)
+
+
+class Backend(InFolder):
+    def compiled(self, configured_for, module=True):
+        """The first words of the commands by which a wheel is built in a folder that was configured so."""
+        path = ROOT / "python" / "backend.py"
+        if not path.exists():
+            self.skipTest("no sources")
+        spec = importlib.util.spec_from_file_location("backend", path)
+        backend = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(backend)
+        build = self.folder / "build"
+        (build / "python" / "hosel").mkdir(parents=True, exist_ok=True)
+        file = build / "python" / "hosel" / f"_hosel{sysconfig.get_config_var('EXT_SUFFIX')}"
+        file.write_bytes(b"")
+        if not module:
+            file.unlink()
+        (build / "CMakeCache.txt").write_text(f"CMAKE_BUILD_TYPE:STRING=Release\nPython_EXECUTABLE:FILEPATH={configured_for}\n")
+        with unittest.mock.patch.dict(os.environ, HOSEL_BUILD=str(build)), \
+             unittest.mock.patch.object(subprocess, "run") as run:
+            self.assertEqual(backend._compiled(), file)
+        return [call.args[0][1] for call in run.call_args_list]
+
+    def test_a_folder_of_another_interpreter_is_configured_again(self):
+        self.assertEqual(self.compiled("/usr/bin/python3.99"), ["--preset", "--build"])
+        self.assertEqual(self.compiled(os.path.realpath(sys.executable), module=False), ["--preset", "--build"])
+        self.assertEqual(self.compiled(os.path.realpath(sys.executable)), ["--build"])
+
+
+class Results(InFolder):
+    def test_a_forced_run_leaves_nothing_of_the_one_before(self):
+        before = hosel.run("driver-toe", self.out, set=['models=["fe-free-body"]', "accuracy=look"])
+        self.assertIn("history.csv", before.tables)
+        self.assertGreater(len(before.figures), 2)
+        self.assertGreater(len(list(self.out.rglob("*.vtp"))), 10)
+        (self.out / "notes.csv").write_text("mine\n1\n")
+        (self.out / "vtk/ball/mine.vtu").write_text("mine")
+        (self.out / "patch.png").write_bytes(b"mine")  # in the place of what was drawn
+        run = hosel.run(self.blow, self.out, force=True)  # draws nothing and has no table
+        with self.assertRaisesRegex(KeyError, "history.csv"):
+            run["history.csv"]
+        self.assertEqual((run.tables, run.figures), (["notes.csv"], ["patch.png"]))
+        self.assertEqual([f.name for f in (self.out / "vtk").rglob("*.vt?")], ["mine.vtu"])
+        self.assertEqual((self.out / "patch.png").read_bytes(), b"mine")
+
+    def test_a_list_of_files_names_none_elsewhere(self):
+        hosel.run(self.blow, self.out)
+        for name in ("victim", "out/below"):
+            (self.folder / name).write_text("years")
+        old = (self.out / ".written").read_text()
+        self.assertIn("case.resolved.toml\n", old)
+        (self.out / ".written").write_text(f"../victim\n{self.folder}/victim\nfigures/../../victim\nbelow\n\n.\n")
+        hosel.run(self.blow, self.out, force=True)
+        self.assertEqual((self.folder / "victim").read_text(), "years")
+        self.assertFalse((self.out / "below").exists())  # the list is obeyed
+        self.assertEqual((self.out / ".written").read_text(), old)
+
+    def test_where_asks_for_what_a_column_holds(self):
+        table = self.table("variant,x\n1,1\n2,2\n")
+        self.assertEqual(list(table.where(variant=2)["x"]), [2])
+        with self.assertRaisesRegex(ValueError, "'variant' holds numbers"):
+            table.where(variant="1")
+        table = self.table("name,x\n'+5 g,1\n' =b,2\n'quoted',3\n")
+        self.assertEqual(list(table.name), ["+5 g", " =b", "'quoted'"])
+        self.assertEqual(list(table.where(name="+5 g")["x"]), [1])
+        with self.assertRaisesRegex(ValueError, "'name' holds texts"):
+            table.where(name=5)
+        table = self.table("name,x\n1_000,-1.5e-3\n2_000,+.5\n")
+        self.assertEqual(list(table.where(name="1_000")["x"]), [-1.5e-3])
+        self.assertEqual(table.x[1], 0.5)
+        table = self.table("name,error\ninf,\nnan,\n-1e400,\n")  # numbers, as hosel writes them
+        self.assertEqual(table.name.dtype.kind, "f")
+        self.assertEqual(len(table.where(error="any")["name"]), 0)
+
+    def test_what_is_no_table_is_said(self):
+        self.assertEqual(list(self.table("\ufeffx_mm,wer\n1,Jörg\n")), ["x_mm", "wer"])
+        self.assertEqual(self.table("x_mm,wer\n1,Jörg\n").wer[0], "Jörg")
+        for text, words in [("a,b\n1,2\n1,2,3\n", ":3: 3 cells where the header has 2"), ("a,b\n1\n", ":2: 1 cells"),
+                            ("a,a\n1,2\n", ":1: column 'a' stands twice"), ("", ":1: no header")]:
+            with self.assertRaisesRegex(ValueError, "t.csv" + words):
+                self.table(text)
+        with self.assertRaises(ValueError):
+            self.table("a\nJörg\n", "latin-1")
+
+    def test_a_run_is_found_from_another_directory(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        run = hosel.run(self.blow, "out")
+        os.chdir("/")
+        self.assertIn("error", hosel.Study(self.blow).grid(self.folder / "s", {"delivery.impact_toe_mm": [0, 1]}).run["points.csv"])
+        self.assertTrue(run.directory.samefile(self.out))
+        self.assertEqual(repr(run), f"hosel.Run({str(self.out)!r})")
+
     def test_a_run_is_read_back(self):
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "map"
