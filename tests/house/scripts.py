@@ -217,11 +217,26 @@ class Deep(Test):
         deep.shell = lambda log, *commands: 0
         strange = self.at / "c++ (1)"
         for name, expected in [(strange / "fem/beam.cpp", 0), (self.at / "elsewhere/fem/beam.cpp", 1)]:
-            self.file("build/lint/compile_commands.json", json.dumps([{"file": str(name)}]))
+            self.file("build/lint/compile_commands.json", json.dumps([{"file": str(name), "command": f"c++ -O3 {name}"}]))
             with contextlib.chdir(ROOT):
                 tidy = next(j for j in deep.jobs_of(False) if j.name == "lint/tidy-1")
             with mock.patch.object(deep, "ROOT", strange), contextlib.chdir(self.at), open(self.at / "log", "w") as log:
                 self.assertEqual(tidy.run.do(log, 1), expected)
+
+    def test_sources_are_read_together_under_a_name_that_the_analyzer_knows(self):
+        deep = module("deep-check")
+        unity = self.file("build/lint/CMakeFiles/hosel_models.dir/Unity/unity_0_cxx.cxx", '#include "a.cpp"\n')
+        names = [str(self.at / "fem/beam.cpp"), str(self.at / "fem/plate.cpp"), str(unity), str(self.at / "golf/head.cpp"), "/usr/other.cpp"]
+        self.file("build/lint/compile_commands.json", json.dumps([{"file": n, "command": f"c++ {n} -o x"} for n in names]))
+        with mock.patch.object(deep, "ROOT", self.at), contextlib.chdir(self.at):
+            units = deep.units_together(Path("build/lint"))
+        together = self.at / "build/lint/together"
+        fem, models = together / "UnifiedSource-fem.cpp", together / "UnifiedSource-hosel_models-unity_0_cxx.cpp"
+        self.assertEqual(set(units), {str(fem), str(models), names[3]})
+        self.assertEqual(fem.read_text(), f'#include "{names[0]}"\n#include "{names[1]}"\n')
+        self.assertEqual(models.read_text(), '#include "a.cpp"\n')
+        told = {c["file"]: c["command"] for c in json.loads((together / "compile_commands.json").read_text())}
+        self.assertEqual(told, {str(fem): f"c++ {fem} -o x", str(models): f"c++ {models} -o x", names[3]: f"c++ {names[3]} -o x"})
 
 
 class References(Test):
