@@ -13,7 +13,6 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "app/lock.hpp"
 #include "app/terminal.hpp"
@@ -136,45 +135,6 @@ void refuse_inputs_below(const fs::path& out, const Inputs& inputs) {
   }
 }
 
-/// What a run lists at its end of the files that it has written, a name a line.
-constexpr const char* kWritten = ".written";
-
-/// Frames are those of their series, also where an earlier process wrote them; shards are discarded by who made them.
-std::string listed(const std::vector<fs::path>& names) {
-  std::string lines;
-  for (const fs::path& name : names)
-    if (const std::string text = name.generic_string(); name.extension() != ".vtu" && name.extension() != ".vtp" &&
-                                                        *name.begin() != "shards" && text.find('\n') == text.npos)
-      lines += text + '\n';
-  return lines;
-}
-
-/// Removes what the run that is overwritten has listed, and the frames of its series. What somebody has changed since
-/// stays, as does all that is not listed.
-void remove_written(const fs::path& out) {
-  const fs::path list = out / kWritten;
-  std::error_code error;
-  if (!fs::is_regular_file(fs::symlink_status(list, error))) return;
-  const auto since = fs::last_write_time(list, error);
-  const auto remove = [&](const fs::path& file) {
-    if (fs::is_regular_file(fs::symlink_status(file, error)) && fs::last_write_time(file, error) <= since && !error)
-      fs::remove(file, error);
-  };
-  std::istringstream lines(post::read_file(list));
-  for (std::string line; std::getline(lines, line);) {
-    const fs::path name(line), file = out / name;
-    if (name.empty() || name.is_absolute() || std::ranges::find(name, "..") != name.end()) continue;
-    remove(file);
-    if (name.extension() != ".pvd") continue;
-    std::vector<fs::path> frames;
-    const fs::path folder = fs::path(file).replace_extension();
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().filename().string().starts_with(name.stem().string() + "_")) frames.push_back(entry.path());
-    for (const fs::path& frame : frames) remove(frame);
-  }
-  fs::remove(list, error);
-}
-
 }  // namespace
 
 struct Output::State {
@@ -217,7 +177,6 @@ void Output::begin(std::string_view resolved) {
   state_->lock = std::make_unique<DirectoryLock>(out);
   state_->written = std::make_unique<post::WrittenFiles>(out);
   post::remove_unfinished(out);
-  if (state_->options.force) remove_written(out);
   // What told of the run that lay here would stand beside this one's unfinished files.
   for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
   std::vector<spdlog::sink_ptr> sinks{std::make_shared<LogSink>(out / "log.txt")};
@@ -356,7 +315,6 @@ void Output::write_summary(const nlohmann::json& summary) const {
   if (!state_->lacks.empty()) all["lacks"] = state_->lacks;
   if (state_->options.durable)
     write("report.html", state_->page.html(resolved_case(), state_->options.command, directory()));
-  if (state_->options.durable) write(kWritten, listed(state_->written->names()));
   const auto whole = [&] {
     if (const fs::path gone = state_->written->missing(); !gone.empty())
       throw std::runtime_error(fmt::format(

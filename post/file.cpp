@@ -182,13 +182,6 @@ fs::path WrittenFiles::missing() const {
   return {};
 }
 
-std::vector<fs::path> WrittenFiles::names() const {
-  const std::lock_guard lock(Watched::all().mutex);
-  std::vector<fs::path> names;
-  for (const fs::path& file : Watched::all().files.at(directory_)) names.push_back(file.lexically_relative(directory_));
-  return names;
-}
-
 void move_file(const fs::path& from, const fs::path& to) {
   if (!fs::is_regular_file(fs::symlink_status(from)))
     throw std::runtime_error(fmt::format("{}: was not made", to.string()));

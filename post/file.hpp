@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace hosel::post {
 
@@ -47,8 +46,6 @@ class WrittenFiles {
   WrittenFiles& operator=(const WrittenFiles&) = delete;
   /// The first that is gone, though nobody here removed it; empty where all are there.
   std::filesystem::path missing() const;
-  /// Their names below DIRECTORY, in order.
-  std::vector<std::filesystem::path> names() const;
 
  private:
   std::string directory_;

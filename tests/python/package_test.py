@@ -359,33 +359,6 @@ class Backend(InFolder):
 
 
 class Results(InFolder):
-    def test_a_forced_run_leaves_nothing_of_the_one_before(self):
-        before = hosel.run("driver-toe", self.out, set=['models=["fe-free-body"]', "accuracy=look"])
-        self.assertIn("history.csv", before.tables)
-        self.assertGreater(len(before.figures), 2)
-        self.assertGreater(len(list(self.out.rglob("*.vtp"))), 10)
-        (self.out / "notes.csv").write_text("mine\n1\n")
-        (self.out / "vtk/ball/mine.vtu").write_text("mine")
-        (self.out / "patch.png").write_bytes(b"mine")  # in the place of what was drawn
-        run = hosel.run(self.blow, self.out, force=True)  # draws nothing and has no table
-        with self.assertRaisesRegex(KeyError, "history.csv"):
-            run["history.csv"]
-        self.assertEqual((run.tables, run.figures), (["notes.csv"], ["patch.png"]))
-        self.assertEqual([f.name for f in (self.out / "vtk").rglob("*.vt?")], ["mine.vtu"])
-        self.assertEqual((self.out / "patch.png").read_bytes(), b"mine")
-
-    def test_a_list_of_files_names_none_elsewhere(self):
-        hosel.run(self.blow, self.out)
-        for name in ("victim", "out/below"):
-            (self.folder / name).write_text("years")
-        old = (self.out / ".written").read_text()
-        self.assertIn("case.resolved.toml\n", old)
-        (self.out / ".written").write_text(f"../victim\n{self.folder}/victim\nfigures/../../victim\nbelow\n\n.\n")
-        hosel.run(self.blow, self.out, force=True)
-        self.assertEqual((self.folder / "victim").read_text(), "years")
-        self.assertFalse((self.out / "below").exists())  # the list is obeyed
-        self.assertEqual((self.out / ".written").read_text(), old)
-
     def test_where_asks_for_what_a_column_holds(self):
         table = self.table("variant,x\n1,1\n2,2\n")
         self.assertEqual(list(table.where(variant=2)["x"]), [2])
