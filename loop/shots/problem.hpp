@@ -28,7 +28,7 @@ class ShotProblem : public Problem {
   const ShotModel& model() const { return *model_; }
   const std::vector<int>& training() const { return rows_.train; }
 
-  int width() const override { return model_->width(); }
+  int width() const final { return model_->width(); }
   const Channel& channel(int c) const override { return model_->channel(c); }
   void refute(int c) override { model_->channel(c).refuted = true; }
   std::vector<Row> rows() const override;
