@@ -93,7 +93,7 @@ std::string StudyTable::csv(const std::vector<json>& points) const {
     if (!other) table.more(model_of(i));
     table.more(design.cells(i / models.size()));
     const bool failed = points[i].contains("error");
-    for (const std::string& o : outputs) { table.more(failed || !points[i].contains(o) ? "" : points[i][o].dump()); }
+    for (const std::string& o : outputs) table.more(failed || !points[i].contains(o) ? "" : points[i][o].dump());
     table.more(failed ? points[i]["error"].get<std::string>() : "");
   }
   return table.csv();
