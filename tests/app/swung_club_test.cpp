@@ -10,6 +10,7 @@
 
 #include "build_info.hpp"
 #include "golf/units.hpp"
+#include "golf/vector.hpp"
 #include "tests/app/command.hpp"
 #include "tests/app/csv_file.hpp"
 
