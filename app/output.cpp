@@ -123,6 +123,9 @@ void refuse_other_than_log(const fs::path& file) {
     throw InputError(fmt::format("--log {}: there already, and no log of a run: it stays as it is", file.string()));
 }
 
+/// Names of what a run has written, for the run that overwrites it.
+constexpr const char* kWritten = ".written";
+
 /// What a run reads must not lie where it writes.
 void refuse_inputs_below(const fs::path& out, const Inputs& inputs) {
   std::error_code error;
@@ -175,7 +178,8 @@ void Output::begin(std::string_view resolved) {
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
   state_->lock = std::make_unique<DirectoryLock>(out);
-  state_->written = std::make_unique<post::WrittenFiles>(out);
+  if (state_->options.force) post::remove_listed(out, kWritten);
+  state_->written = std::make_unique<post::WrittenFiles>(out, state_->options.durable ? kWritten : "");
   post::remove_unfinished(out);
   // What told of the run that lay here would stand beside this one's unfinished files.
   for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
@@ -322,6 +326,7 @@ void Output::write_summary(const nlohmann::json& summary) const {
     state_->lock->verify();
   };
   whole();
+  if (state_->options.durable) state_->written->close_list();
   write_json("summary.json", all);
   whole();
 }

@@ -24,6 +24,9 @@ struct Polynomial {
     for (int k = kTerms; k-- > 0;) sum = sum * t + c[std::size_t(k)];
     return sum;
   }
+  bool finite() const {
+    return std::ranges::all_of(c, [](double x) { return std::isfinite(x); });
+  }
 };
 
 struct Polynomials {
@@ -141,6 +144,10 @@ RadarPaths read_paths(Table table, const Ball& ball) {
       continue;
     }
     const Polynomial px = x.row(i), py = y.row(i), pz = z.row(i);
+    if (!px.finite() || !py.finite() || !pz.finite() || !std::isfinite(level[i])) {
+      ++out.left_out["with an empty cell in its polynomials or its time to level"];
+      continue;
+    }
     // x to the target, y up, z to the right.
     const Vec3 velocity(px.c[1], -pz.c[1], py.c[1]);
     RadarFlight f{.path = {.id = fmt::format("row {}", sheet.lines[i]), .launch = {}, .air = air->second, .sd = own},

@@ -608,7 +608,6 @@ Eigen::Matrix3Xd HarmonicSolid::functions_at(double theta) const {
 
 std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vector<double>& theta) const {
   if (quadrature_.points != 2) throw std::invalid_argument("harmonic solid: stress recovery needs the 2 x 2 rule");
-  // Points of the angular rule carry the history: a stress elsewhere is that of the nearest of its angles.
   const auto n = static_cast<Index>(frames_.size());
   const std::size_t per = points_per_element();
   std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_points(points_.size(),
@@ -626,28 +625,24 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
     });
   });
   const std::size_t angles = theta.size(), nodes = mesh_.nodes.size();
-  // Nearest angle of the rule to each, or its mirror image where the rule covers half the circle.
-  struct Sample {
-    Index at = 0;
-    bool mirrored = false;
-  };
-  std::vector<Sample> samples;
-  for (double t : theta) {
-    double best = n == 1 ? 0 : INFINITY;
-    const bool half = quadrature_.angles.theta.front() > 0;
-    Sample& nearest = samples.emplace_back();
-    for (Index j = 0; j < n; ++j)
-      for (int mirror = 0; mirror < (half ? 2 : 1); ++mirror) {
-        const double a = (mirror ? -1 : 1) * quadrature_.angles.theta[static_cast<std::size_t>(j)];
-        if (const double distance = std::abs(std::remainder(t - a, 2 * M_PI)); distance < best)
-          best = distance, nearest = {j, mirror != 0};
-      }
+  // Between the angles of the rule, which carry the history: by their trigonometric polynomial. Where they cover half
+  // the circle, theirs are mirrored: shears across the plane of symmetry (4, 5) change their sign.
+  const bool half = quadrature_.angles.theta.front() > 0;
+  const int circle = int(half ? 2 * n : n);
+  Eigen::MatrixXd even(n, Index(angles)), odd = even;
+  for (std::size_t t = 0; t < angles; ++t)
+    for (Index j = 0; j < n; ++j) {
+      const double a = quadrature_.angles.theta[static_cast<std::size_t>(j)];
+      const double own = cardinal(theta[t] - a, circle), image = half ? cardinal(theta[t] + a, circle) : 0;
+      even(j, Index(t)) = own + image;
+      odd(j, Index(t)) = own - image;
+    }
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> at_angles;
+  for (const auto& points : at_points) {
+    auto& here = at_angles.emplace_back(6, Index(angles));
+    here.topRows<4>() = points.topRows<4>() * even;
+    here.bottomRows<2>() = points.bottomRows<2>() * odd;
   }
-  const auto sample = [&](std::size_t p, const Sample& from) -> Sym {
-    Sym out = at_points[p].col(from.at);
-    if (from.mirrored) out[4] = -out[4], out[5] = -out[5];
-    return out;
-  };
   std::vector<Sym> out(nodes * angles, Sym::Zero());
   std::vector<int> count(nodes, 0);
   constexpr double xi[8] = {-1, 1, 1, -1, 0, 1, 0, -1}, eta[8] = {-1, -1, 1, 1, -1, 0, 1, 0};
@@ -659,7 +654,7 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
       const double w[4] = {0.25 * (1 - x) * (1 - y), 0.25 * (1 + x) * (1 - y), 0.25 * (1 - x) * (1 + y),
                            0.25 * (1 + x) * (1 + y)};
       for (std::size_t t = 0; t < angles; ++t)
-        for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * sample(e * per + p, samples[t]);
+        for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * at_angles[e * per + p].col(Index(t));
     }
   std::vector<Mat3> turns;  // from the cylindrical frame
   for (double t : theta) {

@@ -77,7 +77,8 @@ class HarmonicSolid final : public Term {
   Eigen::Matrix3Xd functions_at(double theta) const;
 
   /// Cauchy stress, extrapolated to the nodes and averaged over the elements that meet there: at each
-  /// node and angle of `theta` a symmetric tensor in global axes [Pa], node by node (first all angles).
+  /// node and angle of `theta` a symmetric tensor in global axes [Pa], node by node (first all angles). Between the
+  /// angles of the rule it is their trigonometric polynomial.
   std::vector<Sym> cauchy_at_nodes(const State& accepted, const std::vector<double>& theta) const;
 
   /// The velocity field of a rigid motion about the placement's origin [m/s; rad/s, global], where the

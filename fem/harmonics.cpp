@@ -56,4 +56,10 @@ AngularRule half_circle(int count) {
   return rule;
 }
 
+double cardinal(double theta, int count) {
+  const double x = 0.5 * std::remainder(theta, 2 * kPi), m = double(count);
+  if (std::abs(x) < 1e-9) return 1;
+  return std::sin(m * x) / (m * (count % 2 ? std::sin(x) : std::tan(x)));
+}
+
 }  // namespace hosel::fem

@@ -49,5 +49,7 @@ AngularRule single_angle();
 AngularRule full_circle(int count);
 /// `count` angles over the half circle, for integrands symmetric about it; as exact as 2 count on the full.
 AngularRule half_circle(int count);
+/// Trigonometric polynomial that is 1 at angle 0 and 0 at the other of `count` equidistant angles of the full circle.
+double cardinal(double theta, int count);
 
 }  // namespace hosel::fem

@@ -73,8 +73,6 @@ class Term {
   /// The history as numbers, appended for a restart; restore() takes them back from the front.
   virtual void save(std::vector<double>& history) const { (void)history; }
   virtual void restore(std::span<const double>& history) { (void)history; }
-  /// A longest admissible next step [s], e.g. near a contact event; infinity where none.
-  virtual double step_limit(const State& accepted) const;
 };
 
 /// A motion imposed on some equations: q, v, a are given, the residual there is a reaction.

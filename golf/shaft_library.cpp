@@ -157,7 +157,11 @@ std::vector<std::string> faults(const Shaft& shaft) {
     if (!(s.bending_stiffness_y > 0 && s.bending_stiffness_z > 0))
       say("the bending stiffness is not positive", s.arc_length);
     if (!(s.torsional_stiffness > 0)) say("the torsional stiffness is not positive", s.arc_length);
-    if (!(s.axial_stiffness > 0)) say("the axial stiffness is not positive", s.arc_length);
+    if (!(s.axial_stiffness > 0 && std::isfinite(s.axial_stiffness)))
+      say("the axial stiffness is not positive and finite", s.arc_length);
+    if (!(s.shear_stiffness >= 0)) say("the shear stiffness is negative", s.arc_length);
+    if (!(s.rotary_inertia_y >= 0 && s.rotary_inertia_z >= 0)) say("a rotary inertia is negative", s.arc_length);
+    if (!(s.outer_radius >= 0)) say("the radius is negative", s.arc_length);
     if (!(s.mass_per_length > 0)) say("the mass per length is not positive", s.arc_length);
   }
   if (!(shaft.damping_time >= 0)) out.emplace_back("the damping time of a shaft is not negative");

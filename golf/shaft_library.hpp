@@ -46,8 +46,8 @@ struct CompositePolynomials {
 };
 Shaft polynomial_shaft(const CompositePolynomials& p);
 
-/// Sentences naming what no shaft can have (order of stations, stiffness or mass not positive); empty if
-/// all is well.
+/// Sentences naming what no shaft can have (order of stations, stiffness or mass not positive, inertia or radius
+/// negative); empty if all is well.
 std::vector<std::string> faults(const Shaft& shaft);
 
 /// Bending and axial stiffness multiplied by `bending`, torsional and shear stiffness by `torsion`.

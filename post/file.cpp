@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -38,10 +39,38 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-/// Every watched directory, and the files written below it.
+/// The names in a list of files; none where there is no such file.
+std::set<std::string> listed_in(const fs::path& list) {
+  std::set<std::string> names;
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(list, ignored))) return names;
+  std::istringstream lines(read_file(list));
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) names.insert(line);
+  return names;
+}
+
+std::string lines_of(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += name + '\n';
+  return text;
+}
+
+/// Files written below a watched directory.
+struct Watch {
+  std::set<fs::path> files;
+  std::unique_ptr<GrowingFile> list;
+  std::set<std::string> listed;
+
+  void append(const std::string& name) {
+    if (list && name.find('\n') == name.npos && listed.insert(name).second) list->append(name + '\n');
+  }
+};
+
+/// Every watched directory.
 struct Watched {
   std::mutex mutex;
-  std::map<std::string, std::set<fs::path>> files;
+  std::map<std::string, Watch> files;
 
   static Watched& all() {
     static Watched watched;
@@ -53,7 +82,7 @@ struct Watched {
     std::set<fs::path>* found = nullptr;
     std::size_t longest = 0;
     for (auto& [directory, below] : files)
-      if (directory.size() >= longest && file.starts_with(directory)) longest = directory.size(), found = &below;
+      if (directory.size() >= longest && file.starts_with(directory)) longest = directory.size(), found = &below.files;
     return found;
   }
   void note(const fs::path& file) {
@@ -61,6 +90,8 @@ struct Watched {
     if (files.empty()) return;
     const std::string full = name(file);
     if (std::set<fs::path>* watch = around(full)) watch->insert(full);
+    for (auto& [directory, watch] : files)
+      if (full.starts_with(directory)) watch.append(full.substr(directory.size()));
   }
 };
 
@@ -165,9 +196,16 @@ fs::path find_program(std::string_view name, const fs::path& outside) {
   return {};
 }
 
-WrittenFiles::WrittenFiles(const fs::path& directory) : directory_(Watched::name(directory / "")) {
+WrittenFiles::WrittenFiles(const fs::path& directory, const std::string& list)
+    : directory_(Watched::name(directory / "")) {
+  Watch watch;
+  if (!list.empty()) {
+    list_ = fs::path(directory_) / list;
+    watch.listed = listed_in(list_);
+    watch.list = std::make_unique<GrowingFile>(list_, lines_of(watch.listed));
+  }
   const std::lock_guard lock(Watched::all().mutex);
-  Watched::all().files[directory_];
+  Watched::all().files[directory_] = std::move(watch);
 }
 
 WrittenFiles::~WrittenFiles() {
@@ -177,9 +215,39 @@ WrittenFiles::~WrittenFiles() {
 
 fs::path WrittenFiles::missing() const {
   const std::lock_guard lock(Watched::all().mutex);
-  for (const fs::path& file : Watched::all().files.at(directory_))
+  for (const fs::path& file : Watched::all().files.at(directory_).files)
     if (!fs::is_regular_file(fs::symlink_status(file))) return file;
   return {};
+}
+
+void WrittenFiles::close_list() {
+  std::set<std::string> names;
+  {
+    const std::lock_guard lock(Watched::all().mutex);
+    Watch& watch = Watched::all().files.at(directory_);
+    names = watch.listed;
+    watch.list.reset();
+  }
+  std::erase_if(names, [&](const std::string& name) {
+    return !fs::is_regular_file(fs::symlink_status(fs::path(directory_) / name));
+  });
+  write_file(list_, lines_of(names));
+}
+
+void remove_listed(const fs::path& directory, const std::string& list) {
+  std::error_code error;
+  const fs::path home = fs::weakly_canonical(directory, error);
+  for (const std::string& line : listed_in(directory / list)) {
+    const fs::path name(line);
+    // Whoever sends a folder may have written its list: names elsewhere, and links to there, are not followed.
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end()) continue;
+    const fs::path folder = (home / name).parent_path();
+    if (fs::weakly_canonical(folder, error) != folder || error) continue;
+    if (!fs::is_regular_file(fs::symlink_status(home / name, error)) || !fs::remove(home / name, error)) continue;
+    for (fs::path empty = folder; empty != home && fs::is_empty(empty, error) && fs::remove(empty, error);)
+      empty = empty.parent_path();
+  }
+  fs::remove(directory / list, error);
 }
 
 void move_file(const fs::path& from, const fs::path& to) {

@@ -40,16 +40,23 @@ std::filesystem::path find_program(std::string_view name, const std::filesystem:
 /// one watch lies in another's directory, a file belongs to the inner one.
 class WrittenFiles {
  public:
-  explicit WrittenFiles(const std::filesystem::path& directory);
+  /// `list`: the names of the files are kept in DIRECTORY/list from then on, a name a line, after those that are there.
+  explicit WrittenFiles(const std::filesystem::path& directory, const std::string& list = {});
   ~WrittenFiles();
   WrittenFiles(const WrittenFiles&) = delete;
   WrittenFiles& operator=(const WrittenFiles&) = delete;
   /// The first that is gone, though nobody here removed it; empty where all are there.
   std::filesystem::path missing() const;
+  /// The list once more, sorted and without what is no longer there: it does not tell how often a run was killed.
+  void close_list();
 
  private:
   std::string directory_;
+  std::filesystem::path list_;
 };
+
+/// Removes the files that DIRECTORY/list names below DIRECTORY, folders that are empty then, and the list.
+void remove_listed(const std::filesystem::path& directory, const std::string& list);
 
 /// Puts a file that another program has made in the place of TO, as write_file does with its own.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -236,9 +236,7 @@ NewtonReport GeneralizedAlpha::step(double h) {
 double GeneralizedAlpha::advance(double end) {
   const double left = end - state_.time;
   if (!(left > 0)) throw std::invalid_argument("generalized-alpha: the end of a step lies not ahead of it");
-  double h = step_;
-  for (const auto& term : system_.terms) h = std::min(h, term->step_limit(state_));
-  h = std::max(h, options_.step_min);
+  double h = std::max(step_, options_.step_min);
   // The last two steps share what is left, so that no sliver remains.
   if (h >= left * (1 - 1e-9)) h = left;
   else if (2 * h > left) h = left / 2;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "solvers/errors.hpp"
+#include "solvers/sundials.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -106,11 +107,13 @@ int residual(double t, N_Vector yv, N_Vector ypv, N_Vector fv, void* user) {
 void integrate_ida(const fem::System& system, const fem::State& initial, const std::vector<double>& times,
                    const IdaOptions& options, const std::function<void(const fem::State&)>& observer) {
   Problem problem(system);
-  SUNContext context = nullptr;
-  SUNContext_Create(nullptr, &context);
+  const sundials::Context owner = sundials::context();
+  SUNContext context = owner.get();
   const auto n = static_cast<sunindextype>(problem.size);
-  N_Vector y = N_VNew_Serial(n, context), yp = N_VNew_Serial(n, context), tolerance = N_VNew_Serial(n, context);
-  double *py = N_VGetArrayPointer(y), *pyp = N_VGetArrayPointer(yp), *pt = N_VGetArrayPointer(tolerance);
+  const sundials::Vector y(N_VNew_Serial(n, context)), yp(N_VNew_Serial(n, context)),
+      tolerance(N_VNew_Serial(n, context));
+  double *py = N_VGetArrayPointer(y.get()), *pyp = N_VGetArrayPointer(yp.get()),
+         *pt = N_VGetArrayPointer(tolerance.get());
   const auto& blocks = system.dof_map.blocks();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto& b = blocks[i];
@@ -126,36 +129,29 @@ void integrate_ida(const fem::System& system, const fem::State& initial, const s
     if (b.rotation)
       Eigen::Map<Eigen::Vector4d>(pyp + problem.q_at[i]) = quaternion_rate(py + problem.q_at[i], py + problem.v_at[i]);
   }
-  void* ida = IDACreate(context);
-  IDAInit(ida, residual, initial.time, y, yp);
-  IDASVtolerances(ida, options.relative, tolerance);
-  IDASetUserData(ida, &problem);
-  IDASetMaxNumSteps(ida, 1000000);
-  if (options.step_max > 0) IDASetMaxStep(ida, options.step_max);
   const auto band = static_cast<sunindextype>(problem.half_band);
-  SUNMatrix J = SUNBandMatrix(n, band, band, context);
-  SUNLinearSolver linear = SUNLinSol_Band(y, J, context);
-  IDASetLinearSolver(ida, linear, J);
-  int status = 0;
+  const sundials::Matrix J(SUNBandMatrix(n, band, band, context));
+  const sundials::LinearSolver linear(SUNLinSol_Band(y.get(), J.get(), context));
+  const sundials::Memory<IDAFree> memory(IDACreate(context));
+  void* const ida = memory.get();
+  sundials::check(IDAInit(ida, residual, initial.time, y.get(), yp.get()), "IDA: initialisation");
+  sundials::check(IDASetErrHandlerFn(ida, sundials::quiet, nullptr), "IDA: initialisation");
+  sundials::check(IDASVtolerances(ida, options.relative, tolerance.get()), "IDA: tolerances");
+  sundials::check(IDASetUserData(ida, &problem), "IDA: initialisation");
+  sundials::check(IDASetMaxNumSteps(ida, 1000000), "IDA: step limit");
+  if (options.step_max > 0) sundials::check(IDASetMaxStep(ida, options.step_max), "IDA: largest step");
+  sundials::check(IDASetLinearSolver(ida, linear.get(), J.get()), "IDA: linear solver");
   double reached = initial.time;
   for (double t : times) {
-    IDASetStopTime(ida, t);
-    status = IDASolve(ida, t, &reached, y, yp, IDA_NORMAL);
-    if (status < 0) break;
+    sundials::check(IDASetStopTime(ida, t), "IDA: stop time");
+    const int status = IDASolve(ida, t, &reached, y.get(), yp.get(), IDA_NORMAL);
+    if (status < 0)
+      throw NonConvergence("IDA stopped at t = " + std::to_string(reached) + " s (flag " + std::to_string(status) +
+                           "): loosen its tolerances, or look for a jump in the motion");
     fem::State s = problem.unpack(t, py, pyp);
     for (const auto& m : system.prescribed) m->impose(s);
     observer(s);
   }
-  IDAFree(&ida);
-  SUNLinSolFree(linear);
-  SUNMatDestroy(J);
-  N_VDestroy(y);
-  N_VDestroy(yp);
-  N_VDestroy(tolerance);
-  SUNContext_Free(&context);
-  if (status < 0)
-    throw NonConvergence("IDA stopped at t = " + std::to_string(reached) + " s (flag " + std::to_string(status) +
-                         "): loosen its tolerances, or look for a jump in the motion");
 }
 
 }  // namespace hosel::solvers

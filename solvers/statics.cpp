@@ -11,6 +11,7 @@
 
 #include "solvers/contact_newton.hpp"
 #include "solvers/errors.hpp"
+#include "solvers/sundials.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -133,31 +134,27 @@ StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& s
   for (const auto& p : system.prescribed) p->impose(from);
   KinsolProblem problem{system, from, SparseTangent(system), from, Vector::Zero(system.dof_map.size())};
   const auto n = static_cast<sunindextype>(problem.tangent.size());
-  SUNContext context = nullptr;
-  SUNContext_Create(nullptr, &context);
-  N_Vector y = N_VNew_Serial(n, context), ones = N_VNew_Serial(n, context);
-  N_VConst(0, y);
-  N_VConst(1, ones);
-  SUNMatrix J = SUNDenseMatrix(n, n, context);
-  SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
-  void* kin = KINCreate(context);
-  KINInit(kin, kinsol_residual, y);
-  KINSetUserData(kin, &problem);
-  KINSetLinearSolver(kin, linear, J);
-  KINSetJacFn(kin, kinsol_tangent);
-  KINSetFuncNormTol(kin, residual_tolerance);
-  KINSetMaxNewtonStep(kin, 1e3);
-  KINSetMaxSetupCalls(kin, 1);
-  const int status = KINSol(kin, y, KIN_LINESEARCH, ones, ones);
+  const sundials::Context owner = sundials::context();
+  SUNContext context = owner.get();
+  const sundials::Vector y(N_VNew_Serial(n, context)), ones(N_VNew_Serial(n, context));
+  N_VConst(0, y.get());
+  N_VConst(1, ones.get());
+  const sundials::Matrix J(SUNDenseMatrix(n, n, context));
+  const sundials::LinearSolver linear(SUNLinSol_Dense(y.get(), J.get(), context));
+  const sundials::Memory<KINFree> memory(KINCreate(context));
+  void* const kin = memory.get();
+  sundials::check(KINInit(kin, kinsol_residual, y.get()), "KINSOL: initialisation");
+  sundials::check(KINSetErrHandlerFn(kin, sundials::quiet, nullptr), "KINSOL: initialisation");
+  sundials::check(KINSetUserData(kin, &problem), "KINSOL: initialisation");
+  sundials::check(KINSetLinearSolver(kin, linear.get(), J.get()), "KINSOL: linear solver");
+  sundials::check(KINSetJacFn(kin, kinsol_tangent), "KINSOL: tangent");
+  sundials::check(KINSetFuncNormTol(kin, residual_tolerance), "KINSOL: tolerance");
+  sundials::check(KINSetMaxNewtonStep(kin, 1e3), "KINSOL: largest step");
+  sundials::check(KINSetMaxSetupCalls(kin, 1), "KINSOL: tangents");
+  const int status = KINSol(kin, y.get(), KIN_LINESEARCH, ones.get(), ones.get());
   long iterations = 0;
-  KINGetNumNonlinSolvIters(kin, &iterations);
-  problem.set(y);
-  KINFree(&kin);
-  SUNLinSolFree(linear);
-  SUNMatDestroy(J);
-  N_VDestroy(y);
-  N_VDestroy(ones);
-  SUNContext_Free(&context);
+  sundials::check(KINGetNumNonlinSolvIters(kin, &iterations), "KINSOL: iterations");
+  problem.set(y.get());
   if (status != KIN_SUCCESS && status != KIN_INITIAL_GUESS_OK)  // a step too short to go on is no equilibrium
     throw NonConvergence("KINSOL found no static equilibrium (flag " + std::to_string(status) +
                          "): start nearer to it, or look for a body that nothing holds");

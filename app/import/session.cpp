@@ -488,7 +488,10 @@ class Reading {
     else if (std::ranges::any_of(o_.keep, [&](const std::string& k) { return plain(k) == plain(header); })) {
       u.name = plain(header);
       std::ranges::replace(u.name, ' ', '_');
-      u.name = "kept_" + u.name;
+      const std::string name = "kept_" + u.name;
+      u.name = name;
+      for (int k = 2; std::ranges::count(out_.columns, u.name, &Understood::name); ++k)
+        u.name = fmt::format("{}_{}", name, k);
     }
     out_.columns.push_back(std::move(u));
   }

@@ -40,7 +40,8 @@ class CalibrateBallJob final : public Job {
       problem_.friction.coefficient =
           root.table("contact").number({"face_friction", "where the search begins, or what is held"}, {0, 5});
     options.harmonics = 0;
-    if (auto mesh = root.optional_table("mesh")) read_mesh(*mesh);
+    Table mesh = root.default_table("mesh");
+    read_mesh(mesh);
     check_memory(root, options);
     if (auto time = root.optional_table("time")) read_steps(*time, options);
     for (Table& t : root.tables("free")) problem_.free.push_back(read_free(t));

@@ -255,28 +255,20 @@ class PlateFaceJob final : public PointJob {
     std::vector<Point> points(grid_.size());
     const models::Striker ball = models::golf_ball(blow_.ball);
     const models::PlateFace& plate = strike.plate();
-    std::vector<char> lacks(points.size(), 0);  // a characteristic time
     const auto columns = std::size_t(grid_.columns);
     const auto image = [&](std::size_t i) { return i - i % columns + (columns - 1 - i % columns); };
     for_all_alone(std::size_t{0}, points.size(), [&](std::size_t i) {
       const Vector2d at(-grid_.toe_at(i), grid_.high_at(i));
       if (!plate.covers(at) || (alike_ && image(i) < i)) return;
-      Point& p = points[i];
-      models::CharacteristicTime ct;
-      try {
-        ct = strike.characteristic_time(sphere_, at, speeds_);
-      } catch (const solvers::NonConvergence&) {
-        lacks[i] = 1;
-        return;
-      }
+      const auto ct = characteristic_time(strike, at);
       const auto place = strike.at(at, models::kBallPatch);
-      p = {ct.time, ct.departure, strike.strike(ball, place, restitution_speed_).restitution, place.mass,
-           2 * models::pendulum_patch(plate, at)};
+      points[i] = {ct ? ct->time : std::nan(""), ct ? ct->departure : std::nan(""),
+                   strike.strike(ball, place, restitution_speed_).restitution, place.mass,
+                   2 * models::pendulum_patch(plate, at)};
     });
     if (alike_)
       for (std::size_t i = 0; i < points.size(); ++i)
-        if (image(i) < i) points[i] = points[image(i)], lacks[i] = lacks[image(i)];
-    const auto without = std::ranges::count(lacks, 1);
+        if (image(i) < i) points[i] = points[image(i)];
     post::Table table;
     table.in_files({"toe_mm", "high_mm"}, "{:g}").in_files({"thickness_mm"}, "{:.4f}");
     table.in_files({"characteristic_time_us", "departure_us"}, "{:.3f}");
@@ -284,27 +276,28 @@ class PlateFaceJob final : public PointJob {
     std::vector<double> time, restitution, ratio, thickness;
     double longest = 0, fastest = 0, departure = 0;
     Vector2d slowest = Vector2d::Zero();
-    std::size_t beyond = 0, inside = 0;
+    std::size_t beyond = 0, inside = 0, without = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Point& p = points[i];
       time.push_back(1e6 * p.time);
       restitution.push_back(p.restitution);
       ratio.push_back((1 + p.restitution) * p.mass / (p.mass + blow_.ball.mass));
       thickness.push_back(1e3 * p.thickness);
-      if (!std::isfinite(p.time)) continue;
-      ++inside;
+      if (!std::isfinite(p.thickness)) continue;  // beyond the face
+      (std::isfinite(p.time) ? inside : without) += 1;
       beyond += p.time > kRulesTime + kRulesTolerance;
       if (p.time > longest) longest = p.time, departure = p.departure, slowest = {-grid_.toe_at(i), grid_.high_at(i)};
       fastest = std::max(fastest, p.restitution);
-      table.add(1e3 * grid_.toe_at(i), 1e3 * grid_.high_at(i), thickness.back(), time.back(), 1e6 * p.departure,
-                p.restitution, p.mass, ratio.back());
+      table.add(1e3 * grid_.toe_at(i), 1e3 * grid_.high_at(i), thickness.back(), post::if_finite(time.back()),
+                post::if_finite(1e6 * p.departure), p.restitution, p.mass, ratio.back());
     }
     out.write("map.csv", table.csv());
-    const models::CharacteristicTime centre = strike.characteristic_time(sphere_, Vector2d::Zero(), speeds_);
+    const auto centre = characteristic_time(strike, Vector2d::Zero());
     const double e =
         strike.strike(ball, strike.at(Vector2d::Zero(), models::kBallPatch), restitution_speed_).restitution;
-    out.say(fmt::format("centre: characteristic time {:.1f} us, restitution {:.4f} (the rules' line {:.4f})",
-                        1e6 * centre.time, e, models::rules_line(centre.time)));
+    out.say(centre ? fmt::format("centre: characteristic time {:.1f} us, restitution {:.4f} (the rules' line {:.4f})",
+                                 1e6 * centre->time, e, models::rules_line(centre->time))
+                   : fmt::format("centre: no characteristic time, restitution {:.4f}", e));
     if (without > 0) {
       summary["places_without_characteristic_time"] = without;
       out.warn(fmt::format("{} places have no characteristic time: the pendulum bounces on the vibrating face there",
@@ -313,17 +306,22 @@ class PlateFaceJob final : public PointJob {
     std::string verdict = "this face has no verdict by the rules' test: not every place has a characteristic time",
                 where, over = "no place of the grid has one";
     if (inside > 0) {
-      const double error = departure + time_error(slowest, longest);
-      if (without == 0 || longest >= kRulesTime + kRulesTolerance) verdict = rules_verdict(longest, error);
+      const std::optional<double> halved = time_error(slowest, longest);
+      const double error = departure + halved.value_or(0);
+      if (!halved)
+        verdict = "this face has no verdict by the rules' test: on a coarser mesh it has no characteristic time there";
+      else if (without == 0 || longest >= kRulesTime + kRulesTolerance) verdict = rules_verdict(longest, error);
       const double toe = -1e3 * slowest.x() + 0.0, high = 1e3 * slowest.y() + 0.0;
       out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us",
                           1e6 * longest, fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
-      out.say(fmt::format(
-          "{}: {:.1f} +- {:.1f} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
-          verdict, 1e6 * longest, 1e6 * error, toe, high, 1e6 * kRulesTime, 1e6 * kRulesTolerance));
-      where = fmt::format("{:.1f} ± {:.1f} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest, 1e6 * error, toe, high);
+      out.say(
+          fmt::format("{}: {:.1f}{} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
+                      verdict, 1e6 * longest, halved ? fmt::format(" +- {:.1f}", 1e6 * error) : "", toe, high,
+                      1e6 * kRulesTime, 1e6 * kRulesTolerance));
+      where = fmt::format("{:.1f}{} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest,
+                          halved ? fmt::format(" ± {:.1f}", 1e6 * error) : "", toe, high);
       over = fmt::format("at most {:.1f} µs over the face", 1e6 * longest);
-      summary["characteristic_time_error_us"] = 1e6 * error;
+      if (halved) summary["characteristic_time_error_us"] = 1e6 * error;
       summary["largest_characteristic_time_us"] = 1e6 * longest;
       summary["places_beyond_the_limit"] = beyond;
       summary["largest_restitution"] = fastest;
@@ -332,12 +330,14 @@ class PlateFaceJob final : public PointJob {
     }
     summary["characteristic_time_verdict"] = verdict;
     out.page().answer("verdict", verdict.substr(std::string_view("this face ").size()), where);
-    out.page().answer("characteristic time", fmt::format("{:.1f} µs", 1e6 * centre.time),
+    out.page().answer("characteristic time", centre ? fmt::format("{:.1f} µs", 1e6 * centre->time) : "none",
                       fmt::format("{}; limit {:.0f} + {:.0f}", over, 1e6 * kRulesTime, 1e6 * kRulesTolerance));
     out.page().answer("restitution", fmt::format("{:.4f}", e), fmt::format("{:g} m/s, centre", restitution_speed_));
-    summary["characteristic_time_us"] = 1e6 * centre.time;
     summary["restitution"] = e;
-    summary["restitution_less_rules_line"] = e - models::rules_line(centre.time);
+    if (centre) {
+      summary["characteristic_time_us"] = 1e6 * centre->time;
+      summary["restitution_less_rules_line"] = e - models::rules_line(centre->time);
+    }
     post::Figure figure{.title = post::kFaceView, .columns = 2, .panel_width = 680, .panel_height = 330};
     figure.panels = {
         post::face_panel(grid_, time, "characteristic time [us]; line: 257 us, limit and tolerance", "[us]", false),
@@ -349,16 +349,25 @@ class PlateFaceJob final : public PointJob {
     if (draw_) out.draw(figure, "map");
   }
 
+  /// Nothing where the sphere bounces on the vibrating face.
+  std::optional<models::CharacteristicTime> characteristic_time(const models::PlateStrike& strike,
+                                                                const Vector2d& at) const {
+    try {
+      return strike.characteristic_time(sphere_, at, speeds_);
+    } catch (const solvers::NonConvergence&) { return {}; }
+  }
+
   /// What a mesh with half the elements each way changes; 0 without `numerical_error`, or where the mesh is too coarse
-  /// to be halved.
-  double time_error(const Vector2d& at, double time) const {
+  /// to be halved. Nothing where that one has no characteristic time.
+  std::optional<double> time_error(const Vector2d& at, double time) const {
     models::PlateDesign coarser = plate_->design();
     if (!errors_ || coarser.mesh.core < 4 || coarser.mesh.rings < 2) return 0;
     coarser.mesh.core /= 2;
     coarser.mesh.rings /= 2;
     const models::PlateStrike other(std::make_shared<const models::PlateFace>(coarser, blow_.club.head.face),
                                     blow_.club.head);
-    return std::abs(other.characteristic_time(sphere_, at, speeds_).time - time);
+    const auto ct = characteristic_time(other, at);
+    return ct ? std::optional(std::abs(ct->time - time)) : std::nullopt;
   }
 
   static std::string rules_verdict(double time, double error) {

@@ -463,10 +463,13 @@ class TuneJob final : public Job {
       for (std::size_t i = 0; i < rows->size(); ++i) {
         const std::size_t row = (*rows)[i];
         residuals.add(id_[row], set);
+        const auto answers = [](double x) { return std::isfinite(x); };
+        const bool answered = std::ranges::all_of(model_before[i], answers) &&
+                              std::ranges::all_of(model_after[i], answers);
+        if (!answered) ++lost;
         for (std::size_t c = 0; c < channels_.size(); ++c) {
-          const double b = error(row, c, model_before[i]), a = error(row, c, model_after[i]);
-          if (std::isfinite(a) && std::isfinite(b)) before[c].push_back(b), after[c].push_back(a);
-          else if (c == 0) ++lost;
+          if (answered)
+            before[c].push_back(error(row, c, model_before[i])), after[c].push_back(error(row, c, model_after[i]));
           residuals.more(measured_[row][c] / channels_[c].si, model_before[i][c] / channels_[c].si,
                          model_after[i][c] / channels_[c].si);
         }

@@ -9,9 +9,6 @@
 
 namespace hosel::loop {
 
-/// The logarithm of how much likelier a formula must be than what measures a column, beyond that of the number of
-/// formulas that were tried: by chance in one set of a thousand.
-
 struct DerivedColumn {
   std::string column;
   std::vector<std::string> from;

@@ -10,7 +10,7 @@ namespace hosel::loop {
 double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int channel,
                       const Eigen::MatrixXd& residuals);
 
-/// Scatter of a channel about a fit in units of its own sigma, without the rows beyond 5 sigma.
+/// Scatter of a channel about a fit in units of its own sigma; a row beyond 6 sigma counts as one at 6.
 Scatter scatter(const ShotModel& model, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,
                 int fitted);
 

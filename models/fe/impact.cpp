@@ -198,6 +198,14 @@ void check_balance(const solvers::Ledger& ledger, double now, double expected, b
   }
 }
 
+/// Whether ball and head part. A light face that yields flees from the ball, and the head follows.
+bool parting(const ImpactBodies& bodies, const fem::State& state) {
+  const fem::MeanMotion ball = bodies.ball->motion(state);
+  const fem::SurfacePose face = bodies.contact->surface_pose(state);
+  const Vec3 there = face.velocity + face.spin.cross(bodies.ball->centre(state) - face.centre);
+  return face.axes.col(0).dot(ball.velocity - there) > 0;
+}
+
 /// What a step adds to what is known of the impact.
 void add_step(ImpactCheckpoint& at, const ImpactBodies& bodies, const fem::State& state,
               const fem::ContactReport& report, double gap0, double after) {
@@ -219,7 +227,7 @@ void add_step(ImpactCheckpoint& at, const ImpactBodies& bodies, const fem::State
   at.so_far.penetration = report.penetration;
   if (bodies.face) at.face_travel.add(now, bodies.face->travel(state));
   at.so_far.creep = report.elastic_slip;
-  at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + after);
+  at.over = at.touched && leaving && report.points == 0 && now >= at.last_touch * (1 + after) && parting(bodies, state);
 }
 
 FeImpactResult integrated(ImpactBodies& bodies, const FeImpactOptions& o, const ImpactObserver& observer,

@@ -572,5 +572,20 @@ TEST(Import, ByHand) {
   EXPECT_EQ(shots.find("kept_wetter")->text[1], "kalt");
 }
 
+/// Headers that read alike are columns of their own, each with its cells.
+TEST(Import, KeptColumnsOfOneNameStayApart) {
+  const fs::path dir = test::fresh_directory("import_kept_twice");
+  test::write(
+      dir / "a.csv",
+      "Club,BallSpeed,ClubSpeed,VLA,HLA,TotalSpin,Mat,mat\n7i,115,82,16,1,6400,new,wet\n7i,116,82,16,0,6400,old,dry\n");
+  const auto o = command("import '" + (dir / "a.csv").string() + "' --units imperial --keep mat --out '" +
+                         (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  ASSERT_TRUE(shots.find("kept_mat") && shots.find("kept_mat_2"));
+  EXPECT_EQ(shots.find("kept_mat")->text[1], "old");
+  EXPECT_EQ(shots.find("kept_mat_2")->text[1], "dry");
+}
+
 }  // namespace
 }  // namespace hosel

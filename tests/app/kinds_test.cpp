@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "app/kinds/kinds.hpp"
 #include "command.hpp"
 #include "csv_file.hpp"
 #include "golf/units.hpp"
@@ -224,6 +225,19 @@ TEST(CalibrateBall, TheBallOfItsOwnBounceIsFound) {
   ASSERT_EQ(found.at("parameters").size(), 2u);
   EXPECT_NEAR(found["parameters"][0].at("value").get<double>(), 28e6, 0.005 * 28e6);
   EXPECT_NEAR(found["parameters"][1].at("value").get<double>(), 60e6, 0.005 * 60e6);
+}
+
+/// Oblique targets need a ball that can be thrown obliquely, whether or not a case has a [mesh].
+TEST(CalibrateBall, ObliqueTargetsHaveHarmonicsWithoutAMesh) {
+  const fs::path dir = fresh_directory("calibrate_ball_mesh");
+  write(dir / "case.toml",
+        "kind = \"calibrate-ball\"\n" + one_piece(10, 50) +
+            "[[free]]\nwhat = \"long-term-moduli\"\n[contact]\nface_friction = 0.3\n"
+            "[target]\nbounce = {speed_mps = 30, angle_deg = 30, tangential_restitution = 0.2, sigma = 0.05}\n");
+  app::CaseFile file(dir);
+  app::read_calibrate_ball(file);
+  const std::string resolved = file.resolved();
+  EXPECT_NE(resolved.find("harmonics = 3"), std::string::npos) << resolved;
 }
 
 /// The restitution of the reduced law of a ball that a wall of 1 and 2 degrees throws back is that of the wall at right

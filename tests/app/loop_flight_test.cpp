@@ -1,6 +1,7 @@
 // Loops whose base is the flight and laws inferred from followed flights, as cases.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -89,6 +90,50 @@ TEST(FlightLawCase, ReachesWhatAPointWithDragAndLiftCan) {
   // Axis, ball and wind of a shot leave no more than a quarter beyond drag, lift and wind at will.
   EXPECT_LT(by_path["carry_rms_m"].get<double>(), 1.25 * at_will["carry_rms_m"].get<double>());
   EXPECT_LT(std::abs(by_path["carry_bias_m"].get<double>()), 1.5);
+}
+
+/// A flight without a coefficient, or without the time at which it is level again, is none, whatever the rest says.
+TEST(RadarPaths, FlightsWithEmptyCellsAreLeftOut) {
+  const fs::path dir = fresh_directory("radar_paths");
+  std::vector<std::string> head, cells;
+  for (const char axis : {'x', 'y', 'z'})
+    for (int k = 0; k < 7; ++k) {
+      head.push_back(axis + std::to_string(k));
+      cells.push_back(axis == 'x' && k == 1 ? "60" : axis == 'y' && k == 1 ? "20" : axis == 'y' && k == 2 ? "-4" : "0");
+    }
+  for (const auto& [name, cell] : {std::pair{"carry_m_level", "250"},
+                                   {"apex_m_poly", "25"},
+                                   {"time_level_s", "5"},
+                                   {"measured_time_s", "5"},
+                                   {"spin0_fit_rpm", "2500"},
+                                   {"spin_decay_per_s", "0.05"},
+                                   {"launch_spin_rpm", "2500"},
+                                   {"player", "A"},
+                                   {"event", "1"}})
+    head.emplace_back(name), cells.emplace_back(cell);
+  const auto line = [](const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& w : words) out += (out.empty() ? "" : ",") + w;
+    return out + "\n";
+  };
+  std::string csv = line(head) + line(cells);
+  const std::vector<std::string> lacking{"x4", "y0", "z6", "time_level_s"};
+  for (const std::string& name : lacking) {
+    std::vector<std::string> row = cells;
+    row[std::size_t(std::ranges::find(head, name) - head.begin())] = "";
+    csv += line(row);
+  }
+  write(dir / "paths.csv", csv);
+  write(dir / "case.toml",
+        "kind = \"flight-law\"\n[paths]\nfile = \"paths.csv\"\ngroup_by = [\"event\"]\n[[paths.site]]\nevent = \"1\"\n"
+        "density_kg_per_m3 = 1.2\n");
+  hosel::app::CaseFile file(dir);
+  const hosel::app::RadarPaths paths = hosel::app::read_paths(file.root().table("paths"), {});
+  ASSERT_EQ(paths.flights.size(), 1u);
+  EXPECT_EQ(paths.flights.front().path.times.size(), 10u);
+  int left_out = 0;
+  for (const auto& [why, count] : paths.left_out) left_out += count;
+  EXPECT_EQ(left_out, int(lacking.size()));
 }
 
 TEST(FlightLawCase, SkipsWithoutTheData) {

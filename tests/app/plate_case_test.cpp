@@ -118,6 +118,38 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
 }
 
+/// The first touch throws a light face away from the ball, and both are apart while the head follows. The blow is not
+/// over: the ball leaves faster than the head.
+TEST(PlateCase, ABallThatTheFaceFleesFromIsStruckAllTheSame) {
+  const fs::path dir = fresh_directory("plate_flees");
+  write(dir / "case.toml", kFace);
+  const Outcome o = command("run '" + dir.string() + "' --out '" + (dir / "out").string() +
+                            "' --set face.plate.thickness.value_mm=0.3 --set numerical_error=false" + kCoarse);
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_GT(nlohmann::json::parse(content(dir / "out" / "summary.json"))["ball_speed_mps"][0].get<double>(), 50);
+}
+
+/// A sphere of 6 mm bounces on the vibrating face along its middle: no characteristic time there, and all else is told.
+TEST(PlateCase, AFaceWithoutACharacteristicTimeIsTold) {
+  const fs::path dir = fresh_directory("plate_bounces");
+  write(dir / "case.toml", kFace);
+  const Outcome o = command("run '" + dir.string() + "' --out '" + (dir / "out").string() +
+                            "' --set face.plate.thickness.value_mm=2.4 --set sphere.radius_mm=6" + kCoarse);
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("centre: no characteristic time"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("has no verdict"), std::string::npos) << o.text;
+  const auto told = nlohmann::json::parse(content(dir / "out" / "summary.json"));
+  EXPECT_EQ(told["places_without_characteristic_time"], 3);
+  EXPECT_FALSE(told.contains("characteristic_time_us"));
+  EXPECT_GT(told["restitution"].get<double>(), 0.7);
+  const CsvFile map(dir / "out" / "map.csv");
+  ASSERT_EQ(map.rows(), 9u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(map.text("characteristic_time_us", i).empty(), map.number("high_mm", i) == 0);
+    EXPECT_GT(map.number("restitution", i), 0.7);
+  }
+}
+
 /// The face's centre is a place like any other: what is told of it is told where it was struck, whatever the order.
 TEST(PlateCase, TheCentreIsTheFacesOwn) {
   const fs::path dir = fresh_directory("plate_centre");

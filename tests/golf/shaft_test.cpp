@@ -79,6 +79,32 @@ TEST(PolynomialShaft, FollowsItsPolynomials) {
   const double L = 1.1, whole = 0.07 * L - 0.01 * L * L + 0.004 / 3 * L * L * L + 0.00025 * L * L * L * L;
   EXPECT_NEAR(mass(shaft), whole, 1e-5 * whole);
   EXPECT_THROW(polynomial_shaft({}), std::invalid_argument);
+  CompositePolynomials crossed = p;
+  crossed.mean_radius = {0.0072, -0.009};  // below zero from 0.8 m on
+  EXPECT_EQ(faults(polynomial_shaft(crossed)).size(), 1u);
+}
+
+/// No station of a shaft may weigh or resist less than nothing.
+TEST(Shaft, StationsThatCannotBeAreNamed) {
+  const ShaftStation good{.bending_stiffness_y = 40,
+                          .bending_stiffness_z = 40,
+                          .torsional_stiffness = 20,
+                          .axial_stiffness = 1e6,
+                          .shear_stiffness = 1e5,
+                          .mass_per_length = 0.06,
+                          .rotary_inertia_y = 1e-6,
+                          .rotary_inertia_z = 1e-6};
+  ShaftStation end = good;
+  end.arc_length = 1;
+  ASSERT_TRUE(faults(Shaft{{good, end}}).empty());
+  for (double ShaftStation::*of :
+       {&ShaftStation::bending_stiffness_y, &ShaftStation::bending_stiffness_z, &ShaftStation::torsional_stiffness,
+        &ShaftStation::axial_stiffness, &ShaftStation::shear_stiffness, &ShaftStation::mass_per_length,
+        &ShaftStation::rotary_inertia_y, &ShaftStation::rotary_inertia_z, &ShaftStation::outer_radius}) {
+    ShaftStation bad = end;
+    bad.*of = -1;
+    EXPECT_EQ(faults(Shaft{{good, bad}}).size(), 1u);
+  }
 }
 
 /// Of a mass per length that is linear from m0 to m1 the centre lies L (m0 + 2 m1) / 3 (m0 + m1) from the butt.

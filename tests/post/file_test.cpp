@@ -269,5 +269,26 @@ TEST(Checkpoint, OnesMadeByHandAreNotGoneOnFrom) {
   EXPECT_FALSE(made(body)) << "a key is missing";
 }
 
+/// What a killed process wrote stands in the list of the one that goes on, until it is gone.
+TEST(WrittenFiles, AListOutlivesItsProcess) {
+  const test::FreshDirectory home("written_files");
+  const fs::path& dir = home.path();
+  const auto list = [&] { return read_file(dir / ".written"); };
+  {
+    const WrittenFiles killed(dir, ".written");
+    write_file(dir / "b.csv", "1");
+    write_file(dir / "gone.csv", "1");
+    EXPECT_EQ(list(), "b.csv\ngone.csv\n");
+  }
+  WrittenFiles next(dir, ".written");
+  fs::create_directory(dir / "below");
+  write_file(dir / "below" / "a.csv", "1");
+  fs::remove(dir / "gone.csv");
+  next.close_list();
+  EXPECT_EQ(list(), "b.csv\nbelow/a.csv\n");
+  remove_listed(dir, ".written");
+  EXPECT_TRUE(fs::is_empty(dir));
+}
+
 }  // namespace
 }  // namespace hosel::post

@@ -414,6 +414,31 @@ class Results(InFolder):
             with self.assertRaisesRegex(ValueError, "finished"):  # as the command: not without force
                 hosel.run("face-map-driver-reduced", out)
 
+    def test_a_forced_run_leaves_nothing_of_the_one_before(self):
+        before = hosel.run("driver-toe", self.out, set=['models=["fe-free-body"]', "accuracy=look"])
+        self.assertIn("history.csv", before.tables)
+        self.assertGreater(len(before.figures), 2)
+        self.assertGreater(len(list(self.out.rglob("*.vtp"))), 10)
+        (self.out / "notes.csv").write_text("mine\n1\n")
+        (self.out / "vtk/ball/mine.vtu").write_text("mine")
+        run = hosel.run(self.blow, self.out, force=True)  # draws nothing and has no table
+        with self.assertRaisesRegex(KeyError, "history.csv"):
+            run["history.csv"]
+        self.assertEqual((run.tables, run.figures), (["notes.csv"], []))
+        self.assertEqual([f.name for f in (self.out / "vtk").rglob("*")], ["ball", "mine.vtu"])
+
+    def test_a_list_of_files_names_none_elsewhere(self):
+        hosel.run(self.blow, self.out)
+        old = (self.out / ".written").read_text()
+        self.assertIn("case.resolved.toml\n", old)
+        for name in ("victim", "out/below"):
+            (self.folder / name).write_text("years")
+        (self.out / ".written").write_text(f"../victim\n{self.folder}/victim\nfigures/../../victim\nbelow\n\n.\n")
+        hosel.run(self.blow, self.out, force=True)
+        self.assertEqual((self.folder / "victim").read_text(), "years")
+        self.assertFalse((self.out / "below").exists())  # the list is obeyed
+        self.assertEqual((self.out / ".written").read_text(), old)
+
     def test_an_empty_cell_is_nan_and_a_word_stays_a_word(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "t.csv"
