@@ -178,7 +178,8 @@ void Output::begin(std::string_view resolved) {
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
   state_->lock = std::make_unique<DirectoryLock>(out);
-  if (state_->options.force) post::remove_listed(out, kWritten);
+  // What a sweep merges stays: plan and points.
+  if (state_->options.force) post::remove_listed(out, kWritten, {"plan.json", "shards"});
   state_->written = std::make_unique<post::WrittenFiles>(out, state_->options.durable ? kWritten : "");
   post::remove_unfinished(out);
   // What told of the run that lay here would stand beside this one's unfinished files.

@@ -15,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -234,13 +233,13 @@ void WrittenFiles::close_list() {
   write_file(list_, lines_of(names));
 }
 
-void remove_listed(const fs::path& directory, const std::string& list) {
+void remove_listed(const fs::path& directory, const std::string& list, const std::set<fs::path>& stay) {
   std::error_code error;
   const fs::path home = fs::weakly_canonical(directory, error);
   for (const std::string& line : listed_in(directory / list)) {
     const fs::path name(line);
     // Whoever sends a folder may have written its list: names elsewhere, and links to there, are not followed.
-    if (name.is_absolute() || std::ranges::find(name, "..") != name.end()) continue;
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end() || stay.contains(*name.begin())) continue;
     const fs::path folder = (home / name).parent_path();
     if (fs::weakly_canonical(folder, error) != folder || error) continue;
     if (!fs::is_regular_file(fs::symlink_status(home / name, error)) || !fs::remove(home / name, error)) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -55,8 +56,10 @@ class WrittenFiles {
   std::filesystem::path list_;
 };
 
-/// Removes the files that DIRECTORY/list names below DIRECTORY, folders that are empty then, and the list.
-void remove_listed(const std::filesystem::path& directory, const std::string& list);
+/// Removes the files that DIRECTORY/list names below DIRECTORY, folders that are empty then, and the list. Files and
+/// folders of DIRECTORY that are named in `stay` stay.
+void remove_listed(const std::filesystem::path& directory, const std::string& list,
+                   const std::set<std::filesystem::path>& stay = {});
 
 /// Puts a file that another program has made in the place of TO, as write_file does with its own.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
