@@ -124,9 +124,11 @@ TEST(PlateCase, ABallThatTheFaceFleesFromIsStruckAllTheSame) {
   const fs::path dir = fresh_directory("plate_flees");
   write(dir / "case.toml", kFace);
   const Outcome o = command("run '" + dir.string() + "' --out '" + (dir / "out").string() +
-                            "' --set face.plate.thickness.value_mm=0.3 --set numerical_error=false" + kCoarse);
+                            "' --set face.plate.thickness.value_mm=0.3 --set numerical_error=false --set figures=false "
+                            "--set delivery.club_speed_mps=40 --set mesh.sector=1 --set mesh.rings=1 "
+                            "--set mesh.harmonics=1 --set time.steps_per_contact=20");
   ASSERT_EQ(o.status, 0) << o.text;
-  EXPECT_GT(nlohmann::json::parse(content(dir / "out" / "summary.json"))["ball_speed_mps"][0].get<double>(), 50);
+  EXPECT_GT(nlohmann::json::parse(content(dir / "out" / "summary.json"))["ball_speed_mps"][0].get<double>(), 40);
 }
 
 /// A sphere of 6 mm bounces on the vibrating face along its middle: no characteristic time there, and all else is told.
