@@ -13,6 +13,7 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/lock.hpp"
 #include "app/terminal.hpp"
@@ -178,14 +179,16 @@ void Output::begin(std::string_view resolved) {
   fs::create_directories(out, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
   state_->lock = std::make_unique<DirectoryLock>(out);
-  // What a sweep merges stays: plan and points.
-  if (state_->options.force) post::remove_listed(out, kWritten, {"plan.json", "shards"});
+  std::vector<spdlog::sink_ptr> sinks;
+  if (!state_->options.log.empty()) sinks.push_back(std::make_shared<LogSink>(state_->options.log));
+  // What tells of the run that lay here goes first: without it the rest is no finished run.
+  for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
+  std::set<fs::path> stay = {".lock"};
+  if (state_->options.merge) stay.insert({"plan.json", "shards"});
+  if (state_->options.force) post::remove_listed(out, kWritten, stay);
   state_->written = std::make_unique<post::WrittenFiles>(out, state_->options.durable ? kWritten : "");
   post::remove_unfinished(out);
-  // What told of the run that lay here would stand beside this one's unfinished files.
-  for (const char* told : {"summary.json", "report.json", "report.html"}) fs::remove(out / told, error);
-  std::vector<spdlog::sink_ptr> sinks{std::make_shared<LogSink>(out / "log.txt")};
-  if (!state_->options.log.empty()) sinks.push_back(std::make_shared<LogSink>(state_->options.log));
+  sinks.insert(sinks.begin(), std::make_shared<LogSink>(out / "log.txt"));
   state_->logger = std::make_shared<spdlog::logger>("hosel", sinks.begin(), sinks.end());
   state_->logger->set_pattern(kLogPattern);
   state_->logger->set_error_handler([](const std::string&) {});  // a full disk is said where a result is written

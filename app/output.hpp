@@ -22,6 +22,7 @@ namespace hosel::app {
 struct OutputOptions {
   std::filesystem::path directory;  ///< OUT
   bool force = false;               ///< overwrite a finished run
+  bool merge = false;               ///< plan and points of a sweep stay all the same
   bool quiet = false;
   std::filesystem::path log = {};         ///< besides OUT/log.txt
   std::string command = {};               ///< what was typed, for the page

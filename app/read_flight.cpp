@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "app/read_sheet.hpp"
 #include "post/launch_table.hpp"
@@ -145,8 +146,11 @@ FlightSetup read_flight(Table table) {
     t.friction = turf->number({"friction", "of the ball on the turf while it bounces"}, {0, 2}, t.friction);
     t.rolling =
         turf->number({"rolling", "rolling resistance; 5/7 of it in g is the deceleration"}, {0.01, 1}, t.rolling);
-    t.rolling_low = turf->number({"rolling_low", "lower end of what rolling may be"}, {0.01, t.rolling}, t.rolling_low);
-    t.rolling_high = turf->number({"rolling_high", "upper end of what rolling may be"}, {t.rolling, 2}, t.rolling_high);
+    turf->decided_by("flight.turf.rolling");
+    t.rolling_low = turf->number({"rolling_low", "lower end of what rolling may be"}, {0.01, t.rolling},
+                                 std::min(t.rolling, t.rolling_low));
+    t.rolling_high = turf->number({"rolling_high", "upper end of what rolling may be"}, {t.rolling, 2},
+                                  std::max(t.rolling, t.rolling_high));
     s.turf = t;
     if (std::abs(std::tan(s.conditions.ground.slope)) >= t.rolling_low)
       table.fail("turf", "on this slope a rolling ball does not come to rest: leave out [flight.turf] or its slope");
@@ -208,7 +212,9 @@ void FlightSetup::show_in(const Output& out) {
 post::ShotFlight FlightSetup::follow(const Launch& launch, const Ball& ball, double sample) const {
   post::ShotFlight s{
       models::fly(launch, ball, conditions, {.tolerance = options.tolerance, .sample = sample}), {}, unit};
-  if (turf) s.run = models::run_out(s.flight.landing, ball, conditions.ground, *turf);
+  if (turf) try {
+      s.run = models::run_out(s.flight.landing, ball, conditions.ground, *turf);
+    } catch (const std::domain_error&) {}  // there is a carry and no total
   return s;
 }
 

@@ -144,8 +144,8 @@ RadarPaths read_paths(Table table, const Ball& ball) {
       continue;
     }
     const Polynomial px = x.row(i), py = y.row(i), pz = z.row(i);
-    if (!px.finite() || !py.finite() || !pz.finite() || !std::isfinite(level[i])) {
-      ++out.left_out["with an empty cell in its polynomials or its time to level"];
+    if (!px.finite() || !py.finite() || !pz.finite() || !std::isfinite(level[i]) || !std::isfinite(apex[i])) {
+      ++out.left_out["with an empty cell in its polynomials, its time to level or its apex"];
       continue;
     }
     // x to the target, y up, z to the right.

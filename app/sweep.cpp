@@ -202,7 +202,7 @@ void sweep_run(const fs::path& root, Shard shard, bool quiet) {
 void sweep_merge(const fs::path& root, bool force, bool quiet) {
   const Planned p = open_plan(root);
   const auto points = all_points(p.plan, root);
-  Output out({.directory = root, .force = force, .quiet = quiet}, *p.file);
+  Output out({.directory = root, .force = force, .merge = true, .quiet = quiet}, *p.file);
   report_all(*p.points, points, out);
 }
 

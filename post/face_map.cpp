@@ -64,13 +64,14 @@ using Column = std::function<std::vector<double>(std::size_t map, const MapQuant
 std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const Column& column,
                 const std::function<bool(std::size_t)>& left_out) {
   Table out{{{"model"}, {"impact_toe_mm", "{:.6g}"}, {"impact_high_mm", "{:.6g}"}}};
-  if (!maps.empty())
-    for (const MapQuantity& q : map_quantities(maps.front()))
-      out.in_files({fmt::format("{}_{}", q.name, q.unit)}, "{:.9g}");
+  std::span<const MapQuantity> quantities;  // those of a map that has flights, where one has
+  for (const FaceMap& map : maps)
+    if (map_quantities(map).size() > quantities.size()) quantities = map_quantities(map);
+  for (const MapQuantity& q : quantities) out.in_files({fmt::format("{}_{}", q.name, q.unit)}, "{:.9g}");
   for (std::size_t m = 0; m < maps.size(); ++m) {
     if (left_out(m)) continue;
     std::vector<std::vector<double>> columns;
-    for (const MapQuantity& q : map_quantities(maps[m])) columns.push_back(column(m, q));
+    for (const MapQuantity& q : quantities) columns.push_back(column(m, q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
       out.add(maps[m].title, 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
       for (const auto& c : columns) out.more(if_finite(c.empty() ? kNaN : c[p]));
@@ -90,6 +91,7 @@ std::span<const MapQuantity> map_quantities(const FaceMap& map) {
 
 std::vector<double> values(const FaceMap& map, const MapQuantity& q) {
   std::vector<double> out;
+  if (q.of_flight && map.flights.empty()) return out;
   out.reserve(map.launches.size());
   for (std::size_t p = 0; p < map.launches.size(); ++p) {
     const auto x = q.value(map, p);

@@ -77,18 +77,21 @@ struct Watched {
   }
   static std::string name(const fs::path& path) { return fs::absolute(path).lexically_normal().string(); }
   /// The innermost watch around a file; null where there is none.
-  std::set<fs::path>* around(const std::string& file) {
-    std::set<fs::path>* found = nullptr;
+  Watch* around(const std::string& file) {
+    Watch* found = nullptr;
     std::size_t longest = 0;
-    for (auto& [directory, below] : files)
-      if (directory.size() >= longest && file.starts_with(directory)) longest = directory.size(), found = &below.files;
+    for (auto& [directory, watch] : files)
+      if (directory.size() >= longest && file.starts_with(directory)) longest = directory.size(), found = &watch;
     return found;
   }
   void note(const fs::path& file) {
     const std::lock_guard lock(mutex);
     if (files.empty()) return;
     const std::string full = name(file);
-    if (std::set<fs::path>* watch = around(full)) watch->insert(full);
+    Watch* const innermost = around(full);
+    if (!innermost) return;
+    innermost->files.insert(full);
+    if (!innermost->list) return;
     for (auto& [directory, watch] : files)
       if (full.starts_with(directory)) watch.append(full.substr(directory.size()));
   }
@@ -199,7 +202,7 @@ WrittenFiles::WrittenFiles(const fs::path& directory, const std::string& list)
     : directory_(Watched::name(directory / "")) {
   Watch watch;
   if (!list.empty()) {
-    list_ = fs::path(directory_) / list;
+    list_ = directory / list;
     watch.listed = listed_in(list_);
     watch.list = std::make_unique<GrowingFile>(list_, lines_of(watch.listed));
   }
@@ -228,7 +231,7 @@ void WrittenFiles::close_list() {
     watch.list.reset();
   }
   std::erase_if(names, [&](const std::string& name) {
-    return !fs::is_regular_file(fs::symlink_status(fs::path(directory_) / name));
+    return !fs::is_regular_file(fs::symlink_status(list_.parent_path() / name));
   });
   write_file(list_, lines_of(names));
 }
@@ -236,17 +239,23 @@ void WrittenFiles::close_list() {
 void remove_listed(const fs::path& directory, const std::string& list, const std::set<fs::path>& stay) {
   std::error_code error;
   const fs::path home = fs::weakly_canonical(directory, error);
+  std::set<std::string> stayed;
   for (const std::string& line : listed_in(directory / list)) {
     const fs::path name(line);
     // Whoever sends a folder may have written its list: names elsewhere, and links to there, are not followed.
-    if (name.is_absolute() || std::ranges::find(name, "..") != name.end() || stay.contains(*name.begin())) continue;
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end()) continue;
+    if (stay.contains(*name.begin())) {
+      stayed.insert(line);
+      continue;
+    }
     const fs::path folder = (home / name).parent_path();
     if (fs::weakly_canonical(folder, error) != folder || error) continue;
     if (!fs::is_regular_file(fs::symlink_status(home / name, error)) || !fs::remove(home / name, error)) continue;
     for (fs::path empty = folder; empty != home && fs::is_empty(empty, error) && fs::remove(empty, error);)
       empty = empty.parent_path();
   }
-  fs::remove(directory / list, error);
+  if (stayed.empty()) fs::remove(directory / list, error);
+  else write_file(directory / list, lines_of(stayed));
 }
 
 void move_file(const fs::path& from, const fs::path& to) {
@@ -260,7 +269,7 @@ void remove_file(const fs::path& file) {
   fs::remove(file);
   const std::lock_guard lock(Watched::all().mutex);
   const std::string full = Watched::name(file);
-  if (std::set<fs::path>* watch = Watched::all().around(full)) watch->erase(full);
+  if (Watch* const watch = Watched::all().around(full)) watch->files.erase(full);
 }
 
 void remove_unfinished(const fs::path& directory) {

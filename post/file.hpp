@@ -38,7 +38,8 @@ std::string read_file(const std::filesystem::path& file);
 std::filesystem::path find_program(std::string_view name, const std::filesystem::path& outside = {});
 
 /// Watches the files that write_file and GrowingFile leave below DIRECTORY, in this process, as long as it lives. Where
-/// one watch lies in another's directory, a file belongs to the inner one.
+/// one watch lies in another's directory, the inner one misses a file that is gone. Both list it, unless the inner one
+/// has no list: its files are thrown away.
 class WrittenFiles {
  public:
   /// `list`: the names of the files are kept in DIRECTORY/list from then on, a name a line, after those that are there.
@@ -48,7 +49,8 @@ class WrittenFiles {
   WrittenFiles& operator=(const WrittenFiles&) = delete;
   /// The first that is gone, though nobody here removed it; empty where all are there.
   std::filesystem::path missing() const;
-  /// The list once more, sorted and without what is no longer there: it does not tell how often a run was killed.
+  /// The list once more, sorted and without what is not there now: a run that was killed ends with the list of one that
+  /// was not.
   void close_list();
 
  private:
@@ -57,7 +59,7 @@ class WrittenFiles {
 };
 
 /// Removes the files that DIRECTORY/list names below DIRECTORY, folders that are empty then, and the list. Files and
-/// folders of DIRECTORY that are named in `stay` stay.
+/// folders of DIRECTORY that are named in `stay` stay, in the list too.
 void remove_listed(const std::filesystem::path& directory, const std::string& list,
                    const std::set<std::filesystem::path>& stay = {});
 

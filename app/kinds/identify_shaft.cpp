@@ -59,15 +59,15 @@ class IdentifyJob final : public Job {
     const double factor = std::exp(1.96 * std::sqrt(log_variance));
     return {value / factor, value * factor};
   }
-  /// What a rigid club misses of the deflection, over the swings that are fitted or the others.
-  static double rigid_rms(const std::vector<models::MeasuredSwing>& swings, bool train) {
+  /// What a rigid club misses of the deflection [mm], over the swings that are fitted or the others.
+  static std::optional<double> rigid_rms(const std::vector<models::MeasuredSwing>& swings, bool train) {
     double sum = 0, count = 0;
     for (const models::MeasuredSwing& m : swings) {
       if (m.train != train) continue;
       for (const auto* deflection : {&m.lead, &m.droop})
         for (const double x : *deflection) sum += x * x, ++count;
     }
-    return count > 0 ? std::sqrt(sum / count) : 0.0;
+    return count > 0 ? std::optional(1e3 * std::sqrt(sum / count)) : std::nullopt;
   }
   static nlohmann::json to_json(const models::ShaftIdentification& r) {
     return {{"bending_scale", r.bending_scale},
@@ -77,23 +77,28 @@ class IdentifyJob final : public Job {
             {"correlation", r.log_covariance(0, 1) / std::sqrt(r.log_covariance(0, 0) * r.log_covariance(1, 1))},
             {"shortened_steps", r.shortened_steps},
             {"train_rms_mm", {{"before", 1e3 * r.train_before}, {"after", 1e3 * r.train_after}}},
-            {"holdout_rms_mm", {{"before", 1e3 * r.holdout_before}, {"after", 1e3 * r.holdout_after}}}};
+            {"holdout_rms_mm",
+             r.held_out ? nlohmann::json{{"before", 1e3 * r.held_out->before}, {"after", 1e3 * r.held_out->after}}
+                        : nlohmann::json()}};
   }
   static void say(Output& out, const models::ShaftIdentification& r) {
     const auto scale = interval(r.bending_scale, r.log_covariance(0, 0)),
                damping = interval(r.damping_time, r.log_covariance(1, 1));
-    out.say(
-        fmt::format("bending stiffness x {:.4f} (95 %: {:.4f} to {:.4f}), damping time {:.3g} s ({:.3g} to {:.3g}); "
-                    "deflection RMS train {:.2f} -> {:.2f} mm, holdout {:.2f} -> {:.2f} mm",
-                    r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before,
-                    1e3 * r.train_after, 1e3 * r.holdout_before, 1e3 * r.holdout_after));
+    out.say(fmt::format(
+        "bending stiffness x {:.4f} (95 %: {:.4f} to {:.4f}), damping time {:.3g} s ({:.3g} to {:.3g}); "
+        "deflection RMS train {:.2f} -> {:.2f} mm, {}",
+        r.bending_scale, scale[0], scale[1], r.damping_time, damping[0], damping[1], 1e3 * r.train_before,
+        1e3 * r.train_after,
+        r.held_out ? fmt::format("holdout {:.2f} -> {:.2f} mm", 1e3 * r.held_out->before, 1e3 * r.held_out->after)
+                   : "nothing held out"));
     RunPage& page = out.page();
     page.answer("bending stiffness", fmt::format("× {:.3f}", r.bending_scale),
                 fmt::format("95 %: {:.3f} to {:.3f}", scale[0], scale[1]));
     page.answer("damping time", fmt::format("{:.3g} s", r.damping_time),
                 fmt::format("95 %: {:.3g} to {:.3g}", damping[0], damping[1]));
-    page.answer("deflection, held out", fmt::format("{:.2f} mm", 1e3 * r.holdout_after),
-                fmt::format("RMS; {:.2f} before", 1e3 * r.holdout_before));
+    if (r.held_out)
+      page.answer("deflection, held out", fmt::format("{:.2f} mm", 1e3 * r.held_out->after),
+                  fmt::format("RMS; {:.2f} before", 1e3 * r.held_out->before));
     page.answer("deflection, fitted", fmt::format("{:.2f} mm", 1e3 * r.train_after),
                 fmt::format("RMS; {:.2f} before", 1e3 * r.train_before));
     if (r.shortened_steps > 0)
@@ -102,10 +107,12 @@ class IdentifyJob final : public Job {
           r.shortened_steps));
   }
   static nlohmann::json tell_rigid(Output& out, const std::vector<models::MeasuredSwing>& swings) {
-    const double train = 1e3 * rigid_rms(swings, true), holdout = 1e3 * rigid_rms(swings, false);
-    out.page().answer("a rigid club, held out", fmt::format("{:.2f} mm", holdout), "RMS");
-    out.say(fmt::format("a rigid club: deflection RMS train {:.2f} mm, holdout {:.2f} mm", train, holdout));
-    return {{"train", train}, {"holdout", holdout}};
+    const double train = rigid_rms(swings, true).value();
+    const std::optional<double> holdout = rigid_rms(swings, false);
+    if (holdout) out.page().answer("a rigid club, held out", fmt::format("{:.2f} mm", *holdout), "RMS");
+    out.say(fmt::format("a rigid club: deflection RMS train {:.2f} mm{}", train,
+                        holdout ? fmt::format(", holdout {:.2f} mm", *holdout) : ""));
+    return {{"train", train}, {"holdout", holdout ? nlohmann::json(*holdout) : nlohmann::json()}};
   }
   void recorded(Output& out) {
     std::vector<models::GripMotion> motions;
@@ -123,6 +130,8 @@ class IdentifyJob final : public Job {
       m.times = column_with_gaps(sheet, "time_s");
       m.lead = column_with_gaps(sheet, "lead_mm");
       m.droop = column_with_gaps(sheet, "droop_mm");
+      if (const auto wrong = models::faults(m); !wrong.empty())
+        throw InputError(fmt::format("{}: {}", r.deflection.string(), wrong.front()));
       for (double& x : m.lead) x *= 1e-3;
       for (double& x : m.droop) x *= 1e-3;
       measured.push_back(std::move(m));

@@ -37,19 +37,20 @@ std::pair<double, double> robust_mean(const std::vector<double>& x) {
   std::vector<double> size;
   for (const double v : x) size.push_back(std::abs(v - mean));
   const double knee = 1.5 * 1.4826 * middle(size);
-  double square = 0, weights = 0;
+  double square = 0, weights = 0, inside = 0;
   for (int pass = 0; pass < 30; ++pass) {
     double sum = 0;
-    weights = square = 0;
+    weights = square = inside = 0;
     for (const double v : x) {
       const double w = std::abs(v - mean) > knee ? knee / std::abs(v - mean) : 1;
       sum += w * v;
       square += std::pow(w * (v - mean), 2);
       weights += w;
+      inside += w == 1;
     }
     mean = sum / weights;
   }
-  return {mean, std::sqrt(square) / weights};
+  return {mean, std::sqrt(square) / inside};  // the slope of Huber's psi is 1 inside the knee, 0 beyond it
 }
 
 class LandingTimesJob final : public Job {

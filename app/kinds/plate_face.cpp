@@ -324,7 +324,6 @@ class PlateFaceJob final : public PointJob {
       if (halved) summary["characteristic_time_error_us"] = 1e6 * error;
       summary["largest_characteristic_time_us"] = 1e6 * longest;
       summary["places_beyond_the_limit"] = beyond;
-      summary["largest_restitution"] = fastest;
     } else {
       out.say(verdict);
     }
@@ -334,6 +333,7 @@ class PlateFaceJob final : public PointJob {
                       fmt::format("{}; limit {:.0f} + {:.0f}", over, 1e6 * kRulesTime, 1e6 * kRulesTolerance));
     out.page().answer("restitution", fmt::format("{:.4f}", e), fmt::format("{:g} m/s, centre", restitution_speed_));
     summary["restitution"] = e;
+    summary["largest_restitution"] = fastest;
     if (centre) {
       summary["characteristic_time_us"] = 1e6 * centre->time;
       summary["restitution_less_rules_line"] = e - models::rules_line(centre->time);

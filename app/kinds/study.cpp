@@ -172,6 +172,7 @@ class StudyJob final : public PointJob {
     effects.of.resize(table.series.size());
     effects.emulators.resize(table.series.size());
     if (named) {
+      tell_missing(out, table, points);
       tell_effects(out, table, effects, summary);
       const json between = sliders(table, effects);
       if (!between.is_null()) out.page().section("Between the points", "");
@@ -183,7 +184,11 @@ class StudyJob final : public PointJob {
       if (const post::TextTable rows = table.rows(); rows.rows.size() > 1) out.show(rows, "Points");
     }
     if (budgets_) summary["launches"] = report_flights(out);
-    if (landing_) summary["landing"] = report_landing(out, table, effects, *landing_, title_);
+    if (landing_) {
+      std::vector<bool> answered;
+      for (const json& p : points) answered.push_back(!p.contains("error"));
+      summary["landing"] = report_landing(out, table, effects, *landing_, answered, draw_, title_);
+    }
     if (optimum_)
       summary["optimum"] =
           report_optimum(out, table, effects, *optimum_, [&](const std::vector<std::string>& set, std::size_t m) {
@@ -202,7 +207,7 @@ class StudyJob final : public PointJob {
     if (!parts_.all.empty()) summary["parts"] = report_parts(out, table, parts_, draw_);
     if (!statements_.empty()) summary["statements"] = judge(out, table, statements_, against, groups(table, layers));
     if (named && draw_) draw_study(out, table, title_, figures_, effects, reference_, against);
-    if (conditions_.histories) report_histories(out, table, points);
+    if (conditions_.histories) report_histories(out, table, points, draw_);
     out.page().answer("points", fmt::format("{}", points.size()),
                       fmt::format("{} without an answer", summary["failed"].get<int>()));
     out.write_summary(summary);
@@ -211,6 +216,21 @@ class StudyJob final : public PointJob {
   }
 
  private:
+  /// What points that answered do not have is in no mean, effect or map.
+  static void tell_missing(Output& out, const StudyTable& table, const std::vector<json>& points) {
+    for (const StudySeries& s : table.series) {
+      std::size_t answered = 0, missing = 0;
+      for (std::size_t d = 0; d < s.y.size(); ++d)
+        if (!points[d * table.models.size() + s.model].contains("error")) {
+          ++answered;
+          missing += !std::isfinite(s.y[d]);
+        }
+      if (missing > 0 && missing < answered)
+        out.warn(fmt::format("{}: {} of {} points have none", s.name, missing, answered));
+      else if (missing > 0) out.say(fmt::format("{}: no point has it", s.name));
+    }
+  }
+
   /// Whether the blows of a grid make maps.
   bool maps_face() const { return table_.design.grid() && !studied_; }
 
@@ -268,13 +288,15 @@ class StudyJob final : public PointJob {
       conditions_.bounce_speed = root.quantity(
           {"keep_bounce", "scale the ball's moduli until it bounces at this speed as the first point's does"}, "mps",
           {1, 100});
+    if (conditions_.bounce_speed &&
+        std::ranges::none_of(table_.models, [](const std::string& m) { return m.starts_with("fe-"); }))
+      root.fail("keep_bounce_mps", "scales the moduli of the ball of finite elements: no model has one");
     conditions_.histories = root.flag(
         {"histories",
          "keep the forces over time: of the contact by volumetric and hertz-maw, at the hosel by finite elements"},
         false);
     for (const std::string& m : table_.models)
-      if (conditions_.histories && m != "volumetric" && m != "hertz-maw" && !m.starts_with("fe-"))
-        root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
+      if (conditions_.histories) check_histories(root, m);
     if (conditions_.histories && conditions_.matched_launch)
       root.fail("histories", "with matched_launch there is a blow at every loft of the search");
     if (conditions_.followed && conditions_.matched_launch)
@@ -319,9 +341,21 @@ class StudyJob final : public PointJob {
   /// A key that the design, `set` or the command line, and a [[solve]] give would have the value of one of them.
   void check_varied_once(Table& root) const {
     table_.design.check_varied_once(root, studied_ ? set_ : blow_->overrides());
-    for (const StudySolve& s : solves_)
+    const auto both = [](const StudySolve& a, const StudySolve& b) {  // in one variant
+      return a.variants.empty() || b.variants.empty() || std::ranges::any_of(a.variants, [&](const std::string& v) {
+               return std::ranges::count(b.variants, v) > 0;
+             });
+    };
+    for (const StudySolve& s : solves_) {
       if (const std::string twice = table_.design.varied(s.key, s.variants); !twice.empty())
         root.fail("solve", fmt::format("'{}' is sought, and '{}' is varied", s.key, twice));
+      for (const std::string& set : blow_->overrides())
+        if (const std::string key = set.substr(0, set.find('=')); same_quantity(s.key, key))
+          root.fail("solve", fmt::format("'{}' is sought, and set to one value ({})", s.key, key));
+      for (const StudySolve& other : solves_)
+        if (&other != &s && same_quantity(s.key, other.key) && both(s, other))
+          root.fail("solve", fmt::format("'{}' is sought twice, as '{}' too", s.key, other.key));
+    }
   }
 
   /// What was measured of nothing that is answered would be compared with nothing.
@@ -360,6 +394,12 @@ class StudyJob final : public PointJob {
     const StudyBlow asked = read_study_blow(one.root());
     if (asked.models.size() != table_.models.size())
       root.fail("models", "a point may not change how many models answer");
+    if (const auto m = measured_launch_angle(d); m && conditions_.matched_launch)
+      if (const auto unit = split_unit(m->name).unit; m->low != m->high || unit->dimension != Dimension::angle)
+        root.fail("matched_launch",
+                  fmt::format("'{}' is no angle, or a range: the loft is turned to one launch angle", m->name));
+    if (conditions_.histories)
+      for (const std::string& m : asked.models) check_histories(root, m);
     if (conditions_.matched_launch && !launch_angle(d))
       root.fail("matched_launch",
                 fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
@@ -418,12 +458,22 @@ class StudyJob final : public PointJob {
     return table_.design.set(d, studied_ ? set_ : blow_->overrides());
   }
 
-  std::optional<double> launch_angle(std::size_t d) const {
+  std::optional<MeasuredRange> measured_launch_angle(std::size_t d) const {
     std::vector<MeasuredRange> all = table_.design.measured(d);
     all.insert(all.end(), table_.measured.begin(), table_.measured.end());
     for (const MeasuredRange& m : all)
-      if (const SplitName s = split_unit(m.name); s.stem == "launch_angle" && s.unit) return m.low * s.unit->si;
+      if (const SplitName s = split_unit(m.name); s.stem == "launch_angle" && s.unit) return m;
     return {};
+  }
+
+  std::optional<double> launch_angle(std::size_t d) const {
+    const auto m = measured_launch_angle(d);
+    return m ? std::optional(m->low * split_unit(m->name).unit->si) : std::nullopt;
+  }
+
+  static void check_histories(const Table& root, const std::string& model) {
+    if (model != "volumetric" && model != "hertz-maw" && !model.starts_with("fe-"))
+      root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
   }
 
   json compute_case(std::size_t d, const fs::path& scratch) const { return compute_case(overrides(d), scratch); }

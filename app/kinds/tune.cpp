@@ -108,7 +108,7 @@ class TuneJob final : public Job {
     for (const std::string& key : noise.keys()) {
       const SplitName split = split_unit(key);
       std::optional<ShotChannel> c = find_shot_channel(split.stem, flight, blow_.ball);
-      if (!c || !split.unit)
+      if (!c || !split.unit || split.unit->dimension != split_unit(fmt::format("x_{}", c->unit)).unit->dimension)
         noise.fail(key, fmt::format("no launch quantity with a unit (known: {}; with a [flight] carry and the like)",
                                     post::channel_names()));
       channels_.push_back(
@@ -327,7 +327,9 @@ class TuneJob final : public Job {
           for (std::size_t k = 0; k < of.size(); ++k) {
             if (answers[k].failure) continue;
             std::vector<double> values(channels_.size());
-            for (std::size_t c = 0; c < values.size(); ++c) values[c] = channels_[c].channel.value(answers[k].launch);
+            for (std::size_t c = 0; c < values.size(); ++c) try {
+                values[c] = channels_[c].channel.value(answers[k].launch);
+              } catch (const std::invalid_argument&) { values[c] = kNaN; }  // its ball does not land
             out[of[k]] = std::move(values);
           }
         } catch (const std::exception&) {}

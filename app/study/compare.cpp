@@ -101,7 +101,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       if (count == 0) continue;
       mean /= double(count);
       const double rms = std::sqrt(square / double(count));
-      differences.add(table.models[m]);
+      differences.add(table.one_model(m) ? table.models[m] : "");
       if (reference.by) differences.more(group);
       differences.more(table.outputs[o], count, mean, rms, largest, table.design.cells(where));
       std::string cause = "-";

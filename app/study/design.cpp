@@ -23,12 +23,6 @@ std::string without_quotes(const std::string& toml) {
   return quoted ? toml.substr(1, toml.size() - 2) : toml;
 }
 
-/// The same key, or the same quantity in another unit.
-bool same_quantity(const std::string& a, const std::string& b) {
-  const SplitName x = split_unit(a), y = split_unit(b);
-  return a == b || (x.unit && y.unit && x.stem == y.stem);
-}
-
 /// Whether a key that is set later leaves nothing of an earlier one: it is the same, or the list of which that is an
 /// element.
 bool replaces(const std::string& later, const std::string& earlier) {
@@ -114,11 +108,18 @@ DesignFactor grid_factor(const post::FaceGrid& grid) {
 
 }  // namespace
 
+bool same_quantity(const std::string& a, const std::string& b) {
+  const SplitName x = split_unit(a), y = split_unit(b);
+  return a == b || (x.unit && y.unit && x.stem == y.stem);
+}
+
 std::vector<MeasuredRange> read_measured(Table t) {
   std::vector<MeasuredRange> out;
   for (const std::string& key : t.keys()) {
     const Key declared{key, "measured: a number, or the lowest and the highest", "a quantity with its unit"};
     const auto [low, high] = t.number_or_range(declared);
+    for (const MeasuredRange& m : out)
+      if (same_quantity(m.name, key)) t.fail(key, fmt::format("and '{}' are one quantity", m.name));
     out.push_back({key, low, high});
   }
   return out;

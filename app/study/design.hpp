@@ -21,6 +21,9 @@
 
 namespace hosel::app {
 
+/// The same key, or the same quantity in another unit.
+bool same_quantity(const std::string& a, const std::string& b);
+
 /// Lowest and highest measured value of a quantity (one number: twice), as it was named.
 struct MeasuredRange {
   std::string name;

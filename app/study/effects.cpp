@@ -42,13 +42,25 @@ std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const 
 
 }  // namespace
 
+namespace {
+
+bool names_a_row(const Design& design, std::size_t column) {
+  for (const DesignFactor& f : design.factors()) {
+    if (column < f.columns.size()) return f.kind == DesignFactor::Kind::rows && f.columns[column] == "row";
+    column -= f.columns.size();
+  }
+  return false;
+}
+
+}  // namespace
+
 StudyEffects effects_of(const StudyTable& table) {
   StudyEffects out;
   std::vector<solvers::EffectFactor> factors;
   const auto columns = table.design.columns();
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const auto levels = table.design.levels(c);
-    if (levels.size() < 2 || columns[c] == "row") continue;  // a row's name stands for its other columns
+    if (levels.size() < 2 || names_a_row(table.design, c)) continue;  // it stands for its other columns
     out.columns.push_back(c);
     solvers::EffectFactor f{.x = table.design.numbers(c), .ordered = true};
     if (f.x.empty()) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/read_flight.hpp"
 #include "app/stored_launch.hpp"
 #include "golf/units.hpp"
 #include "post/labels.hpp"
@@ -235,6 +236,13 @@ std::vector<std::string> face_figure_names(bool with_mass) {
 
 void report_face(Output& out, const StudyTable& table, const std::vector<json>& points, std::vector<FaceLayer>& layers,
                  double extra, bool draw, json& summary) {
+  // Distances of all in one table: as they are asked for, or as the first that flies has them.
+  const auto flies = std::ranges::find_if(layers, [](const FaceLayer& l) { return !l.map.flights.empty(); });
+  if (flies != layers.end()) {
+    FlightSetup shown{.unit = flies->map.distances};
+    shown.show_in(out);
+    for (FaceLayer& l : layers) l.map.distances = shown.unit;
+  }
   FaceReport report(out, table, points, layers, draw);
   report.tables();
   bool first = true;

@@ -19,6 +19,15 @@ std::string as_variable(std::string key) {
   return key;
 }
 
+bool assigns(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') ++i;
+    else if (i == 0 || std::string_view("<>!").find(text[i - 1]) == std::string_view::npos) return true;
+  }
+  return false;
+}
+
 std::string whole_key(const std::string& name) {
   return name.ends_with(".value") ? name.substr(0, name.size() - 6) : name;
 }
@@ -48,7 +57,10 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& names)
   for (const std::string& name : names) parser_.DefineVar(name, &values_.emplace_back(name, 1.0).second);
   parser_.SetExpr(text);
   for (const auto& [name, value] : parser_.GetUsedVar()) used_.push_back(name);
-  parser_.Eval();
+  if (assigns(text)) throw mu::Parser::exception_type("one `=` assigns: equality is `==`");
+  int results = 0;
+  parser_.Eval(results);
+  if (results != 1) throw mu::Parser::exception_type("a comma separates two formulas: decimals have a point");
   for (auto& [name, x] : values_) x = NAN;
 }
 

@@ -32,7 +32,7 @@ void report_hosels(Output& out, const StudyTable& table, const std::vector<nlohm
 
 }  // namespace
 
-void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points) {
+void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points, bool draw) {
   if (!table.design.grid() && std::ranges::any_of(points, [](const auto& p) { return p.contains("hosel"); }))
     report_hosels(out, table, points);
   if (std::ranges::none_of(points, [](const nlohmann::json& p) { return p.contains("history"); })) return;
@@ -48,7 +48,7 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
       post::Series line{.label = label}, share{.label = label};
       for (const nlohmann::json& s : points[point]["history"]) {
         const double time = 1e3 * s.at(0).get<double>(), normal = s.at(1).get<double>(), along = s.at(2).get<double>();
-        histories.add(point, table.models[m], table.design.cells(d), time, normal, along);
+        histories.add(point, table.model_of(point), table.design.cells(d), time, normal, along);
         line.x.push_back(time);
         line.y.push_back(1e-3 * along);
         if (normal <= 1) continue;  // [N]: nothing over nothing
@@ -61,7 +61,7 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
     figure.panels.insert(figure.panels.end(), {tangential, ratio});
   }
   out.write("histories.csv", histories.csv());
-  out.draw(figure, "figures/histories");
+  if (draw) out.draw(figure, "figures/histories");
 }
 
 }  // namespace hosel::app

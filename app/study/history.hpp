@@ -12,6 +12,6 @@ nlohmann::json stored(const std::vector<ForceSample>& history);
 
 /// hosel.csv of clubs with a shaft, where no map shows it; histories.csv, and for each model the tangential force and
 /// its ratio to the normal force, a line a point.
-void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points);
+void report_histories(Output& out, const StudyTable& table, const std::vector<nlohmann::json>& points, bool draw);
 
 }  // namespace hosel::app

@@ -41,7 +41,8 @@ std::optional<StudyLanding> read_landing(Table root, const StudyTable& table) {
 }
 
 nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyEffects& effects,
-                              const StudyLanding& landing, const std::string& title) {
+                              const StudyLanding& landing, const std::vector<bool>& answered, bool draw,
+                              const std::string& title) {
   const Unit unit = *split_unit(table.outputs[landing.carry]).unit;
   const double from_side = split_unit(table.outputs[landing.side]).unit->si / unit.si;
   const double fairway = landing.fairway / unit.si;
@@ -52,7 +53,9 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     const std::size_t carry = model * table.outputs.size() + landing.carry,
                       side = model * table.outputs.size() + landing.side;
     std::vector<Vector2d> landed;
+    std::size_t balls_struck = 0;
     for (std::size_t d = 0; d < table.design.size(); ++d) {
+      balls_struck += answered[d * table.models.size() + model];
       const Vector2d p(from_side * table.series[side].y[d], table.series[carry].y[d]);
       if (p.allFinite()) landed.push_back(p);
     }
@@ -64,7 +67,10 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     }
     const post::Scatter all(std::move(landed));
     using Binomial = boost::math::binomial_distribution<>;
-    const double n = double(all.at.size()), hit = double(within(all, fairway));
+    const double n = double(balls_struck), hit = double(within(all, fairway));
+    if (all.at.size() < balls_struck)
+      out.warn(fmt::format("{}{} of {} balls do not land: they count as out of the fairway, and in no mean", whose,
+                           balls_struck - all.at.size(), balls_struck));
     const double low = Binomial::find_lower_bound_on_p(n, hit, 0.025),
                  high = Binomial::find_upper_bound_on_p(n, hit, 0.025);
     const Vector2d extent = all.extent(0.95), sd = all.covariance.diagonal().cwiseSqrt();
@@ -74,10 +80,11 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
         "{:.0f} "
         "{} with a standard deviation of {:.1f} {}, side {:+.1f} {} with {:.1f} {}. The ellipse for 95 % is {:.0f} {} "
         "long and {:.0f} {} wide.",
-        whose, 100 * hit / n, all.at.size(), 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m, all.mean.x(), m,
+        whose, 100 * hit / n, balls_struck, 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m, all.mean.x(), m,
         sd.x(), m, extent.x(), m, extent.y(), m);
     auto& entry = json[name.empty() ? "case" : name];
-    entry = {{"balls", all.at.size()},
+    entry = {{"balls", balls_struck},
+             {"landed", all.at.size()},
              {"fairway_share", hit / n},
              {"fairway_share_low", low},
              {"fairway_share_high", high},
@@ -118,7 +125,7 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
                               .colour = 4});
     figure.panels.push_back(std::move(panel));
   }
-  if (post::shows(figure)) out.draw(figure, "figures/landing");
+  if (draw && post::shows(figure)) out.draw(figure, "figures/landing");
   return json;
 }
 

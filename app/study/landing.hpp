@@ -19,9 +19,11 @@ struct StudyLanding {
 std::optional<StudyLanding> read_landing(Table root, const StudyTable& table);
 
 /// Says mean and spread of carry and side, the axes of the ellipse that holds 95 % of a normal distribution, and the
-/// share within the fairway with its 95 % interval; with an emulator also the share of deliveries drawn through it.
-/// Draws figures/landing. For the summary: one entry a model.
+/// share within the fairway with its 95 % interval; with an emulator also the share of deliveries drawn through it. A
+/// ball that was struck (`answered`: of each point a model) and does not land is out of the fairway. Draws
+/// figures/landing. For the summary: one entry a model.
 nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyEffects& effects,
-                              const StudyLanding& landing, const std::string& title);
+                              const StudyLanding& landing, const std::vector<bool>& answered, bool draw,
+                              const std::string& title);
 
 }  // namespace hosel::app

@@ -43,7 +43,7 @@ class PartsReport {
       for (const StudyParts::Part& part : parts_.all) {
         json& said = table_.models.size() > 1 ? summary[table_.models[m]][part.name] : summary[part.name];
         for (const Place& place : places_) {
-          table.add(part.name, table_.models[m], place.cells);
+          table.add(part.name, table_.one_model(m) ? table_.models[m] : "", place.cells);
           for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
             const StudySeries::Spread s = difference(part, m, o, place).spread();
             table.more(post::if_finite(s.mean));
@@ -69,15 +69,14 @@ class PartsReport {
     StudySeries out;
     const std::vector<double>& y = table_.at(model, output).y;
     for (const std::size_t p : place.points)
-      out.y.push_back((y[part.of * block_ + p] - y[part.minus * block_ + p]) / part.per);
+      out.y.push_back(table_.difference(output, y[part.of * block_ + p], y[part.minus * block_ + p]) / part.per);
     return out;
   }
 
-  /// Of the 95 % interval by independent deviations from the value `parts_from`.
+  /// Of the 95 % interval by independent deviations from the value `parts_from`; NaN where one of them is not known.
   double half_width(const StudySeries& of) const {
     double square = 0;
-    for (const double y : of.y)
-      if (std::isfinite(y)) square += std::pow(y - of.y[*parts_.from], 2);
+    for (const double y : of.y) square += std::pow(y - of.y[*parts_.from], 2);
     return 1.96 * std::sqrt(square);
   }
 
@@ -104,8 +103,9 @@ class PartsReport {
         if (parts_.from && std::isfinite(of.y[*parts_.from])) {
           const double own = of.y[*parts_.from], half = half_width(of);
           j["from"] = own;
-          j["half_width_95"] = half;
-          row.push_back(fmt::format("{:+.4g} ± {:.2g}", own, half));
+          if (std::isfinite(half)) j["half_width_95"] = half;
+          row.push_back(std::isfinite(half) ? fmt::format("{:+.4g} ± {:.2g}", own, half)
+                                            : fmt::format("{:+.4g}, a row has no answer", own));
         }
       }
       if (places_.size() > 1) row.push_back(where);
@@ -113,16 +113,20 @@ class PartsReport {
     for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
       StudySeries mean;
       mean.y.resize(places_.front().points.size());
+      std::vector<std::size_t> known(mean.y.size());
       for (std::size_t k = 0; k < places_.size(); ++k) {
         const StudySeries there = difference(part, model, o, places_[k]);
-        for (std::size_t i = 0; i < mean.y.size(); ++i) mean.y[i] += there.y[i] / double(places_.size());
+        for (std::size_t i = 0; i < mean.y.size(); ++i)
+          if (std::isfinite(there.y[i])) mean.y[i] += there.y[i], ++known[i];
         if (places_.size() > few || places_.size() == 1) continue;
         std::string where;
         for (std::size_t c = 0; c < where_.size(); ++c)
           where += (c ? ", " : "") + said_cell(columns_[where_[c]], places_[k].cells[c]);
         add(o, there, where, said["at"][k]);
       }
-      add(o, mean, "mean", said["mean"]);
+      for (std::size_t i = 0; i < mean.y.size(); ++i) mean.y[i] /= double(known[i]);  // NaN of nothing
+      const std::size_t least = std::ranges::min(known);
+      add(o, mean, least == places_.size() ? "mean" : fmt::format("mean of {} places", least), said["mean"]);
     }
     const std::string title = fmt::format("{}{}: {} minus {}",
                                           table_.models.size() > 1 ? table_.models[model] + ", " : "", part.name,

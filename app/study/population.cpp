@@ -124,6 +124,8 @@ StudyPopulations read_populations(Table root, const StudyTable& table) {
     const std::string where = t.text({"where", "a formula of the file's columns: rows where it is true count"}, "");
     const std::string given = t.text({"given", "column of the design of which all is seen as a function"});
     p.given = number_of(t, "given", "column", given, table.design.columns());
+    if (table.design.numbers(p.given).empty())
+      t.fail("given", fmt::format("the column '{}' of the design holds words: a column of numbers is needed", given));
     const std::string of_given =
         t.text({"given_measured", "a formula of the file's columns that is the same, in its unit"});
     Table measured = t.table("measured");
@@ -193,6 +195,7 @@ nlohmann::json report_populations(Output& out, const StudyTable& table, const st
         const Side side(table.design.numbers(p.given), table.at(model, m.output).y);
         const std::string who = table.models.size() > 1 ? table.models[model] : "computed";
         if (side.enough()) add(side, who, who.c_str());
+        else out.lack(fmt::format("{}: {}: fewer than {} points have {}", p.name, who, kLeastRows, spoken));
       }
       figure.panels.push_back(std::move(functions));
       figure.panels.push_back(std::move(over));

@@ -26,15 +26,22 @@ std::optional<StudyRegression> read_regression(Table root) {
   const long last = t->integer({"last_shot", "number of the last"}, first, 1L << 53, 1L << 53);
   r.of = t->texts({"of", "measured quantities of the launch, each with its unit"});
   r.on = t->texts({"on", "inputs of the blow that they are regressed on, all at once, each with its unit"});
-  const auto unit = [&](const char* key, const std::string& name, bool known) {
+  const auto unit = [&](const char* key, const std::string& name, std::optional<Dimension> dimension) {
     const SplitName split = split_unit(name);
-    if (!known || !split.unit) t->fail(key, fmt::format("'{}' is none, or has no unit", name));
+    if (!dimension || !split.unit || split.unit->dimension != *dimension)
+      t->fail(key, fmt::format("'{}' is none, or has no unit of its own", name));
     return split.unit->si;
   };
   std::vector<double> of_unit, on_unit;
-  for (const std::string& name : r.of)
-    of_unit.push_back(unit("of", name, post::find_channel(split_unit(name).stem) != nullptr));
-  for (const std::string& name : r.on) on_unit.push_back(unit("on", name, input_of(split_unit(name).stem).has_value()));
+  for (const std::string& name : r.of) {
+    const post::Channel* c = post::find_channel(split_unit(name).stem);
+    of_unit.push_back(
+        unit("of", name, c ? std::optional(split_unit(fmt::format("x_{}", c->unit)).unit->dimension) : std::nullopt));
+  }
+  for (const std::string& name : r.on) {
+    const auto input = input_of(split_unit(name).stem);
+    on_unit.push_back(unit("on", name, input ? std::optional(quantity(*input).dimension) : std::nullopt));
+  }
   if (!std::filesystem::exists(r.file)) return r;
   loop::Shots shots;
   try {

@@ -45,7 +45,9 @@ std::string StudyTable::spoken_entry(std::size_t output) const {
 double StudyTable::difference(std::size_t output, double a, double b) const {
   const std::string stem = split_unit(outputs[output]).stem;
   const post::Channel* channel = post::find_channel(stem.substr(stem.rfind('.') + 1));
-  return channel ? post::difference(*channel, a, b) : a - b;
+  if (!channel) return a - b;
+  const double scale = split_unit(outputs[output]).unit->si / channel->si;  // angles go round in degrees
+  return post::difference(*channel, scale * a, scale * b) / scale;
 }
 
 void StudyTable::fill(const std::vector<json>& points) {
@@ -147,7 +149,8 @@ post::TextTable StudyTable::rows() const {
         row.push_back(!range ? "-"
                       : one  ? fmt::format("{:.5g}", range->low)
                              : fmt::format("{:.4g} to {:.4g}", range->low, range->high));
-        row.push_back(one && std::isfinite(y) ? fmt::format("{:+.2f}", 100 * (y / range->low - 1)) : "-");
+        row.push_back(one && std::isfinite(y) && range->low != 0 ? fmt::format("{:+.2f}", 100 * (y / range->low - 1))
+                                                                 : "-");
       }
     }
   return table;

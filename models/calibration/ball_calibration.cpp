@@ -302,11 +302,6 @@ Eigen::VectorXd without(const Fit& fit, const BallCalibrationProblem& problem, s
 void describe(BallCalibration& out, const BallCalibrationProblem& problem, const Eigen::VectorXd& x) {
   const auto& layers = problem.options.ball.layers;
   const fem::Solid& first = layers.front().material;
-  const double first_factor = [&] {
-    for (std::size_t c = 0; c < problem.free.size(); ++c)
-      if (problem.free[c].what == What::layer && problem.free[c].layer == 0) return std::exp(x[Eigen::Index(c)]);
-    return 1.0;
-  }();
   for (std::size_t c = 0; c < problem.free.size(); ++c) {
     const Parameter& p = problem.free[c];
     const double v = x[Eigen::Index(c)];
@@ -325,8 +320,7 @@ void describe(BallCalibration& out, const BallCalibrationProblem& problem, const
       case What::layer: {
         const double start = layers[p.layer].material.shear() / first.shear();
         const bool cover = p.layer + 1 == layers.size();
-        say((cover ? "cover" : "layer " + std::to_string(p.layer + 1)) + " over core [-]", start,
-            start * std::exp(v) / first_factor);
+        factor((cover ? "cover" : "layer " + std::to_string(p.layer + 1)) + " over core [-]", start);
         break;
       }
       case What::face_stiffness:
@@ -355,6 +349,8 @@ std::vector<std::string> BallCalibrationProblem::faults() const {
     if (!oblique && (p.what == What::layer || p.what == What::friction))
       out.emplace_back("a bounce along the normal sees neither a layer apart nor friction: give oblique shots");
     if (p.what == What::layer && p.layer >= options.ball.layers.size()) out.emplace_back("the ball has no such layer");
+    if (p.what == What::layer && p.layer == 0)
+      out.emplace_back("moduli of layers are over those of the innermost, which long-term-moduli change");
     if (p.of_shots() && p.shots.empty()) out.emplace_back("a face, a strike or a head is some shot's: name it");
     for (const std::size_t s : p.shots)
       if (s >= shots.size() || (p.what == What::face_stiffness && !shots[s].blow.club.head.compliance))

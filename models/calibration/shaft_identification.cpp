@@ -41,12 +41,24 @@ Eigen::VectorXd errors(const Club& nominal, const SwingOptions& options, const M
 
 }  // namespace
 
+std::vector<std::string> faults(const MeasuredSwing& m) {
+  std::vector<std::string> out;
+  if (m.times.empty()) out.emplace_back("a measured swing has no samples");
+  for (std::size_t k = 1; k < m.times.size() && out.empty(); ++k)
+    if (!(m.times[k] > m.times[k - 1])) out.emplace_back("the times of a measured swing do not rise");
+  if (out.empty() && (m.times.front() < m.begin - 1e-9 || m.times.back() > m.end + 1e-9))
+    out.push_back("a measured swing has samples from " + std::to_string(m.times.front()) + " to " +
+                  std::to_string(m.times.back()) + " s, and runs from " + std::to_string(m.begin) + " to " +
+                  std::to_string(m.end) + " s");
+  return out;
+}
+
 ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const std::vector<MeasuredSwing>& swings) {
   if (!club.shaft || !(club.shaft->damping_time > 0))
     throw std::invalid_argument("identification starts from a shaft with a damping time above zero");
   int samples = 0;
   for (const MeasuredSwing& m : swings) {
-    if (m.times.empty()) throw std::invalid_argument("a measured swing has no samples");
+    if (const auto wrong = faults(m); !wrong.empty()) throw std::invalid_argument(wrong.front());
     if (m.train) samples += static_cast<int>(2 * m.times.size());
   }
   if (samples <= 2) throw std::invalid_argument("no swing to train on");
@@ -71,7 +83,8 @@ ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const
   const double guess = club.shaft->damping_time;
   ShaftIdentification out;
   out.train_before = rms(true, 1, guess);
-  out.holdout_before = rms(false, 1, guess);
+  const bool holds_out = std::ranges::any_of(swings, [](const MeasuredSwing& m) { return !m.train; });
+  if (holds_out) out.held_out = {.before = rms(false, 1, guess)};
 
   // In units of the error before, so that the search's tolerances are relative ones.
   const double unit = out.train_before > 0 ? out.train_before : 1;
@@ -97,7 +110,7 @@ ShaftIdentification identify_shaft(const Club& club, SwingOptions options, const
   out.log_covariance = variance * solvers::covariance(fit.jacobian, 0);
   out.train_after = rms(true, out.bending_scale, out.damping_time);
   out.shortened_steps = shortened;
-  out.holdout_after = rms(false, out.bending_scale, out.damping_time);
+  if (holds_out) out.held_out->after = rms(false, out.bending_scale, out.damping_time);
   return out;
 }
 

@@ -192,7 +192,7 @@ void check_balance(const solvers::Ledger& ledger, double now, double expected, b
   }
   if (now > 20 * expected) {
     std::ostringstream text;
-    text << "ball and face " << (touched ? "are still in contact" : "have not met") << " after " << now
+    text << "ball and face " << (touched ? "have not parted" : "have not met") << " after " << now
          << " s, twenty times the time that Hertz's theory expects: is the ball far too soft or viscous?";
     throw solvers::NonConvergence(text.str());
   }

@@ -19,6 +19,8 @@ void bounce(Body& b, const Ball& ball, const BounceRoll& turf) {
   const Vec3 level(b.velocity.x(), b.velocity.y(), 0);
   const double across = level.norm(), speed = b.velocity.norm(), phi = std::atan2(across, -b.velocity.z());
   const double tilt = radians(15.4) * (speed / 18.6) * (phi / radians(44.4));
+  if (tilt > phi)
+    throw std::domain_error("bounce and roll: above 54 m/s the turf's law turns the ball back where it came from");
   const Vec3 along = across > 0 ? Vec3(level / across) : Vec3::UnitX();
   const Vec3 normal = std::cos(tilt) * Vec3::UnitZ() - std::sin(tilt) * along;
   const double approach = -b.velocity.dot(normal), e = restitution(approach);
@@ -66,7 +68,7 @@ Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, 
   for (;;) {
     bounce(b, ball, turf);
     const double up = b.velocity.z(), hop = -2 * up / weight.z();
-    if (up * hop / 4 < last_hop) break;
+    if (up <= 0 || up * hop / 4 < last_hop) break;
     if (++out.bounces > most_bounces)
       throw std::invalid_argument("bounce and roll: on this slope a bouncing ball does not come to rest");
     const Vec3 from = b.position;

@@ -157,6 +157,7 @@ void check_height(const Motion<T>& motion, const T* y) {
 void land_at(const FlightPoint& p, Flight& out) {
   out.landing = p;
   out.time = p.time;
+  if (p.position.z() > out.apex) out.apex = p.position.z(), out.apex_time = p.time;  // up a slope, still climbing
   out.carry = std::hypot(p.position.x(), p.position.y());
   out.side = 0 - p.position.y();  // no minus zero
   out.landing_speed = p.velocity.norm();
@@ -333,10 +334,8 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
 std::vector<FlightPoint> follow(const Launch& launch, const Ball& ball, const FlightConditions& conditions,
                                 std::span<const double> times, const FlightOptions& options) {
   check(launch);
-  FlightConditions free = conditions;
-  free.ground = {};
   const Departure<double> start = start_of(launch);
-  const Motion<double> motion(start, ball, free);
+  const Motion<double> motion(start, ball, conditions);
   const auto y0 = state_of(start);
   std::vector<FlightPoint> out;
   if (times.empty()) return out;
@@ -396,10 +395,8 @@ std::vector<Vec3> follow_in_steps(const Launch& launch, const Ball& ball, const 
                                   std::span<const double> times, double step) {
   check(launch);
   check_step(step);
-  FlightConditions free = conditions;
-  free.ground = {};
   const Departure<double> start = start_of(launch);
-  const Motion<double> motion(start, ball, free);
+  const Motion<double> motion(start, ball, conditions);
   Plain y = state_of(start);
   std::vector<Vec3> out;
   double t = 0;
@@ -480,6 +477,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
     const Jet late = time - solver.time();
     for (int i = 0; i < kStates; ++i) y[std::size_t(i)] += dy[std::size_t(i)].a * late;
     const Jet across = sqrt(y[0] * y[0] + y[1] * y[1]), level = sqrt(y[3] * y[3] + y[4] * y[4]);
+    if (y[kPosition + 2].a > apex) out.row(kApex) = y[kPosition + 2].v.transpose();
     out.row(kCarry) = across.v.transpose();
     out.row(kSide) = -y[1].v.transpose();
     out.row(kTime) = time.v.transpose();

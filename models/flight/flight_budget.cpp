@@ -7,9 +7,11 @@ namespace {
 
 /// Variance of every answer from one source.
 FlightAnswers variance(const Launch& l, const FlightJacobian& by, const LaunchError& e) {
-  const double tilt = l.spin_axis(), rate = l.spin_rate();
-  const FlightAnswers along_rate = std::cos(tilt) * by.col(kBackspin) + std::sin(tilt) * by.col(kSidespin),
-                      along_axis = rate * (std::cos(tilt) * by.col(kSidespin) - std::sin(tilt) * by.col(kBackspin));
+  // All three components go with the rate; the axis' tilt turns the two across the path.
+  const double tilt = l.spin_axis(), rate = l.spin_rate(), across = std::hypot(l.backspin(), l.sidespin());
+  const FlightAnswers turned = std::cos(tilt) * by.col(kBackspin) + std::sin(tilt) * by.col(kSidespin),
+                      along_rate = (across * turned + l.riflespin() * by.col(kRiflespin)) / rate,
+                      along_axis = across * (std::cos(tilt) * by.col(kSidespin) - std::sin(tilt) * by.col(kBackspin));
   FlightAnswers out = FlightAnswers::Zero();
   const auto add = [&](const FlightAnswers& slope, double sd) { out += (sd * slope).cwiseAbs2(); };
   add(by.col(kBallSpeed), e.ball_speed);

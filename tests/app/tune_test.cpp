@@ -347,6 +347,14 @@ TEST(Tune, BoundsOnAColumnOfWordsAreRefused) {
   }
 }
 
+TEST(Tune, NoiseHasAUnitOfItsChannel) {
+  const auto d = chosen_shots("tune_noise", "");
+  std::string text = test::content(d / "case.toml");
+  text.replace(text.find("ball_speed_mps = 0.25"), 21, "ball_speed_kg = 0.25 ");
+  test::write(d / "case.toml", text);
+  EXPECT_NE(refused(d).find("ball_speed_kg"), std::string::npos) << refused(d);
+}
+
 TEST(Tune, AllRowsMayBeFitted) {
   const auto s = run(chosen_shots("tune_all", "[split]\ntrain_fraction = 1\n"));
   ASSERT_EQ(s["rows"]["train"], 12);

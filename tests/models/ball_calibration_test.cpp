@@ -167,6 +167,7 @@ TEST(BallCalibration, WhatNoDataSeeIsRefused) {
   refused({.options = start, .shots = {ObliqueTarget{}}, .free = {{.what = What::face_stiffness, .shots = {0}}}});
   refused({.options = start, .shots = {ObliqueTarget{}}, .free = {{What::impact_high}}});
   refused({.options = start});
+  refused({.options = start, .shots = {ObliqueTarget{}}, .free = {{.what = What::layer, .layer = 0}}});
   FeImpactOptions elastic = start;
   for (BallLayer& layer : elastic.ball.layers) layer.material.branches.clear();
   refused({.options = elastic, .free = kModuli});

@@ -88,4 +88,13 @@ TEST(BounceRoll, RefusesASlopeOnWhichNothingStops) {
   EXPECT_THROW(models::run_out(landing(27, 40, 200), {}, {.slope = -0.1}), std::invalid_argument);
 }
 
+/// Beyond 53.6 m/s the ground that the ball makes for itself would face back along its way: 15.4 deg v / 18.6 m/s of
+/// its angle's 44.4 deg.
+TEST(BounceRoll, KnowsNoImpactsAsFastAsAToppedDrive) {
+  for (const double angle : {1.0, 20.0, 45.0}) {
+    EXPECT_THROW(models::run_out(landing(54, angle, 0), {}, {}, {}), std::domain_error) << angle;
+    EXPECT_GT(models::run_out(landing(53, angle, 0), {}, {}, {}).path.size(), 1u) << angle;
+  }
+}
+
 }  // namespace

@@ -126,6 +126,28 @@ TEST(FlightInference, FollowsAsItFlies) {
   EXPECT_LT(models::follow(l, {}, c, times).back().position.z(), -10);
 }
 
+/// Rate and tilt of a spin that has a part along its path: by differences.
+TEST(FlightInference, BudgetOfASpinWithAPartAlongThePath) {
+  Launch l;
+  l.velocity = Vec3(60, 0, 12);
+  l.spin = Vec3(150, -200, -50);
+  const models::FlightConditions c;
+  const double rate = 2.5, tilt = 0.01, across = std::hypot(200.0, 50.0), axis = std::atan2(50.0, 200.0);
+  const auto budget = models::flight_budget(
+      l, {}, c, {}, {{.source = "rate", .spin_rate = rate}, {.source = "tilt", .spin_axis = tilt}}, {});
+  const auto side_and_carry = [&](const Vec3& spin) {
+    Launch other = l;
+    other.spin = spin;
+    const models::Flight f = models::fly(other, {}, c, {.tolerance = 1e-9});
+    return std::pair(f.side, f.carry);
+  };
+  const auto more = side_and_carry((1 + rate / l.spin_rate()) * l.spin), same = side_and_carry(l.spin),
+             turned = side_and_carry(Vec3(150, -across * std::cos(axis + tilt), -across * std::sin(axis + tilt)));
+  const double by_rate = std::abs(more.second - same.second), by_tilt = std::abs(turned.first - same.first);
+  EXPECT_NEAR(budget.launch[0][models::kCarry], by_rate, 0.03 * by_rate);
+  EXPECT_NEAR(budget.launch[1][models::kSide], by_tilt, 0.01 * by_tilt);
+}
+
 /// The budget's error by the law is what draws from its covariance scatter, to the error of 400 draws.
 TEST(FlightInference, BudgetByTheLawsCovariance) {
   Launch l;

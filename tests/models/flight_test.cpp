@@ -244,6 +244,43 @@ TEST(Flight, DoesNotStartIntoTheGround) {
   EXPECT_GT(models::fly(launch_of(50, -2, 2000), {}, c).carry, 20);
 }
 
+/// A ball that lands on a slope while it still climbs is highest there.
+TEST(Flight, IsHighestWhereItLandsClimbing) {
+  FlightConditions hill;
+  hill.ground.slope = radians(12);
+  const Launch l = launch_of(60, 14, 3000);
+  for (const Flight& f : {models::fly(l, {}, hill), models::fly_in_steps(l, {}, hill, 0.02)}) {
+    ASSERT_LT(f.landing_angle, 0);
+    EXPECT_EQ(f.apex, f.landing.position.z());
+    EXPECT_NEAR(f.apex, f.carry * std::tan(hill.ground.slope), 1e-4);
+    EXPECT_EQ(f.apex_time, f.time);
+  }
+  constexpr double h = 1e-3;
+  Launch faster = l;
+  faster.velocity *= 1 + h / l.ball_speed();
+  const double by =
+      (models::fly(faster, {}, hill, {.tolerance = 1e-10}).apex - models::fly(l, {}, hill, {.tolerance = 1e-10}).apex) /
+      h;
+  EXPECT_NEAR(models::flight_jacobian(l, {}, hill)(models::kApex, models::kBallSpeed), by, 1e-3 * by);
+}
+
+/// Below a raised tee the wind blows as above it: heights count from the ground that is there.
+TEST(Flight, FollowedBelowItsTeeItIsInTheSameWind) {
+  FlightConditions c = windy();
+  c.ground.height = -40;
+  const Launch l = launch_of(40, -1, 2500);
+  const Flight f = models::fly(l, {}, c, {.tolerance = 1e-9, .sample = 0.5});
+  ASSERT_LT(f.path[f.path.size() - 2].position.z(), -5);
+  std::vector<double> times;
+  for (std::size_t i = 0; i + 1 < f.path.size(); ++i) times.push_back(f.path[i].time);
+  const auto seen = models::follow(l, {}, c, times, {.tolerance = 1e-9});
+  const auto stepped = models::follow_in_steps(l, {}, c, times, 0.01);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_LT((seen[i].position - f.path[i].position).norm(), 1e-5) << times[i];
+    EXPECT_LT((stepped[i] - f.path[i].position).norm(), 1e-3) << times[i];
+  }
+}
+
 /// By the published default, then through an inferred surface and across its margins.
 class FlightJacobianBy : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Laws, FlightJacobianBy, testing::Values("ferguson-2022", "radar-2022"),

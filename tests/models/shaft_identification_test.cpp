@@ -58,7 +58,7 @@ TEST(SlowIdentifyShaft, TwelveSeedsAtASignalToNoiseRatioOfTwenty) {
     EXPECT_EQ(r.shortened_steps, 0);
     EXPECT_NEAR(r.bending_scale, truth_scale, 0.02 * truth_scale) << seed;
     EXPECT_NEAR(r.damping_time, truth_damping, 0.2 * truth_damping) << seed;
-    EXPECT_LT(r.holdout_after, 0.5 * r.holdout_before) << seed;
+    EXPECT_LT(r.held_out.value().after, 0.5 * r.held_out.value().before) << seed;
     // The noise of 176 numbers is known to 5 %: four times that.
     EXPECT_NEAR(r.train_after, noise, 0.2 * noise) << seed;
     const Eigen::Vector2d off(std::log(r.bending_scale / truth_scale), std::log(r.damping_time / truth_damping));
@@ -86,6 +86,16 @@ TEST(SlowIdentifyShaft, TwelveSeedsAtASignalToNoiseRatioOfTwenty) {
   RecordProperty("both_inside", both_inside);
   std::printf("worst scale %.2f %%, damping %.1f %%; inside: scale %d, damping %d, both %d of %d\n", 100 * worst_scale,
               100 * worst_damping, scale_inside, damping_inside, both_inside, kSeeds);
+}
+
+TEST(ShaftIdentification, SamplesRiseWithinTheSwing) {
+  MeasuredSwing m{.motion = {}, .begin = -0.3, .end = 0, .times = {-0.3, -0.1, 0}, .lead = {}, .droop = {}};
+  EXPECT_TRUE(faults(m).empty());
+  for (const std::vector<double>& times :
+       {std::vector<double>{}, {0, -0.1, -0.3}, {-0.3, -0.3, 0}, {-0.4, -0.1, 0}, {-0.3, 0.1}}) {
+    m.times = times;
+    EXPECT_EQ(faults(m).size(), 1u);
+  }
 }
 
 }  // namespace

@@ -287,8 +287,30 @@ TEST(WrittenFiles, AListOutlivesItsProcess) {
   next.close_list();
   EXPECT_EQ(list(), "b.csv\nbelow/a.csv\n");
   remove_listed(dir, ".written", {"b.csv"});
-  EXPECT_EQ(std::distance(fs::directory_iterator(dir), {}), 1);
+  EXPECT_EQ(list(), "b.csv\n");
   EXPECT_TRUE(fs::exists(dir / "b.csv"));
+}
+
+TEST(WrittenFiles, WhatStaysIsListedAgainAndWhatIsThrownAwayIsNot) {
+  const test::FreshDirectory home("written_files_stay");
+  const fs::path& dir = home.path();
+  {
+    WrittenFiles outer(dir, ".written");
+    fs::create_directories(dir / "kept");
+    fs::create_directories(dir / "scratch");
+    {
+      const WrittenFiles inner(dir / "kept", ".written"), passing(dir / "scratch");
+      write_file(dir / "kept" / "a.csv", "1");
+      write_file(dir / "scratch" / "b.csv", "1");
+    }
+    write_file(dir / "plan", "1");
+    outer.close_list();
+  }
+  EXPECT_EQ(read_file(dir / ".written"), "kept/.written\nkept/a.csv\nplan\n");
+  remove_listed(dir, ".written", {"plan", "scratch"});
+  EXPECT_EQ(read_file(dir / ".written"), "plan\n");
+  EXPECT_FALSE(fs::exists(dir / "kept"));
+  EXPECT_TRUE(fs::exists(dir / "plan") && fs::exists(dir / "scratch" / "b.csv"));
 }
 
 }  // namespace

@@ -1,0 +1,246 @@
+// What a study tells of its points: none goes missing without a word, and nothing is named or counted as what it is
+// not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "command.hpp"
+#include "csv_file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hosel::test;
+
+const std::string kBlow = R"([delivery]
+club_speed_mps = 45.0
+dynamic_loft_deg = 12.0
+[head]
+mass_kg = 0.2
+cg_mm = [-35.0, 0.0, 0.0]
+inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
+)";
+const std::string kMasses = "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.19, 0.2]\n";
+
+std::string study(const std::string& top, const std::string& tables = kMasses) {
+  return "kind = \"study\"\nmodels = [\"rigid-eccentric\"]\noutputs = [\"ball_speed_mps\"]\n" + top + tables + kBlow;
+}
+
+/// The study runs in the folder; its status and what it said.
+Outcome run(const fs::path& dir, const std::string& text, const std::string& options = "") {
+  write(dir / "case.toml", text);
+  return command("run '" + dir.string() + "' --force --out '" + (dir / "out").string() + "' " + options);
+}
+
+nlohmann::json summary(const fs::path& dir) { return nlohmann::json::parse(content(dir / "out" / "summary.json")); }
+
+void refused(const std::string& text, const std::string& says) {
+  const fs::path dir = fresh_directory("study_refused");
+  write(dir / "case.toml", text);
+  const Outcome o = command("check '" + dir.string() + "'");
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find(says), std::string::npos) << o.text;
+}
+
+TEST(StudyAnswers, AFormulaIsOneConditionThatAssignsNothing) {
+  const auto statement = [](const std::string& where) {
+    return study("",
+                 kMasses + "[[statement]]\ntext = \"s\"\nholds = \"ball_speed_mps > 0\"\nwhere = \"" + where + "\"\n");
+  };
+  const fs::path dir = fresh_directory("study_formula");
+  ASSERT_EQ(run(dir, statement("mass_kg == 0.19 && ball_speed_mps <= max(99, 1) && mass_kg != 0")).status, 0);
+  EXPECT_EQ(summary(dir)["statements"][0]["points"], 1);
+  refused(statement("mass_kg = 0.19"), "equality is `==`");
+  refused(statement("ball_speed_mps > 65,5"), "decimals have a point");
+}
+
+TEST(StudyAnswers, WhatIsNoQuantityOfItsOwnIsRefused) {
+  refused(study("matched_launch = true\n", kMasses + "[measured]\nlaunch_angle_deg = [10, 14]\n"), "a range");
+  refused(study("matched_launch = true\n", kMasses + "[measured]\nlaunch_angle_mps = 0.2\n"), "is no angle");
+  refused(study("", kMasses + "[measured]\nball_speed_mph = 150\nball_speed_kmh = 240\n"), "are one quantity");
+  refused(study("keep_bounce_mps = 40\n"), "no model has one");
+  const std::string solve =
+      "[[solve]]\nname = \"v\"\nkey = \"delivery.club_speed_mps\"\nrange = [20, 60]\n"
+      "output = \"ball_speed_mps\"\nvalue = 60\n";
+  refused(study("", kMasses + solve + std::regex_replace(solve, std::regex("\"v\""), "\"w\"")), "is sought twice");
+  const fs::path dir = fresh_directory("study_sought");
+  write(dir / "case.toml", study("", kMasses + solve));
+  ASSERT_EQ(command("check '" + dir.string() + "'").status, 0);
+  const Outcome o = command("check '" + dir.string() + "' --set delivery.club_speed_mph=77");
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find("set to one value"), std::string::npos) << o.text;
+  const std::string regression = "[regression]\nshots = \"not/there.csv\"\non = [\"impact_toe_mm\"]\nof = ";
+  refused(study("", kMasses + regression + "[\"launch_angle_m\"]\n"), "launch_angle_m");
+  refused(study("", kMasses + std::regex_replace(regression, std::regex("toe_mm"), "toe_s") + "[\"ball_speed_mps\"]\n"),
+          "impact_toe_s");
+  refused(study("", kMasses +
+                        "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\n[[population]]\nname = \"p\"\n"
+                        "file = \"not/there.csv\"\ngiven = \"variant\"\ngiven_measured = \"x\"\n[population.measured]\n"
+                        "ball_speed_mps = \"y\"\n"),
+          "holds words");
+}
+
+/// Balls that do not rise to the landing are in no mean, are out of the fairway, and are told.
+TEST(StudyAnswers, BallsThatDoNotLandAreTold) {
+  const fs::path dir = fresh_directory("study_missing");
+  const std::string text = std::regex_replace(study("figures = false\n", R"([[axis]]
+key = "delivery.dynamic_loft_deg"
+values = [4, 8, 12, 16, 20]
+[[axis]]
+key = "delivery.face_angle_deg"
+values = [-2, 0, 2]
+[landing]
+fairway_m = 60
+[flight]
+[flight.ground]
+height_m = 11
+)"),
+                                              std::regex("\"ball_speed_mps\""),
+                                              "\"ball_speed_mps\", \"carry_m\", \"side_m\"");
+  const Outcome o = run(dir, text);
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile points(dir / "out" / "points.csv");
+  ASSERT_EQ(points.rows(), 15u);
+  const auto missing = std::ranges::count(points.texts("carry_m"), "");
+  ASSERT_GT(missing, 0);
+  ASSERT_LE(missing, 9);
+  EXPECT_NE(o.text.find("carry_m: " + std::to_string(missing) + " of 15 points have none"), std::string::npos)
+      << o.text;
+  const auto landing = summary(dir)["landing"]["rigid-eccentric"];
+  EXPECT_EQ(landing["balls"], 15);
+  EXPECT_EQ(landing["landed"], 15 - missing);
+  EXPECT_NEAR(landing["fairway_share"].get<double>(), double(15 - missing) / 15, 1e-12);
+  EXPECT_FALSE(fs::exists(dir / "out" / "figures" / "landing.png"));
+  EXPECT_EQ(run(dir, text, "--strict").status, 3);
+}
+
+/// One table has one unit of length, that which was asked for.
+TEST(StudyAnswers, MapsOfOneTableHaveItsUnit) {
+  const fs::path dir = fresh_directory("study_map_units");
+  const std::string text = study("figures = false\n", R"([grid]
+columns = 3
+rows = 3
+[[variant]]
+name = "yards"
+[[variant]]
+name = "metres"
+set = ["flight.units='metres'"]
+[flight]
+)");
+  const auto carries = [&](const std::string& column) {
+    const CsvFile map(dir / "out" / "face_map.csv");
+    EXPECT_EQ(map.rows(), 18u);
+    std::vector<double> all = map.numbers(column);
+    for (std::size_t p = 0; p < 9; ++p) EXPECT_EQ(all[p], all[p + 9]);
+    return all.front();
+  };
+  ASSERT_EQ(run(dir, text).status, 0);
+  const double yards = carries("carry_yd");
+  ASSERT_EQ(run(dir, text, "--units metric").status, 0);
+  EXPECT_NEAR(carries("carry_m"), 0.9144 * yards, 1e-6 * yards);
+}
+
+/// From 179 to -179 deg are two degrees, in a part as in a comparison, and in radians.
+TEST(StudyAnswers, PartsGoTheShorterWayRound) {
+  const fs::path dir = fresh_directory("study_circle");
+  const Outcome o = run(dir, R"(kind = "study"
+outputs = ["spin_axis_deg", "spin_axis_rad"]
+figures = false
+[[variant]]
+name = "a"
+set = ["launch.spin_axis_deg=179"]
+[[variant]]
+name = "b"
+set = ["launch.spin_axis_deg=-179"]
+[[part]]
+name = "p"
+of = "b"
+minus = "a"
+[compare]
+with = "variant"
+variant = "a"
+[launch]
+ball_speed_mps = 60
+launch_angle_deg = 10
+spin_rate_rpm = 2500
+)");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile parts(dir / "out" / "parts.csv"), differences(dir / "out" / "differences.csv");
+  EXPECT_NEAR(parts.number("spin_axis_deg", 0), 2, 1e-9);
+  EXPECT_NEAR(parts.number("spin_axis_rad", 0), 0.0349066, 1e-7);
+  for (std::size_t i = 0; i < differences.rows(); ++i)
+    if (differences.text("output", i) == "spin_axis_rad" && differences.number("largest", i) != 0) {
+      EXPECT_NEAR(differences.number("largest", i), 0.0349066, 1e-7);
+    }
+}
+
+/// A variant may answer by another model: its histories bear that one's name.
+TEST(StudyAnswers, AHistoryIsThatOfTheModelThatAnswered) {
+  const fs::path dir = fresh_directory("study_models");
+  const std::string text = R"(kind = "study"
+models = ["volumetric"]
+outputs = ["ball_speed_mps"]
+histories = true
+figures = false
+[volumetric]
+published = "driver"
+[hertz_maw]
+damping_s_per_m = 0.002
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+set = ['models=["OTHER"]']
+)" + kBlow;
+  const auto with = [&](const char* model) { return std::regex_replace(text, std::regex("OTHER"), model); };
+  const Outcome o = run(dir, with("hertz-maw"));
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile points(dir / "out" / "points.csv"), histories(dir / "out" / "histories.csv");
+  ASSERT_EQ(points.text("model", 1), "hertz-maw");
+  ASSERT_GT(histories.rows(), 20u);
+  for (std::size_t i = 0; i < histories.rows(); ++i)
+    EXPECT_EQ(histories.text("model", i), points.text("model", std::size_t(histories.number("point", i))));
+  EXPECT_FALSE(fs::exists(dir / "out" / "figures" / "histories.png"));
+  refused(with("rigid-eccentric"), "forces over time");
+}
+
+/// Without the answer of one row an interval by the deviations of all rows would be too narrow: there is none.
+TEST(StudyAnswers, AnIntervalNeedsTheAnswerOfEveryRow) {
+  const fs::path dir = fresh_directory("study_interval");
+  write(dir / "rows.csv",
+        "name,delivery.attack_angle_deg,delivery.dynamic_loft_deg\nbase,0,14\nattack,1,14\nloft,0,4\n");
+  const std::string text = R"(kind = "study"
+models = ["rigid-eccentric"]
+outputs = ["carry_m"]
+figures = false
+parts_over = "row"
+parts_from = "base"
+[rows]
+file = "rows.csv"
+[[variant]]
+name = "up"
+set = ["delivery.club_speed_mps=46"]
+[[variant]]
+name = "down"
+[[part]]
+name = "p"
+of = "up"
+minus = "down"
+[flight]
+[flight.ground]
+height_m = HEIGHT
+)" + kBlow;
+  const auto at = [&](const char* height) {
+    const Outcome o = run(dir, std::regex_replace(text, std::regex("HEIGHT"), height));
+    EXPECT_EQ(o.status, 0) << o.text;
+    return summary(dir)["parts"]["p"]["mean"]["carry_m"];
+  };
+  EXPECT_TRUE(at("0").contains("half_width_95"));
+  const auto without = at("11");
+  ASSERT_EQ(without["each"].size(), 2u) << without;
+  EXPECT_FALSE(without.contains("half_width_95")) << without;
+}
+
+}  // namespace
