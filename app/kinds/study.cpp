@@ -353,7 +353,8 @@ class StudyJob final : public PointJob {
         if (const std::string key = set.substr(0, set.find('=')); same_quantity(s.key, key))
           root.fail("solve", fmt::format("'{}' is sought, and set to one value ({})", s.key, key));
       for (const StudySolve& other : solves_)
-        if (&other != &s && same_quantity(s.key, other.key) && both(s, other))
+        // A later [[solve]] of the same key goes on from what an earlier one found.
+        if (s.key != other.key && same_quantity(s.key, other.key) && both(s, other))
           root.fail("solve", fmt::format("'{}' is sought twice, as '{}' too", s.key, other.key));
     }
   }
