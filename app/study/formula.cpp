@@ -58,6 +58,7 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& names)
   parser_.SetExpr(text);
   for (const auto& [name, value] : parser_.GetUsedVar()) used_.push_back(name);
   if (assigns(text)) throw mu::Parser::exception_type("one `=` assigns: equality is `==`");
+  parser_.Eval();  // names and grammar first: the other does not look at them
   int results = 0;
   parser_.Eval(results);
   if (results != 1) throw mu::Parser::exception_type("a comma separates two formulas: decimals have a point");
