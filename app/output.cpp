@@ -188,6 +188,9 @@ void Output::begin(std::string_view resolved) {
   if (state_->options.force) post::remove_listed(out, kWritten, stay);
   state_->written = std::make_unique<post::WrittenFiles>(out, state_->options.durable ? kWritten : "");
   post::remove_unfinished(out);
+  for (const auto& entry : fs::directory_iterator(out))  // pictures are drawn in folders too; shards may be at work
+    if (entry.is_directory() && !entry.is_symlink() && entry.path().filename() != "shards")
+      post::remove_unfinished(entry.path());
   sinks.insert(sinks.begin(), std::make_shared<LogSink>(out / "log.txt"));
   state_->logger = std::make_shared<spdlog::logger>("hosel", sinks.begin(), sinks.end());
   state_->logger->set_pattern(kLogPattern);

@@ -427,6 +427,13 @@ class Results(InFolder):
         self.assertEqual((run.tables, run.figures), (["notes.csv"], []))
         self.assertEqual([f.name for f in (self.out / "vtk").rglob("*")], ["ball", "mine.vtu"])
 
+    def test_what_a_killed_run_left_unfinished_is_removed(self):
+        for folder in ("1-1.unfinished", "figures/1-2.unfinished", "shards/1-3.unfinished"):
+            (self.out / folder).mkdir(parents=True)
+            (self.out / folder / "flight.png").write_text("half")
+        hosel.run(self.blow, self.out)
+        self.assertEqual([f.name for f in self.out.rglob("*.unfinished")], ["1-3.unfinished"])  # another process's
+
     def test_a_list_of_files_names_none_elsewhere(self):
         hosel.run(self.blow, self.out)
         old = (self.out / ".written").read_text()
