@@ -40,10 +40,6 @@ std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const 
   return shares.together;
 }
 
-}  // namespace
-
-namespace {
-
 bool names_a_row(const Design& design, std::size_t column) {
   for (const DesignFactor& f : design.factors()) {
     if (column < f.columns.size()) return f.kind == DesignFactor::Kind::rows && f.columns[column] == "row";
