@@ -1,12 +1,16 @@
 #include "app/diff.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <span>
 #include <sstream>
+#include <utility>
 
 #include "app/parse_toml.hpp"
 #include "app/reader.hpp"
@@ -146,10 +150,36 @@ double nothing(const std::string& key) {
   return split_unit(key.substr(key.rfind('.') + 1)).unit ? kNothing : kRoundOff;
 }
 
-void flatten(const json& j, const std::string& name, std::map<std::string, double>& out) {
-  if (j.is_number()) out[name] = j.get<double>();
+/// Everything in a summary, by its place there.
+struct Flat {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> words;  ///< texts and flags
+  std::map<std::string, std::size_t> lists;  ///< their lengths
+};
+
+void flatten(const json& j, const std::string& name, Flat& out) {
+  if (j.is_number()) out.numbers[name] = j.get<double>();
+  if (j.is_string()) out.words[name] = j.get<std::string>();
+  if (j.is_boolean()) out.words[name] = j.dump();
   if (!j.is_structured()) return;
+  if (j.is_array()) out.lists[name] = j.size();
   for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
+}
+
+/// What stands in lists of different lengths cannot be compared place by place: a line for each, and both forget it.
+std::string lists_of_other_length(Flat& a, Flat& b) {
+  std::string out;
+  for (const auto& [name, length] : a.lists) {
+    const auto other = b.lists.find(name);
+    if (other == b.lists.end() || other->second == length) continue;
+    out += fmt::format("  {}: {} entries in A, {} in B\n", name, length, other->second);
+    for (Flat* of : {&a, &b}) {
+      const auto inside = [&](const auto& entry) { return entry.first.starts_with(name + "."); };
+      std::erase_if(of->numbers, inside);
+      std::erase_if(of->words, inside);
+    }
+  }
+  return out;
 }
 
 /// A line for each file whose content differs or that one run alone has.
@@ -184,9 +214,11 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   if (!rows.empty()) out += fmt::format("  {:<36} {:>20} {:>20}\n", "", "A", "B") + rows;
   out += files;
 
-  std::map<std::string, double> x, y;
-  flatten(a.summary, "", x);
-  flatten(b.summary, "", y);
+  Flat flat_a, flat_b;
+  flatten(a.summary, "", flat_a);
+  flatten(b.summary, "", flat_b);
+  const std::string lengths = lists_of_other_length(flat_a, flat_b);
+  std::map<std::string, double>&x = flat_a.numbers, &y = flat_b.numbers;
   rows.clear();
   std::map<std::string, json> left, right;
   launches_in(a.summary, "", left);
@@ -195,6 +227,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   if (std::max(left.size(), right.size()) > most_launches) left.clear(), right.clear();
   int launches = 0;
   bool compared = false, estimated_by_none = false;  // compared: a row has numbers
+  std::set<std::string> in_rows;
   for (const auto& [model, launch] : left) {
     if (!right.contains(model)) {
       rows += fmt::format("  {}: in A only\n", model);
@@ -213,7 +246,9 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
         return l.contains("numerical_error") ? l["numerical_error"].value(key, 0.0) : error_of(c, l, e);
       };
       const double of_a = estimated(launch), of_b = estimated(other), error = std::max(of_a, of_b);
-      x.erase((known ? "models." : "") + model + "." + key);
+      const std::string place = (known ? "models." : "") + model + "." + key;
+      x.erase(place);
+      in_rows.insert(place);
       const double off = post::difference(c, q, p);
       if (std::abs(off) <= kNothing * std::max({std::abs(p), std::abs(q), 1.0})) continue;
       compared = true;
@@ -252,9 +287,21 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   };
   std::vector<Moved> moved;
   std::size_t others = 0;
+  std::vector<std::string> in_a, in_b;
+  // A model that one run alone has is told above.
+  const auto of_one = [&](const std::string& key, const auto& here, const auto& there) {
+    return std::ranges::none_of(here, [&](const auto& l) {
+      return !there.contains(l.first) && (key.starts_with(l.first + ".") || key.starts_with("models." + l.first + "."));
+    });
+  };
+  for (const auto& [key, q] : y)
+    if (!x.contains(key) && !in_rows.contains(key) && of_one(key, right, left)) in_b.push_back(key);
   for (const auto& [key, p] : x) {
     const auto it = y.find(key);
-    if (it == y.end()) continue;
+    if (it == y.end()) {
+      if (of_one(key, left, right)) in_a.push_back(key);
+      continue;
+    }
     ++others;
     const double size = std::max(std::abs(p), std::abs(it->second));
     if (size <= nothing(key) || std::abs(it->second - p) <= 1e-9 * size) continue;
@@ -269,6 +316,24 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   }
   for (const Moved& m : moved)
     out += fmt::format("  {:<48} {:>12.6g} {:>12.6g} {:>+12.4g}\n", m.key, m.a, m.b, m.b - m.a);
+  out += lengths;
+  for (const auto& [run, alone] : {std::pair{"A", &in_a}, {"B", &in_b}}) {
+    if (alone->empty()) continue;
+    const std::span told(alone->data(), std::min(most, alone->size()));
+    out += fmt::format("  {} in {} only{}:\n    {}\n", alone->size(), run,
+                       alone->size() > most ? fmt::format(", the first {}", most) : "", fmt::join(told, "\n    "));
+  }
+  std::string words;
+  std::map<std::string, std::string> every = flat_a.words;
+  every.insert(flat_b.words.begin(), flat_b.words.end());
+  const auto word = [](const Flat& of, const std::string& key) {
+    const auto it = of.words.find(key);
+    return it == of.words.end() ? std::string("-") : one_line(it->second);
+  };
+  for (const auto& [key, ignored] : every)
+    if (word(flat_a, key) != word(flat_b, key))
+      words += fmt::format("  {}\n    A: {}\n    B: {}\n", key, word(flat_a, key), word(flat_b, key));
+  if (!words.empty()) out += "texts and flags of summary.json\n" + words;
   return out;
 }
 

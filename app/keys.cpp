@@ -75,7 +75,7 @@ std::vector<Sample> samples() {
        {"measured.launch_ratio=[0.8,0.9]", "grid={columns=3, rows=3}",
         "statement=[{text='it is', holds='launch_ratio > 0'}]", "figure=[{kind='bars'}]"}},
       {"swing-driver", {"joint={kind='hinge', axis=[0,1,0]}", "grip={drive='hands', " + springs + "}"}},
-      {"swing-driver", {"grip={drive='forced', wrench='grip.csv'}"}},
+      {"swing-driver", {"grip={drive='forced', wrench='grip.csv'}", "joint={kind='spring', " + springs + "}"}},
       {"loop-bench", {"bench={start='impulse', impulse_N_s=[1,0,0], rotation_axis='droop'}", "grip={hold='clamped'}"}},
       {"loop-bench", {"data.series='not-there/record.csv'", "sensors.lead_mid_mm.axis=lead"}},
       {"swing-driver", {"kind=identify-shaft", "swing=[{motion={file='grip.csv'}, deflection='grip.csv'}]"}},

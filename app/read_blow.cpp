@@ -190,4 +190,19 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   return blow;
 }
 
+std::string off_the_face(const Blow& blow) {
+  const double toe = blow.delivery.impact_toe, high = blow.delivery.impact_high;
+  const std::optional<FaceCompliance>& face = blow.club.head.compliance;
+  const bool bounded = face && std::isfinite(face->half_width) && std::isfinite(face->half_height);
+  const double width = bounded ? face->half_width : 0.0635, height = bounded ? face->half_height : 0.0355;
+  const bool on = bounded ? std::hypot(toe / width, high / height) < 1
+                          : std::abs(toe) <= width && std::abs(high) <= height;
+  if (on) return {};
+  return fmt::format(
+      "the ball is struck off the face: {:g} mm towards the toe and {:g} mm up, where {} reaches {:g} mm "
+      "to either side and {:g} mm up and down",
+      1e3 * toe, 1e3 * high, bounded ? "the ellipse on which this face deflects" : "no face by the rules", 1e3 * width,
+      1e3 * height);
+}
+
 }  // namespace hosel::app

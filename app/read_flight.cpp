@@ -180,7 +180,8 @@ StatedLaunch read_launch(Table table, bool whole) {
   double back = 0, side = 0;
   if (rate) {
     const double size =
-        table.quantity({"spin_rate", "of the launch; instead of backspin and sidespin"}, "rpm", Range::non_negative());
+        table.quantity({"spin_rate", "of the launch, without riflespin; instead of backspin and sidespin"}, "rpm",
+                       Range::non_negative());
     const double axis = table.quantity({"spin_axis", "tilt of the spin, positive for a fade"}, "deg", {-kPi, kPi}, 0);
     back = size * std::cos(axis);
     side = size * std::sin(axis);
@@ -188,8 +189,9 @@ StatedLaunch read_launch(Table table, bool whole) {
     back = table.quantity({"backspin", "of the launch"}, "rpm");
     side = table.quantity({"sidespin", "of the launch, positive for a fade"}, "rpm", Range::finite(), 0);
   }
-  l.spin = Vec3(table.quantity({"riflespin", "of the launch, about its direction"}, "rpm", Range::finite(), 0), -back,
-                -side);
+  l.spin = Vec3(
+      table.quantity({"riflespin", "of the launch, about +X, which points to the target"}, "rpm", Range::finite(), 0),
+      -back, -side);
   return l;
 }
 
@@ -226,9 +228,11 @@ std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::o
   if (!flight) return {};
   for (const post::FlightChannel& c : post::flight_channels(flight->unit))
     if (c.name == name && (name != "total" || flight->turf))
-      return ShotChannel{
-          std::string(name), std::string(c.unit), c.si,
-          [setup = *flight, ball, value = c.value](const Launch& l) { return *value(setup.follow(l, ball)); }};
+      return ShotChannel{std::string(name), std::string(c.unit), c.si,
+                         [setup = *flight, ball, value = c.value](const Launch& l) {
+                           if (const auto x = value(setup.follow(l, ball))) return *x;
+                           throw std::invalid_argument("the ball lands and does not roll on");
+                         }};
   return {};
 }
 

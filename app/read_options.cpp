@@ -149,13 +149,15 @@ void read_grip(Table& t, models::ShaftMount& mount, bool swung) {
   mount.grip = t.one_of<Grip>(
       {"hold", "what happens at the grip during the blow"},
       {{"clamped", Grip::clamped}, {"free", Grip::free}, {"forced", Grip::forced}, {"hands", Grip::hands}}, "clamped");
-  if (mount.grip == Grip::hands) mount.hands = read_springs(t);
+  if (mount.grip == Grip::hands) mount.hands = read_springs(t, "hands'");
   if (swung) return;
   mount.elements = int(t.integer({"elements", "finite elements along the shaft"}, 2, 1000, mount.elements));
   if (t.has_quantity("force") || t.has_quantity("moment"))
     mount.load = models::GripLoad{
         .force = t.vector({"force", "that the hands apply at the grip at first contact, grip frame"}, "N"),
         .moment = t.vector({"moment", "that the hands apply at the grip at first contact, grip frame"}, "N_m")};
+  if (mount.grip == Grip::forced && !mount.load)
+    t.fail("hold", "the hands' wrench goes on: give its force and moment (`free`: there is none)");
 }
 
 post::RecorderOptions read_recorder(Table root) {

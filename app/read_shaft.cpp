@@ -23,6 +23,16 @@ Shaft by_name(Table& table) {
   return {};
 }
 
+void from_butt_to_tip(const Table& table, const char* key, const std::vector<double>& arc) {
+  if (arc.size() < 2) table.fail(key, "a shaft needs at least two stations");
+  for (std::size_t i = 1; i < arc.size(); ++i)
+    if (!(arc[i] > arc[i - 1])) table.fail(key, "stations run from butt to tip with increasing arc length");
+  if (arc.front() != 0)
+    table.fail(key, fmt::format("the first station is the butt, at 0, not at {:g} m: what a shaft is before its first "
+                                "station, nothing says",
+                                arc.front()));
+}
+
 /// Lists in the case, or columns of the same names in a CSV file.
 Shaft by_stations(Table table) {
   std::optional<post::Sheet> sheet;
@@ -37,12 +47,11 @@ Shaft by_stations(Table table) {
         throw InputError(fmt::format("{}:{}: {} is {}", sheet->file, sheet->lines[i], key.name, range.sentence()));
     return x;
   };
-  const auto arc = read({"arc_length", "stations from butt to tip"}, "mm", Dimension::length, 0, Range::finite());
+  const auto arc =
+      read({"arc_length", "stations from the butt at 0 to the tip"}, "mm", Dimension::length, 0, Range::finite());
   const std::size_t n = arc.size();
   const char* at = sheet ? "file" : "arc_length";
-  if (n < 2) table.fail(at, "a shaft needs at least two stations");
-  for (std::size_t i = 1; i < n; ++i)
-    if (!(arc[i] > arc[i - 1])) table.fail(at, "stations run from butt to tip with increasing arc length");
+  from_butt_to_tip(table, at, arc);
   const Range positive = Range::positive();
   const auto EI = read({"bending_stiffness", "EI at the stations"}, "N_m2", Dimension::bending_stiffness, n, positive);
   const auto GJ =
@@ -70,7 +79,8 @@ Shaft by_polynomials(Table table) {
 }
 
 Shaft by_tube(Table table) {
-  const auto arc = table.quantities({"arc_length", "stations from butt to tip"}, "mm", 0);
+  const auto arc = table.quantities({"arc_length", "stations from the butt at 0 to the tip"}, "mm", 0);
+  from_butt_to_tip(table, "arc_length", arc);
   const auto radius =
       table.quantities({"outer_radius", "of the tube at the stations"}, "mm", arc.size(), Range::positive());
   const auto wall =
@@ -90,7 +100,10 @@ Shaft by_tube(Table table) {
 
 /// Centres off the line, at stations of their own, linear between them and held beyond.
 void read_offsets(Table table, Shaft& shaft) {
-  const auto arc = table.quantities({"arc_length", "stations of the offsets; linear between, held beyond"}, "mm", 0);
+  const auto arc = table.quantities(
+      {"arc_length",
+       "stations of the offsets; linear between, held beyond. y is the lead (XG), z against the droop (-YG)"},
+      "mm", 0);
   for (std::size_t i = 1; i < arc.size(); ++i)
     if (!(arc[i] > arc[i - 1])) table.fail("arc_length", "stations run from butt to tip with increasing arc length");
   if (arc.empty()) table.fail("arc_length", "offsets need at least one station");

@@ -90,17 +90,18 @@ MotionInput read_motion(Table table) {
   return in;
 }
 
-fem::JointStiffness read_springs(Table& t) {
-  const auto three = [&](Key key, std::string_view unit, bool needed) {
-    if (!needed && !t.has_quantity(key.name)) return Vec3(Vec3::Zero());
-    const auto v = t.quantities(key, unit, 3, Range::non_negative());
+fem::JointStiffness read_springs(Table& t, std::string_view whose) {
+  const auto three = [&](const char* name, const char* what, std::string_view unit, bool needed) {
+    if (!needed && !t.has_quantity(name)) return Vec3(Vec3::Zero());
+    const std::string meaning = fmt::format("of the {} {} the grip's axes", whose, what);
+    const auto v = t.quantities({name, meaning}, unit, 3, Range::non_negative());
     return Vec3(v[0], v[1], v[2]);
   };
   fem::JointStiffness k;
-  k.translation = three({"stiffness", "of the hands' springs along the grip's axes"}, "N_per_m", true);
-  k.rotation = three({"rotational_stiffness", "of the hands' springs about the grip's axes"}, "N_m_per_rad", true);
-  k.translation_damping = three({"damping", "of the hands along the grip's axes"}, "N_s_per_m", false);
-  k.rotation_damping = three({"rotational_damping", "of the hands about the grip's axes"}, "N_m_s_per_rad", false);
+  k.translation = three("stiffness", "springs along", "N_per_m", true);
+  k.rotation = three("rotational_stiffness", "springs about", "N_m_per_rad", true);
+  k.translation_damping = three("damping", "dampers along", "N_s_per_m", false);
+  k.rotation_damping = three("rotational_damping", "dampers about", "N_m_s_per_rad", false);
   return k;
 }
 
@@ -112,7 +113,7 @@ GripInput read_grip_drive(Table root) {
   in.kind = t->one_of<Kind>(
       {"drive", "what moves the grip: the recorded motion, the same through springs, or recorded forces"},
       {{"prescribed", Kind::prescribed}, {"hands", Kind::hands}, {"forced", Kind::forced}}, "prescribed");
-  if (in.kind == Kind::hands) in.hands = read_springs(*t);
+  if (in.kind == Kind::hands) in.hands = read_springs(*t, "hands'");
   if (in.kind == Kind::forced) in.wrench = t->data_file({"wrench", "CSV of the recorded force and moment at the grip"});
   return in;
 }
@@ -156,7 +157,7 @@ models::HeadJoint read_head_joint(Table& t) {
     joint.axis = Vec3(axis[0], axis[1], axis[2]);
     if (!(joint.axis.norm() > 0)) t.fail("axis", "the axis of a hinge has a direction");
   }
-  if (joint.kind == Kind::spring) joint.stiffness = read_springs(t);
+  if (joint.kind == Kind::spring) joint.stiffness = read_springs(t, "joint's");
   return joint;
 }
 
@@ -178,8 +179,9 @@ models::SwingOptions read_swing_options(Table root) {
         {{"generalized-alpha", Integrator::generalized_alpha}, {"ida", Integrator::ida}}, "generalized-alpha");
     o.kinsol = t->choice({"equilibrium", "how the hanging club is found: Newton, or SUNDIALS KINSOL"},
                          {"newton", "kinsol"}, "newton") == "kinsol";
-    o.grip_point = t->quantity({"grip_point", "distance from the butt of the point whose motion was recorded"}, "mm",
-                               Range::non_negative(), o.grip_point);
+    o.grip_point = t->quantity(
+        {"grip_point", "from the butt to the point that moves as said: the recorded one, or `lower_hand` below it"},
+        "mm", Range::non_negative(), o.grip_point);
   }
   if (auto t = root.optional_table("joint")) o.joint = read_head_joint(*t);
   return o;
@@ -239,6 +241,8 @@ std::optional<SwungClub> read_swung_club(Table root, const std::vector<std::stri
                                  "swing");
   if (joint.gives() && (out.start == Start::weightless || out.start == Start::hands))
     grip.fail("start", "a joint that gives arrives as the swing has turned it: straight or swing");
+  if (mount.grip == models::Grip::forced && out.start == Start::straight)
+    grip.fail("hold", "a straight shaft asks nothing of the hands: `free` says so, or another `start`");
   return out;
 }
 

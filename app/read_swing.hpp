@@ -22,9 +22,9 @@ struct MotionInput {
 /// axes that are not orthonormal, cells that are not numbers.
 MotionInput read_motion(Table table);
 
-/// Springs and dampers of a joint: `stiffness`, `rotational_stiffness` and (0) `damping`, `rotational_damping`, three
-/// each.
-fem::JointStiffness read_springs(Table& table);
+/// Springs and dampers of the hands or of a joint, `whose`, along and about the grip's axes: `stiffness`,
+/// `rotational_stiffness` and (0) `damping`, `rotational_damping`, three each.
+fem::JointStiffness read_springs(Table& table, std::string_view whose);
 
 /// `[grip]` of a swing: `drive = "prescribed"` (the motion itself), `"hands"` (springs to it) or `"forced"` by a
 /// `wrench` file with the columns that a swing's own `swing.csv` has.

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <utility>
 
 #include "loop/report.hpp"
 #include "post/html.hpp"
@@ -57,12 +59,18 @@ std::string gloss(const char* text) { return fmt::format("<p><small>{}</small></
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "–"; }
 
-/// 95 % interval of a root mean square from n values.
+/// 95 % interval of a root mean square from n independent normal values; the value itself of fewer than three.
+std::pair<double, double> interval(double x, int n) {
+  if (n < 3) return {x, x};
+  const boost::math::chi_squared law(n);
+  return {x * std::sqrt(n / quantile(law, 0.975)), x * std::sqrt(n / quantile(law, 0.025))};
+}
+
 std::string rms(double x, int n) {
   if (!std::isfinite(x)) return "–";
   if (n < 3) return number(x);
-  const double half = 1.96 / std::sqrt(2.0 * n);
-  return fmt::format("{} <small>({}–{})</small>", number(x), number(x * (1 - half)), number(x * (1 + half)));
+  const auto [low, high] = interval(x, n);
+  return fmt::format("{} <small>({}–{})</small>", number(x), number(low), number(high));
 }
 
 /// Measured (dots), before (grey line) and after (blue line) over time, held-out stretches shaded: what a record looks
@@ -114,10 +122,11 @@ std::string bars(const std::vector<ChannelResult>& channels) {
   for (const ChannelResult& c : channels) {
     picture.rows.push_back({post::label(c.name), {}});
     for (const auto& [e, style] : {std::pair{&c.before, "before"}, {&c.after, "after"}})
-      if (std::isfinite(e->holdout_rmse) && c.noise > 0)
-        picture.rows.back().bars.push_back({style, e->holdout_rmse / c.noise,
-                                            e->holdout > 2 ? 1.96 / std::sqrt(2.0 * e->holdout) : 0,
-                                            fmt::format("{:.4g}", e->holdout_rmse)});
+      if (std::isfinite(e->holdout_rmse) && c.noise > 0) {
+        const double ratio = e->holdout_rmse / c.noise;
+        const auto [low, high] = interval(ratio, e->holdout);
+        picture.rows.back().bars.push_back({style, ratio, low, high, fmt::format("{:.4g}", e->holdout_rmse)});
+      }
     if (picture.rows.back().bars.empty()) picture.rows.pop_back();  // nothing of it is held out
   }
   return svg(picture);
@@ -219,7 +228,7 @@ std::string page(const LoopResult& r, const Shots& table) {
         "it<td>{}<td>{}</tr></table></div>",
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
-    if (r.verdict != Verdict::no_residual)
+    if (r.verdict != Verdict::no_residual && b.contact + b.inertia > double(b.contact_freedom + b.inertia_freedom))
       s += fmt::format(
           "<p>The base model's error is larger than the noise; {:.0f} % of that excess cannot come from the contact "
           "law.</p>",
@@ -369,7 +378,9 @@ std::string page(const LoopResult& r, const Shots& table) {
                      escape_html(post::spoken(d.parameter)),
                      std::isfinite(d.value) ? number(d.value) : std::string("beyond its plausible range"),
                      std::isfinite(d.value) && d.unit != "1" ? post::symbol(d.unit) : "");
-  s += "</table></div>" + gloss("An effect of this size would be adopted in nine of ten such data sets.");
+  s += "</table></div>" + gloss(
+                              "An effect of this size would be seen in nine of ten such data sets: adopted, or in a "
+                              "tie with what acts alike.");
   if (!r.notes.empty() || !r.unused.empty()) {
     s += "<h2>Notes</h2><ul>";
     for (const auto& [reason, n] : r.unused) s += fmt::format("<li>{} rows not used: {}", n, escape_html(reason));

@@ -35,6 +35,11 @@ struct Channel {
   bool repeated = false;           ///< what stands as declared is the scatter of rows of which a reading is the mean
 
   bool trusted() const { return declared && !refuted; }
+  /// Of a channel whose noise is declared.
+  void refute(bool by_scatter) {
+    if (refuted && !by_scatter) noise = *declared;
+    refuted = by_scatter;
+  }
 };
 
 /// Effects on top of the base model, in the order in which they are applied.
@@ -81,7 +86,7 @@ class Problem {
   // --- the data
   virtual int width() const = 0;  ///< number of channels
   virtual const Channel& channel(int c) const = 0;
-  virtual void refute(int channel) = 0;
+  virtual void refute(int channel, bool refuted) = 0;  ///< what was refuted by an early fit may hold after all
   struct Row {
     int index;       ///< row of measured() and residuals()
     int row;         ///< of the file (of all records, one after the other)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -118,6 +120,18 @@ json to_json(const LoopResult& r) {
     e["rank"] = ++rank;
     out["candidates"].push_back(e);
   }
+  if (const Fit& after = s.chosen; !(r.adopted.empty() && r.ties.empty())) {  // of all training rows
+    json parameters = json::array();
+    const auto of = after.model.parameters();
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const auto i = std::ptrdiff_t(k);
+      parameters.push_back({{"name", of[k]->name},
+                            {"value", value(after.p[i] / of[k]->si)},
+                            {"sd", value(std::sqrt(r.covariance(i, i)) / of[k]->si)},
+                            {"unit", of[k]->unit}});
+    }
+    out["chosen"] = {{"effects", after.model.effects()}, {"parameters", parameters}};
+  }
   out["adopted"] = r.adopted;
   out["ties"] = r.ties;
   out["verdict"] = std::string(name(r.verdict));
@@ -218,7 +232,10 @@ std::string beside_noise(const LoopResult& r) {
   for (const ChannelResult& c : r.channels)
     if (c.expected > 0 && std::isfinite(c.after.holdout_rmse) && (!worst || ratio(c) > ratio(*worst))) worst = &c;
   if (!worst) return "";
-  if (ratio(*worst) <= Rules{}.scatter_ratio) return "The held-out error is within the noise.";
+  // The root mean square of few values is beyond that by chance.
+  const double chance =
+      std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 0.975) / worst->after.holdout);
+  if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return "The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
   const std::string unit = name.unit ? " " + std::string(name.unit->suffix) : "";
   return fmt::format(

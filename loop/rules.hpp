@@ -11,6 +11,8 @@ inline constexpr double kByChance = 1e-3;
 inline const double kBeyondChance = -std::log(kByChance);
 /// Fewer rows have no form.
 inline constexpr int kFewestRows = 12;
+/// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.
+inline constexpr int kFewestOfRows = 10;
 
 struct Rules {
   double gate = 0.01;             ///< level of the test for structure at all

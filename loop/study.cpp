@@ -100,12 +100,12 @@ void Study::refute_noise() {
   const Fit& at = selection.chosen;
   const Eigen::MatrixXd r = problem.residuals(at.model, at.p);
   for (int c = 0; c < problem.width(); ++c) {
-    if (!problem.channel(c).trusted() || problem.channel(c).repeated)
-      continue;  // no model is in the scatter of repeats
-    const auto [ratio, error] = problem.scatter(c, r, at.size());
-    if (std::abs(std::log(ratio)) > rules.scatter_error * error &&
-        (ratio > rules.scatter_ratio || ratio < 1 / rules.scatter_ratio))
-      problem.refute(c);
+    const Channel& ch = problem.channel(c);
+    if (!ch.declared || ch.repeated) continue;  // no model is in the scatter of repeats
+    auto [ratio, error] = problem.scatter(c, r, at.size());
+    if (ch.refuted) ratio *= ch.noise / *ch.declared;
+    problem.refute(c, std::abs(std::log(ratio)) > rules.scatter_error * error &&
+                          (ratio > rules.scatter_ratio || ratio < 1 / rules.scatter_ratio));
   }
 }
 

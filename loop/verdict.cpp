@@ -32,11 +32,11 @@ std::vector<Location> places(const Problem& problem, const Remainder& left) {
 
 /// A name that needs no remainder beside it says as much of the training rows as a remainder without it, each foretold
 /// by the others; one that needs it says more, and pays for its parameters.
-bool beats(const Fit& named, const std::optional<Remainder>& left, const std::optional<Remainder>& bare,
-           const Rules& rules) {
+bool beats(const Fit& named, const Fit& base, const std::optional<Remainder>& left,
+           const std::optional<Remainder>& bare, const Rules& rules) {
   if (!left || !bare) return true;
   if (left->places.empty()) return left->after < bare->after + rules.tie;
-  return left->after + rules.parameter_cost * double(named.size()) + rules.tie < bare->after;
+  return left->after + rules.parameter_cost * double(named.size() - base.size()) + rules.tie < bare->after;
 }
 
 /// What follows the inputs and no name takes up: `left` by the chosen effects; `bare` by the base, where that says as
@@ -45,7 +45,7 @@ std::vector<Location> nameless(const Study& study, const std::optional<Remainder
                                const std::optional<Remainder>& bare) {
   const Selection& s = study.selection;
   if (left && left->fall() > study.rules.gain) return places(study.problem, *left);
-  if (s.level > 0 && !beats(s.chosen, left, bare, study.rules)) return places(study.problem, *bare);
+  if (s.level > 0 && !beats(s.chosen, s.base, left, bare, study.rules)) return places(study.problem, *bare);
   return {};
 }
 
@@ -126,6 +126,13 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
+/// Whether there is a declaration that the data could contradict.
+bool declares_noise(const Problem& problem) {
+  for (int c = 0; c < problem.width(); ++c)
+    if (problem.channel(c).declared) return true;
+  return false;
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -158,7 +165,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     unexplained.push_back(
         {"", "", fmt::format("{} only at the edge of what is plausible", fmt::join(s.adopted, " and "))});
   if (!unexplained.empty()) return Verdict::unexplained;
-  if (problem.heavy_tails(s)) return Verdict::noise_contradicted;
+  if (declares_noise(problem) && problem.heavy_tails(s)) return Verdict::noise_contradicted;
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
@@ -261,6 +268,8 @@ void conclude(const Study& study, LoopResult& result) {
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
   for (const std::string& note : problem.notes()) result.notes.push_back(note);
   if (result.verdict == Verdict::noise_contradicted) result.tails = problem.heavy_tails(s).value_or("");
+  else if (result.verdict == Verdict::no_residual)
+    if (const auto tails = problem.heavy_tails(s)) result.notes.push_back(*tails);
   if (const auto reason = problem.too_few()) {
     result.notes.push_back(*reason);
     result.next = problem.next_experiment(result);
@@ -308,7 +317,7 @@ void conclude(const Study& study, LoopResult& result) {
   BeyondDoubt kept;
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
-    if (kept.fit.size() > 0 && !beats(kept.fit, problem.remainder(kept.fit), bare, study.rules)) kept = {};
+    if (kept.fit.size() > 0 && !beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules)) kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();
   if (some_kept) {

@@ -28,6 +28,12 @@ namespace {
 
 constexpr double kTurn = 1.5;  // [rad]
 
+/// Sets the coefficient of sliding; that of vanishing slip keeps its ratio to it.
+void slide(VolumetricLaw& law, double friction) {
+  law.static_friction = law.friction > 0 ? friction * (law.static_friction / law.friction) : friction;
+  law.friction = friction;
+}
+
 constexpr std::array kParameters = {
     PLAIN("club_speed", "mps", 0.1, 150, b.delivery.club_speed),
     PLAIN("attack_angle", "deg", -kTurn, kTurn, b.delivery.attack_angle),
@@ -55,15 +61,15 @@ constexpr std::array kParameters = {
     PLAIN("volumetric_damping", "s_per_m", 0.0, 0.05, o.volumetric.damping),
     NamedParameter{"volumetric_friction", "", 0.01, 2.0,
                    [](const Options& o, const Blow&) { return o.volumetric.friction; },
-                   [](Options& o, Blow&, double x) { o.volumetric.friction = o.volumetric.static_friction = x; }},
+                   [](Options& o, Blow&, double x) { slide(o.volumetric, x); }},
     PLAIN("volumetric_transition_speed", "mps", 0.01, 20.0, o.volumetric.transition_speed),
     PLAIN("joint_stiffness", "N_m_per_rad", 0.1, 1e4, o.volumetric.joint_stiffness),
     PLAIN("joint_damping", "N_m_s_per_rad", 0.0, 1.0, o.volumetric.joint_damping),
     PLAIN("cover_thickness", "mm", 1e-4, 1e-2, o.volumetric.cover_thickness),
     NamedParameter{"common_friction", "", 0.01, 2.0, [](const Options&, const Blow& b) { return b.contact.friction; },
                    [](Options& o, Blow& b, double x) {
-                     b.contact.friction = o.volumetric.friction = o.volumetric.static_friction = o.hertz_maw.friction =
-                         b.contact.patch.coefficient = x;
+                     slide(o.volumetric, x);
+                     b.contact.friction = o.hertz_maw.friction = b.contact.patch.coefficient = x;
                    }},
     PLAIN("hertz_modulus", "MPa", 1e6, 1e9, o.hertz_maw.modulus),
     PLAIN("hertz_poisson", "", 0.0, 0.5, o.hertz_maw.poisson),

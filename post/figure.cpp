@@ -445,8 +445,8 @@ std::string draw(const Figure& figure, const fs::path& stem, bool panels, const 
     if (!file.map || files.size() > 1) made.push_back(file.picture);
   }
   // gnuplot works below the script: no path of the person's ever becomes program text.
-  std::string word = program.string(), script = "../" + name + ".gp";
-  char* argv[] = {word.data(), script.data(), nullptr};
+  std::string word = program.string(), alone = "-d", script = "../" + name + ".gp";  // alone: without ~/.gnuplot
+  char* argv[] = {word.data(), alone.data(), script.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addchdir_np(&actions, work.path().c_str());

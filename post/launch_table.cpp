@@ -88,7 +88,8 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
     row.push_back(fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
       double shown = (c.launch.*channel.value)() / channel.si;
-      const double error = c.coarser ? std::abs(shown - ((*c.coarser).*channel.value)() / channel.si) : 0;
+      const double error =
+          c.coarser ? std::abs(difference(channel, shown, ((*c.coarser).*channel.value)() / channel.si)) : 0;
       // Without spin its axis has no direction.
       if (channel.name == "spin_axis" && rpm(c.launch.spin_rate()) < 0.5) shown = 0;
       if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"

@@ -109,7 +109,7 @@ std::string svg(const SvgBars& b) {
   double most = 2, height = top + 26;
   for (const auto& row : b.rows) {
     height += 10 + 18 * double(row.bars.size());
-    for (const SvgBar& x : row.bars) most = std::max(most, (1 + x.half) * x.value);  // room for the whisker
+    for (const SvgBar& x : row.bars) most = std::max(most, x.high);  // room for the whisker
   }
   const bool wide = most > 12;
   const auto X = [&](double x) {
@@ -128,10 +128,9 @@ std::string svg(const SvgBars& b) {
     for (const SvgBar& x : row.bars) {
       s += fmt::format("<rect class='{}' x='{}' y='{:.1f}' width='{:.1f}' height='{}' rx='2'/>", x.style, left, y,
                        std::max(1.0, X(x.value) - left), bar);
-      s += fmt::format("<line class='whisker' x1='{:.1f}' x2='{:.1f}' y1='{:.1f}' y2='{:.1f}'/>",
-                       X(x.value * std::max(0.0, 1 - x.half)), X(x.value * (1 + x.half)), y + 7, y + 7);
-      s += fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>", X(x.value * (1 + x.half)) + 6, y + 11.5,
-                       escape_html(x.text));
+      s += fmt::format("<line class='whisker' x1='{:.1f}' x2='{:.1f}' y1='{:.1f}' y2='{:.1f}'/>", X(x.low), X(x.high),
+                       y + 7, y + 7);
+      s += fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>", X(x.high) + 6, y + 11.5, escape_html(x.text));
       y += 18;
     }
     y += 6;

@@ -37,7 +37,7 @@ std::string svg(const SvgPlot& plot);
 
 struct SvgBar {
   std::string style;
-  double value, half;  ///< half of the whisker, share of the value
+  double value, low, high;  ///< the whisker's ends
   std::string text;
 };
 

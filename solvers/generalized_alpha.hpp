@@ -69,9 +69,8 @@ class GeneralizedAlpha {
   /// NonConvergence where a mass matrix that is asked is singular.
   GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions options, fem::State initial);
 
-  /// One accepted step, no further than `end`; shortened on failure of Newton, on too large an error,
-  /// and by the terms' step limits. Throws NonConvergence when it would fall below step_min.
-  /// Returns the size of the step [s].
+  /// One accepted step, no further than `end`; shortened on failure of Newton and on too large an error. Throws
+  /// NonConvergence when it would fall below step_min. Returns the size of the step [s].
   double advance(double end);
   /// Tries one step of exactly `h`; on failure nothing has changed.
   NewtonReport step(double h);

@@ -153,6 +153,15 @@ LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen
   return fit;
 }
 
+std::vector<bool> at_bounds(const Eigen::VectorXd& parameters, const std::vector<Bounds>& bounds) {
+  std::vector<bool> out;
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const double x = parameters[Eigen::Index(k)], margin = 1e-3 * (bounds[k].high - bounds[k].low);
+    out.push_back(x < bounds[k].low + margin || x > bounds[k].high - margin);
+  }
+  return out;
+}
+
 Eigen::MatrixXd covariance(const Eigen::MatrixXd& J, double least, const Eigen::MatrixXd* scores) {
   const Eigen::Index n = J.cols();
   if (n == 0) return {};  // nothing was fitted

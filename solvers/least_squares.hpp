@@ -86,6 +86,9 @@ struct LeastSquaresFit {
 LeastSquaresFit least_squares(const Residuals& residuals, int count, const Eigen::VectorXd& start,
                               const std::vector<Bounds>& bounds, const LeastSquaresOptions& options = {});
 
+/// Whether each parameter stands at an end of its bounds: within a thousandth of their distance.
+std::vector<bool> at_bounds(const Eigen::VectorXd& parameters, const std::vector<Bounds>& bounds);
+
 /// Covariance of parameters by the singular values of their whitened Jacobian. Along directions whose singular value
 /// is not above `least` nothing is known: every parameter with a part in one is infinitely uncertain. `scores`: the
 /// covariance of J^T r where it is not J^T J (the data scatter otherwise than whitened).

@@ -1,14 +1,15 @@
 #include "app/import/cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "app/import/dictionary.hpp"
-#include "golf/units.hpp"
 
 namespace hosel::app {
 
@@ -27,54 +28,116 @@ bool missing(const std::string& cell) {
   return words.contains(lower);
 }
 
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::ranges::transform(out, out.begin(), [](unsigned char c) { return std::tolower(c); });
+  return out;
+}
+
+/// Units that no header of ours has: numbers in them are converted.
+struct OtherUnit {
+  std::string_view name;
+  Dimension dimension;
+  double si;
+};
+constexpr std::array kOtherUnits = {
+    OtherUnit{"cm", Dimension::length, 0.01},         OtherUnit{"in", Dimension::length, 0.0254},
+    OtherUnit{"ft", Dimension::length, 0.3048},       OtherUnit{"ft/s", Dimension::speed, 0.3048},
+    OtherUnit{"kn", Dimension::speed, 1852.0 / 3600}, OtherUnit{"mrad", Dimension::angle, 1e-3},
+    OtherUnit{"gon", Dimension::angle, kPi / 200},    OtherUnit{"turn/s", Dimension::angular_velocity, 2 * kPi},
+};
+
+const OtherUnit* other_unit(std::string_view name) {
+  const auto at = std::ranges::find(kOtherUnits, name, &OtherUnit::name);
+  return at == kOtherUnits.end() ? nullptr : &*at;
+}
+
+/// What stands in brackets, without them; empty where there are none.
+std::vector<std::string> brackets(const std::string& header) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; (at = header.find_first_of("([", at)) != header.npos;) {
+    const auto end = std::min(header.find_first_of(")]", at), header.size());
+    out.push_back(header.substr(at + 1, end - at - 1));
+    at = end;
+  }
+  return out;
+}
+
+std::vector<std::string> words_of(std::string_view text, std::string_view between) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const auto end = std::min(text.find_first_of(between), text.size());
+    if (end > 0) out.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string unit_of(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  text = lower(text);
   std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' ' || c == '.'; });
-  static const std::map<std::string, std::string> spellings = {
-      {"mph", "mph"},      {"mi/h", "mph"},     {"kmh", "kmh"},  {"km/h", "kmh"},    {"kph", "kmh"},
-      {"mps", "mps"},      {"m/s", "mps"},      {"deg", "deg"},  {"degrees", "deg"}, {"degree", "deg"},
-      {"\xC2\xB0", "deg"}, {"\xC2\xBA", "deg"}, {"rad", "rad"},  {"rpm", "rpm"},     {"mm", "mm"},
-      {"cm", "cm"},        {"in", "in"},        {"inch", "in"},  {"inches", "in"},   {"m", "m"},
-      {"yd", "yd"},        {"yds", "yd"},       {"yards", "yd"}, {"ft", "ft"},       {"feet", "ft"},
-      {"s", "s"},          {"sec", "s"},        {"%", "pct"}};
+  static const std::map<std::string, std::string> spellings = {{"mph", "mph"},         {"mi/h", "mph"},
+                                                               {"kmh", "kmh"},         {"km/h", "kmh"},
+                                                               {"kph", "kmh"},         {"mps", "mps"},
+                                                               {"m/s", "mps"},         {"m/sec", "mps"},
+                                                               {"ft/s", "ft/s"},       {"ft/sec", "ft/s"},
+                                                               {"fps", "ft/s"},        {"kn", "kn"},
+                                                               {"kt", "kn"},           {"knots", "kn"},
+                                                               {"deg", "deg"},         {"degrees", "deg"},
+                                                               {"degree", "deg"},      {"\xC2\xB0", "deg"},
+                                                               {"\xC2\xBA", "deg"},    {"rad", "rad"},
+                                                               {"mrad", "mrad"},       {"gon", "gon"},
+                                                               {"rpm", "rpm"},         {"rev/min", "rpm"},
+                                                               {"1/min", "rpm"},       {"u/min", "rpm"},
+                                                               {"rad/s", "rad_per_s"}, {"rad/sec", "rad_per_s"},
+                                                               {"deg/s", "deg_per_s"}, {"\xC2\xB0/s", "deg_per_s"},
+                                                               {"rps", "turn/s"},      {"rev/s", "turn/s"},
+                                                               {"hz", "turn/s"},       {"\xC2\xB5m", "um"},
+                                                               {"\xCE\xBCm", "um"},    {"um", "um"},
+                                                               {"mm", "mm"},           {"cm", "cm"},
+                                                               {"in", "in"},           {"inch", "in"},
+                                                               {"inches", "in"},       {"m", "m"},
+                                                               {"yd", "yd"},           {"yds", "yd"},
+                                                               {"yards", "yd"},        {"ft", "ft"},
+                                                               {"feet", "ft"},         {"s", "s"},
+                                                               {"sec", "s"},           {"%", "pct"}};
   const auto at = spellings.find(text);
   return at == spellings.end() ? "" : at->second;
 }
 
 std::string unit_in(const std::string& header) {
-  if (const auto open = header.find_last_of("(["); open != std::string::npos) {
-    const std::string inside = header.substr(open);
+  std::vector<std::string> all = brackets(header);
+  std::ranges::reverse(all);
+  for (const std::string& inside : all) {
     if (const std::string u = unit_of(inside); !u.empty()) return u;
-    if (const std::string u = unit_of(inside.substr(0, inside.find(' '))); !u.empty()) return u;
+    // `in mm`, `mm toe-/heel+`: an inch is meant where no other unit is.
+    std::string inch;
+    const std::vector<std::string> words = words_of(inside, " ,;");
+    for (const std::string& word : words) {
+      const std::string u = unit_of(word);
+      if (!u.empty() && u != "in") return u;
+      if (inch.empty()) inch = u;
+    }
+    if (std::ranges::any_of(words, [](const std::string& w) { return lower(w).starts_with("out"); })) continue;
+    if (!inch.empty()) return inch;
   }
   const auto blank = header.find_last_of(" _");
   return blank == std::string::npos ? "" : unit_of(header.substr(blank + 1));
 }
 
-HeaderSign sign_in(const std::string& header) {
-  const auto open = header.find_last_of("([");
-  if (open == std::string::npos) return {};
-  std::string text = header.substr(open);
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  std::erase_if(text, [](char c) { return c == ' ' || c == '='; });
-  // `(Right/Left +/-)` says that there are signs, not which.
-  for (std::size_t at; (at = text.find("+/-")) != text.npos;) text.erase(at, 3);
-  using Words = std::vector<std::string>;
-  const auto says = [&](const Words& words, char sign) {
-    return std::ranges::any_of(words, [&](const std::string& w) {
-      return text.find(w + sign) != std::string::npos || text.find(sign + w) != std::string::npos;
-    });
-  };
-  HeaderSign out;
-  for (const bool own : {false, true}) {
-    const Words positive = own ? Words{"fade", "open", "in-out"} : Words{"toe", "right", "up", "high"},
-                negative = own ? Words{"draw", "closed", "out-in"} : Words{"heel", "left", "down", "low"};
-    const bool minus = says(negative, '+') || says(positive, '-'), plus = says(positive, '+') || says(negative, '-');
-    if (minus == plus) continue;
-    if (out.sign != 0 && (out.sign < 0) != minus) return {};  // it says both
-    out = {minus ? -1.0 : 1.0, own};
+std::string strange_unit(std::string_view text) {
+  static const std::set<std::string, std::less<>> per = {"s", "sec", "second", "min", "minute", "h", "hr", "hour"};
+  for (const std::string& word : words_of(text, " ,;[]()")) {
+    const auto slash = word.find('/');
+    const std::string unit = lower(word);
+    if (unit_of(word).empty() && slash != word.npos && slash > 0 && per.contains(unit.substr(slash + 1))) return word;
+    if (unit == "grad" || unit == "nm" || unit == "km" || unit == "mil" || unit == "thou") return word;
   }
-  return out;
+  return "";
 }
 
 std::string figure_of(const std::string& cell) {
@@ -86,12 +149,17 @@ std::string figure_of(const std::string& cell) {
 }
 
 double si_of(const std::string& unit) {
-  if (unit == "cm") return 0.01;
-  if (unit == "in") return 0.0254;
-  if (unit == "ft") return 0.3048;
+  if (const OtherUnit* other = other_unit(unit)) return other->si;
   for (const Unit& u : units())
     if (u.suffix == unit) return u.si;
   return 1;
+}
+
+std::optional<Dimension> dimension_of(const std::string& unit) {
+  if (const OtherUnit* other = other_unit(unit)) return other->dimension;
+  for (const Unit& u : units())
+    if (u.suffix == unit) return u.dimension;
+  return {};
 }
 
 namespace {
@@ -101,18 +169,45 @@ struct Side {
   bool own;  // the player's own: a left-hander's as well
 };
 
-std::optional<Side> side_of(const std::string& words) {
-  static const std::map<std::string, Side> sides = {
-      {"r", {1, false}},      {"right", {1, false}},    {"l", {-1, false}},        {"left", {-1, false}},
-      {"t", {1, false}},      {"toe", {1, false}},      {"h", {-1, false}},        {"heel", {-1, false}},
-      {"u", {1, false}},      {"up", {1, false}},       {"high", {1, false}},      {"d", {-1, false}},
-      {"down", {-1, false}},  {"low", {-1, false}},     {"open", {1, true}},       {"o", {1, true}},
-      {"closed", {-1, true}}, {"c", {-1, true}},        {"fade", {1, true}},       {"draw", {-1, true}},
-      {"in out", {1, true}},  {"in to out", {1, true}}, {"inside out", {1, true}}, {"i o", {1, true}},
-      {"o i", {-1, true}},    {"out in", {-1, true}},   {"out to in", {-1, true}}, {"outside in", {-1, true}}};
-  if (const auto at = sides.find(words); at != sides.end()) return at->second;
-  const auto last = sides.find(words.substr(std::min(words.size(), words.rfind(' ') + 1)));
-  return last == sides.end() ? std::nullopt : std::optional(last->second);
+std::optional<Side> side_of(const std::string& words, Sides sides) {
+  using Words = std::map<std::string, Side, std::less<>>;
+  static const std::map<Sides, Words> known = {
+      {Sides::across,
+       {{"r", {1, false}},
+        {"right", {1, false}},
+        {"l", {-1, false}},
+        {"left", {-1, false}},
+        {"open", {1, true}},
+        {"o", {1, true}},
+        {"closed", {-1, true}},
+        {"c", {-1, true}},
+        {"fade", {1, true}},
+        {"draw", {-1, true}},
+        {"in out", {1, true}},
+        {"in to out", {1, true}},
+        {"inside out", {1, true}},
+        {"i o", {1, true}},
+        {"o i", {-1, true}},
+        {"out in", {-1, true}},
+        {"out to in", {-1, true}},
+        {"outside in", {-1, true}}}},
+      {Sides::height,
+       {{"u", {1, false}},
+        {"up", {1, false}},
+        {"h", {1, false}},
+        {"high", {1, false}},
+        {"d", {-1, false}},
+        {"down", {-1, false}},
+        {"l", {-1, false}},
+        {"low", {-1, false}}}},
+      {Sides::toe, {{"t", {1, false}}, {"toe", {1, false}}, {"h", {-1, false}}, {"heel", {-1, false}}}}};
+  const std::string last = words.substr(std::min(words.size(), words.rfind(' ') + 1));
+  for (const auto& [of, all] : known) {
+    if (sides != Sides::any && sides != of) continue;
+    for (const std::string& text : {words, last})
+      if (const auto at = all.find(text); at != all.end()) return at->second;
+  }
+  return {};
 }
 
 /// `6401*`, `6806 (est.)`, `6806 est`: the mark is taken off.
@@ -129,14 +224,65 @@ bool take_mark(std::string& text) {
 
 }  // namespace
 
-std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
+HeaderSign sign_in(const std::string& header, Sides sides) {
+  HeaderSign out;
+  bool both = false;
+  for (std::string inside : brackets(header)) {
+    inside = lower(inside);
+    // `(Right/Left +/-)` says that there are signs, not which.
+    for (std::size_t at; (at = inside.find("+/-")) != inside.npos;) inside.erase(at, 3);
+    const auto as = [&](std::string_view word, char sign) {
+      for (std::size_t at; (at = inside.find(word)) != inside.npos;) inside.replace(at, word.size(), 1, sign);
+    };
+    as(" positive", '+'), as("=positive", '+'), as(" negative", '-'), as("=negative", '-');
+    for (const std::string_view equal : {" = ", "= ", " =", "="}) {
+      for (std::size_t at; (at = inside.find(equal)) != inside.npos;) inside.erase(at, equal.size());
+    }
+    std::string word;  // that has no sign yet
+    char ahead = 0;    // a sign whose word comes
+    const auto say = [&](const std::string& text, char sign) {
+      const auto side = side_of(plain(text), sides);
+      out.strange = out.strange || !side;
+      if (!side) return;
+      const double grows = (sign == '+') == (side->sign > 0) ? 1 : -1;
+      both = both || (out.sign != 0 && out.sign != grows);
+      out.sign = grows;
+      out.own = out.own || side->own;
+    };
+    const auto is_sign = [](char c) { return c == '+' || c == '-'; };
+    for (std::string next : words_of(inside, " /,;&")) {
+      if (next.size() == 1 && is_sign(next.front())) {
+        if (word.empty()) ahead = next.front();
+        else say(std::exchange(word, ""), next.front());
+        continue;
+      }
+      const bool behind = is_sign(next.back()), before = is_sign(next.front());
+      if (behind != before) {
+        const char sign = behind ? next.back() : next.front();
+        next.erase(behind ? next.size() - 1 : 0, 1);
+        say(behind && !word.empty() ? word + " " + next : next, sign);
+        word.clear();
+      } else if (ahead != 0) {
+        say(next, std::exchange(ahead, char(0)));
+      } else {
+        word += (word.empty() ? "" : " ") + next;
+      }
+    }
+  }
+  if (both) return {.strange = true};
+  if (out.sign != 0) out.strange = false;
+  return out;
+}
+
+std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides) {
   Cell out;
   double sign = 1;
+  const bool side = sides != Sides::none;
   out.marked = take_mark(text);
   // `R1.1`, `L 0,6`: the side stands in front.
   if (side && !text.empty() && std::isalpha(static_cast<unsigned char>(text.front()))) {
     const auto gap = text.find_first_of("0123456789.,+-\xE2");
-    const auto before = gap == std::string::npos ? std::nullopt : side_of(plain(text.substr(0, gap)));
+    const auto before = gap == std::string::npos ? std::nullopt : side_of(plain(text.substr(0, gap)), sides);
     if (!before) return {};
     sign = before->sign;
     out.own = before->own;
@@ -156,7 +302,7 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, bool side) {
   std::erase_if(digits, [&](char c) { return c == ' ' || c == '\'' || c == (comma_is_decimal ? '.' : ','); });
   std::ranges::replace(digits, ',', '.');
   if (!tail.empty()) {
-    if (const auto behind = side ? side_of(plain(tail)) : std::nullopt) {
+    if (const auto behind = side ? side_of(plain(tail), sides) : std::nullopt) {
       if (out.sided) return {};
       sign = behind->sign;
       out.own = behind->own;

@@ -53,7 +53,10 @@ void Dictionary::read(const fs::path& file) {
     q.metric = unit.text("metric");
     const auto range = t.numbers("plausible", 2);
     q.low = range[0], q.high = range[1];
-    q.side = t.flag("side", false);
+    if (t.flag("side", false))
+      q.sides = q.name == "impact_toe"                                                            ? Sides::toe
+                : q.name == "impact_high" || q.name == "launch_angle" || q.name == "attack_angle" ? Sides::height
+                                                                                                  : Sides::across;
     q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
     for (const std::string& h : t.texts("headers"))
       q.headers.push_back({plain(h), h.find('[') == h.npos ? "" : unit_in(h)});

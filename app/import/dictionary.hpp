@@ -7,13 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "app/import/cells.hpp"
+
 namespace hosel::app {
 
 struct MonitorQuantity {
   std::string name, imperial, metric;
-  double low = 0, high = 0;  ///< of a column's median [SI]
-  bool side = false;         ///< cells may end in L or R, toe or heel
-  bool zero = true;          ///< 0 may be measured, else it stands for no reading
+  double low = 0, high = 0;   ///< of a column's median [SI]
+  Sides sides = Sides::none;  ///< words that cells and headers may have
+  bool zero = true;           ///< 0 may be measured, else it stands for no reading
   struct Header {
     std::string words, unit;  ///< unit: that a header must have to be meant; empty: any
   };

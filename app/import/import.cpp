@@ -114,13 +114,13 @@ Session join(std::vector<Session>& sessions, const Dictionary& d) {
       const auto to = split_unit(all.name).unit, from = split_unit(u.name).unit;
       const bool other_unit = !u.name.empty() && to && from && to->suffix != from->suffix;
       for (const std::string& cell : u.cells) {
-        const auto x = other_unit ? number(cell, false, false) : std::nullopt;
+        const auto x = other_unit ? number(cell, false, Sides::none) : std::nullopt;
         all.cells.push_back(x ? fmt::format("{:.6g}", x->value * from->si / to->si) : cell);
       }
     }
     if (!s.carry.cells.empty() && out.carry.name.empty()) out.carry = {.name = s.carry.name, .cells = Row(out.shots)};
     for (const std::string& cell : s.carry.cells) {
-      const auto x = number(cell, false, false);
+      const auto x = number(cell, false, Sides::none);
       out.carry.cells.push_back(x ? fmt::format("{:.6g}", x->value * si_of(s.carry.name) / si_of(out.carry.name)) : "");
     }
     out.shots += s.shots;
@@ -158,7 +158,7 @@ void show_clubs(Session& all) {
     if (!u) return;
     Shown column{title, unit, {}, digits};
     for (const std::string& cell : u->cells) {
-      const auto x = number(cell, false, false);
+      const auto x = number(cell, false, Sides::none);
       column.value.push_back(x ? x->value : std::nan(""));
     }
     shown.push_back(std::move(column));

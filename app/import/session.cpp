@@ -81,13 +81,6 @@ bool no_reading(double value) {
   return a == 99999 || a == 999999 || a == 99999.9 || value == -9999 || value == -999;
 }
 
-std::optional<Dimension> dimension_of(const std::string& unit) {
-  if (unit == "cm" || unit == "in" || unit == "ft") return Dimension::length;
-  for (const Unit& u : units())
-    if (u.suffix == unit) return u.dimension;
-  return {};
-}
-
 /// Empties the cells of the rows where `which`; how many had something.
 std::size_t blank(Understood& u, const std::vector<bool>& which) {
   const std::size_t before = u.filled;
@@ -107,8 +100,8 @@ bool is_face_to_path(const Understood& u, const Understood* face, const Understo
   if (!face || !path || !face->filled || !path->filled) return false;
   std::size_t same = 0, seen = 0;
   for (std::size_t i = 0; i < u.cells.size(); ++i) {
-    const auto a = number(u.cells[i], false, false), f = number(face->cells[i], false, false),
-               p = number(path->cells[i], false, false);
+    const auto a = number(u.cells[i], false, Sides::none), f = number(face->cells[i], false, Sides::none),
+               p = number(path->cells[i], false, Sides::none);
     if (!a || !f || !p) continue;
     ++seen;
     same += std::abs(a->value - (f->value - p->value)) < 0.15;
@@ -186,7 +179,7 @@ class Reading {
         sheet.names, [&](const std::string& n) { return d_.quantity_of(n) == d_.quantity_of(sheet.names[c]); });
     const bool unit = !unit_in(sheet.names[c]).empty() || (c < sheet.units.size() && !unit_of(sheet.units[c]).empty());
     return std::ranges::all_of(sheet.rows, [&](const Row& row) {
-      return missing(row[c]) || (number(row[c], false, false) && (unit || (role == "ball" && same == 1)));
+      return missing(row[c]) || (number(row[c], false, Sides::none) && (unit || (role == "ball" && same == 1)));
     });
   }
 
@@ -248,9 +241,10 @@ class Reading {
         continue;
       }
       if (unit.empty()) unit = unit_of_column(*q, c);
-      const HeaderSign said = sign_in(header);
+      const HeaderSign said = sign_in(header, q->sides);
       const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(header));
       out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
+      if (said.strange && !turned) out_.columns.back().remark("signs in the header not understood: taken as ours");
       const std::string whole = lower(header);
       if (!o_.modelled && !hand &&
           (whole.find("estimated") != whole.npos || whole.find("calculated") != whole.npos ||
@@ -259,10 +253,15 @@ class Reading {
     }
   }
 
-  /// From the header or the row of units, of a column of distances; empty where neither says.
+  /// From the header, the row of units or the first cell, of a column of distances; empty where none of them says.
   std::string stated_length(std::size_t c) const {
     std::string unit = unit_in(out_.sheet.names[c]);
     if (unit.empty() && c < out_.sheet.units.size()) unit = unit_of(out_.sheet.units[c]);
+    for (const Row& row : out_.sheet.rows) {
+      if (!unit.empty() || missing(row[c])) continue;
+      if (const auto cell = number(row[c], false, Sides::none)) unit = cell->unit;
+      break;
+    }
     return dimension_of(unit) == Dimension::length ? unit : "";
   }
 
@@ -271,13 +270,20 @@ class Reading {
     const Sheet& sheet = out_.sheet;
     std::string unit = unit_in(sheet.names[c]);
     if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+    const std::string& header = sheet.names[c];
+    const std::string strange = unit.empty() && c < sheet.units.size() ? strange_unit(sheet.units[c]) : "",
+                      inside = strange_unit(header.substr(std::min(header.find_first_of("(["), header.size())));
+    if (!strange.empty() || !inside.empty())
+      throw InputError(fmt::format("{}: column '{}': the unit '{}' is not known; --column '{}={}_{}' states one",
+                                   out_.file.string(), header, strange.empty() ? inside : strange, header, q.name,
+                                   q.metric));
     if (unit.empty() && family_ == "si" && q.metric == "mm") unit = "m";
     if (unit.empty() && q.imperial == q.metric) unit = q.imperial;  // degrees, rpm, mm: no monitor uses others
     if (!unit.empty()) return unit;
     // One cell alone does not speak for the others.
     for (const Row& row : sheet.rows) {
       if (missing(row[c])) continue;
-      const auto cell = number(row[c], false, q.side);
+      const auto cell = number(row[c], false, q.sides);
       if (!cell || cell->unit.empty()) return "";
       if (unit.empty()) unit = cell->unit;
     }
@@ -308,6 +314,9 @@ class Reading {
       throw InputError(
           fmt::format("{}: column '{}' has no unit; say --units imperial, --units metric or --column '{}={}_{}'",
                       out_.file.string(), header, header, q.name, q.imperial));
+    if (dimension_of(unit) != dimension_of(q.metric))
+      throw InputError(fmt::format("{}: column '{}': {} is no unit of {}; --column '{}={}_{}' states one",
+                                   out_.file.string(), header, unit, q.name, header, q.name, q.metric));
     return unit;
   }
 
@@ -322,7 +331,7 @@ class Reading {
       for (const Row& row : sheet.rows) cells.push_back(missing(row[c]) ? "" : row[c]);
       const bool comma = decimal_comma(cells, sheet, sheet.names[c], out_.file);
       for (std::size_t i = 0; i < cells.size(); ++i)
-        if (const auto x = number(cells[i], comma, true)) out[i] = x->value;
+        if (const auto x = number(cells[i], comma, role.empty() ? q->sides : Sides::none)) out[i] = x->value;
       return out;
     }
     return out;
@@ -395,8 +404,8 @@ class Reading {
     const bool comma = decimal_comma(raw, sheet, out.header, out_.file);
     std::vector<double> values;
     const std::string given = unit;
-    const bool lengths = dimension_of(unit) == Dimension::length;
-    if (lengths) unit = "mm";
+    if (dimension_of(unit) == Dimension::length) unit = "mm";
+    else if (!split_unit("x_" + unit).unit) unit = q.metric;
     std::size_t others = 0, empty = 0, zeros = 0, marked = 0;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       out.own.push_back(own);
@@ -404,7 +413,7 @@ class Reading {
         out.cells.emplace_back();
         continue;
       }
-      const auto cell = number(raw[i], comma, q.side);
+      const auto cell = number(raw[i], comma, q.sides);
       if (!cell)
         throw fail(
             fmt::format(", shot {}: '{}' is not a number: correct or empty the cell; --column '{}=' leaves the "
@@ -430,7 +439,7 @@ class Reading {
       values.push_back(si);
       ++out.filled;
     }
-    if (lengths && given != "mm") out.remark(fmt::format("{} made mm", given));
+    if (given != unit) out.remark(fmt::format("{} made {}", given, unit));
     if (by_carry_ && (q.name == "ball_speed" || q.name == "club_speed") && stated_unit(q, column).empty())
       out.remark("no unit in the file: this one by its carry");
     if (comma) out.remark("decimal comma");
@@ -478,8 +487,11 @@ class Reading {
         out_.carry = {.header = header, .name = unit};
         const bool comma = decimal_comma(u.cells, sheet, header, out_.file);
         for (const std::string& cell : u.cells) {
-          const auto x = number(cell, comma, false);
-          out_.carry.cells.push_back(x && x->unit.empty() && x->value > 0 ? x->digits : "");
+          const auto x = number(cell, comma, Sides::none);
+          const bool other = x && !x->unit.empty() && x->unit != unit, far = x && x->value > 0;
+          if (!far || (other && dimension_of(x->unit) != Dimension::length)) out_.carry.cells.emplace_back();
+          else if (other) out_.carry.cells.push_back(fmt::format("{:.6g}", x->value * si_of(x->unit) / si_of(unit)));
+          else out_.carry.cells.push_back(x->digits);
         }
       }
     }
@@ -492,6 +504,13 @@ class Reading {
       u.name = name;
       for (int k = 2; std::ranges::count(out_.columns, u.name, &Understood::name); ++k)
         u.name = fmt::format("{}_{}", name, k);
+      // Numbers with a decimal comma are numbers for who reads the shots, too.
+      std::vector<std::string> digits;
+      for (const std::string& cell : u.cells)
+        if (const auto x = number(cell, true, Sides::none); cell.empty()) digits.emplace_back();
+        else if (x && x->unit.empty()) digits.push_back(x->digits);
+      if (u.filled > 0 && digits.size() == u.cells.size() && decimal_comma(u.cells, sheet, header, out_.file))
+        u.cells = std::move(digits), u.remark("decimal comma");
     }
     out_.columns.push_back(std::move(u));
   }
@@ -600,7 +619,7 @@ class Reading {
         if (!u || !u->filled) continue;
         std::vector<bool> zero, silent_zero;
         for (std::size_t i = 0; i < out_.shots; ++i) {
-          const auto x = number(u->cells[i], false, false);
+          const auto x = number(u->cells[i], false, Sides::none);
           zero.push_back(x && x->value == 0);
           silent_zero.push_back(zero.back() && measured && measured->cells[i].empty());
         }
@@ -629,7 +648,7 @@ class Reading {
         face.name = "face_angle_deg";
         const double a = split_unit(across->name).unit->si, p = split_unit(path->name).unit->si;
         for (std::size_t i = 0; i < out_.shots; ++i) {
-          const auto x = number(across->cells[i], false, false), y = number(path->cells[i], false, false);
+          const auto x = number(across->cells[i], false, Sides::none), y = number(path->cells[i], false, Sides::none);
           face.cells.push_back(x && y ? fmt::format("{:.6g}", (a * x->value + p * y->value) / si_of("deg")) : "");
         }
         count_again(face);
@@ -681,13 +700,13 @@ class Reading {
       const Understood* u = find(stem);
       std::vector<double> out(out_.shots, NAN);
       for (std::size_t i = 0; u && i < out_.shots; ++i)
-        if (const auto x = number(u->cells[i], false, false)) out[i] = x->value * split_unit(u->name).unit->si;
+        if (const auto x = number(u->cells[i], false, Sides::none)) out[i] = x->value * split_unit(u->name).unit->si;
       return out;
     };
     if (out_.carry.cells.empty()) return;
     std::vector<double> carry(out_.shots, NAN);
     for (std::size_t i = 0; i < out_.shots; ++i)
-      if (const auto x = number(out_.carry.cells[i], false, false)) carry[i] = x->value;
+      if (const auto x = number(out_.carry.cells[i], false, Sides::none)) carry[i] = x->value;
     const auto ratio = carry_ratio(values("ball_speed"), 1, values("launch_angle"), 1, values("spin_rate"), 1, carry,
                                    si_of(out_.carry.name));
     if (ratio && !(*ratio > 1 / kCarryFits && *ratio < kCarryFits))
@@ -799,7 +818,7 @@ Understood* Session::find(std::string_view stem) {
 void count_again(Understood& u) {
   std::vector<double> values;
   for (const std::string& cell : u.cells)
-    if (const auto x = number(cell, false, false)) values.push_back(x->value * split_unit(u.name).unit->si);
+    if (const auto x = number(cell, false, Sides::none)) values.push_back(x->value * split_unit(u.name).unit->si);
   u.filled = values.size();
   u.median = loop::median(values);
 }

@@ -103,7 +103,11 @@ std::string known_name(const Dictionary& d, std::string path) {
 }
 
 void flatten(const nlohmann::json& node, const std::string& path, std::map<std::string, std::string>& out) {
-  if (node.is_object()) {
+  if (node.is_object() && node.contains("value") && node.contains("unit") && node["unit"].is_string() &&
+      (node["value"].is_number() || node["value"].is_string())) {  // {"value": 111.2, "unit": "mph"}
+    const std::string value = node["value"].is_string() ? node["value"].get<std::string>() : node["value"].dump();
+    out[path] = value + " " + node["unit"].get<std::string>();
+  } else if (node.is_object()) {
     for (const auto& [key, value] : node.items()) flatten(value, path.empty() ? key : path + " " + key, out);
   } else if (node.is_string()) {
     out[path] = node.get<std::string>();
@@ -149,7 +153,7 @@ void find_lists(const Dictionary& d, const nlohmann::json& node, const std::stri
     if (value.is_primitive() && !value.is_null()) {
       const std::string role = d.bookkeeping_of(known_name(d, key));
       const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-      if (!role.empty() && role != "shot" && role != "carry" && !number(text, false, false)) said[key] = text;
+      if (!role.empty() && role != "shot" && role != "carry" && !number(text, false, Sides::none)) said[key] = text;
     }
   for (const auto& [key, value] : node.items())
     if (value.is_structured()) find_lists(d, value, path + "/" + key, said, out);
@@ -202,10 +206,10 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
     flatten(shots[k], "", said);
     for (const auto& [key, value] : said) every.insert(key);
     const auto quantity = [&](const auto& entry) {
-      return d.quantity_of(known_name(d, entry.first)) && number(entry.second, false, true);
+      return d.quantity_of(known_name(d, entry.first)) && number(entry.second, false, Sides::any);
     };
     const auto zero = [](const auto& entry) {
-      const auto x = number(entry.second, false, true);
+      const auto x = number(entry.second, false, Sides::any);
       return x && x->value == 0;
     };
     const auto reading = [&](const auto& entry) { return quantity(entry) && !zero(entry); };
@@ -261,7 +265,7 @@ bool is_row_of_units(const Row& row) {
   for (const std::string& c : row) {
     const bool bracketed = (c.starts_with('[') && c.ends_with(']')) || (c.starts_with('(') && c.ends_with(')'));
     if (!unit_of(c).empty()) ++units;
-    else if (number(c, false, false)) return false;
+    else if (number(c, false, Sides::none)) return false;
     else other += !bracketed && !missing(c);
   }
   return units > 0 && (other == 0 || (units >= 3 && units > 2 * other));
@@ -283,7 +287,7 @@ bool counts(const std::vector<Row>& rows, std::size_t column) {
   std::size_t steps = 0, numbers = 0;
   double last = 0;
   for (const Row& row : rows) {
-    const auto x = number(row[column], false, false);
+    const auto x = number(row[column], false, Sides::none);
     if (!x) continue;
     ++numbers;
     steps += x->value == last + 1 || x->value == 1;
@@ -345,7 +349,7 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
     const std::string role = d.bookkeeping_of(sheet.names[c]);
     if (!(role == "shot" || (c == 0 && role.empty() && !d.quantity_of(sheet.names[c]))) || !counts(shots, c)) continue;
     for (std::size_t r = shots.size(); r-- > 0;)
-      if (!missing(shots[r][c]) && !number(shots[r][c], false, false)) {
+      if (!missing(shots[r][c]) && !number(shots[r][c], false, Sides::none)) {
         shots.erase(shots.begin() + long(r));
         clubs.erase(clubs.begin() + long(r));
         ++sheet.summaries;

@@ -67,14 +67,18 @@ class CalibrateBallJob final : public Job {
       summary["parameters"].push_back({{"name", fit.names[p]},
                                        {"start", fit.start[p]},
                                        {"value", fit.values[p]},
-                                       {additive(p) ? "sigma" : "relative_sigma", sd}});
-      out.say(fmt::format("{:<{}} {:12.5g}  +- {:.{}g}{}", fit.names[p], std::max<std::size_t>(32, width),
-                          fit.values[p], additive(p) ? sd : 100 * sd, additive(p) ? 2 : 3, unit));
+                                       {additive(p) ? "sigma" : "relative_sigma", sd},
+                                       {"at_bound", bool(fit.at_bound[p])}});
+      out.say(fmt::format("{:<{}} {:12.5g}  +- {:.{}g}{}{}", fit.names[p], std::max<std::size_t>(32, width),
+                          fit.values[p], additive(p) ? sd : 100 * sd, additive(p) ? 2 : 3, unit,
+                          fit.at_bound[p] ? "  at its bound" : ""));
       // A name ends with its unit: moduli are read in MPa.
       const std::string name = fit.names[p].substr(0, fit.names[p].find(" ["));
       const bool modulus = fit.names[p].ends_with("[Pa]");
       out.page().answer(name, fmt::format("{:.4g}{}", (modulus ? 1e-6 : 1) * fit.values[p], modulus ? " MPa" : ""),
-                        additive(p) ? fmt::format("± {:.2g}", sd) : fmt::format("± {:.1f} %", 100 * sd));
+                        fit.at_bound[p] ? "at its bound"
+                        : additive(p)   ? fmt::format("± {:.2g}", sd)
+                                        : fmt::format("± {:.1f} %", 100 * sd));
     }
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
       std::vector<double> row;
@@ -268,12 +272,13 @@ class CalibrateBallJob final : public Job {
         p.shots.push_back(std::size_t(it - problem_.shots.begin()));
       }
     // The prior, in the parameter's own unit: an offset, or the logarithm of a factor.
-    const double inf = INFINITY;
+    const double inf = INFINITY, end = 0.01 * models::FreeParameter::kReach;
+    const Range reach = Range{-end, end}.because("the search goes no further");
     if (p.what == What::impact_high) {
-      p.prior = 100 * t.quantity({"offset", "expected, up the face"}, "mm", limits::impact_place, 0);
+      p.prior = 100 * t.quantity({"offset", "expected, up the face"}, "mm", reach, 0);
       p.sd = 100 * t.quantity({"sd", "of that expectation; inf: nothing is expected"}, "mm", {1e-6, inf}, inf);
     } else if (p.what == What::head_mass) {
-      p.prior = 100 * t.quantity({"offset", "expected"}, "kg", {-0.1, 0.1}, 0);
+      p.prior = 100 * t.quantity({"offset", "expected"}, "kg", reach, 0);
       p.sd = 100 * t.quantity({"sd", "of that expectation; inf: nothing is expected"}, "kg", {1e-6, inf}, inf);
     } else {
       p.prior = std::log(t.number({"factor", "expected"}, {0.05, 20}, 1.0));

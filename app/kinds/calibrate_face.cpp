@@ -69,10 +69,12 @@ class CalibrateFaceJob final : public Job {
       const SplitName split = split_unit(name);
       const std::string symbol = post::symbol(split.unit->suffix);
       out.page().answer(post::spoken(split.stem), fmt::format("{:.4g} {}", unit * value, symbol),
-                        fmt::format("± {:.2g}", unit * fit.sd[i]));
-      out.say(fmt::format("{:<20} {:12.5g} +- {:.2g}", name, unit * value, unit * fit.sd[i]));
+                        fit.at_bound[i] ? "at its bound" : fmt::format("± {:.2g}", unit * fit.sd[i]));
+      out.say(fmt::format("{:<20} {:12.5g} +- {:.2g}{}", name, unit * value, unit * fit.sd[i],
+                          fit.at_bound[i] ? "  at its bound" : ""));
       toml += fmt::format("{} = {:.5g}\n", name, unit * value);
-      summary["parameters"].push_back({{"name", name}, {"value", unit * value}, {"sd", unit * fit.sd[i]}});
+      summary["parameters"].push_back(
+          {{"name", name}, {"value", unit * value}, {"sd", unit * fit.sd[i]}, {"at_bound", bool(fit.at_bound[i])}});
     }
     out.say(fmt::format("half the sum of squares: {:.3g} over {} data", fit.cost, target_.taps.size() + 2));
     out.draw(figure(f), "times");

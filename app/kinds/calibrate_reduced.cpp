@@ -79,6 +79,9 @@ class CalibrateReducedJob final : public Job {
                                               {"azimuth_rms_deg", degrees(b.azimuth_rms)},
                                               {"spin_rms_rpm", spin_rms}};
       }
+      for (const std::string& parameter : fit.at_bound)
+        out.say(fmt::format("{}: {} is at an end of what the search allows", set.name, parameter));
+      summary["at_bound"][set.name] = fit.at_bound;
       toml += entry(set, fit);
     }
     progress.finish();

@@ -10,6 +10,7 @@
 #include "app/read_blow.hpp"
 #include "app/read_paths.hpp"
 #include "post/table.hpp"
+#include "solvers/errors.hpp"
 #include "solvers/robust_regression.hpp"
 
 namespace hosel::app {
@@ -182,17 +183,21 @@ class FlightLawJob final : public Job {
   }
 
   /// What drives with such launches did, without physics: a quadratic in speed, angle and logarithm of the spin, and
-  /// the site's density, fitted robustly to the drives to learn from. No law predicts much better from the launch
-  /// alone.
+  /// the site's density where sites differ, fitted robustly to the drives to learn from. No law predicts much better
+  /// from the launch alone. Throws NonConvergence where they are too few or too alike.
   Misses regressed() const {
     const auto training = data_.flights_of(false), held = data_.flights_of(true);
-    const auto features = [](const RadarFlight& f) {
+    const auto [least, most] =
+        std::ranges::minmax(training, {}, [](const RadarFlight* f) { return f->path.air.density; });
+    const Eigen::Index columns = most->path.air.density - least->path.air.density > 1e-3 ? 11 : 10;
+    const auto features = [columns](const RadarFlight& f) -> Eigen::RowVectorXd {
       const Launch& l = f.path.launch;
       const double v = (l.ball_speed() - 75) / 5, a = (l.launch_angle() - 0.2) / 0.05,
                    s = std::log(l.spin_rate() / 280);
-      return Eigen::RowVectorXd{{1, v, a, s, v * v, a * a, s * s, v * a, v * s, a * s, f.path.air.density - 1.17}};
+      return Eigen::RowVectorXd{{1, v, a, s, v * v, a * a, s * s, v * a, v * s, a * s, f.path.air.density - 1.17}}.head(
+          columns);
     };
-    Eigen::MatrixXd X(training.size(), 11);
+    Eigen::MatrixXd X(training.size(), columns);
     for (std::size_t i = 0; i < training.size(); ++i) X.row(Eigen::Index(i)) = features(*training[i]);
     const auto of = [&](double RadarFlight::*seen) {
       Eigen::VectorXd y(training.size());
@@ -221,6 +226,8 @@ class FlightLawJob final : public Job {
     sound_.clear();
     for (const double w : best.weight) sound_.push_back(w > 0.5);
     const auto lost = std::ranges::count(sound_, false);
+    if (std::size_t(lost) == held.size())
+      throw InputError("[paths]: no ball and wind of its own explain the path of any shot that is left out");
     out.say(
         fmt::format("\nplayers left out, computed minus radar at the height of the launch; {} of {} shots, whose "
                     "path no ball and wind of their own explain, are not counted",
@@ -239,7 +246,11 @@ class FlightLawJob final : public Job {
     std::vector<FlightLaw> laws = others_;
     laws.push_back(found.law);
     for (const FlightLaw& law : laws) row("calm air, " + law.name, "calm", law.name, misses(none, calm, law));
-    row("regression on the others' drives", "regression", "none", regressed());
+    try {
+      row("regression on the others' drives", "regression", "none", regressed());
+    } catch (const solvers::NonConvergence& e) {
+      out.say(fmt::format("no regression on the others' drives beside the laws: {}", e.what()));
+    }
     for (const FlightLaw& law : laws) {
       const bool own = law.name == found.law.name;
       const auto winds = own ? found.winds : models::fit_paths(training, groups, data_.model, law).winds;

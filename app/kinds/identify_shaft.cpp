@@ -32,6 +32,10 @@ class IdentifyJob final : public Job {
       markers_ = read_markers(*markers);
       train_ = markers->quantities({"train", "first and last instant that is fitted"}, "s", 2);
       test_ = markers->quantities({"test", "first and last instant that is predicted"}, "s", 2);
+      for (const auto& [key, span] : {std::pair{"train", &train_}, {"test", &test_}})
+        if (!((*span)[0] < (*span)[1])) markers->fail(key, "the first instant comes before the last");
+      // Of what comes after `test` nothing is smoothed: an impact would reach back.
+      if (train_[1] > test_[0]) markers->fail("test", "what is predicted comes after what is fitted");
       marker_kind_ = true;
       return;
     }

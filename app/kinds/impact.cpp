@@ -72,7 +72,7 @@ class ImpactJob final : public Job {
     if (!missing_.empty()) return out.skip(missing_);
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !own_.yields() && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
-    if (const std::string sentence = off_the_face(); !sentence.empty()) out.warn(sentence);
+    if (const std::string sentence = off_the_face(own_.blow); !sentence.empty()) out.warn(sentence);
     if (own_.flight) own_.flight->show_in(out);
     for (Side& side : compared_)
       if (side.flight) side.flight->show_in(out);
@@ -276,23 +276,6 @@ class ImpactJob final : public Job {
   }
 
   /// What a driver-like head loses by a rigid face, along the normal.
-  /// Empty where the ball is struck on the face: within the ellipse on which a compliant face deflects, or within what
-  /// the widest heads of the rules of golf have (127 mm heel to toe, 71 mm high).
-  std::string off_the_face() const {
-    const double toe = own_.blow.delivery.impact_toe, high = own_.blow.delivery.impact_high;
-    const std::optional<FaceCompliance>& face = own_.blow.club.head.compliance;
-    const bool bounded = face && std::isfinite(face->half_width) && std::isfinite(face->half_height);
-    const double width = bounded ? face->half_width : 0.0635, height = bounded ? face->half_height : 0.0355;
-    const bool on = bounded ? std::hypot(toe / width, high / height) < 1
-                            : std::abs(toe) <= width && std::abs(high) <= height;
-    if (on) return {};
-    return fmt::format(
-        "the ball is struck off the face: {:g} mm towards the toe and {:g} mm up, where {} reaches {:g} mm "
-        "to either side and {:g} mm up and down",
-        1e3 * toe, 1e3 * high, bounded ? "the ellipse on which this face deflects" : "no face by the rules",
-        1e3 * width, 1e3 * height);
-  }
-
   std::string rigid_face_costs() const {
     const models::Striker ball = models::golf_ball(own_.blow.ball);
     const double mass =

@@ -30,7 +30,9 @@ void read_loop_case(Table root, loop::Case& into, bool (*acts)(const loop::Effec
   into.title = root.text({"title", "of tables, pages and figures"}, "");
   Table model = root.table("model");
   into.base = model.text({"base", "the model whose missing effect is sought"});
-  into.effects = model.texts({"effects", "candidates (`hosel list`); empty: all"}, std::vector<std::string>{});
+  into.effects =
+      model.texts({"effects", "that the base has before any is sought (`hosel list`), with sizes from the data"},
+                  std::vector<std::string>{});
   std::vector<std::string> known;
   for (const auto& e : loop::effects())
     if (acts(e)) known.emplace_back(e.name);

@@ -14,6 +14,7 @@
 #include "app/check_memory.hpp"
 #include "app/library.hpp"
 #include "app/of_file.hpp"
+#include "app/read_blow.hpp"
 #include "app/stored_launch.hpp"
 #include "app/study/answer.hpp"
 #include "app/study/compare.hpp"
@@ -148,6 +149,9 @@ class StudyJob final : public PointJob {
   void report(Output& out, const std::vector<json>& points) const override {
     if (!populations_.missing.empty()) return out.skip(populations_.missing);
     if (!motion_.empty()) return out.skip(motion_);
+    if (off_face_ > 0)
+      out.warn(fmt::format("{} of {} points are struck off the face, the first {}", off_face_, table_.design.size(),
+                           first_off_face_));
     for (const std::string& row : left_out_) out.lack("left out, since its recording is not there: " + row);
     for (const json& p : points)
       if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
@@ -335,7 +339,14 @@ class StudyJob final : public PointJob {
     solves_ = read_solves(root, varies ? table_.design.levels(0) : std::vector<std::string>{}, flies_);
     if (!solves_.empty() && (conditions_.matched_launch || conditions_.bounce_speed))
       root.fail("solve", "one unknown after another: without matched_launch and keep_bounce");
-    for (const StudySolve& s : solves_) table_.outputs.push_back(s.name);
+    for (const StudySolve& s : solves_) {
+      if (std::ranges::find(table_.outputs, s.name) != table_.outputs.end())
+        root.fail("solve", fmt::format("'{}' is an output too: give what is found another name", s.name));
+      table_.outputs.push_back(s.name);
+    }
+    for (const std::string& column : table_.design.columns())
+      if (std::ranges::find(table_.outputs, column) != table_.outputs.end())
+        root.fail("outputs", fmt::format("'{}' is a column of the design too", column));
   }
 
   /// A key that the design, `set` or the command line, and a [[solve]] give would have the value of one of them.
@@ -406,6 +417,9 @@ class StudyJob final : public PointJob {
                 fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
     if (asked.swung && !asked.swung->motion.present) motion_ = asked.swung->motion.file;
     if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
+    if (!asked.models.front().empty() && std::isfinite(asked.blow.club.head.mass))
+      if (const std::string sentence = off_the_face(asked.blow); !sentence.empty() && off_face_++ == 0)
+        first_off_face_ = table_.design.said(d) + (table_.design.said(d).empty() ? "" : ": ") + sentence;
     table_.asked.insert(table_.asked.end(), asked.models.begin(), asked.models.end());
     leave_study_keys(one.root());
     one.finish();
@@ -618,7 +632,9 @@ class StudyJob final : public PointJob {
   mutable std::map<std::string, Swing> swings_;   ///< by what the design sets, place on the face apart
   mutable std::map<std::string, double> solved_;  ///< by the resolved case at the low end
   std::vector<std::string> left_out_;             ///< rows whose recorded swing is not there
-  fs::path motion_;                               ///< a swing that is not there and cannot be left out
+  std::size_t off_face_ = 0;                      ///< points struck off the face
+  std::string first_off_face_;
+  fs::path motion_;  ///< a swing that is not there and cannot be left out
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };

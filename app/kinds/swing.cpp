@@ -37,10 +37,11 @@ class SwingJob final : public Job {
     const models::GripMotion grip(motion_.track, motion_.smoothing);
     const fem::Motion motion = [&](double t) { return grip.at(t); };
     models::Swing swing(club_, options_, make_drive(grip_, motion_, motion));
-    // The swing starts bent by gravity as held hands would have it, whatever drives it then.
+    // The swing starts bent by gravity, in the hands' springs or as a grip that is held would have it.
     models::Swing held(club_, options_,
                        {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
-    const fem::State from = swing.start(motion_.begin, held.equilibrium(motion_.begin));
+    models::Swing& hanging = grip_.kind == models::GripDrive::Kind::hands ? swing : held;
+    const fem::State from = swing.start(motion_.begin, hanging.equilibrium(motion_.begin));
     std::vector<models::SwingSample> samples;
     post::SwingRecorder recorder(out.directory(), club_, swing, record_);
     {
@@ -76,8 +77,10 @@ class SwingJob final : public Job {
                              .x_label = "time [s]",
                              .y_label = "deflection [mm]",
                              .series = {lead, droop}});
-    figure.panels.push_back(
-        {.title = "head speed", .x_label = "time [s]", .y_label = "speed [m/s]", .series = {speed}});
+    figure.panels.push_back({.title = swing.head() ? "head speed" : "speed of the tip",
+                             .x_label = "time [s]",
+                             .y_label = "speed [m/s]",
+                             .series = {speed}});
     out.draw(figure, "swing");
 
     recorder.finish();
@@ -96,14 +99,19 @@ class SwingJob final : public Job {
       summary["rigid_club_speed_mps"] = (g.velocity + g.rotation * g.angular_velocity.cross(arm)).norm();
     }
     summary["peak"] = {{"lead_mm", 1e3 * peak_lead}, {"droop_mm", 1e3 * peak_droop}};
-    summary["delivery"] = {{"club_speed_mps", d.club_speed},
-                           {"attack_angle_deg", degrees(d.attack_angle)},
-                           {"club_path_deg", degrees(d.club_path)},
-                           {"dynamic_loft_deg", degrees(d.dynamic_loft)},
-                           {"face_angle_deg", degrees(d.face_angle)},
-                           {"dynamic_lie_deg", degrees(models::dynamic_lie(last.head))},
-                           {"head_angular_velocity_rad_per_s",
-                            {d.head_angular_velocity.x(), d.head_angular_velocity.y(), d.head_angular_velocity.z()}}};
+    nlohmann::json way{{"club_speed_mps", d.club_speed},
+                       {"attack_angle_deg", degrees(d.attack_angle)},
+                       {"club_path_deg", degrees(d.club_path)}};
+    if (swing.head()) {
+      way["dynamic_loft_deg"] = degrees(d.dynamic_loft);
+      way["face_angle_deg"] = degrees(d.face_angle);
+      way["dynamic_lie_deg"] = degrees(models::dynamic_lie(last.head));
+      way["head_angular_velocity_rad_per_s"] = {d.head_angular_velocity.x(), d.head_angular_velocity.y(),
+                                                d.head_angular_velocity.z()};
+      summary["delivery"] = way;
+    } else {
+      summary["tip"] = way;  // a shaft without a head has no face
+    }
     // IDA keeps no ledger.
     if (const solvers::Ledger& l = swing.ledger(); options_.integrator == models::SwingIntegrator::generalized_alpha)
       summary["energy_J"] = {{"kinetic", l.kinetic},     {"strain", l.strain_total()}, {"viscous", l.viscous},
@@ -112,7 +120,7 @@ class SwingJob final : public Job {
     summary["steps"] = swing.counts().steps;
     RunPage& page = out.page();
     const bool mph = out.page_units() == post::Units::golf;
-    page.answer("club speed",
+    page.answer(swing.head() ? "club speed" : "speed of the tip",
                 mph ? fmt::format("{:.1f} mph", d.club_speed / kMpsPerMph) : fmt::format("{:.2f} m/s", d.club_speed),
                 summary.contains("rigid_club_speed_mps") ? fmt::format("a club that does not bend: {:.2f} m/s",
                                                                        summary["rigid_club_speed_mps"].get<double>())
@@ -121,13 +129,16 @@ class SwingJob final : public Job {
     page.answer("droop", fmt::format("{:.1f} mm", 1e3 * last.droop), fmt::format("largest {:.1f}", 1e3 * peak_droop));
     page.answer("attack angle", fmt::format("{:.2f}°", degrees(d.attack_angle)));
     page.answer("club path", fmt::format("{:.2f}°", degrees(d.club_path)));
-    page.answer("dynamic loft", fmt::format("{:.2f}°", degrees(d.dynamic_loft)));
-    page.answer("face angle", fmt::format("{:.2f}°", degrees(d.face_angle)));
-    out.say(
-        fmt::format("at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; head {:.2f} m/s, attack {:.2f} deg, path {:.2f} "
-                    "deg, loft {:.2f} deg, face {:.2f} deg",
-                    last.time, 1e3 * last.lead, 1e3 * last.droop, d.club_speed, degrees(d.attack_angle),
-                    degrees(d.club_path), degrees(d.dynamic_loft), degrees(d.face_angle)));
+    if (swing.head()) {
+      page.answer("dynamic loft", fmt::format("{:.2f}°", degrees(d.dynamic_loft)));
+      page.answer("face angle", fmt::format("{:.2f}°", degrees(d.face_angle)));
+    }
+    out.say(fmt::format(
+        "at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; {} {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg{}", last.time,
+        1e3 * last.lead, 1e3 * last.droop, swing.head() ? "head" : "tip", d.club_speed, degrees(d.attack_angle),
+        degrees(d.club_path),
+        swing.head() ? fmt::format(", loft {:.2f} deg, face {:.2f} deg", degrees(d.dynamic_loft), degrees(d.face_angle))
+                     : ""));
     for (const auto& file : post::SwingRecorder::files(out.directory()))
       out.say(fmt::format("ParaView: {}", file.string()));
     out.write_summary(summary);

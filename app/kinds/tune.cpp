@@ -381,8 +381,7 @@ class TuneJob final : public Job {
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[std::size_t(i)];
       const double si = f.si(), value = fit.parameters[i] / si, sd = known.sd[i] / si;
-      const double margin = 1e-3 * (f.bounds.high - f.bounds.low);
-      const bool edge = fit.parameters[i] < f.bounds.low + margin || fit.parameters[i] > f.bounds.high - margin;
+      const bool edge = solvers::at_bounds(fit.parameters.segment(i, 1), {f.bounds}).front();
       found.add(f.column(), f.parameter->name, f.parameter->unit, start[i] / si, value, post::if_finite(sd),
                 post::if_finite(sd * std::max(1.0, scatter)), f.bounds.low / si, f.bounds.high / si,
                 edge ? "at its bound" : "");

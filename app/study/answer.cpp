@@ -20,6 +20,7 @@
 #include "models/registry.hpp"
 #include "models/rigid/hertz_maw.hpp"
 #include "models/rigid/stick_slip.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {
@@ -206,24 +207,32 @@ const std::array kBlowQuantities = {
 KeptBounce keep_bounce(models::FeImpactOptions& fe, const Ball& ball, double speed,
                        const models::NormalImpactPoint& own, const models::NormalImpactPoint& reference) {
   KeptBounce out{own.restitution, own.contact_time};
-  if (std::abs(own.restitution - reference.restitution) < 5e-4 &&
-      std::abs(own.contact_time / reference.contact_time - 1) < 2e-3)
-    return out;
+  constexpr double restitution_sd = 5e-4, time_sd = 2e-3;  // of the time relative
+  const auto near = [&](const models::NormalImpactPoint& p, double times) {
+    return std::abs(p.restitution - reference.restitution) < times * restitution_sd &&
+           std::abs(p.contact_time / reference.contact_time - 1) < times * time_sd;
+  };
+  if (near(own, 1)) return out;
   models::FeImpactOptions axial = fe;
   axial.harmonics = 0;
   axial.face.reset();
   const models::NormalImpactTarget target{.speeds = {speed},
                                           .restitution = reference.restitution,
                                           .restitution_slope = 0,
-                                          .restitution_sigma = 5e-4,
+                                          .restitution_sigma = restitution_sd,
                                           .contact_speed = speed,
                                           .contact_time = reference.contact_time,
-                                          .contact_time_sigma = 2e-3 * reference.contact_time};
+                                          .contact_time_sigma = time_sd * reference.contact_time};
   using What = models::FreeParameter::What;
   const models::BallCalibration fit = models::calibrate_ball(
       {.options = axial, .ball = ball, .wall = target, .free = {{What::long_term}, {What::branches}}});
   fe.ball = fit.ball;
   const models::NormalImpactPoint& then = fit.points.front();
+  if (!near(then, 3))
+    throw solvers::NonConvergence(fmt::format(
+        "keep_bounce: restitution {:.4f} and contact {:.4f} ms are wanted at {:g} m/s; {:.4f} and {:.4f} ms "
+        "are as near as the ball's moduli come",
+        reference.restitution, 1e3 * reference.contact_time, speed, then.restitution, 1e3 * then.contact_time));
   return {then.restitution, then.contact_time, fit.values[0] / fit.start[0], fit.values[1] / fit.start[1]};
 }
 

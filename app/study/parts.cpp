@@ -137,15 +137,17 @@ class PartsReport {
 
   std::string variant(std::size_t level) const { return table_.design.factors().front().levels[level].cells.front(); }
 
-  /// Every part over the face, and along the middle of the face with bars for the band.
+  /// Every part over the face, and along its middle row with bars for the band: the upper one of two.
   void maps(std::size_t model) const {
     const post::FaceGrid& grid = *table_.design.grid();
     post::Figure face{.title = fmt::format("part by part; {}", post::kFaceView),
                       .columns = int(parts_.all.size()),
                       .panel_width = 640,
                       .panel_height = 330};
+    const int middle = grid.rows / 2;
     post::Figure along{
-        .title = "along the middle of the face" +
+        .title = (grid.rows % 2 ? std::string("along the middle of the face")
+                                : fmt::format("along the face, {:.1f} mm above its middle", 1e3 * grid.high(middle))) +
                  (parts_.over ? "; bars: from the lowest to the highest over each " + columns_[*parts_.over] : ""),
         .columns = 2,
         .panel_width = 560,
@@ -160,7 +162,7 @@ class PartsReport {
         for (std::size_t p = 0; p < grid.size(); ++p) {
           const StudySeries::Spread s = difference(part, model, o, places_[p]).spread();
           mean.push_back(s.mean);
-          if (p / std::size_t(grid.columns) != std::size_t(grid.rows / 2)) continue;
+          if (p / std::size_t(grid.columns) != std::size_t(middle)) continue;
           line.x.push_back(1e3 * grid.toe_at(p));
           line.y.push_back((s.low + s.high) / 2);
           line.error.push_back((s.high - s.low) / 2);

@@ -678,14 +678,14 @@ StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eig
   Eigen::VectorXd weights(Eigen::Index(train_.size()));
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
-  Whitened view{.width = width(), .order = {}, .column = {}, .trusted = {}};
+  Whitened view{.width = width(), .order = {}, .column = {}, .channel = {}};
   for (const int i : train_) view.order.push_back(trials_[std::size_t(i)].order);
   view.column = [&](int c, const Eigen::VectorXd& value) {
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(value.size(), width());
     e.col(c) = value;
     return whiten(Part::select, e);
   };
-  view.trusted = [&](int c) { return channel(c).trusted(); };
+  view.channel = [&](int c) -> const Channel& { return channel(c); };
   return loop::structure(view, train_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
                          directions, rules.flips, rules.seed);
 }

@@ -25,7 +25,7 @@ class FlightProblem final : public Problem {
 
   int width() const override { return int(channels_.size()); }
   const Channel& channel(int c) const override { return channels_[std::size_t(c)]; }
-  void refute(int c) override { channels_[std::size_t(c)].refuted = true; }
+  void refute(int c, bool refuted) override { channels_[std::size_t(c)].refute(refuted); }
   std::vector<Row> rows() const override;
   const Eigen::MatrixXd& measured() const override { return measured_; }
   std::vector<Flag> flags() const override { return flags_; }

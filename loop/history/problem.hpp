@@ -28,7 +28,7 @@ class HistoryProblem final : public Problem {
 
   int width() const override { return int(setting_.channels.size()); }
   const HistoryChannel& channel(int c) const override { return setting_.channels[std::size_t(c)]; }
-  void refute(int c) override { setting_.channels[std::size_t(c)].refuted = true; }
+  void refute(int c, bool refuted) override { setting_.channels[std::size_t(c)].refute(refuted); }
   std::vector<Row> rows() const override;
   const Eigen::MatrixXd& measured() const override { return measured_; }
   std::vector<Flag> flags() const override { return flags_; }

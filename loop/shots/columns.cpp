@@ -302,7 +302,15 @@ Eigen::VectorXd Columns::noise_of(const Slip& slip) const {
   return noise;
 }
 
+/// Whether a column has enough to be told from another; zeros are zeros in any unit.
+bool Columns::tells(const Slip& slip) const {
+  const auto x = values_.col(slip.column).array();
+  const auto read = x.isFinite().count();
+  return (read >= kFewestOfRows || read == x.size()) && (slip.factor == 1 || (x.isFinite() && x != 0).any());
+}
+
 void Columns::attempt(Slip slip) {
+  if (!tells(slip)) return;
   slip.deviance = deviance(corrected(slip), noise_of(slip), {}, {});
   // The density of the written numbers.
   for (const int k : {slip.column, slip.second})

@@ -47,6 +47,7 @@ class Columns {
   Eigen::VectorXd noise_of(const Slip& slip) const;
   Eigen::MatrixXd corrected(const Slip& slip) const;
   double neighbour(Eigen::Index row, int column, int rows) const;
+  bool tells(const Slip& slip) const;
   void attempt(Slip slip);
   void try_constants();
   void try_sizes();

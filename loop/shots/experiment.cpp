@@ -226,6 +226,9 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
                 ? fmt::format(
                       "check the zero of {} against another instrument: it is off by the same amount everywhere",
                       l->channel.empty() ? "every channel" : l->channel)
+            : l->regressor == "shot"
+                ? fmt::format("repeat the first shots of the session at its end, in the same order: {}",
+                              l->channel.empty() ? l->detail : l->channel + " follows the order of the shots")
                 : fmt::format(
                       "change {} on purpose, keep everything else as it is, and repeat each setting: {}", l->regressor,
                       l->channel.empty() ? l->detail : l->channel + " follows it in a way that no candidate explains");

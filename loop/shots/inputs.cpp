@@ -104,6 +104,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
 
   // Robust centre and spread of every input.
   std::array<double, kInputs> centre{}, spread{}, sigma{};
+  std::array<bool, kInputs> nominal{};
   bool any = false;
   for (int k = 0; k < kInputs; ++k) {
     const Column* c = column[std::size_t(k)];
@@ -131,6 +132,15 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (std::size_t i = 0; i < n; ++i)
       if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) ++filled[std::size_t(k)];
     any = any || sigma[std::size_t(k)] > 0 || filled[std::size_t(k)] > 0;
+    // What was read with an error scatters at least by it: such a record says what was set, not what was.
+    const double variance = spread[std::size_t(k)] * spread[std::size_t(k)],
+                 error = sigma[std::size_t(k)] * sigma[std::size_t(k)];
+    nominal[std::size_t(k)] = variance < error * std::max(0.1, 1 - 3 * std::sqrt(2 / count));
+    if (nominal[std::size_t(k)])
+      in.notes.push_back(fmt::format(
+          "{}: the records differ by less than their declared error: each is taken as what was set, and what was as "
+          "uncertain by that error",
+          c->name));
   }
   for (int k = 0; k < kInputs; ++k)
     if (filled[std::size_t(k)])
@@ -147,7 +157,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   const auto outside = [&](std::size_t i, std::size_t k) {
     return std::abs(value(i, k) - centre[k]) > 5 * spread[k];  // no: missing
   };
-  const auto varies = [&](std::size_t k) { return column[k] && spread[k] > 0; };
+  const auto varies = [&](std::size_t k) { return column[k] && spread[k] > 0 && !nominal[k]; };
   for (std::size_t i = 0; i < n; ++i) {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(kInputs);
     bool inside = true;
@@ -163,14 +173,17 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   if (count > 3 * kInputs) total /= count - 1;
   else {
     total.setZero();
-    for (int k = 0; k < kInputs; ++k) total(k, k) = spread[std::size_t(k)] * spread[std::size_t(k)];
+    for (std::size_t k = 0; k < kInputs; ++k)
+      if (varies(k)) total(Eigen::Index(k), Eigen::Index(k)) = spread[k] * spread[k];
   }
   // Only inputs with noise, or missing, are set to their expectation; the others are known and inform it.
   const Eigen::MatrixXd noise_cov = Eigen::Map<const Eigen::VectorXd>(sigma.data(), kInputs).cwiseAbs2().asDiagonal();
   Eigen::VectorXd unit(kInputs);
   for (int k = 0; k < kInputs; ++k) unit[k] = spread[std::size_t(k)] > 0 ? spread[std::size_t(k)] : 1;
   const Eigen::MatrixXd scaled_total = unit.cwiseInverse().asDiagonal() * total * unit.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
+  for (std::size_t k = 0; k < kInputs; ++k)
+    if (nominal[k]) scaled_noise(Eigen::Index(k), Eigen::Index(k)) = 0;
   // True spread = total - noise, kept positive: where the noise is all there is, the record says nothing.
   const auto [values, vectors, converged] = dense::eigenpairs(scaled_total - scaled_noise);
   const Eigen::MatrixXd truth = vectors * values.cwiseMax(1e-9).asDiagonal() * vectors.transpose();
@@ -208,13 +221,14 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (std::size_t a = 0; a < kInputs; ++a) {
       if (!column[a] || !(missing(a) || sigma[a] > 0)) continue;
       const auto row = Eigen::Index(a);
-      if (beside && !missing(a)) {
+      if (nominal[a] && missing(a)) set(in.trials[i].blow, Input(int(a)), centre[a]);
+      if (nominal[a] || (beside && !missing(a))) {
         in.covariance[i](row, row) = noise_cov(row, row);
         continue;
       }
       set(in.trials[i].blow, Input(int(a)), centre[a] + unit[row] * best[row]);
       for (std::size_t b = 0; b < kInputs; ++b)
-        if (column[b] && (missing(b) || (sigma[b] > 0 && !beside)))
+        if (column[b] && !nominal[b] && (missing(b) || (sigma[b] > 0 && !beside)))
           in.covariance[i](row, Eigen::Index(b)) = left(row, Eigen::Index(b));
     }
   }

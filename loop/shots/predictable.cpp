@@ -19,10 +19,13 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kLeastRows = 40;
-constexpr std::ptrdiff_t kRowsPerNumber = 5;  // fewer rows are fitted by chance
+constexpr std::ptrdiff_t kRowsPerNumber = 5;  // fewer rows are fitted by chance,
+constexpr std::ptrdiff_t kRowsIfPlain = 3;    // and fewer to far less than the noise
 constexpr std::size_t kRowsAsked = 400;       // an evenly spread sample shows a function
 constexpr std::size_t kMostColumns = 4;
-constexpr double kBadRows = 0.1;  // so many may depart from what holds on all rows
+constexpr double kBadRows = 0.1;        // so many may depart from what holds on all rows
+constexpr double kLessThanNoise = 0.2;  // of the declared noise: less scatter is none that was declared too large
+constexpr double kPart = 0.35;          // of its scatter a part of the rows that is chosen for it keeps of noise
 
 using Eigen::ArrayXd;
 using Eigen::MatrixXd;
@@ -38,6 +41,8 @@ struct Smooth {
   double likelihood = 0;  ///< log
   double evidence = 0;    ///< log-likelihood beyond that of the same with no less scatter than noise allows
   double gain = 0;        ///< the same beyond a plane through all columns, less what the free numbers cost
+  bool noise = false;     ///< no row has much more scatter, and none as little as a computation has
+  bool plain = false;     ///< it scatters far less than noise
 
   std::set<int> columns() const {
     std::set<int> all(from.begin(), from.end());
@@ -65,6 +70,7 @@ class Predictable {
     z_.resize(n_, m);
     sd_.resize(m);
     error_.resize(m);
+    rounding_.resize(m);
     told_.resize(columns_.size());
     for (std::ptrdiff_t k = 0; k < m; ++k) {
       const Column& c = *columns_[std::size_t(k)];
@@ -75,7 +81,8 @@ class Predictable {
       sd_[k] = std::sqrt(z_.col(k).squaredNorm() / double(n_));
       if (!(sd_[k] > 0)) sd_[k] = 1;  // a constant: a column of zeros, which foretells nothing
       z_.col(k) /= sd_[k];
-      error_[k] = std::hypot(own, rounding_deviation(c.resolution)) / sd_[k];
+      rounding_[k] = rounding_deviation(c.resolution) / sd_[k];
+      error_[k] = std::hypot(own / sd_[k], rounding_[k]);
       told_[std::size_t(k)] = own > 0 && error_[k] < 0.5;  // else nothing can be told from its noise
     }
   }
@@ -90,14 +97,18 @@ class Predictable {
         for (Smooth& f : functions_of_others(y)) all.push_back(std::move(f));
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
-      return f.gain > chance && f.evidence > kBeyondChance + chance ? f.gain : -std::numeric_limits<double>::infinity();
+      const bool enough = f.weight.sum() >= double((f.plain ? kRowsIfPlain : kRowsPerNumber) * f.coefficients.size());
+      return f.gain > chance && f.evidence > kBeyondChance + chance && enough && !f.noise
+                 ? f.gain
+                 : -std::numeric_limits<double>::infinity();
     };
     const auto found = std::ranges::max_element(all, {}, shown);
     if (found == all.end() || !std::isfinite(shown(*found))) return {};
     // A relation may be solved for any of its columns: the one that was computed scatters least.
     const std::set<int> related = found->columns();
     const auto best = std::ranges::max_element(all, {}, [&](const Smooth& f) {
-      return std::ranges::includes(related, f.columns()) ? f.gain : -std::numeric_limits<double>::infinity();
+      return !f.noise && std::ranges::includes(related, f.columns()) ? f.gain
+                                                                     : -std::numeric_limits<double>::infinity();
     });
     const int column = best->of;
     const Column& c = *columns_[std::size_t(column)];
@@ -116,8 +127,8 @@ class Predictable {
   std::vector<const Column*> columns_;
   std::size_t complete_ = 0;
   std::ptrdiff_t n_ = 0;
-  MatrixXd z_;           ///< rows x columns, each of mean 0 and deviation 1
-  VectorXd sd_, error_;  ///< SI; in standard deviations
+  MatrixXd z_;                      ///< rows x columns, each of mean 0 and deviation 1
+  VectorXd sd_, error_, rounding_;  ///< SI; in standard deviations
   std::vector<char> told_;
   std::size_t tried_ = 0;
 
@@ -143,21 +154,21 @@ class Predictable {
     return a;
   }
 
-  /// Variance of y - f that the noise of all columns makes, in the mean over the rows where f holds.
-  double allowed_variance(int y, const Smooth& f) const {
+  /// Variance of y - f that such errors of all columns make, in the mean over the rows where f holds.
+  static double variance_by(const VectorXd& error, const MatrixXd& z, int y, const Smooth& f) {
     const auto all = terms(f.from.size(), f.degree);
-    double sum = error_[y] * error_[y];
+    double sum = error[y] * error[y];
     for (std::size_t q = 0; q < f.from.size(); ++q) {
-      ArrayXd slope = ArrayXd::Zero(n_);
+      ArrayXd slope = ArrayXd::Zero(z.rows());
       for (std::size_t t = 0; t < all.size(); ++t)
         for (std::size_t factor = 0; factor < all[t].size(); ++factor) {
           if (all[t][factor] != q) continue;
-          ArrayXd rest = ArrayXd::Constant(n_, f.coefficients[std::ptrdiff_t(t)]);
+          ArrayXd rest = ArrayXd::Constant(z.rows(), f.coefficients[std::ptrdiff_t(t)]);
           for (std::size_t other = 0; other < all[t].size(); ++other)
-            if (other != factor) rest *= z_.col(f.from[all[t][other]]).array();
+            if (other != factor) rest *= z.col(f.from[all[t][other]]).array();
           slope += rest;
         }
-      sum += (f.weight.array() * slope.square()).sum() / f.weight.sum() * std::pow(error_[f.from[q]], 2);
+      sum += (f.weight.array() * slope.square()).sum() / f.weight.sum() * std::pow(error[f.from[q]], 2);
     }
     return sum;
   }
@@ -237,11 +248,21 @@ class Predictable {
     std::erase_if(found, [&](Smooth& f) {
       f.gain -= by_plane + 2 * numbers;
       // Noise with heavy tails has a core so narrow: Student's of three degrees of freedom.
-      const double allowed = std::sqrt(allowed_variance(target, f) / 3);
+      const double declared = std::sqrt(variance_by(error_, z_, target, f)), allowed = declared / std::sqrt(3);
       if (!(f.scatter < allowed)) return !(f.gain > 0);
       Smooth measured = f;
-      improve(measured, features(f.from, f.degree), y, elsewhere, 10, allowed);
+      const MatrixXd a = features(f.from, f.degree);
+      improve(measured, a, y, elsewhere, 10, allowed);
       f.evidence = f.likelihood - measured.likelihood;
+      f.plain = f.scatter < kLessThanNoise * declared;
+      // Where one function of all rows leaves less than the declared noise, and a part of them no less than a part of
+      // noise does, noise was declared too large.
+      MatrixXd square = a.transpose() * a;
+      square.diagonal().array() += 1e-8 * square.trace() / double(a.cols());
+      const ArrayXd r = (y - a * dense::Ldlt(square).solve(VectorXd(a.transpose() * y))).array();
+      const double all_rows = std::sqrt(r.square().sum() / std::max(1.0, double(n_ - a.cols())));
+      f.noise = all_rows < 0.7 * declared && all_rows > kLessThanNoise * declared && f.scatter > kPart * all_rows &&
+                all_rows > 3 * std::sqrt(variance_by(rounding_, z_, target, f));
       return false;
     });
     return found;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 #include "loop/shots/experiment.hpp"
 #include "loop/shots/mechanism.hpp"
 #include "loop/shots/mixture.hpp"
@@ -69,6 +70,15 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
         derived, [&](const DerivedColumn& d) { return !d.input && d.share == 1 && d.column == c->name; });
     const bool used_up = case_.loft_unknown && Output(o) == Output::launch_angle;
     if ((computed && !used_up) || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
+    int rows = 0, read = 0;
+    for (const int row : inputs_.row_of)
+      if (!bad.contains(row) && !(held_rows_ && held_rows_->contains(row)))
+        ++rows, read += std::isfinite(c->value[std::size_t(row)]);
+    if (!case_.noise.contains(c->name) && !case_.averages && read < kFewestOfRows && read < rows) {
+      notes_.push_back(fmt::format("{}: its noise is not declared, and {} readings in {} rows do not tell it: not used",
+                                   c->name, read, rows));
+      continue;
+    }
     ShotChannel ch{{.name = c->name, .si = c->si, .resolution = c->resolution / c->si}, Output(o)};
     if (const auto it = case_.noise.find(c->name); it != case_.noise.end())
       // The record's last digit rounds: that much is added to the noise.
@@ -243,7 +253,7 @@ std::vector<std::string> ShotProblem::notes() const {
 }
 
 std::optional<std::string> ShotProblem::too_few() const {
-  if (width() == 0) return "no launch quantity has a value";
+  if (width() == 0) return "no launch quantity can be used: it has no value, too few, or is computed from others";
   if (model_->shots() == 0) return "no row can be used";
   if (rows_.train.size() < kFewestToTest)
     return fmt::format("{} training rows: too few to test anything", rows_.train.size());
@@ -567,7 +577,7 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
       Location l = told(name, "");
       for (const StructureMap* map : {&s.after, &s.before})
         for (const Finding& f : map->findings)
-          if (f.channel == c && l.regressor.empty()) l.regressor = f.regressor;
+          if (f.channel == c && f.p_adjusted < 0.05 && l.regressor.empty()) l.regressor = f.regressor;
       return {l};
     }
   }
@@ -579,9 +589,11 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
   FarOff out;
   std::map<int, int> of_finding;
   std::map<std::string, int> of_column;
+  std::set<int> unasked;  // rows that were left out before anything was fitted are far from no model
+  for (const RowFlag& f : early_) unasked.insert(f.row);
   for (const RowFlag& f : flags_) ++of_finding[f.finding];
   for (const RowFlag& f : flags_)
-    if (of_finding[f.finding] == 1) ++out.rows, ++of_column[f.column];
+    if (of_finding[f.finding] == 1 && !unasked.contains(f.row)) ++out.rows, ++of_column[f.column];
   out.lost = int(flags_.size());
   std::vector<int> used = rows_.train;
   used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
@@ -602,8 +614,7 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
 std::optional<std::string> ShotProblem::heavy_tails(const Selection& s) const {
   const FarOff far = far_off(s);
   if (s.level > 0 || !far.many || !far.column.empty()) return {};
-  return fmt::format("{}, in no one column: the noise has heavier tails than a normal one of the declared size",
-                     far.said());
+  return fmt::format("{}, in no one column: the noise has heavier tails than a normal one", far.said());
 }
 
 /// A fifth of the rows is flagged or so far off that the loss is flat there, or half of them are off by many noise

@@ -30,7 +30,7 @@ class ShotProblem : public Problem {
 
   int width() const final { return model_->width(); }
   const Channel& channel(int c) const override { return model_->channel(c); }
-  void refute(int c) override { model_->channel(c).refuted = true; }
+  void refute(int c, bool refuted) override { model_->channel(c).refute(refuted); }
   std::vector<Row> rows() const override;
   const Eigen::MatrixXd& measured() const override { return model_->measured(); }
   std::vector<Flag> flags() const override;

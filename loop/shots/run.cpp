@@ -52,6 +52,39 @@ Shots without_flagged(const Shots& shots, const LoopResult& r, const std::set<in
   return clean;
 }
 
+/// A fold may have fewer channels than all rows have: values in the order of the latter, NaN where it has none.
+class InOrder {
+ public:
+  InOrder(const LoopResult& whole, const LoopResult& fold) {
+    for (const ChannelResult& c : whole.channels) {
+      const auto at = std::ranges::find(fold.channels, c.name, &ChannelResult::name);
+      from_.push_back(at == fold.channels.end() ? -1 : int(at - fold.channels.begin()));
+    }
+  }
+  const std::vector<int>& from() const { return from_; }
+  std::vector<double> operator()(const std::vector<double>& values) const {
+    std::vector<double> out;
+    for (const int k : from_) out.push_back(k < 0 ? kNaN : values[std::size_t(k)]);
+    return out;
+  }
+
+ private:
+  std::vector<int> from_;
+};
+
+/// What the folds adopted must not fail on the rows that they did not see: squares over the noise, each up to a cap.
+bool fails_held_out(const LoopResult& r, double loss) {
+  constexpr double cap = 36;
+  double more = 0;
+  for (const UsedRow& row : r.rows)
+    for (std::size_t c = 0; c < r.channels.size(); ++c) {
+      const auto square = [&](double x) { return std::min(std::pow(x / r.channels[c].expected, 2), cap); };
+      if (std::isfinite(row.before[c]) && std::isfinite(row.after[c]))
+        more += square(row.after[c]) - square(row.before[c]);
+    }
+  return more > loss;
+}
+
 /// Every cluster is the holdout once; errors and residuals are pooled over the clusters. What is flagged there is what
 /// the pass over all rows flagged: that the others do not foretell a row is no reason to leave it out.
 void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
@@ -66,15 +99,32 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
     ShotCase others = c;
     others.shots = without_flagged(c.shots, whole, &held);
     const LoopResult fold = pass(others, columns, derived, held);
+    if (fold.channels.empty()) {  // it tested nothing and foretells nothing
+      if (fold.holdout > 0)
+        whole.notes.push_back(fmt::format("without {} '{}': too few others to foretell its {} rows", c.split.by,
+                                          g.name[k], fold.holdout));
+      continue;
+    }
+    const InOrder in_order(whole, fold);
     for (const UsedRow& u : fold.rows)
-      if (u.holdout) pooled.push_back(u);
-    for (std::size_t j = 0; j < std::min(expected.size(), fold.channels.size()); ++j)
-      if (const ChannelResult& ch = fold.channels[j]; std::isfinite(ch.expected)) {
-        expected[j].first += ch.before.holdout * std::pow(ch.expected, 2);
-        expected[j].second += ch.before.holdout;
-      }
+      if (u.holdout)
+        pooled.push_back({.row = u.row,
+                          .id = u.id,
+                          .holdout = true,
+                          .measured = in_order(u.measured),
+                          .before = in_order(u.before),
+                          .after = in_order(u.after),
+                          .with_remainder = in_order(u.with_remainder)});
+    for (std::size_t j = 0; j < expected.size(); ++j) {
+      const int at = in_order.from()[j];
+      if (at < 0 || !std::isfinite(fold.channels[std::size_t(at)].expected)) continue;
+      const ChannelResult& ch = fold.channels[std::size_t(at)];
+      expected[j].first += ch.before.holdout * std::pow(ch.expected, 2);
+      expected[j].second += ch.before.holdout;
+    }
     if (fold.corrected && whole.corrected)
-      for (const Corrected::Row& r : fold.corrected->rows) whole.corrected->rows.push_back(r);
+      for (const Corrected::Row& r : fold.corrected->rows)
+        whole.corrected->rows.push_back({r.id, in_order(r.before), in_order(r.after)});
     if (fold.holdout > 0)
       whole.notes.push_back(
           fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
@@ -93,6 +143,15 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   }
   whole.holdout = int(pooled.size());
   whole.rows = std::move(pooled);
+  const bool named = whole.verdict == Verdict::explained || whole.verdict == Verdict::ambiguous;
+  if (!named || !fails_held_out(whole, c.rules.holdout_loss)) return;
+  whole.notes.push_back(fmt::format("{} explained all rows and not those that were left out in turn: not adopted",
+                                    fmt::join(whole.selection.chosen.model.effects(c.effects.size()), " and ")));
+  whole.verdict = Verdict::insufficient;
+  whole.adopted.clear();
+  whole.ties.clear();
+  for (ChannelResult& ch : whole.channels) ch.after = ch.before;
+  for (UsedRow& u : whole.rows) u.after = u.before;
 }
 
 }  // namespace

@@ -308,8 +308,8 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
   for (const RowFlag& f : flags) ++of_finding[f.finding];
   const auto single = [&](const RowFlag& f) { return f.slip && f.shot >= 0 && of_finding[f.finding] == 1; };
   const auto widespread = [&](const std::map<std::string, int>& of_column) {
-    screening.widespread = std::ranges::max_element(of_column, {}, [](const auto& v) { return v.second; })->first;
-    for (const auto& [column, count] : of_column) screening.many += count;
+    const auto& [column, count] = *std::ranges::max_element(of_column, {}, [](const auto& v) { return v.second; });
+    if (count > screening.many) screening.widespread = column, screening.many = count;
   };
   if (double(std::ranges::count_if(flags, single)) > std::max(3.0, kMany * n)) {
     std::map<std::string, int> slipping;
@@ -322,13 +322,14 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
   // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.
   std::map<std::string, int> unreasoned;
   int count = 0;
+  const auto unexplained = [&](const RowFlag& f) { return !f.slip && f.shot >= 0 && !known.contains(f.shot); };
   for (const RowFlag& f : flags)
-    if (!f.slip && f.shot >= 0) {
+    if (unexplained(f)) {
       ++count;
       ++unreasoned[f.column];
     }
   if (count > std::max(2.0, kMany * n)) {
-    std::erase_if(flags, [](const RowFlag& f) { return !f.slip && f.shot >= 0; });
+    std::erase_if(flags, unexplained);
     widespread(unreasoned);
   }
   std::ranges::stable_sort(flags, {}, &RowFlag::row);

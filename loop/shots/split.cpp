@@ -11,6 +11,19 @@
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
+namespace {
+
+/// The fewest rows, at most 20, of which this fraction is a whole number of rows; of a small one those with one row.
+std::size_t whole_share(double fraction) {
+  constexpr std::size_t most = 20;
+  if (fraction < 1.0 / most) return std::size_t(std::lround(1 / fraction));
+  std::size_t rows = 2;
+  const auto off = [&] { return std::abs(fraction - std::round(fraction * double(rows)) / double(rows)); };
+  while (rows < most && off() > 2e-3) ++rows;
+  return rows;
+}
+
+}  // namespace
 
 Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
                 const std::vector<int>& usable) {
@@ -57,15 +70,18 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return oblique[i]; });
     const std::size_t outermost = order.size() < 60 ? 1 : 2;
-    const std::size_t block = fraction > 0 ? std::max<std::size_t>(2, std::size_t(std::lround(1 / fraction))) : 0;
+    const std::size_t block = fraction > 0 ? whole_share(fraction) : 0;
     for (std::size_t k = 0; block && k < order.size(); k += block) {
       const std::size_t size = std::min(block, order.size() - k);
       if (size < block && solvers::uniform(random) > double(size) * fraction) continue;
-      // One of the block, or as many as the fraction asks for.
       const auto take = std::max<std::size_t>(1, std::size_t(std::lround(fraction * double(size))));
-      for (std::size_t t = 0; t < take; ++t) {
-        const std::size_t which = k + (random() % size);
-        held[order[std::max<std::size_t>(which, std::min(outermost, k + size - 1))]] = 1;
+      std::vector<std::size_t> others;  // that may be held out
+      for (std::size_t j = std::max(k, outermost); j < k + size; ++j) others.push_back(order[j]);
+      if (others.empty()) continue;
+      for (std::size_t t = 0; t < take && t < others.size(); ++t) {
+        const std::size_t skipped = size - others.size(), drawn = t + random() % (size - t);
+        std::swap(others[t], others[std::max(drawn, skipped + t) - skipped]);
+        held[others[t]] = 1;
       }
     }
   }

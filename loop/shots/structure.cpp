@@ -4,15 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
 
+#include "loop/deviation.hpp"
 #include "loop/result.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
+
+/// What is steady and far below the declared noise is no error of a model: so many units of the channel's noise.
+/// Scatter at the last digit refutes a declaration and is none of an instrument.
+double least_signal(const Channel& c) {
+  constexpr double of_declared = 2;  // chance reaches 3 in one of so many regressors
+  if (!c.declared || (c.refuted && c.noise > 2 * rounding_deviation(c.resolution))) return 0;
+  return of_declared * *c.declared / c.noise;
+}
 
 /// Centred over the rows, unit mean square; false where it does not vary.
 bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
@@ -223,7 +233,7 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
                        const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
                        const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
                        unsigned long seed) {
-  Whitened view{.width = model.width(), .order = {}, .column = {}, .trusted = {}};
+  Whitened view{.width = model.width(), .order = {}, .column = {}, .channel = {}};
   for (const int i : rows) view.order.push_back(model.trial(i).order);
   view.column = [&](int c, const Eigen::VectorXd& value) {
     Eigen::VectorXd a = Eigen::VectorXd::Zero(std::ptrdiff_t(rows.size()) * model.width());
@@ -233,7 +243,7 @@ StructureMap structure(const ShotModel& model, const std::vector<int>& rows, con
                                                                       value[std::ptrdiff_t(i)];
     return a;
   };
-  view.trusted = [&](int c) { return model.channel(c).trusted(); };
+  view.channel = [&](int c) -> const Channel& { return model.channel(c); };
   return structure(view, rows, z, noise, weights, nuisance, regressors, directions, flips, seed);
 }
 
@@ -329,21 +339,27 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
                                         V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
   }
   std::ranges::sort(largest);
+  bool all = true;
+  double least_of_any = std::numeric_limits<double>::infinity();
+  for (int c = 0; c < m; ++c) {
+    all = all && view.channel(c).trusted();
+    least_of_any = std::min(least_of_any, least_signal(view.channel(c)));
+  }
+  const auto known = [&](const Finding& f) { return f.channel >= 0 ? view.channel(f.channel).trusted() : all; };
   double top = 0;
   for (Finding& f : map.findings) {
     const double t = std::abs(f.statistic);
     const auto above = largest.end() - std::ranges::lower_bound(largest, t - 1e-5);
     f.p_adjusted = (1.0 + double(above)) / (1.0 + double(largest.size()));
-    top = std::max(top, t);
+    if (std::abs(f.signal) > (f.channel >= 0 ? least_signal(view.channel(f.channel)) : least_of_any))
+      top = std::max(top, t);
+    else f.p_adjusted = 1;
   }
   map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
           (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
-  bool all = true;
-  for (int c = 0; c < m; ++c) all = all && view.trusted(c);
-  const auto known = std::ranges::find_if(
-      map.findings, [&](const Finding& f) { return f.channel >= 0 ? view.trusted(f.channel) : all; });
-  if (known != map.findings.end()) map.signal = std::abs(known->signal);
+  if (const auto first = std::ranges::find_if(map.findings, known); first != map.findings.end())
+    map.signal = std::abs(first->signal);
   return map;
 }
 

@@ -44,7 +44,7 @@ struct Whitened {
   std::vector<double> order;  ///< per row, place in the session
   /// A residual of `value` per row in one channel and none in the others, whitened.
   std::function<Eigen::VectorXd(int channel, const Eigen::VectorXd& value)> column;
-  std::function<bool(int)> trusted;  ///< the channel's noise is declared and not refuted
+  std::function<const Channel&(int)> channel;
 };
 /// As below, of any such residuals; `rows[i]`: shot of the model in block i, by which regressors are read.
 StructureMap structure(const Whitened& view, const std::vector<int>& rows, const Eigen::VectorXd& z,

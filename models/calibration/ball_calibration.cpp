@@ -377,9 +377,10 @@ BallCalibration calibrate_ball(const BallCalibrationProblem& problem,
   const auto n = Eigen::Index(problem.free.size());
   Eigen::VectorXd start(n);
   for (Eigen::Index c = 0; c < n; ++c) start[c] = problem.free[std::size_t(c)].prior;
+  const std::vector<solvers::Bounds> bounds(std::size_t(n), {-FreeParameter::kReach, FreeParameter::kReach, 1});
   const std::optional<solvers::Minimum> best =
       solvers::minimise({.residuals = int(fit.rows()),
-                         .bounds = std::vector<solvers::Bounds>(std::size_t(n), {-3, 3, 1}),
+                         .bounds = bounds,
                          .value = [&](const auto& x, auto& r) { return fit.residuals(x, r); },
                          .linearised = [&](const auto& x, auto& r, auto& J) { return fit.linearised(x, r, J); }},
                         start, {.iterations = 8, .cost = 1e-2, .parameters = 1e-2});  // where the noise of e begins
@@ -392,6 +393,7 @@ BallCalibration calibrate_ball(const BallCalibrationProblem& problem,
   if (!fit.linearised(x, r, J))
     throw solvers::NonConvergence("calibration: the impact does not converge at the fitted parameters");
   describe(out, problem, x);
+  out.at_bound = solvers::at_bounds(x, bounds);
   const FeImpactOptions found = fit.options(x);
   out.ball = found.ball;
   out.friction = fit.contact(x).patch.coefficient;

@@ -66,6 +66,7 @@ struct FreeParameter {
   double prior = 0;                ///< where it is expected, in the units of `what`
   double sd = INFINITY;            ///< of that expectation
 
+  static constexpr double kReach = 3;  ///< the search goes as far from zero, in the units of `what`
   bool of_shots() const { return what >= What::face_stiffness; }
 };
 
@@ -92,6 +93,7 @@ struct BallCalibration {
   std::vector<std::string> names;     ///< of the parameters that were fitted, with their units
   std::vector<double> start, values;  ///< in those units: of the first layer, of the named layer over the first, ...
   std::vector<double> internal;       ///< as FreeParameter has them
+  std::vector<bool> at_bound;         ///< at an end of what the search allows
   Eigen::MatrixXd covariance;         ///< of the internal values, at the residuals' declared sigmas
   std::vector<NormalImpactPoint> points;
   std::optional<double> bounce;     ///< tangential restitution where that was a target

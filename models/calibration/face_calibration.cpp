@@ -30,7 +30,11 @@ FaceCalibration calibrate_face(const Head& head, const Striker& sphere, const St
   const solvers::LeastSquaresFit fit =
       solvers::least_squares(residuals, static_cast<int>(target.taps.size()) + 2, start, bounds);
   const solvers::Identifiability seen = solvers::identifiability(fit.jacobian, bounds);
-  return {face_of(fit.parameters), {seen.sd.begin(), seen.sd.end()}, seen.correlation, fit.cost};
+  return {face_of(fit.parameters),
+          {seen.sd.begin(), seen.sd.end()},
+          solvers::at_bounds(fit.parameters, bounds),
+          seen.correlation,
+          fit.cost};
 }
 
 }  // namespace hosel::models

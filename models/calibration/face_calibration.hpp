@@ -23,6 +23,7 @@ struct FaceTarget {
 struct FaceCalibration {
   FaceCompliance face;
   std::vector<double> sd;  ///< of mass, stiffness, damping, half width, half height; infinite where the data are blind
+  std::vector<bool> at_bound;   ///< of the same: at an end of what a face is allowed
   Eigen::MatrixXd correlation;  ///< of the same
   double cost = 0;              ///< half the sum of squares in units of the standard deviations
 };

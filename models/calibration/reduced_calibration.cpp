@@ -18,12 +18,16 @@ namespace {
 
 /// A model as a function of its parameters, each inside its bounds.
 struct Reduced {
+  std::string name;
+  std::vector<const char*> parameters;
   std::vector<solvers::Bounds> bounds;
   std::vector<Eigen::VectorXd> starts;  // the best of what they lead to is taken
   std::function<std::vector<Answer>(const Eigen::VectorXd&, const std::vector<Blow>&)> launches;
 };
 
-Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target) {
+/// Which parameters end at a bound is added to `at_bound`.
+Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, const std::vector<Launch>& target,
+                       std::vector<std::string>& at_bound) {
   constexpr double kTimeSd = 0.03;  // relative
   double speed = 0, spin = 0;
   for (const Launch& l : target) speed += l.ball_speed(), spin += l.spin_rate();
@@ -56,6 +60,9 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
                                               {.starts = 1, .iterations = 400});
     if (!best || found.cost < best->cost) best = found;
   }
+  const std::vector<bool> at_end = solvers::at_bounds(best->parameters, model.bounds);
+  for (std::size_t k = 0; k < at_end.size(); ++k)
+    if (at_end[k]) at_bound.push_back(model.name + ": " + model.parameters[k]);
   return best->parameters;
 }
 
@@ -91,13 +98,15 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
     return ContactLaw{
         .restitution = x[0], .restitution_slope = x[1], .tangential_restitution = x[2], .friction = friction};
   };
-  const Reduced rigid{{{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
+  const Reduced rigid{"rigid-eccentric",
+                      {"restitution", "slope of restitution", "tangential restitution"},
+                      {{0.3, 1, 0.1}, {-0.02, 0.01, 0.002}, {-0.5, 1, 0.2}},
                       {Eigen::Vector3d(0.86, -0.0029, 0.2)},
                       [&](const Eigen::VectorXd& x, std::vector<Blow> ruled) {
                         for (Blow& b : ruled) b.contact = law(x);
                         return RigidEccentric().launches(ruled);
                       }};
-  out.law = law(fitted(rigid, blows, out.launches));
+  out.law = law(fitted(rigid, blows, out.launches, out.at_bound));
 
   const auto volume = [&](const Eigen::VectorXd& x) {
     VolumetricLaw v;
@@ -111,6 +120,8 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
     return v;
   };
   const Reduced volumetric{
+      "volumetric",
+      {"stiffness", "damping", "joint stiffness", "joint damping", "cover thickness"},
       {{std::log(1e8), std::log(1e11), 1},
        {0, 0.05, 0.005},
        {std::log(0.5), std::log(1e4), 1},
@@ -120,16 +131,18 @@ ReducedCalibration calibrate_reduced(const FeImpactOptions& fe, const std::vecto
       {Eigen::VectorXd{{std::log(6e9), 6e-3, std::log(30.0), std::log(5e-3), 2e-3}},
        Eigen::VectorXd{{std::log(9e9), 12e-3, std::log(500.0), std::log(15e-3), 1.5e-3}}},
       [&](const Eigen::VectorXd& x, const std::vector<Blow>& all) { return Volumetric(volume(x)).launches(all); }};
-  out.volume = volume(fitted(volumetric, blows, out.launches));
+  out.volume = volume(fitted(volumetric, blows, out.launches, out.at_bound));
 
   const auto hertz = [&](const Eigen::VectorXd& x) {
     return HertzMawLaw{.modulus = std::exp(x[0]), .poisson = x[1], .friction = friction, .damping = x[2]};
   };
   const Reduced maw{
+      "hertz-maw",
+      {"modulus", "Poisson's ratio", "damping"},
       {{std::log(1e6), std::log(1e9), 1}, {0, 0.499, 0.1}, {0, 0.05, 0.005}},
       {Eigen::Vector3d(std::log(85e6), 0.4, 6e-3)},
       [&](const Eigen::VectorXd& x, const std::vector<Blow>& all) { return HertzMaw(hertz(x)).launches(all); }};
-  out.hertz = hertz(fitted(maw, blows, out.launches));
+  out.hertz = hertz(fitted(maw, blows, out.launches, out.at_bound));
 
   std::vector<Blow> ruled = blows;
   for (Blow& b : ruled) b.contact = out.law;

@@ -25,6 +25,7 @@ struct ReducedCalibration {
   HertzMawLaw hertz;
   std::vector<Launch> launches;  ///< of the finite elements, free body, in the order of the blows
   std::vector<ReducedBand> bands;
+  std::vector<std::string> at_bound;  ///< model and parameter, of those at an end of what the search allows
 };
 
 /// Least squares over the blows: restitution (level and slope), tangential restitution; stiffness, damping, joint and

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace hosel::models {
 namespace {
@@ -24,16 +25,20 @@ Placement place(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to) 
 }
 
 MarkerSwing marker_swing(const MarkerTrack& track, double still, double end) {
-  std::array<Vec3, 3> shaft0{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, head0 = shaft0;
-  Vec3 wrists0 = Vec3::Zero();
-  int count = 0;
-  for (std::size_t i = 0; i < track.times.size() && track.times[i] <= still; ++i, ++count) {
-    for (std::size_t k = 0; k < 3; ++k) shaft0[k] += track.shaft[i][k], head0[k] += track.head[i][k];
-    wrists0 += track.wrists[i];
+  std::array<Vec3, 3> shaft0, head0;
+  const auto at_address = [&](const char* what, auto point) {
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (std::size_t i = 0; i < track.times.size() && track.times[i] <= still; ++i)
+      if (const Vec3 x = point(i); x.allFinite()) sum += x, ++count;
+    if (count == 0) throw std::invalid_argument(std::string("no sample at address has ") + what);
+    return Vec3(sum / count);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    shaft0[k] = at_address("every marker of the shaft", [&](std::size_t i) { return track.shaft[i][k]; });
+    head0[k] = at_address("every marker of the head", [&](std::size_t i) { return track.head[i][k]; });
   }
-  if (count == 0) throw std::invalid_argument("no samples at address");
-  for (std::size_t k = 0; k < 3; ++k) shaft0[k] /= count, head0[k] /= count;
-  wrists0 /= count;
+  const Vec3 wrists0 = at_address("the wrists", [&](std::size_t i) { return track.wrists[i]; });
 
   const Vec3 hosel = middle(head0), up = (wrists0 - hosel).normalized();
   MarkerSwing out;
@@ -46,13 +51,15 @@ MarkerSwing marker_swing(const MarkerTrack& track, double still, double end) {
   for (std::size_t k = 0; k < 3; ++k) out.head_reference[k] = R.transpose() * (head0[k] - clamp);
 
   for (std::size_t i = 0; i < track.times.size() && track.times[i] <= end + 1e-9; ++i) {
+    const auto seen = [](const Vec3& x) { return x.allFinite(); };
+    if (!std::ranges::all_of(track.shaft[i], seen)) continue;
     const Placement body = place(shaft0, track.shaft[i]);
     const Eigen::Quaterniond attitude = body.rotation * Eigen::Quaterniond(R);
     const Vec3 at = body.rotation * clamp + body.translation;
     out.clamp.times.push_back(track.times[i]);
     out.clamp.positions.push_back(at);
     out.clamp.attitudes.push_back(attitude);
-    if (!std::ranges::all_of(track.head[i], [](const Vec3& x) { return x.allFinite(); })) continue;
+    if (!std::ranges::all_of(track.head[i], seen)) continue;
     const Placement head = place(head0, track.head[i]);
     const Vec3 d = attitude.conjugate() * (head.rotation * hosel + head.translation - at) + Vec3(0, 0, out.length);
     out.times.push_back(track.times[i]);

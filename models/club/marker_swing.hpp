@@ -28,10 +28,10 @@ Placement place(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to);
 /// to the middle of the wrists; the clamp is the point of that line nearest the shaft markers; the lead
 /// direction is the global X, across the line.
 struct MarkerSwing {
-  GripTrack clamp;                        ///< pose of the grip frame at the clamp
-  double length = 0;                      ///< from the clamp to the hosel [m]
-  std::vector<double> times;              ///< of the samples with all head markers
-  std::vector<double> lead, droop;        ///< of the hosel, measured [m]
+  GripTrack clamp;                  ///< pose of the grip frame at the clamp, of the samples with all shaft markers
+  double length = 0;                ///< from the clamp to the hosel [m]
+  std::vector<double> times;        ///< of the samples with all head markers
+  std::vector<double> lead, droop;  ///< of the hosel, measured [m]
   std::vector<std::array<Vec3, 3>> head;  ///< measured at those times, global
   std::array<Vec3, 3> head_reference;     ///< in grip axes from the clamp, unloaded
 };

@@ -87,8 +87,11 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
   if (mount.grip == Grip::clamped) system.prescribed.push_back(std::make_unique<fem::ImposedMotion>(butt, motion));
   if (mount.grip == Grip::forced || mount.grip == Grip::hands)
     system.terms.push_back(std::make_unique<fem::NodeLoad>("hands", butt, wrench, fem::NodeLoad::Moment::body));
-  if (mount.grip == Grip::hands)
-    system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, butt, mount.hands));
+  if (mount.grip == Grip::hands) {
+    fem::JointStiffness hands = mount.hands;
+    hands.frame = (face_to_grip(club.geometry).transpose() * hands.frame).eval();
+    system.terms.push_back(std::make_unique<fem::SpringJoint>("hands", motion, butt, hands));
+  }
   return beam;
 }
 

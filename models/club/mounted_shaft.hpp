@@ -20,7 +20,7 @@ enum class Grip {
 
 struct ShaftMount {
   Grip grip = Grip::clamped;
-  fem::JointStiffness hands;  ///< for Grip::hands, face axes
+  fem::JointStiffness hands;  ///< for Grip::hands, grip axes
   int elements = 16;
   /// Each element is this many times as long as the one before, butt to tip: the blow is felt first
   /// and shortest at the tip.

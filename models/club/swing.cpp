@@ -171,36 +171,40 @@ fem::State Swing::equilibrium(double time) {
   if (drive_.kind != GripDrive::Kind::prescribed && drive_.kind != GripDrive::Kind::hands)
     throw std::invalid_argument("a club that nothing holds has no equilibrium");
   held_ = time;
-  fem::State s = start(time, [&] {
-    fem::State straight = system_.dof_map.rest();
-    shaft_->place(straight);
-    if (head_node_.translation.v != shaft_->nodes().back().translation.v)
-      straight.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
-    straight.time = time;
-    return straight;
-  }());
+  fem::State s = straight(time);
   s.v.setZero();
   s = options_.kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6).state
                       : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1}).state;
   held_.reset();
+  s.time = time;
   return s;
 }
 
 fem::State Swing::start(double time, const fem::State& deflected) const {
-  // The deflected shape is turned and moved with the grip from where its first node is.
-  const fem::Pose grip = held_ ? [&] {
-    fem::Pose p = drive_.motion(*held_);
-    return fem::Pose{.position = p.position, .rotation = p.rotation};
-  }() : drive_.motion(time);
+  return carried(deflected, drive_.motion(deflected.time), drive_.motion(time), time);
+}
+
+/// The straight shaft along the axis of the grip as it is held.
+fem::State Swing::straight(double time) const {
+  fem::State s = system_.dof_map.rest();
+  shaft_->place(s);
+  if (head_node_.translation.v != shaft_->nodes().back().translation.v)
+    s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
   const fem::Node& root = shaft_->nodes().front();
-  const Vec3 x0 = deflected.q.segment<3>(root.translation.q);
-  const Eigen::Quaterniond turn = grip.rotation * fem::rotation(deflected, root.rotation).conjugate();
+  const fem::Pose rest{.position = s.q.segment<3>(root.translation.q), .rotation = fem::rotation(s, root.rotation)},
+      grip = drive_.motion(time);
+  return carried(s, rest, {.position = grip.position, .rotation = grip.rotation}, time);
+}
+
+/// The shape is turned and moved with the grip from one pose to the other, and has the latter's velocity.
+fem::State Swing::carried(const fem::State& shape, const fem::Pose& from, const fem::Pose& grip, double time) const {
+  const Eigen::Quaterniond turn = grip.rotation * from.rotation.conjugate();
   const Vec3 w = grip.rotation * grip.angular_velocity;
-  fem::State s = deflected;
+  fem::State s = shape;
   s.time = time;
   const auto move = [&](const fem::Node& n) {
-    const Vec3 arm = turn * (Vec3(deflected.q.segment<3>(n.translation.q)) - x0);
-    const Eigen::Quaterniond R = turn * fem::rotation(deflected, n.rotation);
+    const Vec3 arm = turn * (Vec3(shape.q.segment<3>(n.translation.q)) - from.position);
+    const Eigen::Quaterniond R = turn * fem::rotation(shape, n.rotation);
     s.q.segment<3>(n.translation.q) = grip.position + arm;
     fem::set_rotation(s, n.rotation, R);
     s.v.segment<3>(n.translation.v) = grip.velocity + w.cross(arm);
@@ -214,11 +218,7 @@ fem::State Swing::start(double time, const fem::State& deflected) const {
 
 fem::State Swing::hold(double time, double seconds) {
   held_ = time;
-  fem::State s = system_.dof_map.rest();
-  shaft_->place(s);
-  if (head_node_.translation.v != shaft_->nodes().back().translation.v)
-    s.q.segment<3>(head_node_.translation.q) = shaft_->line().back().position;
-  s = start(time, s);
+  fem::State s = straight(time);
   s.time = time - seconds;
   solvers::GeneralizedAlpha run = scheme(s);
   while (run.time() < time - 1e-9 * seconds) run.advance(time);

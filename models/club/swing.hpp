@@ -84,7 +84,7 @@ class Swing {
   fem::State equilibrium(double time);
   /// The grip held for `seconds` up to `time`, from the straight shaft: what an experiment does.
   fem::State hold(double time, double seconds);
-  /// `equilibrium`, moving as a rigid body with the grip.
+  /// What `equilibrium` or `hold` found, moving as a rigid body with the grip: where springs hold it, as they hold it.
   fem::State start(double time, const fem::State& deflected) const;
 
   using Observer = std::function<void(const SwingSample&)>;
@@ -105,6 +105,8 @@ class Swing {
   const solvers::GeneralizedAlpha::Counts& counts() const { return counts_; }
 
  private:
+  fem::State straight(double time) const;
+  fem::State carried(const fem::State& shape, const fem::Pose& from, const fem::Pose& grip, double time) const;
   solvers::NewtonOptions newton() const;
   solvers::GeneralizedAlpha scheme(const fem::State& from);
   fem::State by_ida(const fem::State& consistent, double end, const StateObserver& observer);

@@ -300,7 +300,7 @@ std::optional<FeImpactOptions> FeImpactOptions::coarser() const {
   --out.mesh.sector, --out.mesh.rings;
   out.harmonics -= 2, --out.antisymmetric;
   if (angles > 0) out.angles -= 4;
-  if (contact_angles > 0) out.contact_angles = std::max(contact_angles - 6, 1);
+  if (contact_angles > 0) out.contact_angles = std::max(contact_angles - 6, 2 * out.harmonics + 1);
   out.steps_per_contact /= 2;
   return out;
 }
@@ -314,7 +314,8 @@ std::vector<std::string> FeImpactOptions::faults() const {
   if (antisymmetric < 1) out.emplace_back("antisymmetric harmonics must be at least 1: less cannot turn");
   if (angles < 0 || (angles > 0 && angles < 2 * harmonics + 1))
     out.emplace_back("angles must be at least 2 N + 1 (0 chooses)");
-  if (contact_angles < 0) out.emplace_back("contact_angles must not be negative");
+  if (contact_angles < 0 || (contact_angles > 0 && contact_angles < 2 * harmonics + 1))
+    out.emplace_back("contact_angles must be at least 2 N + 1 (0 chooses)");
   if (!fem::contact_method(method)) out.emplace_back("there is no contact method " + method);
   if (!(penetration > 0)) out.emplace_back("penetration must be positive");
   if (!(penalty > 0)) out.emplace_back("penalty must be positive");

@@ -153,6 +153,15 @@ void check_height(const Motion<T>& motion, const T* y) {
     throw std::invalid_argument("flight: the ball does not rise to the ground on which it should land");
 }
 
+/// Whether it goes down from here: it comes no higher.
+template <class T>
+bool sinks(const Motion<T>& motion, const T* y) {
+  if (value(y[kVelocity + 2]) != 0) return value(y[kVelocity + 2]) < 0;
+  std::array<T, kStates> rate;
+  motion.rate(y, rate.data());
+  return value(rate[kVelocity + 2]) <= 0;
+}
+
 /// Where it ends.
 void land_at(const FlightPoint& p, Flight& out) {
   out.landing = p;
@@ -290,7 +299,7 @@ Flight fly(const Launch& launch, const Ball& ball, const FlightConditions& condi
   out.reynolds = {first.reynolds, first.reynolds};
   out.spin = {first.spin_ratio, first.spin_ratio};
   if (grounded(motion, y0.data(), conditions.ground)) return land(first), out;
-  if (y0[kVelocity + 2] < 0) check_height(motion, y0.data());
+  if (sinks(motion, y0.data())) check_height(motion, y0.data());
 
   auto solver = integration<kStates>(
       motion, [&](const Plain& y, Plain& dy, long piece) { motion.rate(y.data(), dy.data(), piece); }, options);
@@ -362,7 +371,7 @@ Flight fly_in_steps(const Launch& launch, const Ball& ball, const FlightConditio
   out.reynolds = {first.reynolds, first.reynolds};
   out.spin = {first.spin_ratio, first.spin_ratio};
   if (grounded(motion, y.data(), conditions.ground)) return land_at(first, out), out;
-  if (y[kVelocity + 2] < 0) check_height(motion, y.data());
+  if (sinks(motion, y.data())) check_height(motion, y.data());
   double t = 0, unknown = 0;
   while (t < kLatest) {
     const double h = step_size(step, int(out.steps++));
@@ -423,7 +432,7 @@ FlightJacobian flight_jacobian(const Launch& launch, const Ball& ball, const Fli
   FlightJacobian out = FlightJacobian::Zero();
   const State first = state_of(start);
   if (grounded(motion, first.data(), conditions.ground)) return out;
-  if (first[kVelocity + 2].a < 0) check_height(motion, first.data());
+  if (sinks(motion, first.data())) check_height(motion, first.data());
 
   // A dual number is its value, then its derivatives; the values stand first, as in the plain flight.
   constexpr int kDual = kStates * (1 + kLaunchQuantities);

@@ -6,6 +6,11 @@ from . import _hosel
 from .running import texts
 
 
+def _numbers(x):
+    """As an array; what is masked is nan, which no blow has."""
+    return np.ma.filled(np.ma.asarray(x, dtype=float), np.nan)
+
+
 class Model:
     """A model of `hosel list` and the blow of a case: club, ball, contact, and a delivery that the inputs below replace.
     Each blow is computed as `hosel.run` computes the case with these inputs: with the set of parameters that the case's
@@ -33,7 +38,7 @@ class Model:
         Raises InputError (a ValueError) or NonConvergence naming the first blow that has no answer. All blows are checked
         first: if the case would be refused with one (outside the range of its ball's data), nothing is computed.
         """
-        arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in inputs.values())) if inputs else [np.zeros(())]
+        arrays = np.broadcast_arrays(*(_numbers(x) for x in inputs.values())) if inputs else [np.zeros(())]
         shape = arrays[0].shape
         rows = np.stack([a.ravel() for a in arrays], axis=1) if inputs else np.zeros((1, 0))
         answers = self._model.launch(list(inputs), np.ascontiguousarray(rows))

@@ -32,10 +32,12 @@ class Table(dict):
 
     def where(self, **equal):
         """The rows in which each named column has the given value. Raises ValueError where a text is compared with a column
-        of numbers, or a number with a column of texts (names 1, 2, 3 are numbers)."""
+        of numbers, or a number with a column of texts (names 1, 2, 3 are numbers), and where several values are given."""
         keep = np.ones(len(next(iter(self.values()))), dtype=bool)
         for name, value in equal.items():
             column = self[name]
+            if np.ndim(value):
+                raise ValueError(f"where({name}=...) takes one value, not {len(value)}: rows with one of several are chosen one by one")
             if column.dtype.kind == "f" and np.isnan(column).all():  # empty cells are of either kind
                 keep &= False
                 continue

@@ -61,7 +61,10 @@ class Study:
     def rows(self, out, columns, force=False, quiet=True):
         """The given points. columns: key -> its value in every point, and `name` -> names of the points. One dimension,
         `point`."""
-        columns = {key: np.atleast_1d(values) for key, values in columns.items()}
+        columns = {key: np.ma.atleast_1d(values) for key, values in columns.items()}
+        for key, values in columns.items():
+            if any(v is None or v is np.ma.masked or v != v for v in values):
+                raise ValueError(f"{key}: a point has no value")
         if len({len(v) for v in columns.values()}) != 1:
             raise ValueError("columns of one length each: " + ", ".join(f"{k} has {len(v)}" for k, v in columns.items()))
         table = io.StringIO()

@@ -113,6 +113,26 @@ TEST(CommandLine, DiffSaysWhichModelsOneRunAloneAsked) {
   EXPECT_NE(none.find("launches\n  rigid-eccentric: in A only\n  stick-slip: in B only\n"), std::string::npos) << none;
 }
 
+TEST(CommandLine, DiffNamesNumbersOfOneRunAlone) {
+  const fs::path home = fresh_directory("diff_alone"), blow = home / "blow";
+  write(blow / "case.toml", kEccentricBlow);
+  const std::string flying = kEccentricBlow + "[flight]\nunits = \"metres\"\n";
+  write(home / "flying/case.toml", flying);
+  for (const char* name : {"blow", "flying"})
+    ASSERT_EQ(command("run '" + (home / name).string() + "' --quiet --out '" + (home / name).string() + "-out'").status,
+              0);
+  const auto diff = [&](const char* a, const char* b) {
+    return command("diff '" + (home / a).string() + "-out' '" + (home / b).string() + "-out'").text;
+  };
+  const std::string more = diff("blow", "flying"), less = diff("flying", "blow"), same = diff("blow", "blow");
+  EXPECT_NE(more.find(" in B only"), std::string::npos) << more;
+  EXPECT_EQ(more.find(" in A only"), std::string::npos) << more;
+  EXPECT_NE(more.find("\n    flights.rigid-eccentric.carry_m\n"), std::string::npos) << more;
+  EXPECT_NE(less.find(" in A only"), std::string::npos) << less;
+  EXPECT_EQ(less.find(" in B only"), std::string::npos) << less;
+  EXPECT_EQ(same.find(" only"), std::string::npos) << same;
+}
+
 TEST(CommandLine, DiffSaysWhereItsErrorComesFrom) {
   const fs::path home = fresh_directory("diff_band"), blow = home / "blow";
   write(blow / "case.toml", kEccentricBlow + "[ball]\nmodel = \"tour\"\n[contact]\nface_friction = 0.3\n");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -37,6 +38,24 @@ TEST(FlightCase, IsTheSameBallInYardsAndInMetres) {
   EXPECT_EQ(yards["flight_time_s"], metres["flight_time_s"]);
   EXPECT_GT(yards["total_yd"], yards["carry_yd"]);
   EXPECT_FALSE(metres.contains("total_m"));
+}
+
+/// A stated rolling resistance beyond the spread of turfs widens the spread to itself: the total stays inside it.
+TEST(FlightCase, TheSpreadOfTurfsHoldsTheOneThatIsStated) {
+  const auto totals = [](const std::string& rolling) {
+    const auto s =
+        run("flight_turf", kEccentricBlow + "[flight]\n[flight.turf]\n" + rolling)["flights"]["rigid-eccentric"];
+    return std::array{s["total_firm_yd"].get<double>(), s["total_yd"].get<double>(), s["total_slow_yd"].get<double>()};
+  };
+  const auto usual = totals(""), firm = totals("rolling = 0.05\n"), slow = totals("rolling = 0.3\n");
+  EXPECT_GT(usual[0], usual[1] + 0.3);
+  EXPECT_GT(usual[1], usual[2] + 0.3);
+  EXPECT_EQ(firm[0], firm[1]);
+  EXPECT_GT(firm[1], usual[0] + 0.3);
+  EXPECT_EQ(firm[2], usual[2]);
+  EXPECT_EQ(slow[2], slow[1]);
+  EXPECT_LT(slow[1], usual[2] - 0.3);
+  EXPECT_EQ(slow[0], usual[0]);
 }
 
 TEST(FlightCase, LeavesACaseWithoutItAlone) {
@@ -207,6 +226,19 @@ TEST(FlightCase, StatedLaunchesAreSweptAsBlowsAre) {
                                             "spin_rate_rpm = 2500\n[flight]\n[[variant]]\nname = \"stated\"\n");
   EXPECT_NEAR(s["range"]["carry_m"][1].get<double>(), blow["range"]["carry_m"][1].get<double>(), 1e-9)
       << "as the launch in place of a model's";
+}
+
+/// A level launch below raised ground comes no higher, as one downwards does.
+TEST(FlightCase, ABallThatIsLaunchedLevelDoesNotRise) {
+  for (const char* angle : {"-1", "0"}) {
+    const auto s =
+        run("flight_level", std::string("kind = \"study\"\noutputs = [\"ball_speed_mps\", \"carry_m\"]\n") +
+                                "[launch]\nball_speed_mps = 60\nspin_rate_rpm = 500\nlaunch_angle_deg = " + angle +
+                                "\n[flight]\n[flight.ground]\nheight_m = 1\n[[axis]]\nkey = "
+                                "\"launch.ball_speed_mps\"\nvalues = [50, 60]\n");
+    EXPECT_EQ(s["failed"], 0) << angle;
+    EXPECT_EQ(s["points"], 2);
+  }
 }
 
 TEST(FlightCase, OfAStatedLaunchNothingOfABlowIsKnown) {

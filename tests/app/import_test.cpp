@@ -1,5 +1,6 @@
 // Launch monitors' exports, made by a script in the layouts that their makers and users describe in public: what is
 // understood, what is refused, and that a report comes out of two commands.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "golf/units.hpp"
 #include "loop/shots/shots.hpp"
 #include "models/flight/flight.hpp"
 #include "tests/app/command.hpp"
@@ -85,6 +87,55 @@ TEST(Import, LeftAndRightBecomeSigns) {
   EXPECT_NEAR(shots.find("spin_rate_rpm")->native(0), 6400, 1e-9);
 }
 
+/// Header, cells and what they mean in our unit and sign, under a column of its own.
+TEST(Import, UnitsAndSidesMeanWhatTheyMeanForTheirQuantity) {
+  struct Told {
+    std::string header, cells, column;
+    double first, second;
+  };
+  const fs::path dir = test::fresh_directory("import_meanings");
+  for (const Told& t : {Told{"Impact Lateral (in mm)", "-2,3", "impact_toe_mm", -2, 3},
+                        {"Impact Lateral (in)", "-0.2,0.3", "impact_toe_mm", -5.08, 7.62},
+                        {"Impact Lateral (in toe+/heel-)", "-0.2,0.3", "impact_toe_mm", -5.08, 7.62},
+                        {"Impact Vertical (mm)", "6.0 H,2.0 L", "impact_high_mm", 6, -2},
+                        {"Impact Lateral (mm)", "6.0 H,2.0 T", "impact_toe_mm", -6, 2},
+                        {"Sidespin (L+/R-)", "300,-200", "sidespin_rpm", -300, 200},
+                        {"Sidespin (L+/R-) [rpm]", "300,-200", "sidespin_rpm", -300, 200},
+                        {"Spin Axis (deg L+ R-)", "3,-4", "spin_axis_deg", -3, 4},
+                        {"Launch Direction (deg left positive)", "3,-4", "azimuth_deg", -3, 4},
+                        {"Launch Direction (+ = left)", "3,-4", "azimuth_deg", -3, 4},
+                        {"Launch Direction (right + / left -)", "3,-4", "azimuth_deg", 3, -4},
+                        {"Attack Angle (deg)", "3 D,4 U", "attack_angle_deg", -3, 4},
+                        {"Club Path (deg in to out +)", "3,-4", "club_path_deg", 3, -4}}) {
+    fs::remove_all(dir / "case");
+    const auto comma = t.cells.find(',');
+    test::write(dir / "a.csv", "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (in degrees),Spin Rate (rpm)," +
+                                   t.header + "\n7i,115,82,16,6400," + t.cells.substr(0, comma) +
+                                   "\n7i,116,82,16,6500," + t.cells.substr(comma + 1) + "\n");
+    const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+    ASSERT_EQ(o.status, 0) << t.header << o.text;
+    const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+    ASSERT_TRUE(shots.find(t.column)) << t.header << o.text;
+    EXPECT_NEAR(shots.find(t.column)->native(0), t.first, 1e-9) << t.header;
+    EXPECT_NEAR(shots.find(t.column)->native(1), t.second, 1e-9) << t.header;
+    ASSERT_TRUE(shots.find("launch_angle_deg")) << o.text;
+  }
+}
+
+TEST(Import, UnitsThatOnlyOthersUseAreConverted) {
+  const fs::path dir = test::fresh_directory("import_other_units");
+  test::write(dir / "a.csv",
+              "Club,Ball Speed (ft/s),Club Speed (knots),Launch Angle (mrad),Spin Rate (rad/s)\n"
+              "7i,168.7,71.3,280,675.4\n7i,170.1,71.5,281,680.6\n");
+  const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  EXPECT_NEAR(shots.find("ball_speed_mps")->native(0), 168.7 * 0.3048, 1e-4);
+  EXPECT_NEAR(shots.find("club_speed_mps")->native(0), 71.3 * 1852 / 3600, 1e-4);
+  EXPECT_NEAR(shots.find("launch_angle_deg")->native(0), degrees(0.28), 1e-4);
+  EXPECT_NEAR(shots.find("spin_rate_rad_per_s")->native(0), 675.4, 1e-9);
+}
+
 TEST(Import, AWrongUnitIsCaught) {
   const fs::path dir = test::fresh_directory("import_units");
   const auto file = [&](const std::string& club_unit, const std::string& ball_unit) {
@@ -121,6 +172,12 @@ TEST(Import, SaysWhatItCannotRead) {
   refuse(head + "7i,fast,82,16,6400,22\n", "--units imperial", "'fast' is not a number");
   refuse(head + "7i,115,82,16,6400,22\n", "--units imperial --club driver", "no shot with club 'driver'");
   refuse(head + "7i,115,82,16,6400,22\n", "--units imperial --column 'Spin Rate=spin_mph'", "no such quantity");
+  refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle (deg),Spin Rate (turns/min)\n7i,115,82,16,6400\n", "",
+         "the unit 'turns/min' is not known");
+  refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle (mm),Spin Rate (rpm)\n7i,115,82,16,6400\n", "",
+         "mm is no unit of launch_angle");
+  refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Impact Lateral (mm)\n7i,115,82,16,6400,3 R\n",
+         "", "'3 R' is not a number");
   refuse("{\"a\": ", "", "broken JSON");
   const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
   EXPECT_EQ(o.status, 2);
@@ -461,6 +518,10 @@ TEST(Import, WhatWouldBeReadWrongIsRefused) {
       "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Carry (yd)\n"
       "7i,115,82,16,6400,22,90\n7i,116,82,16,6500,22,92\n",
       "of what the ball's speed (116 mph), launch angle and spin make");
+  refuse(
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Carry\n"
+      "7i,115,82,16,6400,22,90 yd\n7i,116,82,16,6500,22,92 yd\n",
+      "of what the ball's speed (116 mph), launch angle and spin make");
   refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n7i,115,-,16,6400,22\n",
          "column 'Club Speed (mph)' is empty");
   refuse(
@@ -570,6 +631,36 @@ TEST(Import, ByHand) {
   EXPECT_EQ(shots.find("head_mass_kg"), nullptr) << "one club: its mass is the head's own";
   EXPECT_NE(test::content(dir / "case" / "case.toml").find("[head]\nmass_kg = 0.269 "), std::string::npos);
   EXPECT_EQ(shots.find("kept_wetter")->text[1], "kalt");
+}
+
+TEST(Import, KeptNumbersWithADecimalCommaAreNumbers) {
+  const fs::path dir = test::fresh_directory("import_kept_comma");
+  test::write(
+      dir / "a.csv",
+      "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Tempo;Wind\n7i;115,1;82,0;16,4;6400;0,85;kalt, "
+      "nass\n7i;116,2;82,1;16,1;6500;0,9;\n");
+  const auto o = command("import '" + (dir / "a.csv").string() + "' --keep Tempo --keep Wind --out '" +
+                         (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  ASSERT_TRUE(shots.find("kept_tempo") && shots.find("kept_tempo")->numeric) << o.text;
+  EXPECT_NEAR(shots.find("kept_tempo")->native(0), 0.85, 1e-12);
+  EXPECT_EQ(shots.find("kept_wind")->text[0], "kalt, nass");
+}
+
+TEST(Import, ObjectsOfValueAndUnitAreCells) {
+  const fs::path dir = test::fresh_directory("import_value_unit");
+  const auto shot = [](double ball) {
+    return fmt::format(
+        R"({{"Club":"7i","BallSpeed":{{"value":{},"unit":"mph"}},"ClubSpeed":{{"value":82,"unit":"mph"}},)"
+        R"("LaunchAngle":{{"value":16,"unit":"deg"}},"SpinRate":{{"value":6400,"unit":"rpm"}}}})",
+        ball);
+  };
+  test::write(dir / "a.json", "[" + shot(111) + "," + shot(112.5) + "]");
+  const auto o = command("import '" + (dir / "a.json").string() + "' --out '" + (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  EXPECT_NEAR(shots.find("ball_speed_mph")->native(1), 112.5, 1e-9);
 }
 
 /// Headers that read alike are columns of their own, each with its cells.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "app/kinds/kinds.hpp"
@@ -87,6 +88,29 @@ TEST(IdentifyShaft, TheShaftOfASwingIsFoundFromItsDeflection) {
   EXPECT_GT(before, 2);
   EXPECT_LT(after, 1e-5);
   EXPECT_GT(told.at("rigid_rms_mm").at("train").get<double>(), before);
+  EXPECT_TRUE(found.at("holdout_rms_mm").is_null()) << "every swing was fitted";
+}
+
+TEST(IdentifyShaft, WhatIsPredictedComesAfterWhatIsFitted) {
+  const fs::path dir = fresh_directory("identify_spans");
+  const std::string text =
+      "kind = \"identify-shaft\"\n[shaft]\nname = \"composite-driver\"\ndamping_ratio = 0.01\ndamping_frequency_Hz = "
+      "4\n"
+      "[head]\nmass_kg = 0.2\ncg_mm = [-40, 0, 0]\ninertia_kg_m2 = [[3e-4, 0, 0], [0, 4e-4, 0], [0, 0, "
+      "5e-4]]\n[markers]\nfile = \"not/there.csv\"\nsmoothing_ms = 5\n";
+  const auto check = [&](const std::string& train, const std::string& test) {
+    write(dir / "case.toml", text + "train_s = " + train + "\ntest_s = " + test + "\n");
+    return command("check " + dir.string());
+  };
+  const Outcome good = check("[0.9, 1.2]", "[1.2, 1.3]");
+  EXPECT_EQ(good.status, 0) << good.text;
+  for (const auto& [train, test, says] : {std::tuple{"[1.2, 0.9]", "[1.2, 1.3]", "the first instant comes before"},
+                                          {"[0.9, 1.2]", "[1.3, 1.2]", "the first instant comes before"},
+                                          {"[0.9, 1.25]", "[1.2, 1.3]", "comes after what is fitted"}}) {
+    const Outcome o = check(train, test);
+    EXPECT_EQ(o.status, 2) << train << test << o.text;
+    EXPECT_NE(o.text.find(says), std::string::npos) << o.text;
+  }
 }
 
 /// The summary of a case of this text, run.
@@ -240,6 +264,30 @@ TEST(CalibrateBall, ObliqueTargetsHaveHarmonicsWithoutAMesh) {
   EXPECT_NE(resolved.find("harmonics = 3"), std::string::npos) << resolved;
 }
 
+/// A parameter that ends where the search does is told, and where it is expected beyond the search is refused.
+TEST(CalibrateBall, AnEndOfTheSearchIsTold) {
+  const fs::path dir = fresh_directory("calibrate_ball_end");
+  const std::string text = "kind = \"calibrate-ball\"\n" + one_piece(10, 50) +
+                           "[mesh]\nsector = 1\nrings = 1\n[time]\nsteps_per_contact = 60\n"
+                           "[[free]]\nwhat = \"branch-moduli\"\n[target]\nspeeds_mps = [30]\n"
+                           "contact_speed_mps = 30\nrestitution_slope_s_per_m = 0\ncontact_time_sigma_ms = 10\n";
+  // No ball of these moduli loses nothing at all: the losses go to where the search ends.
+  const auto far = summary_of(dir, text + "restitution = 1.0\nrestitution_sigma = 1e-4\n");
+  ASSERT_EQ(far.at("parameters").size(), 1u);
+  EXPECT_TRUE(far["parameters"][0].at("at_bound").get<bool>()) << far["parameters"][0];
+  const auto near = summary_of(dir, text + "restitution = 0.75\nrestitution_sigma = 1e-2\n");
+  EXPECT_FALSE(near["parameters"][0].at("at_bound").get<bool>()) << near["parameters"][0];
+  write(dir / "case.toml",
+        text +
+            "restitution = 0.75\n[[free]]\nwhat = \"head-mass\"\nshots = [\"s\"]\noffset_g = 40\n[[shots]]\nname = "
+            "\"s\"\nlaunch_angle_deg = 10\nspin_rate_rpm = 3000\nspin_sigma = 0.03\n[shots.delivery]\n"
+            "club_speed_mps = 40\ndynamic_loft_deg = 14\n[shots.head]\nmass_kg = 0.2\ncg_mm = [-40, 0, 0]\n"
+            "inertia_kg_m2 = [[3e-4, 0, 0], [0, 4e-4, 0], [0, 0, 5e-4]]\n");
+  const Outcome beyond = command("check " + dir.string());
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.text.find("the search goes no further"), std::string::npos) << beyond.text;
+}
+
 /// The restitution of the reduced law of a ball that a wall of 1 and 2 degrees throws back is that of the wall at right
 /// angles: with friction, and on a smooth wall, where there is no spin to go by.
 TEST(CalibrateReduced, TheLawsRestitutionIsThatOfTheWall) {
@@ -263,6 +311,7 @@ TEST(CalibrateReduced, TheLawsRestitutionIsThatOfTheWall) {
     // Two degrees take 0.06 % of the speed, and the slip of such a blow 1e-4 of its energy.
     EXPECT_NEAR(at_rest + 25 * slope, e[0], 1e-3) << friction;
     EXPECT_NEAR(at_rest + 40 * slope, e[1], 1e-3) << friction;
+    EXPECT_TRUE(found.at("at_bound").at("wall").is_array());
     // A thousandth of the restitution is 0.04 m/s.
     EXPECT_LT(found["sets"]["wall"]["rigid-eccentric"]["ball_speed_rms_mps"].get<double>(), 0.04) << friction;
   }
@@ -296,6 +345,30 @@ TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
   EXPECT_NEAR(d.at("density_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(d.at("left_s").get<double>(), added, 1e-6);
   EXPECT_NEAR(d.at("error_s").get<double>(), std::sqrt(2.0) * 0.02 / std::sqrt(40), 1e-6);
+  // Four shots of `high` are off by 1 s: each counts as the knee, and 36 tell the mean. About the upper of the two
+  // middle shots half of them lie at 0 and half at 0.04 s.
+  for (const char* off : {"1", "-1"}) {
+    std::string all;
+    int row = 0;
+    for (std::size_t from = 0, to; from < shots.size(); from = to + 1) {
+      to = shots.find('\n', from);
+      std::string line = shots.substr(from, to - from);
+      if (++row > 42 && row <= 46) {  // after the heads and the 40 of `low`
+        const auto second = line.rfind(','), first = line.rfind(',', second - 1);
+        const double time = std::stod(line.substr(second + 1)) + std::stod(off) * (row % 2 ? 1 : -1);
+        line = line.substr(0, first) + fmt::format(",{:.9f},{:.9f}", time, time);
+      }
+      all += line + "\n";
+    }
+    write(dir / "times.csv", all);
+    const Outcome o = command("run " + dir.string() + " --quiet --force --out " + (dir / "out").string());
+    ASSERT_EQ(o.status, 0) << o.text;
+    const auto strayed = nlohmann::json::parse(content(dir / "out/summary.json"))["sites"]["high"];
+    ASSERT_EQ(strayed.at("shots"), 40);
+    const double knee = 1.5 * 1.4826 * 0.04;
+    EXPECT_NEAR(strayed.at("measured_less_law_s").get<double>(), added, 1e-6);
+    EXPECT_NEAR(strayed.at("error_s").get<double>(), std::sqrt(36 * 0.02 * 0.02 + 4 * knee * knee) / 36, 1e-6);
+  }
   const Outcome twice = command("check " + dir.string() + " --set times.site[2].name=low");
   EXPECT_EQ(twice.status, 2);
   EXPECT_NE(twice.text.find("'low' is there twice"), std::string::npos) << twice.text;

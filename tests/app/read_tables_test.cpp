@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 
 #include "app/read_shaft.hpp"
 #include "app/read_solid.hpp"
@@ -44,6 +45,43 @@ mass_centre_z_mm = [0.6, 1.8]
       for (const auto& [s, times] : {std::pair{0.0, 1.0}, {0.5, 2.0}, {1.0, 3.0}})
         EXPECT_NEAR((shaft.at(s).centres.*of)[axis], times * first, 1e-15) << key << " at " << s;
     }
+}
+
+TEST(ReadTables, AForcedGripHasAForce) {
+  const fs::path dir = test::fresh_directory("read_forced");
+  const auto checked = [&](const std::string& grip) {
+    return test::command("check driver-toe --set 'grip=" + grip + "'");
+  };
+  const test::Outcome none = checked("{hold=\"forced\"}");
+  EXPECT_EQ(none.status, 2) << none.text;
+  EXPECT_NE(none.text.find("give its force and moment"), std::string::npos) << none.text;
+  const test::Outcome some = checked("{hold=\"forced\", force_N=[-55, 2, 332], moment_N_m=[-1, 40, -1]}");
+  EXPECT_EQ(some.status, 0) << some.text;
+}
+
+/// Nothing says what a shaft is before its first station.
+TEST(ReadTables, AShaftBeginsAtItsButt) {
+  const auto refused = [](const std::string& text) -> std::string {
+    CaseFile file = written("read_butt", text);
+    try {
+      read_shaft(file.root().table("shaft"));
+    } catch (const InputError& e) { return e.what(); }
+    return "";
+  };
+  const std::string
+      table =
+          "[shaft.table]\narc_length_mm = [FIRST, 1000]\nbending_stiffness_N_m2 = [60, 20]\n"
+          "torsional_stiffness_N_m2 = [40, 20]\nmass_per_length_g_per_m = [60, 50]\nmean_radius_mm = [7, 4]\n",
+      tube =
+          "[shaft.tube]\narc_length_mm = [FIRST, 1000]\nouter_radius_mm = [7, 4]\nwall_mm = [1, 1]\nshear_factor = "
+          "0.5\n"
+          "[[shaft.tube.layer]]\nE_GPa = 190\nG_GPa = 73\ndensity_kg_per_m3 = 7850\n";
+  for (const std::string& text : {table, tube}) {
+    const auto from = [&](const char* first) { return std::regex_replace(text, std::regex("FIRST"), first); };
+    EXPECT_EQ(refused(from("0")), "");
+    EXPECT_NE(refused(from("200")).find("the first station is the butt"), std::string::npos) << refused(from("200"));
+    EXPECT_NE(refused(from("-10")).find("the first station is the butt"), std::string::npos);
+  }
 }
 
 /// log10 a = -c1 (T - 298) / (c2 + T - 298), less the same where the constants hold; moduli go with T.

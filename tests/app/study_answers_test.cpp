@@ -85,6 +85,48 @@ TEST(StudyAnswers, WhatIsNoQuantityOfItsOwnIsRefused) {
           "holds words");
 }
 
+TEST(StudyAnswers, OneNameIsOfOneColumn) {
+  const std::string solve =
+      "[[solve]]\nname = \"NAME\"\nkey = \"delivery.club_speed_mps\"\nrange = [20, 60]\n"
+      "output = \"ball_speed_mps\"\nvalue = 60\n";
+  refused(study("", kMasses + std::regex_replace(solve, std::regex("NAME"), "ball_speed_mps")), "is an output too");
+  refused(study("", std::regex_replace(kMasses, std::regex("key"), "name = \"ball_speed_mps\"\nkey")),
+          "is a column of the design too");
+}
+
+/// A ball that no moduli bring to the bounce of the first is without an answer.
+TEST(StudyAnswers, ABounceThatCannotBeKeptIsNoAnswer) {
+  const fs::path dir = fresh_directory("study_bounce");
+  const std::string text = R"(kind = "study"
+models = ["fe-free-body"]
+outputs = ["ball_speed_mps", "wall_restitution"]
+keep_bounce_mps = 30
+accuracy = "look"
+figures = false
+[[ball.layers]]
+c10_MPa = 14
+bulk_MPa = 2000
+branch_moduli_MPa = [60]
+branch_times_ms = [0.05]
+[contact]
+face_friction = 0.3
+[[variant]]
+name = "as it is"
+[[variant]]
+name = "softer"
+set = ["ball.layers[1].branch_moduli_MPa=[50]"]
+[[variant]]
+name = "elastic"
+set = ["ball.layers[1].branch_times_ms=[50]"]
+)" + kBlow;
+  const Outcome o = run(dir, text);
+  EXPECT_NE(o.text.find("keep_bounce"), std::string::npos) << o.text;
+  const CsvFile points(dir / "out" / "points.csv");
+  ASSERT_EQ(points.rows(), 3u) << o.text;
+  EXPECT_NEAR(points.number("wall_restitution", 1), points.number("wall_restitution", 0), 1.5e-3);
+  EXPECT_EQ(points.text("ball_speed_mps", 2), "");
+}
+
 /// Balls that do not rise to the landing are in no mean, are out of the fairway, and are told.
 TEST(StudyAnswers, BallsThatDoNotLandAreTold) {
   const fs::path dir = fresh_directory("study_missing");

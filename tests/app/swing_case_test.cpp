@@ -141,6 +141,38 @@ TEST(SwingCase, AClubThatIsHeldStillWeighsWhatItWeighs) {
   EXPECT_GT(swing.rows(), 40u);
 }
 
+/// In soft hands that do not move it hangs from the first instant as it hangs at the last.
+TEST(SwingCase, SoftHandsHoldAClubAsItHangsInThem) {
+  const auto dir = fresh_directory("swing_soft_hands");
+  std::ofstream(dir / "case.toml") << kCase << "[grip]\ndrive = \"hands\"\nstiffness_N_per_m = [2e4, 2e4, 2e4]\n"
+                                   << "rotational_stiffness_N_m_per_rad = [100, 100, 100]\n";
+  std::string motion = "time_s,grip_x_m,grip_y_m,grip_z_m,grip_a_deg,grip_b_deg,grip_c_deg\n";
+  for (int i = 0; i < 21; ++i) motion += std::to_string(0.01 * i) + ",0,0,1,30,10,0\n";
+  std::ofstream(dir / "grip.csv") << motion;
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile swing(dir / "out/swing.csv");
+  const double weight = (0.2 + 1.1 * 0.055) * 9.80665;
+  ASSERT_GT(swing.rows(), 40u);
+  for (std::size_t i = 0; i < swing.rows(); ++i) {
+    EXPECT_NEAR(std::hypot(swing.number("force_x_N", i), swing.number("force_y_N", i), swing.number("force_z_N", i)),
+                weight, 1e-3 * weight);
+    EXPECT_LT(swing.number("head_speed_mps", i), 1e-3);
+  }
+}
+
+TEST(SwingCase, AShaftWithoutAHeadHasNoFace) {
+  const auto dir = fresh_directory("swing_headless");
+  std::ofstream(dir / "case.toml") << kCase;
+  std::ofstream(dir / "grip.csv") << euler_motion();
+  const Outcome o = command("run " + dir.string() + " --set joint.kind=none --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto told = nlohmann::json::parse(content(dir / "out/summary.json"));
+  EXPECT_FALSE(told.contains("delivery")) << told;
+  EXPECT_GT(told.at("tip").at("club_speed_mps").get<double>(), 1);
+  EXPECT_EQ(o.text.find("loft"), std::string::npos) << o.text;
+}
+
 TEST(SwingCase, TheWrenchFedBackAndStiffHandsSwingAlike) {
   // Prescribed; forced by the wrench that this took; springs so stiff that they hardly give.
   const auto dir = fresh_directory("swing_drives");

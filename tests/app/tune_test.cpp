@@ -100,6 +100,24 @@ Recovery recover(const char* model, const std::vector<std::pair<const char*, dou
   return out;
 }
 
+/// Sliding friction that is set to what it is leaves the law as it is.
+TEST(Tune, FrictionAtVanishingSlipKeepsItsRatio) {
+  for (const char* name : {"volumetric_friction", "common_friction"}) {
+    models::Options o;
+    o.volumetric.friction = 0.37;
+    o.volumetric.static_friction = 0.8;
+    Blow b;
+    const models::NamedParameter& p = *models::find_parameter(name);
+    p.set(o, b, 0.37);
+    EXPECT_DOUBLE_EQ(o.volumetric.static_friction, 0.8) << name;
+    p.set(o, b, 0.74);
+    EXPECT_DOUBLE_EQ(o.volumetric.static_friction, 1.6) << name;
+    o.volumetric.static_friction = o.volumetric.friction;
+    p.set(o, b, 0.1 + 0.2);
+    EXPECT_EQ(o.volumetric.static_friction, o.volumetric.friction) << name;
+  }
+}
+
 TEST(Tune, IntervalsCoverWhatTheyClaim) {
   // The two-sigma region of four parameters: chi-squared quantile at 0.9545. Two standard deviations hold 95.45 % of a
   // normal's draws; 400 seeds tell that to three sigma of a binomial, 3.1 %.
@@ -137,6 +155,12 @@ TEST(LeastSquares, BlindDirectionIsNamed) {
   EXPECT_NEAR(known.blind[0][0], -known.blind[0][1], 1e-6);
   EXPECT_NEAR(known.correlation(0, 1), -1, 1e-9);
   EXPECT_GT(known.sd[0], 2);
+}
+
+TEST(LeastSquares, AnEndOfTheBoundsIsTold) {
+  const std::vector<solvers::Bounds> bounds{{-1, 1}, {0, 10}, {0, 10}, {-3, 3}};
+  const std::vector<bool> expected{false, true, true, false};
+  EXPECT_EQ(solvers::at_bounds(Eigen::Vector4d(0, 9.995, 0, 2.9), bounds), expected);
 }
 
 TEST(LeastSquares, FewerDataThanParametersLeaveDirectionsBlind) {
@@ -290,6 +314,40 @@ max = 1.0
   EXPECT_EQ(told[0]["parameters"][0]["value"], told[1]["parameters"][0]["value"]);
   EXPECT_NEAR(told[1]["errors"][1]["after"]["mean"].get<double>(),
               told[0]["errors"][1]["after"]["mean"].get<double>() - 4000, 1e-6);
+}
+
+/// A ball that the case's ground is too high for leaves the other rows their errors.
+TEST(Tune, ABallThatDoesNotLandIsOneRow) {
+  const auto d = test::fresh_directory("tune_lost");
+  std::ofstream(d / "case.toml") << R"(kind = "tune"
+model = "rigid-planar"
+[head]
+mass_kg = 0.26
+[flight]
+[flight.ground]
+height_m = 11
+[data]
+shots = "shots.csv"
+compared_only = ["carry_m"]
+[data.noise]
+ball_speed_mps = 0.25
+carry_m = 2.0
+[[parameters]]
+name = "restitution"
+min = 0.5
+max = 1.0
+[split]
+train_fraction = 1
+)";
+  std::ofstream shots(d / "shots.csv");
+  shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps,carry_m\n";
+  for (int i = 0; i < 12; ++i)
+    shots << i + 1 << ',' << 38 + i % 3 << ",-2," << (i == 5 ? 4 : 20) << ',' << 53 + i % 3 << ",150\n";
+  shots.close();
+  const nlohmann::json s = run(d);
+  ASSERT_EQ(s["rows"]["train"], 12);
+  ASSERT_EQ(s["errors"].size(), 2U) << s;
+  for (const auto& e : s["errors"]) EXPECT_EQ(e["rows"], 11) << e;
 }
 
 /// Twelve shots whose `ball_type` is 1 or 2 in turn and whose `make` is a word.

@@ -36,7 +36,7 @@ class TwoWells final : public Problem {
 
   int width() const override { return 0; }
   const Channel& channel(int) const override { throw std::logic_error("no channels"); }
-  void refute(int) override {}
+  void refute(int, bool) override {}
   std::vector<Row> rows() const override { return {}; }
   const Eigen::MatrixXd& measured() const override { return none_; }
   std::vector<Flag> flags() const override { return {}; }

@@ -75,6 +75,23 @@ TEST(FeImpact, NormalBlowOnAWall) {
 
 /// The library's balls keep to what these four were calibrated to: e = 0.86 - 0.0029 v within 0.005, contact 0.45 +-
 /// 0.03 ms and 9-16 kN at 40 m/s; on the default mesh, which is finer than the calibration's.
+/// Fewer angles than the harmonics need would lose force between them, in the coarser companion too.
+TEST(FeImpact, ThePatchHasAsManyAnglesAsItsHarmonicsNeed) {
+  FeImpactOptions o;
+  o.harmonics = 4;
+  for (const int angles : {0, 9, 12}) {
+    o.contact_angles = angles;
+    EXPECT_TRUE(o.faults().empty()) << angles;
+    ASSERT_TRUE(o.coarser());
+    EXPECT_TRUE(o.coarser()->faults().empty()) << angles;
+    EXPECT_EQ(o.coarser()->contact_angles, angles > 0 ? std::max(angles - 6, 5) : 0);
+  }
+  for (const int angles : {-1, 1, 8}) {
+    o.contact_angles = angles;
+    EXPECT_EQ(o.faults().size(), 1u) << angles;
+  }
+}
+
 TEST(FeImpact, LibraryBallsBounce) {
   std::size_t seen = 0;
   for (const FeBall& named : ball_library()) {

@@ -168,6 +168,28 @@ TEST(LoadedShaft, ASteadyShaftStaysAsItIsOnItsHead) {
   EXPECT_LT((flight.head->velocity(flight.state) - v0 - expected).norm(), 0.03 * expected.norm());
 }
 
+TEST(LoadedShaft, SpringsOfTheHandsActAlongTheGripsAxes) {
+  const Club club = test::driver_club();
+  const Delivery d{.club_speed = 45, .dynamic_loft = radians(12), .face_angle = radians(5)};
+  const Mat3 axes = d.face_to_global() * face_to_grip(club.geometry).transpose();
+  ASSERT_GT((axes - d.face_to_global()).norm(), 0.3) << "another frame than the face's";
+  const Vec3 moved(1e-4, 2e-4, -3e-4);
+  for (int axis = 0; axis < 3; ++axis) {
+    fem::JointStiffness k;
+    k.translation[axis] = 1e5;
+    const Flight flight(club, d, {.grip = Grip::hands, .hands = k, .elements = kElements, .growth = kGrowth});
+    const fem::Node& butt = flight.shaft->nodes().front();
+    fem::State s = flight.state;
+    s.q.segment<3>(butt.translation.q) += moved;
+    fem::Vector inertia = fem::Vector::Zero(flight.system.dof_map.size()), force = inertia;
+    ASSERT_EQ(flight.system.terms.back()->body(), "hands");
+    flight.system.terms.back()->residual(s, inertia, force);
+    const Vec3 found = force.segment<3>(butt.translation.v), along = axes.col(axis);
+    EXPECT_NEAR(std::abs(found.dot(along)), 1e5 * std::abs(moved.dot(along)), 1e-6) << axis;
+    EXPECT_LT(found.cross(along).norm(), 1e-6) << axis;
+  }
+}
+
 TEST(LoadedShaft, RefusesAnotherMesh) {
   Blow blow;
   blow.club = test::driver_club();

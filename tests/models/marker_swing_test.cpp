@@ -59,6 +59,22 @@ Seen seen() {
   return out;
 }
 
+TEST(MarkerSwing, ADropOutIsOneSampleOfOneMarker) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const MarkerSwing whole = marker_swing(seen().track, kStill, kEnd);
+  Seen s = seen();
+  s.track.head[3][1].x() = s.track.shaft[5][0].z() = s.track.wrists[7].y() = nan;  // at address
+  s.track.shaft[120][2].y() = nan;
+  const MarkerSwing swing = marker_swing(s.track, kStill, kEnd);
+  EXPECT_EQ(swing.clamp.times.size(), whole.clamp.times.size() - 2);
+  EXPECT_EQ(swing.times.size(), whole.times.size() - 3);
+  EXPECT_NEAR(swing.length, whole.length, 1e-12);
+  EXPECT_LT((swing.clamp.positions.back() - whole.clamp.positions.back()).norm(), 1e-12);
+  EXPECT_NEAR(swing.lead.back(), whole.lead.back(), 1e-12);
+  for (std::size_t i = 0; i < s.track.times.size(); ++i) s.track.head[i][2].z() = nan;
+  EXPECT_THROW(marker_swing(s.track, kStill, kEnd), std::invalid_argument);
+}
+
 TEST(MarkerSwing, FindsClampAndDeflection) {
   const Seen s = seen();
   const MarkerSwing swing = marker_swing(s.track, kStill, kEnd);

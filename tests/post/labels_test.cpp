@@ -1,6 +1,10 @@
 // Units as people read them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "golf/units.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
 
@@ -27,6 +31,18 @@ TEST(Channels, AnglesAreComparedOnTheCircle) {
   EXPECT_NEAR(difference(axis, -180, 180), 0, 1e-12);
   EXPECT_EQ(difference(axis, 10.25, -20.5), 30.75);
   EXPECT_EQ(difference(speed, 400, 10), 390);
+}
+
+/// A top spin whose axis is at 179.5 deg on the fine mesh and at -179.5 deg on the coarse one errs by one degree.
+TEST(Channels, TheErrorOfAnAngleIsTheShorterWayRound) {
+  const auto tilted = [](double degrees) {
+    const double a = hosel::radians(degrees);
+    return hosel::Launch{.velocity = hosel::Vec3(60, 0, 5), .spin = -200 * hosel::Vec3(0, std::cos(a), std::sin(a))};
+  };
+  const auto table = hosel::post::launch_table({{.title = "m", .launch = tilted(179.5), .coarser = tilted(-179.5)}});
+  const auto row = std::ranges::find(table.rows, "spin_axis [deg]", [](const auto& r) { return r.front(); });
+  ASSERT_NE(row, table.rows.end());
+  EXPECT_EQ(row->back(), "179.50 +-1.00");
 }
 
 }  // namespace
