@@ -279,7 +279,8 @@ TEST(CalibrateBall, AnEndOfTheSearchIsTold) {
   EXPECT_FALSE(near["parameters"][0].at("at_bound").get<bool>()) << near["parameters"][0];
   write(dir / "case.toml",
         text +
-            "restitution = 0.75\n[[free]]\nwhat = \"head-mass\"\nshots = [\"s\"]\noffset_g = 40\n[[shots]]\nname = "
+            "restitution = 0.75\n[contact]\nface_friction = 0.3\n[[free]]\nwhat = \"head-mass\"\nshots = "
+            "[\"s\"]\noffset_g = 40\n[[shots]]\nname = "
             "\"s\"\nlaunch_angle_deg = 10\nspin_rate_rpm = 3000\nspin_sigma = 0.03\n[shots.delivery]\n"
             "club_speed_mps = 40\ndynamic_loft_deg = 14\n[shots.head]\nmass_kg = 0.2\ncg_mm = [-40, 0, 0]\n"
             "inertia_kg_m2 = [[3e-4, 0, 0], [0, 4e-4, 0], [0, 0, 5e-4]]\n");
