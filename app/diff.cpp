@@ -153,14 +153,14 @@ double nothing(const std::string& key) {
 /// Everything in a summary, by its place there.
 struct Flat {
   std::map<std::string, double> numbers;
-  std::map<std::string, std::string> words;  ///< texts and flags
+  std::map<std::string, std::string> words;  ///< texts, flags, and null where a number is missing
   std::map<std::string, std::size_t> lists;  ///< their lengths
 };
 
 void flatten(const json& j, const std::string& name, Flat& out) {
   if (j.is_number()) out.numbers[name] = j.get<double>();
   if (j.is_string()) out.words[name] = j.get<std::string>();
-  if (j.is_boolean()) out.words[name] = j.dump();
+  if (j.is_boolean() || j.is_null()) out.words[name] = j.dump();
   if (!j.is_structured()) return;
   if (j.is_array()) out.lists[name] = j.size();
   for (const auto& [key, value] : j.items()) flatten(value, name.empty() ? key : name + "." + key, out);
@@ -168,10 +168,11 @@ void flatten(const json& j, const std::string& name, Flat& out) {
 
 /// What stands in lists of different lengths cannot be compared place by place: a line for each, and both forget it.
 std::string lists_of_other_length(Flat& a, Flat& b) {
-  std::string out;
+  std::string out, told;  // what stands in a list that is told is told with it: names come in their order
   for (const auto& [name, length] : a.lists) {
     const auto other = b.lists.find(name);
-    if (other == b.lists.end() || other->second == length) continue;
+    if (other == b.lists.end() || other->second == length || (!told.empty() && name.starts_with(told))) continue;
+    told = name + ".";
     out += fmt::format("  {}: {} entries in A, {} in B\n", name, length, other->second);
     for (Flat* of : {&a, &b}) {
       const auto inside = [&](const auto& entry) { return entry.first.starts_with(name + "."); };
@@ -295,11 +296,12 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
     });
   };
   for (const auto& [key, q] : y)
-    if (!x.contains(key) && !in_rows.contains(key) && of_one(key, right, left)) in_b.push_back(key);
+    if (!x.contains(key) && !in_rows.contains(key) && !flat_a.words.contains(key) && of_one(key, right, left))
+      in_b.push_back(key);
   for (const auto& [key, p] : x) {
     const auto it = y.find(key);
     if (it == y.end()) {
-      if (of_one(key, left, right)) in_a.push_back(key);
+      if (!flat_b.words.contains(key) && of_one(key, left, right)) in_a.push_back(key);
       continue;
     }
     ++others;
@@ -327,6 +329,8 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   std::map<std::string, std::string> every = flat_a.words;
   every.insert(flat_b.words.begin(), flat_b.words.end());
   const auto word = [](const Flat& of, const std::string& key) {
+    if (const auto number = of.numbers.find(key); number != of.numbers.end())
+      return fmt::format("{:g}", number->second);
     const auto it = of.words.find(key);
     return it == of.words.end() ? std::string("-") : one_line(it->second);
   };

@@ -80,31 +80,57 @@ std::vector<std::string> words_of(std::string_view text, std::string_view betwee
 std::string unit_of(std::string text) {
   text = lower(text);
   std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' ' || c == '.'; });
-  static const std::map<std::string, std::string> spellings = {{"mph", "mph"},         {"mi/h", "mph"},
-                                                               {"kmh", "kmh"},         {"km/h", "kmh"},
-                                                               {"kph", "kmh"},         {"mps", "mps"},
-                                                               {"m/s", "mps"},         {"m/sec", "mps"},
-                                                               {"ft/s", "ft/s"},       {"ft/sec", "ft/s"},
-                                                               {"fps", "ft/s"},        {"kn", "kn"},
-                                                               {"kt", "kn"},           {"knots", "kn"},
-                                                               {"deg", "deg"},         {"degrees", "deg"},
-                                                               {"degree", "deg"},      {"\xC2\xB0", "deg"},
-                                                               {"\xC2\xBA", "deg"},    {"rad", "rad"},
-                                                               {"mrad", "mrad"},       {"gon", "gon"},
-                                                               {"rpm", "rpm"},         {"rev/min", "rpm"},
-                                                               {"1/min", "rpm"},       {"u/min", "rpm"},
-                                                               {"rad/s", "rad_per_s"}, {"rad/sec", "rad_per_s"},
-                                                               {"deg/s", "deg_per_s"}, {"\xC2\xB0/s", "deg_per_s"},
-                                                               {"rps", "turn/s"},      {"rev/s", "turn/s"},
-                                                               {"hz", "turn/s"},       {"\xC2\xB5m", "um"},
-                                                               {"\xCE\xBCm", "um"},    {"um", "um"},
-                                                               {"mm", "mm"},           {"cm", "cm"},
-                                                               {"in", "in"},           {"inch", "in"},
-                                                               {"inches", "in"},       {"m", "m"},
-                                                               {"yd", "yd"},           {"yds", "yd"},
-                                                               {"yards", "yd"},        {"ft", "ft"},
-                                                               {"feet", "ft"},         {"s", "s"},
-                                                               {"sec", "s"},           {"%", "pct"}};
+  static const std::map<std::string, std::string> spellings = {{"mph", "mph"},
+                                                               {"mi/h", "mph"},
+                                                               {"kmh", "kmh"},
+                                                               {"km/h", "kmh"},
+                                                               {"kph", "kmh"},
+                                                               {"mps", "mps"},
+                                                               {"m/s", "mps"},
+                                                               {"m/sec", "mps"},
+                                                               {"ft/s", "ft/s"},
+                                                               {"ft/sec", "ft/s"},
+                                                               {"fps", "ft/s"},
+                                                               {"kn", "kn"},
+                                                               {"kt", "kn"},
+                                                               {"knots", "kn"},
+                                                               {"grad", "deg"},
+                                                               {"deg", "deg"},
+                                                               {"degrees", "deg"},
+                                                               {"degree", "deg"},
+                                                               {"\xC2\xB0", "deg"},
+                                                               {"\xC2\xBA", "deg"},
+                                                               {"rad", "rad"},
+                                                               {"mrad", "mrad"},
+                                                               {"gon", "gon"},
+                                                               {"rpm", "rpm"},
+                                                               {"rev/min", "rpm"},
+                                                               {"1/min", "rpm"},
+                                                               {"u/min", "rpm"},
+                                                               {"rad/s", "rad_per_s"},
+                                                               {"rad/sec", "rad_per_s"},
+                                                               {"deg/s", "deg_per_s"},
+                                                               {"\xC2\xB0/s", "deg_per_s"},
+                                                               {"rps", "turn/s"},
+                                                               {"rev/s", "turn/s"},
+                                                               {"hz", "turn/s"},
+                                                               {"\xC2\xB5m", "um"},
+                                                               {"\xCE\xBCm", "um"},
+                                                               {"um", "um"},
+                                                               {"mm", "mm"},
+                                                               {"cm", "cm"},
+                                                               {"in", "in"},
+                                                               {"inch", "in"},
+                                                               {"inches", "in"},
+                                                               {"m", "m"},
+                                                               {"yd", "yd"},
+                                                               {"yds", "yd"},
+                                                               {"yards", "yd"},
+                                                               {"ft", "ft"},
+                                                               {"feet", "ft"},
+                                                               {"s", "s"},
+                                                               {"sec", "s"},
+                                                               {"%", "pct"}};
   const auto at = spellings.find(text);
   return at == spellings.end() ? "" : at->second;
 }
@@ -127,17 +153,6 @@ std::string unit_in(const std::string& header) {
   }
   const auto blank = header.find_last_of(" _");
   return blank == std::string::npos ? "" : unit_of(header.substr(blank + 1));
-}
-
-std::string strange_unit(std::string_view text) {
-  static const std::set<std::string, std::less<>> per = {"s", "sec", "second", "min", "minute", "h", "hr", "hour"};
-  for (const std::string& word : words_of(text, " ,;[]()")) {
-    const auto slash = word.find('/');
-    const std::string unit = lower(word);
-    if (unit_of(word).empty() && slash != word.npos && slash > 0 && per.contains(unit.substr(slash + 1))) return word;
-    if (unit == "grad" || unit == "nm" || unit == "km" || unit == "mil" || unit == "thou") return word;
-  }
-  return "";
 }
 
 std::string figure_of(const std::string& cell) {
@@ -224,48 +239,87 @@ bool take_mark(std::string& text) {
 
 }  // namespace
 
+std::string strange_unit(std::string_view text) {
+  static const std::set<std::string, std::less<>> per = {"s", "sec", "second", "min", "minute", "h", "hr", "hour"};
+  for (const std::string& word : words_of(text, " ,;[]()")) {
+    const std::string unit = lower(word);
+    const auto slash = unit.find('/');
+    if (unit == "nm" || unit == "km" || unit == "mil" || unit == "thou") return word;
+    if (slash == unit.npos || !unit_of(unit).empty() || !per.contains(unit.substr(slash + 1))) continue;
+    const bool sides = side_of(unit.substr(0, slash), Sides::any) && side_of(unit.substr(slash + 1), Sides::any);
+    if (slash > 0 && !sides) return word;  // `(T/H)` names two sides
+  }
+  return "";
+}
+
+namespace {
+
+bool is_sign(char c) { return c == '+' || c == '-'; }
+
+/// `+toe-heel`, `L+R-`: a side with its sign each; else the word as it is.
+std::vector<std::string> apart(const std::string& word, Sides sides) {
+  if (word.size() < 3 || is_sign(word.front()) == is_sign(word.back())) return {word};
+  std::vector<std::string> parts(1);
+  for (const char c : word) {
+    if (is_sign(word.front()) && is_sign(c) && !parts.back().empty()) parts.emplace_back();
+    parts.back() += c;
+    if (is_sign(word.back()) && is_sign(c)) parts.emplace_back();
+  }
+  if (parts.back().empty()) parts.pop_back();
+  for (const std::string& part : parts) {
+    std::string side = part;
+    std::erase_if(side, is_sign);
+    if (!side_of(side, sides)) return {word};
+  }
+  return parts;
+}
+
+}  // namespace
+
 HeaderSign sign_in(const std::string& header, Sides sides) {
   HeaderSign out;
   bool both = false;
+  const auto say = [&](const std::string& text, char sign) {
+    const auto side = side_of(plain(text), sides);
+    out.strange = out.strange || !side;
+    if (!side) return;
+    const double grows = (sign == '+') == (side->sign > 0) ? 1 : -1;
+    both = both || (out.sign != 0 && out.sign != grows);
+    out.sign = grows;
+    out.own = out.own || side->own;
+  };
   for (std::string inside : brackets(header)) {
     inside = lower(inside);
-    // `(Right/Left +/-)` says that there are signs, not which.
-    for (std::size_t at; (at = inside.find("+/-")) != inside.npos;) inside.erase(at, 3);
-    const auto as = [&](std::string_view word, char sign) {
-      for (std::size_t at; (at = inside.find(word)) != inside.npos;) inside.replace(at, word.size(), 1, sign);
+    const auto as = [&](std::string_view text, std::string_view other) {
+      for (std::size_t at; (at = inside.find(text)) != inside.npos;) inside.replace(at, text.size(), other);
     };
-    as(" positive", '+'), as("=positive", '+'), as(" negative", '-'), as("=negative", '-');
-    for (const std::string_view equal : {" = ", "= ", " =", "="}) {
-      for (std::size_t at; (at = inside.find(equal)) != inside.npos;) inside.erase(at, equal.size());
-    }
-    std::string word;  // that has no sign yet
-    char ahead = 0;    // a sign whose word comes
-    const auto say = [&](const std::string& text, char sign) {
-      const auto side = side_of(plain(text), sides);
-      out.strange = out.strange || !side;
-      if (!side) return;
-      const double grows = (sign == '+') == (side->sign > 0) ? 1 : -1;
-      both = both || (out.sign != 0 && out.sign != grows);
-      out.sign = grows;
-      out.own = out.own || side->own;
-    };
-    const auto is_sign = [](char c) { return c == '+' || c == '-'; };
-    for (std::string next : words_of(inside, " /,;&")) {
-      if (next.size() == 1 && is_sign(next.front())) {
-        if (word.empty()) ahead = next.front();
-        else say(std::exchange(word, ""), next.front());
-        continue;
-      }
-      const bool behind = is_sign(next.back()), before = is_sign(next.front());
-      if (behind != before) {
-        const char sign = behind ? next.back() : next.front();
-        next.erase(behind ? next.size() - 1 : 0, 1);
-        say(behind && !word.empty() ? word + " " + next : next, sign);
-        word.clear();
-      } else if (ahead != 0) {
-        say(next, std::exchange(ahead, char(0)));
-      } else {
-        word += (word.empty() ? "" : " ") + next;
+    as("+/-", "");  // `(Right/Left +/-)` says that there are signs, not which
+    as("+ve", "+"), as("-ve", "-");
+    as(" positive", "+"), as("=positive", "+"), as(" negative", "-"), as("=negative", "-");
+    for (const std::string_view equal : {" = ", "= ", " =", "="}) as(equal, "");
+    for (const std::string& clause : words_of(inside, "/,;&")) {
+      std::vector<std::string> words;
+      for (const std::string& word : words_of(clause, " "))
+        for (std::string& part : apart(word, sides)) words.push_back(std::move(part));
+      std::string before;  // words without a sign; of a unit only what `in to out` needs
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        std::string word = words[i];
+        const bool behind = is_sign(word.back()), ahead = is_sign(word.front());
+        if (word.size() == 1 && ahead) {  // it stands alone: behind its side, or before it
+          std::string after;
+          for (std::size_t j = i + 1; j < words.size(); ++j) after += (after.empty() ? "" : " ") + words[j];
+          const bool last = side_of(plain(before), sides).has_value();
+          say(last ? before : after, word.front());
+          before.clear();
+          if (!last) break;
+        } else if (behind != ahead) {
+          const char sign = behind ? word.back() : word.front();
+          word.erase(behind ? word.size() - 1 : 0, 1);
+          say(behind && !before.empty() ? before + " " + word : word, sign);
+          before.clear();
+        } else if (word == "in" || unit_of(word).empty()) {
+          before += (before.empty() ? "" : " ") + word;
+        }
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <regex>
 #include <sstream>
 
 #include "app/import/cells.hpp"
@@ -272,7 +273,9 @@ class Reading {
     if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
     const std::string& header = sheet.names[c];
     const std::string strange = unit.empty() && c < sheet.units.size() ? strange_unit(sheet.units[c]) : "",
-                      inside = strange_unit(header.substr(std::min(header.find_first_of("(["), header.size())));
+                      inside = unit.empty()
+                                   ? strange_unit(header.substr(std::min(header.find_first_of("(["), header.size())))
+                                   : "";
     if (!strange.empty() || !inside.empty())
       throw InputError(fmt::format("{}: column '{}': the unit '{}' is not known; --column '{}={}_{}' states one",
                                    out_.file.string(), header, strange.empty() ? inside : strange, header, q.name,
@@ -504,13 +507,17 @@ class Reading {
       u.name = name;
       for (int k = 2; std::ranges::count(out_.columns, u.name, &Understood::name); ++k)
         u.name = fmt::format("{}_{}", name, k);
-      // Numbers with a decimal comma are numbers for who reads the shots, too.
-      std::vector<std::string> digits;
-      for (const std::string& cell : u.cells)
-        if (const auto x = number(cell, true, Sides::none); cell.empty()) digits.emplace_back();
-        else if (x && x->unit.empty()) digits.push_back(x->digits);
-      if (u.filled > 0 && digits.size() == u.cells.size() && decimal_comma(u.cells, sheet, header, out_.file))
-        u.cells = std::move(digits), u.remark("decimal comma");
+      // Numbers with a decimal comma are numbers for who reads the shots, too; a date is none.
+      static const std::regex with_comma("[+-]?([0-9]+|[0-9]{1,3}([.][0-9]{3})+)(,[0-9]+)?");
+      const auto is_number = [](const std::string& cell) { return cell.empty() || std::regex_match(cell, with_comma); };
+      const auto has_comma = [](const std::string& cell) { return cell.find(',') != cell.npos; };
+      const int decimals = decimal_of(sheet);
+      if ((decimals > 0 || (decimals == 0 && sheet.delimiter != ",")) && std::ranges::all_of(u.cells, is_number) &&
+          std::ranges::any_of(u.cells, has_comma)) {
+        for (std::string& cell : u.cells)
+          if (const auto x = number(cell, true, Sides::none)) cell = x->digits;
+        u.remark("decimal comma");
+      }
     }
     out_.columns.push_back(std::move(u));
   }

@@ -150,8 +150,18 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   whole.verdict = Verdict::insufficient;
   whole.adopted.clear();
   whole.ties.clear();
-  for (ChannelResult& ch : whole.channels) ch.after = ch.before;
-  for (UsedRow& u : whole.rows) u.after = u.before;
+  for (ChannelResult& ch : whole.channels) ch.after = ch.with_remainder = ch.before;
+  for (UsedRow& u : whole.rows) u.after = u.with_remainder = u.before;
+  whole.remainder.reset();
+  whole.likeness = {};
+  whole.balance_after = whole.balance_before;
+  whole.selection.chosen = whole.selection.base;
+  if (whole.corrected) {
+    for (Corrected::Row& r : whole.corrected->rows) r.after = r.before;
+    whole.corrected->shots.clear();
+    whole.corrected->instrument.clear();
+  }
+  whole.next = ShotProblem(c, derived, std::set<int>{}, {}).next_experiment(whole);
 }
 
 }  // namespace

@@ -133,6 +133,23 @@ TEST(CommandLine, DiffNamesNumbersOfOneRunAlone) {
   EXPECT_EQ(same.find(" only"), std::string::npos) << same;
 }
 
+TEST(CommandLine, DiffTellsTextsFlagsAndListsOfOtherLengths) {
+  const fs::path home = fresh_directory("diff_words");
+  const auto run = [&](const std::string& name, const std::string& summary) {
+    write(home / name / "summary.json", summary);
+    write(home / name / "case.resolved.toml", "kind = \"study\"\n");
+  };
+  run("a", R"({"verdict": "holds", "clean": true, "n": 3.0, "list": [1, 2, 3, [4, 5]], "same": [1, 2]})");
+  run("b", R"({"verdict": "fails", "clean": true, "n": null, "list": [2, 3, [4]], "same": [1, 2]})");
+  const std::string text = command("diff '" + (home / "a").string() + "' '" + (home / "b").string() + "'").text;
+  EXPECT_NE(text.find("verdict\n    A: holds\n    B: fails"), std::string::npos) << text;
+  EXPECT_NE(text.find("n\n    A: 3\n    B: null"), std::string::npos) << text;
+  EXPECT_NE(text.find("list: 4 entries in A, 3 in B"), std::string::npos) << text;
+  EXPECT_EQ(text.find("list."), std::string::npos) << text;
+  EXPECT_EQ(text.find("clean"), std::string::npos) << text;
+  EXPECT_EQ(text.find(" only"), std::string::npos) << text;
+}
+
 TEST(CommandLine, DiffSaysWhereItsErrorComesFrom) {
   const fs::path home = fresh_directory("diff_band"), blow = home / "blow";
   write(blow / "case.toml", kEccentricBlow + "[ball]\nmodel = \"tour\"\n[contact]\nface_friction = 0.3\n");

@@ -106,14 +106,27 @@ TEST(Import, UnitsAndSidesMeanWhatTheyMeanForTheirQuantity) {
                         {"Launch Direction (+ = left)", "3,-4", "azimuth_deg", -3, 4},
                         {"Launch Direction (right + / left -)", "3,-4", "azimuth_deg", 3, -4},
                         {"Attack Angle (deg)", "3 D,4 U", "attack_angle_deg", -3, 4},
+                        {"Lateral Impact (mm, + heel)", "3,-4", "impact_toe_mm", -3, 4},
+                        {"Lateral Impact (mm + heel)", "3,-4", "impact_toe_mm", -3, 4},
+                        {"Lateral Impact (mm; heel +ve)", "3,-4", "impact_toe_mm", -3, 4},
+                        {"Lateral Impact (+toe-heel)", "3,-4", "impact_toe_mm", 3, -4},
+                        {"Lateral Impact (mm, T/H)", "3 T,4 H", "impact_toe_mm", 3, -4},
+                        {"Impact Height (mm, - high)", "3,-4", "impact_high_mm", -3, 4},
+                        {"Face Angle (deg, + closed)", "3,-4", "face_angle_deg", -3, 4},
+                        {"Face Angle (Grad)", "3,-4", "face_angle_deg", 3, -4},
+                        {"Launch Direction (-L+R)", "3,-4", "azimuth_deg", 3, -4},
+                        {"Launch Direction (L+R-)", "3,-4", "azimuth_deg", -3, 4},
+                        {"Club Path (deg, in-out +)", "3,-4", "club_path_deg", 3, -4},
+                        {"Club Path (out-in+)", "3,-4", "club_path_deg", -3, 4},
                         {"Club Path (deg in to out +)", "3,-4", "club_path_deg", 3, -4}}) {
     fs::remove_all(dir / "case");
     const auto comma = t.cells.find(',');
-    test::write(dir / "a.csv", "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (in degrees),Spin Rate (rpm)," +
-                                   t.header + "\n7i,115,82,16,6400," + t.cells.substr(0, comma) +
+    test::write(dir / "a.csv", "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (in degrees),Spin Rate (rpm),\"" +
+                                   t.header + "\"\n7i,115,82,16,6400," + t.cells.substr(0, comma) +
                                    "\n7i,116,82,16,6500," + t.cells.substr(comma + 1) + "\n");
     const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
     ASSERT_EQ(o.status, 0) << t.header << o.text;
+    EXPECT_EQ(o.text.find("not understood"), std::string::npos) << o.text;
     const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
     ASSERT_TRUE(shots.find(t.column)) << t.header << o.text;
     EXPECT_NEAR(shots.find(t.column)->native(0), t.first, 1e-9) << t.header;
@@ -637,15 +650,17 @@ TEST(Import, KeptNumbersWithADecimalCommaAreNumbers) {
   const fs::path dir = test::fresh_directory("import_kept_comma");
   test::write(
       dir / "a.csv",
-      "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Tempo;Wind\n7i;115,1;82,0;16,4;6400;0,85;kalt, "
-      "nass\n7i;116,2;82,1;16,1;6500;0,9;\n");
-  const auto o = command("import '" + (dir / "a.csv").string() + "' --keep Tempo --keep Wind --out '" +
-                         (dir / "case").string() + "'");
+      "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Tempo;Wind;Day;Temp\n"
+      "7i;115,1;82,0;16,4;6400;0,85;kalt, nass;01.11.2025;21,5\n7i;116,2;82,1;16,1;6500;0,9;;01.11.2025;21.5\n");
+  const auto o = command("import '" + (dir / "a.csv").string() +
+                         "' --keep Tempo --keep Wind --keep Day --keep Temp --out '" + (dir / "case").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
   const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
   ASSERT_TRUE(shots.find("kept_tempo") && shots.find("kept_tempo")->numeric) << o.text;
   EXPECT_NEAR(shots.find("kept_tempo")->native(0), 0.85, 1e-12);
   EXPECT_EQ(shots.find("kept_wind")->text[0], "kalt, nass");
+  // A date is no number, and beside 21.5 what 21,5 is nobody knows.
+  EXPECT_NE(test::content(dir / "case" / "shots.csv").find("01.11.2025,\"21,5\","), std::string::npos);
 }
 
 TEST(Import, ObjectsOfValueAndUnitAreCells) {

@@ -85,6 +85,16 @@ TEST(StudyAnswers, WhatIsNoQuantityOfItsOwnIsRefused) {
           "holds words");
 }
 
+TEST(StudyAnswers, StrikesOffTheFaceAreCounted) {
+  const fs::path dir = fresh_directory("study_off_face");
+  const std::string text =
+      study("figures = false\n", "[[axis]]\nkey = \"delivery.impact_toe_mm\"\nvalues = [0, 60, 80, 90]\n");
+  const Outcome o = run(dir, text);
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("2 of 4 points are struck off the face"), std::string::npos) << o.text;
+  EXPECT_EQ(run(dir, text, "--strict").status, 3);
+}
+
 TEST(StudyAnswers, OneNameIsOfOneColumn) {
   const std::string solve =
       "[[solve]]\nname = \"NAME\"\nkey = \"delivery.club_speed_mps\"\nrange = [20, 60]\n"

@@ -226,9 +226,13 @@ class Studies(unittest.TestCase):
     def test_what_cannot_be_is_said(self):
         for columns, words in [({"delivery.impact_to_mm": [1.0]}, "did you mean 'impact_toe_mm'"),
                                ({self.TOE: [1.0, 2.0], self.SPEED: [90.0]}, "one length"),
+                               ({self.TOE: [1.0, None, 2.0]}, "a point has no value"),
+                               ({self.TOE: np.ma.masked_array([1.0, 2.0], mask=[0, 1])}, "a point has no value"),
                                ({self.TOE: [1.0], "title": ['a "b",\n\\c']}, "rows.csv")]:
             with self.assertRaisesRegex(ValueError, words):
                 self.study.rows(self.out, columns)
+        with self.assertRaisesRegex(ValueError, "blow 2|nan"):
+            self.model.launch(club_speed_mph=np.ma.masked_array([100.0, 20.0], mask=[0, 1]))
 
 
 class Points(InFolder):
@@ -364,6 +368,8 @@ class Results(InFolder):
         self.assertEqual(list(table.where(variant=2)["x"]), [2])
         with self.assertRaisesRegex(ValueError, "'variant' holds numbers"):
             table.where(variant="1")
+        with self.assertRaisesRegex(ValueError, "takes one value, not 2"):
+            table.where(variant=[1, 2])
         table = self.table("name,x\n'+5 g,1\n' =b,2\n'quoted',3\n")
         self.assertEqual(list(table.name), ["+5 g", " =b", "'quoted'"])
         self.assertEqual(list(table.where(name="+5 g")["x"]), [1])
