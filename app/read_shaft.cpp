@@ -23,10 +23,14 @@ Shaft by_name(Table& table) {
   return {};
 }
 
-void from_butt_to_tip(const Table& table, const char* key, const std::vector<double>& arc) {
-  if (arc.size() < 2) table.fail(key, "a shaft needs at least two stations");
+void check_order(const Table& table, const char* key, const std::vector<double>& arc) {
   for (std::size_t i = 1; i < arc.size(); ++i)
     if (!(arc[i] > arc[i - 1])) table.fail(key, "stations run from butt to tip with increasing arc length");
+}
+
+void from_butt_to_tip(const Table& table, const char* key, const std::vector<double>& arc) {
+  if (arc.size() < 2) table.fail(key, "a shaft needs at least two stations");
+  check_order(table, key, arc);
   if (arc.front() != 0)
     table.fail(key, fmt::format("the first station is the butt, at 0, not at {:g} m: what a shaft is before its first "
                                 "station, nothing says",
@@ -104,8 +108,7 @@ void read_offsets(Table table, Shaft& shaft) {
       {"arc_length",
        "stations of the offsets; linear between, held beyond. y is the lead (XG), z against the droop (-YG)"},
       "mm", 0);
-  for (std::size_t i = 1; i < arc.size(); ++i)
-    if (!(arc[i] > arc[i - 1])) table.fail("arc_length", "stations run from butt to tip with increasing arc length");
+  check_order(table, "arc_length", arc);
   if (arc.empty()) table.fail("arc_length", "offsets need at least one station");
   Shaft offsets;
   for (const double s : arc) offsets.stations.push_back({.arc_length = s});

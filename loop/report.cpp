@@ -30,6 +30,18 @@ json errors(const Errors& e) {
           {"holdout_bias", value(e.holdout_bias)}};
 }
 
+/// Of a fit, with the standard deviations (SI) that `sd` gives by their numbers.
+json parameters(const Fit& fit, const auto& sd) {
+  json out = json::array();
+  const auto of = fit.model.parameters();
+  for (std::size_t k = 0; k < of.size(); ++k)
+    out.push_back({{"name", of[k]->name},
+                   {"value", value(fit.p[std::ptrdiff_t(k)] / of[k]->si)},
+                   {"sd", value(sd(k) / of[k]->si)},
+                   {"unit", of[k]->unit}});
+  return out;
+}
+
 }  // namespace
 
 json to_json(const LoopResult& r) {
@@ -104,13 +116,7 @@ json to_json(const LoopResult& r) {
   for (const ScoredCandidate& c : r.candidates) {
     json e;
     e["effects"] = c.candidate.effects;
-    e["parameters"] = json::array();
-    const auto parameters = c.candidate.fit.model.parameters();
-    for (std::size_t k = 0; k < parameters.size(); ++k)
-      e["parameters"].push_back({{"name", parameters[k]->name},
-                                 {"value", value(c.candidate.fit.p[std::ptrdiff_t(k)] / parameters[k]->si)},
-                                 {"sd", value(c.sd[k] / parameters[k]->si)},
-                                 {"unit", parameters[k]->unit}});
+    e["parameters"] = parameters(c.candidate.fit, [&](std::size_t k) { return c.sd[k]; });
     std::vector<std::string> forms;
     for (const Parametrisation* f : c.candidate.fit.model.forms) forms.push_back(f->effect + ": " + f->what);
     e["forms"] = forms;
@@ -121,16 +127,8 @@ json to_json(const LoopResult& r) {
     out["candidates"].push_back(e);
   }
   if (const Fit& after = s.chosen; !(r.adopted.empty() && r.ties.empty())) {  // of all training rows
-    json parameters = json::array();
-    const auto of = after.model.parameters();
-    for (std::size_t k = 0; k < of.size(); ++k) {
-      const auto i = std::ptrdiff_t(k);
-      parameters.push_back({{"name", of[k]->name},
-                            {"value", value(after.p[i] / of[k]->si)},
-                            {"sd", value(std::sqrt(r.covariance(i, i)) / of[k]->si)},
-                            {"unit", of[k]->unit}});
-    }
-    out["chosen"] = {{"effects", after.model.effects()}, {"parameters", parameters}};
+    const auto sd = [&](std::size_t k) { return std::sqrt(r.covariance(std::ptrdiff_t(k), std::ptrdiff_t(k))); };
+    out["chosen"] = {{"effects", after.model.effects()}, {"parameters", parameters(after, sd)}};
   }
   out["adopted"] = r.adopted;
   out["ties"] = r.ties;

@@ -20,21 +20,19 @@ std::string trimmed(std::string_view s) {
   return std::string(s);
 }
 
-bool missing(const std::string& cell) {
-  static const std::set<std::string> words = {"",    "-",  "--",  "---",  "\xE2\x80\x93", "\xE2\x80\x94",
-                                              "n/a", "na", "nan", "null", "none",         "#n/a"};
-  std::string lower = cell;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  return words.contains(lower);
-}
-
-namespace {
-
 std::string lower(std::string_view text) {
   std::string out(text);
   std::ranges::transform(out, out.begin(), [](unsigned char c) { return std::tolower(c); });
   return out;
 }
+
+bool missing(const std::string& cell) {
+  static const std::set<std::string> words = {"",    "-",  "--",  "---",  "\xE2\x80\x93", "\xE2\x80\x94",
+                                              "n/a", "na", "nan", "null", "none",         "#n/a"};
+  return words.contains(lower(cell));
+}
+
+namespace {
 
 /// Units that no header of ours has: numbers in them are converted.
 struct OtherUnit {
@@ -227,10 +225,9 @@ std::optional<Side> side_of(const std::string& words, Sides sides) {
 
 /// `6401*`, `6806 (est.)`, `6806 est`: the mark is taken off.
 bool take_mark(std::string& text) {
-  std::string lower = text;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string words = lower(text);
   for (const char* mark : {"*", "(e)", "(est)", "(est.)", "(estimated)", " est", " est.", " estimated"})
-    if (lower.ends_with(mark)) {
+    if (words.ends_with(mark)) {
       text = trimmed(text.substr(0, text.size() - std::string_view(mark).size()));
       return true;
     }

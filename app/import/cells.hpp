@@ -19,6 +19,7 @@ enum class Sides {
 };
 
 std::string trimmed(std::string_view text);
+std::string lower(std::string_view text);
 
 bool missing(const std::string& cell);
 

@@ -20,11 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return trimmed(text);
-}
-
 /// Whether a cell's comma (1) or its point (-1) is the decimal one; 0 where it may as well part thousands, or has none.
 int decimal_of(const std::string& cell) {
   const std::string text = figure_of(cell);
@@ -243,10 +238,10 @@ class Reading {
       }
       if (unit.empty()) unit = unit_of_column(*q, c);
       const HeaderSign said = sign_in(header, q->sides);
-      const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(header));
+      const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(trimmed(header)));
       out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
       if (said.strange && !turned) out_.columns.back().remark("signs in the header not understood: taken as ours");
-      const std::string whole = lower(header);
+      const std::string whole = lower(trimmed(header));
       if (!o_.modelled && !hand &&
           (whole.find("estimated") != whole.npos || whole.find("calculated") != whole.npos ||
            whole.find("modelled") != whole.npos))
@@ -776,11 +771,11 @@ class Reading {
 }  // namespace
 
 const std::string* ByHand::of(const std::string& header, const Row& headers) const {
-  if (const auto at = quantity.find(lower(header)); at != quantity.end()) return &at->second;
+  if (const auto at = quantity.find(lower(trimmed(header))); at != quantity.end()) return &at->second;
   const auto at = quantity.find(plain(header));
   if (at == quantity.end()) return nullptr;
   for (const std::string& other : headers)
-    if (other != header && plain(other) == plain(header) && lower(other) == at->first) return nullptr;
+    if (other != header && plain(other) == plain(header) && lower(trimmed(other)) == at->first) return nullptr;
   return &at->second;
 }
 
@@ -788,7 +783,9 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
   ByHand out;
   auto& [by_hand, turned] = out;
   // By its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
-  const auto key = [](const std::string& header) { return unit_in(header).empty() ? plain(header) : lower(header); };
+  const auto key = [](const std::string& header) {
+    return unit_in(header).empty() ? plain(header) : lower(trimmed(header));
+  };
   for (const std::string& c : o.columns) {
     const auto at = c.rfind('=');
     if (at == std::string::npos || at == 0)

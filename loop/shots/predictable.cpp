@@ -41,7 +41,6 @@ struct Smooth {
   double likelihood = 0;  ///< log
   double evidence = 0;    ///< log-likelihood beyond that of the same with no less scatter than noise allows
   double gain = 0;        ///< the same beyond a plane through all columns, less what the free numbers cost
-  bool noise = false;     ///< no row has much more scatter, and none as little as a computation has
   bool plain = false;     ///< it scatters far less than noise
 
   std::set<int> columns() const {
@@ -98,7 +97,7 @@ class Predictable {
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
       const bool enough = f.weight.sum() >= double((f.plain ? kRowsIfPlain : kRowsPerNumber) * f.coefficients.size());
-      return f.gain > chance && f.evidence > kBeyondChance + chance && enough && !f.noise
+      return f.gain > chance && f.evidence > kBeyondChance + chance && enough
                  ? f.gain
                  : -std::numeric_limits<double>::infinity();
     };
@@ -107,8 +106,7 @@ class Predictable {
     // A relation may be solved for any of its columns: the one that was computed scatters least.
     const std::set<int> related = found->columns();
     const auto best = std::ranges::max_element(all, {}, [&](const Smooth& f) {
-      return !f.noise && std::ranges::includes(related, f.columns()) ? f.gain
-                                                                     : -std::numeric_limits<double>::infinity();
+      return std::ranges::includes(related, f.columns()) ? f.gain : -std::numeric_limits<double>::infinity();
     });
     const int column = best->of;
     const Column& c = *columns_[std::size_t(column)];
@@ -154,18 +152,25 @@ class Predictable {
     return a;
   }
 
+  /// Of y, by its least-squares combination of these columns.
+  static ArrayXd left_by(const MatrixXd& a, const VectorXd& y) {
+    MatrixXd gram = a.transpose() * a;
+    gram.diagonal().array() += 1e-8 * gram.trace() / double(a.cols());
+    return (y - a * dense::Ldlt(gram).solve(VectorXd(a.transpose() * y))).array();
+  }
+
   /// Variance of y - f that such errors of all columns make, in the mean over the rows where f holds.
-  static double variance_by(const VectorXd& error, const MatrixXd& z, int y, const Smooth& f) {
+  double variance_by(const VectorXd& error, const Smooth& f) const {
     const auto all = terms(f.from.size(), f.degree);
-    double sum = error[y] * error[y];
+    double sum = error[f.of] * error[f.of];
     for (std::size_t q = 0; q < f.from.size(); ++q) {
-      ArrayXd slope = ArrayXd::Zero(z.rows());
+      ArrayXd slope = ArrayXd::Zero(n_);
       for (std::size_t t = 0; t < all.size(); ++t)
         for (std::size_t factor = 0; factor < all[t].size(); ++factor) {
           if (all[t][factor] != q) continue;
-          ArrayXd rest = ArrayXd::Constant(z.rows(), f.coefficients[std::ptrdiff_t(t)]);
+          ArrayXd rest = ArrayXd::Constant(n_, f.coefficients[std::ptrdiff_t(t)]);
           for (std::size_t other = 0; other < all[t].size(); ++other)
-            if (other != factor) rest *= z.col(f.from[all[t][other]]).array();
+            if (other != factor) rest *= z_.col(f.from[all[t][other]]).array();
           slope += rest;
         }
       sum += (f.weight.array() * slope.square()).sum() / f.weight.sum() * std::pow(error[f.from[q]], 2);
@@ -210,9 +215,7 @@ class Predictable {
     MatrixXd plane(n_, std::ptrdiff_t(others.size()) + 1);
     plane.col(0).setOnes();
     for (std::size_t k = 0; k < others.size(); ++k) plane.col(std::ptrdiff_t(k) + 1) = z_.col(others[k]);
-    MatrixXd gram = plane.transpose() * plane;
-    gram.diagonal().array() += 1e-8 * double(n_);
-    const ArrayXd apart = (y - plane * dense::Ldlt(gram).solve(VectorXd(plane.transpose() * y))).array();
+    const ArrayXd apart = left_by(plane, y);
     const double scatter =
         std::max(std::sqrt(apart.square().sum() / std::max(1.0, double(n_ - plane.cols()))), error_[target]);
     const ArrayXd elsewhere = -0.5 * (apart / scatter).square() - std::log(scatter) -
@@ -248,7 +251,7 @@ class Predictable {
     std::erase_if(found, [&](Smooth& f) {
       f.gain -= by_plane + 2 * numbers;
       // Noise with heavy tails has a core so narrow: Student's of three degrees of freedom.
-      const double declared = std::sqrt(variance_by(error_, z_, target, f)), allowed = declared / std::sqrt(3);
+      const double declared = std::sqrt(variance_by(error_, f)), allowed = declared / std::sqrt(3);
       if (!(f.scatter < allowed)) return !(f.gain > 0);
       Smooth measured = f;
       const MatrixXd a = features(f.from, f.degree);
@@ -257,13 +260,10 @@ class Predictable {
       f.plain = f.scatter < kLessThanNoise * declared;
       // Where one function of all rows leaves less than the declared noise, and a part of them no less than a part of
       // noise does, noise was declared too large.
-      MatrixXd square = a.transpose() * a;
-      square.diagonal().array() += 1e-8 * square.trace() / double(a.cols());
-      const ArrayXd r = (y - a * dense::Ldlt(square).solve(VectorXd(a.transpose() * y))).array();
+      const ArrayXd r = left_by(a, y);
       const double all_rows = std::sqrt(r.square().sum() / std::max(1.0, double(n_ - a.cols())));
-      f.noise = all_rows < 0.7 * declared && all_rows > kLessThanNoise * declared && f.scatter > kPart * all_rows &&
-                all_rows > 3 * std::sqrt(variance_by(rounding_, z_, target, f));
-      return false;
+      return all_rows < 0.7 * declared && all_rows > kLessThanNoise * declared && f.scatter > kPart * all_rows &&
+             all_rows > 3 * std::sqrt(variance_by(rounding_, f));
     });
     return found;
   }

@@ -52,6 +52,11 @@ struct World {
   unsigned seed = 1;
 };
 
+Head test_head() {
+  return {
+      .mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+}
+
 std::string csv(const World& w) {
   std::mt19937 random(w.seed);
   std::normal_distribution<double> gauss;
@@ -70,10 +75,7 @@ std::string csv(const World& w) {
   text += w.rate ? ",spin_rate_rpm\n" : "\n";
   for (int i = 0; i < w.shots; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2,
-                   .cg = Vec3(-0.035, 0, 0),
-                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                   .face = {0.3, 0.3}};
+    b.club.head = test_head();
     Delivery& d = b.delivery;
     d = {.club_speed = 45 + 3 * gauss(random),
          .attack_angle = radians(2 * gauss(random)),
@@ -137,10 +139,7 @@ class Loop : public testing::Test {
     c.base = "rigid-eccentric";
     c.model = model.get();
     c.head_mass_declared = c.inertia_declared = true;
-    c.blow.club.head = {.mass = 0.2,
-                        .cg = Vec3(-0.035, 0, 0),
-                        .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                        .face = {0.3, 0.3}};
+    c.blow.club.head = test_head();
     c.shots = shots(text);
     c.noise = {{"ball_speed_mps", 0.25},
                {"launch_angle_deg", 0.2},
@@ -740,10 +739,7 @@ TEST_F(Loop, NoiseDeclaredTooLargeIsNoComputation) {
   std::string text = csv({.shots = 0});
   for (int i = 0; i < 60; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2,
-                   .cg = Vec3(-0.035, 0, 0),
-                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                   .face = {0.3, 0.3}};
+    b.club.head = test_head();
     b.delivery = {.club_speed = 32 + 14 * even(random),
                   .attack_angle = radians(-5 + 6 * even(random)),
                   .dynamic_loft = radians(12 + 20 * even(random))};
@@ -783,10 +779,7 @@ TEST_F(Loop, ANominalInputIsAsUncertainAsItsShots) {
   std::string text = csv({.shots = 0});
   for (int i = 0; i < 60; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2,
-                   .cg = Vec3(-0.035, 0, 0),
-                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                   .face = {0.3, 0.3}};
+    b.club.head = test_head();
     b.delivery = {.club_speed = 40 + 3 * gauss(random), .dynamic_loft = radians(20 + gauss(random))};
     const Launch l = model->launch(b);
     text += fmt::format("{},{:.2f},0,0,0,20.0,0,0,50,{:.2f},{:.2f},{:.2f},{:.0f},{:.0f}\n", i + 1,
@@ -805,8 +798,7 @@ TEST_F(Loop, ANominalInputIsAsUncertainAsItsShots) {
 TEST_F(Loop, WhatIsSteadyFarBelowTheNoiseIsNoStructure) {
   std::string text = csv({.shots = 0});
   Blow b;
-  b.club.head = {
-      .mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+  b.club.head = test_head();
   b.delivery = {.club_speed = 40, .dynamic_loft = radians(20)};
   const Launch l = model->launch(b);
   for (int i = 0; i < 30; ++i)
@@ -1097,10 +1089,7 @@ TEST_F(Loop, TheMostObliqueShotsAreNeverHeldOut) {
   std::normal_distribution<double> gauss;
   for (int i = 0; i < 60; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2,
-                   .cg = Vec3(-0.035, 0, 0),
-                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                   .face = {0.3, 0.3}};
+    b.club.head = test_head();
     b.delivery = {.club_speed = 35 + gauss(random), .dynamic_loft = radians(20 + 8 * (i / 12) + gauss(random))};
     b.contact.friction = 0.18;
     const Launch l = model->launch(b);
