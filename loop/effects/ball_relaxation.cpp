@@ -6,13 +6,12 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> ball_relaxation(const Setting& setting) {
   if (!setting.deformable) return {};
-  Parametrisation f{.effect = "ball-relaxation",
-                    .what = "one factor on the branch times",
-                    .parameters = {{"log_factor_of_branch_times", "1", 1, -1.5, 2.5, 0.3}},
-                    .complexity = 3,
-                    .starts = {{1.5}}};
-  f.before = [](std::span<const double> p, Shot& s) { s.change.relaxation += p[0]; };
-  return {f};
+  return {{.effect = "ball-relaxation",
+           .what = "one factor on the branch times",
+           .parameters = {{"log_factor_of_branch_times", "1", 1, -1.5, 2.5, 0.3}},
+           .complexity = 3,
+           .starts = {{1.5}},
+           .before = [](std::span<const double> p, Shot& s) { s.change.relaxation += p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

@@ -7,12 +7,11 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> rotational_stiffening(const HistorySetting& setting) {
   if (!setting.turning) return {};
-  Parametrisation f{.effect = "rotational-stiffening",
-                    .what = "share of the centrifugal stiffness",
-                    .parameters = {{"share", "1", 1, 0, 2, 0.02}},
-                    .starts = {{0.5}, {1}}};
-  f.setup = [](std::span<const double> p, TestSetup& r) { r.club.stiffening += p[0]; };
-  return {f};
+  return {{.effect = "rotational-stiffening",
+           .what = "share of the centrifugal stiffness",
+           .parameters = {{"share", "1", 1, 0, 2, 0.02}},
+           .starts = {{0.5}, {1}},
+           .setup = [](std::span<const double> p, TestSetup& r) { r.club.stiffening += p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

@@ -6,11 +6,10 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> shaft_stiffness(const Setting& setting) {
   if (!setting.full_club) return {};
-  Parametrisation f{.effect = "shaft-stiffness",
-                    .what = "one factor on bending and torsion",
-                    .parameters = {{"log_factor", "1", 1, -1.2, 1.2, 0.1}}};
-  f.before = [](std::span<const double> p, Shot& s) { s.change.shaft_stiffness += p[0]; };
-  return {f};
+  return {{.effect = "shaft-stiffness",
+           .what = "one factor on bending and torsion",
+           .parameters = {{"log_factor", "1", 1, -1.2, 1.2, 0.1}},
+           .before = [](std::span<const double> p, Shot& s) { s.change.shaft_stiffness += p[0]; }}};
 }
 
 std::vector<Parametrisation> shaft_stiffness(const HistorySetting& setting) {
