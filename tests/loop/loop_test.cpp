@@ -123,6 +123,26 @@ std::string csv(const World& w) {
   return text;
 }
 
+/// The rows, each with a cell more or in place of another: `cell` is asked with the row's number and its cells.
+std::string changed(const std::string& text, const std::string& heads,
+                    const std::function<void(int, std::vector<std::string>&)>& cell) {
+  std::istringstream lines(text);
+  std::string out, line;
+  std::getline(lines, line);
+  out = line + heads + "\n";
+  for (int row = 0; std::getline(lines, line); ++row) {
+    std::vector<std::string> cells;
+    std::istringstream each(line);
+    for (std::string c; std::getline(each, c, ',');) cells.push_back(c);
+    cell(row, cells);
+    out += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return out;
+}
+
+constexpr std::size_t kClubSpeed = 1, kAttack = 2, kPath = 3, kFace = 4, kLoft = 5, kToeOffset = 6, kBallSpeed = 9,
+                      kAzimuth = 11, kBackspin = 12, kSidespin = 13;
+
 class Loop : public testing::Test {
  protected:
   Loop() : model(models::find("rigid-eccentric")->make({})) {}
@@ -241,41 +261,25 @@ TEST_F(Loop, WhatAFoldHoldsOutIsNotScreened) {
 
 /// Every sixth reading of a channel, or of an input, is another shot's: too many for exceptions.
 TEST_F(Loop, ManyRowsFarOffAreNeverErasedInSilence) {
-  for (const std::size_t column : {12U, 6U}) {  // backspin, toe offset
-    std::istringstream lines(csv({}));
-    std::string text, line;
-    std::getline(lines, text);
-    text += '\n';
-    for (int row = 0; std::getline(lines, line); ++row) {
-      std::vector<std::string> cell;
-      std::istringstream cells(line);
-      for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
-      if (row % 6 == 0)
-        cell[column] = fmt::format("{:.2f}", std::stod(cell[column]) + (column == 12 ? 900 : 25) * (row % 4 - 1));
-      text += fmt::format("{}\n", fmt::join(cell, ","));
-    }
-    const LoopResult r = run(case_of(text));
+  for (const std::size_t column : {kBackspin, kToeOffset}) {
+    const bool channel = column == kBackspin;
+    const LoopResult r = run(case_of(changed(csv({}), "", [&](int row, std::vector<std::string>& cells) {
+      std::string& cell = cells[column];
+      if (row % 6 == 0) cell = fmt::format("{:.2f}", std::stod(cell) + (channel ? 900 : 25) * (row % 4 - 1));
+    })));
     // Of a channel so many are no exceptions: its scatter contradicts what was declared. An input's are told as its
     // own.
-    EXPECT_EQ(r.verdict, column == 12U ? Verdict::noise_contradicted : Verdict::unexplained) << sentence(r);
+    EXPECT_EQ(r.verdict, channel ? Verdict::noise_contradicted : Verdict::unexplained) << sentence(r);
     EXPECT_TRUE(r.adopted.empty());
   }
 }
 
 /// A wave over the toe offset: no effect of the library. It is told, and learnt: rows that were held out follow it.
 TEST_F(Loop, WhatHasNoNameIsToldAndCorrectsThePrediction) {
-  std::istringstream lines(csv({.shots = 180}));
-  std::string text, line;
-  std::getline(lines, text);
-  text += '\n';
-  while (std::getline(lines, line)) {
-    std::vector<std::string> cell;
-    std::istringstream cells(line);
-    for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
-    cell[9] = fmt::format("{:.2f}", std::stod(cell[9]) + 0.8 * std::sin(std::stod(cell[6]) / 4));
-    text += fmt::format("{}\n", fmt::join(cell, ","));
-  }
-  const LoopResult r = run(case_of(text));
+  const LoopResult r = run(case_of(changed(csv({.shots = 180}), "", [](int, std::vector<std::string>& cells) {
+    std::string& speed = cells[kBallSpeed];
+    speed = fmt::format("{:.2f}", std::stod(speed) + 0.8 * std::sin(std::stod(cells[kToeOffset]) / 4));
+  })));
   ASSERT_EQ(r.verdict, Verdict::unexplained) << sentence(r);
   ASSERT_TRUE(r.remainder && !r.remainder->places.empty());
   EXPECT_EQ(r.remainder->places[0].channel, 0);
@@ -302,8 +306,7 @@ TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
         std::array{"launch_angle_deg", "launch_angle_rad", "deg"}}) {
     std::string text = csv({});
     text.replace(text.find(header), std::string(header).size(), wrong);
-    ShotCase c = case_of(csv({}));
-    c.shots = shots(text);
+    ShotCase c = case_of(text);
     c.noise.erase(header);
     const LoopResult r = run(c);
     ASSERT_EQ(r.columns.size(), 1U) << wrong;
@@ -315,21 +318,10 @@ TEST_F(Loop, AColumnInAnotherUnitIsSaidAndNothingIsAdopted) {
   }
 }
 
-/// `text` with a further column, by the number of the shot.
-std::string with_column(const std::string& text, const std::string& header,
-                        const std::function<std::string(int)>& cell) {
-  std::istringstream in(text);
-  std::string out, line;
-  for (int i = -1; std::getline(in, line); ++i) out += line + "," + (i < 0 ? header : cell(i)) + "\n";
-  return out;
-}
-
 TEST_F(Loop, ATextCellMayBeEmpty) {
-  const std::string text = with_column(csv({.second = 1.5}), "ball", [](int i) {
-    return i == 40 ? "" : i % 2 ? "old" : "new";
-  });
-  ShotCase c = case_of(csv({}));
-  c.shots = shots(text);
+  const ShotCase c = case_of(changed(csv({.second = 1.5}), ",ball", [](int i, std::vector<std::string>& cells) {
+    cells.emplace_back(i == 40 ? "" : i % 2 ? "old" : "new");
+  }));
   ASSERT_NE(c.shots.find("ball"), nullptr);
   const LoopResult r = run(c);
   EXPECT_EQ(r.used, 90);
@@ -339,17 +331,11 @@ TEST_F(Loop, ANoisyChannelWhoseNoiseIsNotDeclaredIsNoOtherUnit) {
   std::mt19937 random(3);
   std::normal_distribution<double> gauss;
   for (int seed = 1; seed <= 4; ++seed) {
-    // The last column, sidespin, with a scatter of 1500 rpm.
-    std::istringstream in(csv({.seed = unsigned(seed)}));
-    std::string text, line;
-    for (int i = -1; std::getline(in, line); ++i) {
-      const auto at = line.rfind(',') + 1;
-      if (i >= 0)
-        line = line.substr(0, at) + std::to_string(std::lround(std::stod(line.substr(at)) + 1500 * gauss(random)));
-      text += line + "\n";
-    }
-    ShotCase c = case_of(csv({}));
-    c.shots = shots(text);
+    // A scatter of 1500 rpm.
+    ShotCase c = case_of(changed(csv({.seed = unsigned(seed)}), "", [&](int, std::vector<std::string>& cells) {
+      std::string& spin = cells[kSidespin];
+      spin = std::to_string(std::lround(std::stod(spin) + 1500 * gauss(random)));
+    }));
     c.noise.erase("sidespin_rpm");
     const LoopResult r = run(c);
     ASSERT_GT(r.channels.back().noise, 1000) << "the scatter is there";
@@ -677,25 +663,6 @@ TEST_F(Loop, AColumnThatIsThatOfTheRowBeforeIsAccused) {
   EXPECT_TRUE(r.adopted.empty());
 }
 
-/// The rows, each with a cell more or in place of another: `cell` is asked with the row's number and its cells.
-std::string changed(const std::string& text, const std::string& heads,
-                    const std::function<void(int, std::vector<std::string>&)>& cell) {
-  std::istringstream lines(text);
-  std::string out, line;
-  std::getline(lines, line);
-  out = line + heads + "\n";
-  for (int row = 0; std::getline(lines, line); ++row) {
-    std::vector<std::string> cells;
-    std::istringstream each(line);
-    for (std::string c; std::getline(each, c, ',');) cells.push_back(c);
-    cell(row, cells);
-    out += fmt::format("{}\n", fmt::join(cells, ","));
-  }
-  return out;
-}
-
-constexpr std::size_t kAttack = 2, kLoft = 5, kAzimuth = 11;
-
 TEST_F(Loop, AFewReadingsTellNoNoise) {
   for (const int readings : {1, 2, 3, 9}) {
     ShotCase c = case_of(changed(csv({}), "", [&](int row, std::vector<std::string>& cells) {
@@ -763,7 +730,7 @@ TEST_F(Loop, EveryRowThatIsReadIsUsedOrTold) {
   for (const bool slip : {false, true}) {
     const LoopResult r = run(case_of(changed(csv({.shots = 40}), "", [&](int row, std::vector<std::string>& cells) {
       if (row % 8 == 3) cells[kLoft] = "85", cells[kAttack] = "-20";  // the head moves away from the ball
-      if (slip && row == 30) cells[9] = fmt::format("{:.2f}", std::stod(cells[9]) / kMpsPerMph);
+      if (slip && row == 30) cells[kBallSpeed] = fmt::format("{:.2f}", std::stod(cells[kBallSpeed]) / kMpsPerMph);
     })));
     std::set<int> told;
     for (const Flag& f : r.flagged) told.insert(f.row);
@@ -868,13 +835,12 @@ TEST_F(Loop, RowsSortedByAColumnAreNoSession) {
 
 TEST_F(Loop, ClubsHitOneAfterAnotherMakeADriftLessLikely) {
   // The same shots with their numbers: in three blocks of a club each, and with the clubs in turn.
-  std::istringstream lines(csv({.drift = 2}));
-  std::string blocks, turns, line;
-  for (int i = -1; std::getline(lines, line); ++i) {
-    blocks += (i < 0 ? "club," : i < 30 ? "a," : i < 60 ? "b," : "c,") + line + "\n";
-    turns += (i < 0 ? "club," : i % 3 == 0 ? "a," : i % 3 == 1 ? "b," : "c,") + line + "\n";
-  }
-  const ShotCase one = case_of(blocks), other = case_of(turns);
+  const auto of_clubs = [&](auto&& club) {
+    return case_of(changed(csv({.drift = 2}), ",club", [&](int row, std::vector<std::string>& cells) {
+      cells.emplace_back(1, char('a' + club(row)));
+    }));
+  };
+  const ShotCase one = of_clubs([](int row) { return row / 30; }), other = of_clubs([](int row) { return row % 3; });
   ASSERT_TRUE(one.shots.has_shot_column);
   EXPECT_TRUE(one_club_after_another(one.shots));
   EXPECT_FALSE(one_club_after_another(other.shots));
@@ -929,23 +895,16 @@ TEST_F(Loop, TwoBallsAreAMixture) {
 
 TEST_F(Loop, AColumnComputedOnSomeRowsIsFound) {
   // The angle between face and club on two rows in three, a reading of its own on the others.
-  std::string table = "spin_loft_deg," + csv({.shots = 0});
-  std::istringstream lines(csv({}));
-  std::string line;
-  std::getline(lines, line);
   std::mt19937 random(5);
   std::normal_distribution<double> gauss;
-  for (int row = 0; std::getline(lines, line); ++row) {
-    std::vector<double> cell;
-    std::istringstream cells(line);
-    for (std::string c; std::getline(cells, c, ',');) cell.push_back(std::stod(c));
-    const auto along = [](double up, double right) {
+  const std::string table = changed(csv({}), ",spin_loft_deg", [&](int row, std::vector<std::string>& cells) {
+    const auto along = [&](std::size_t up_at, std::size_t right_at) {
+      const double up = radians(std::stod(cells[up_at])), right = radians(std::stod(cells[right_at]));
       return Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
     };
-    const Vec3 club = along(radians(cell[2]), radians(cell[3])), face = along(radians(cell[5]), radians(cell[4]));
-    const double computed = degrees(std::acos(club.dot(face)));
-    table += fmt::format("{:.1f},{}\n", row % 3 == 0 ? computed + 0.8 * gauss(random) : computed, line);
-  }
+    const double computed = degrees(std::acos(along(kAttack, kPath).dot(along(kLoft, kFace))));
+    cells.push_back(fmt::format("{:.1f}", row % 3 == 0 ? computed + 0.8 * gauss(random) : computed));
+  });
   const std::vector<DerivedColumn> found = audit(shots(table), {});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].column, "spin_loft_deg");
@@ -1131,20 +1090,11 @@ TEST_F(Loop, TheSameReportOnOneThreadAndOnTwo) {
 
 TEST_F(Loop, AWholeClubInAnotherUnitIsOneFinding) {
   // Club speeds of one club in mph: above what any golfer does, so its rows never become shots.
-  std::string text = csv({.shots = 60});
-  std::istringstream in(text);
-  std::string line, clubs;
-  std::getline(in, line);
-  clubs = "club," + line + "\n";
-  for (int i = 0; std::getline(in, line); ++i) {
+  const std::string clubs = changed(csv({.shots = 60}), ",club", [](int i, std::vector<std::string>& cells) {
     const char club = char('A' + i % 5);
-    if (club == 'C') {
-      const auto a = line.find(','), b = line.find(',', a + 1);
-      line = line.substr(0, a + 1) + std::to_string(std::stod(line.substr(a + 1, b - a - 1)) / kMpsPerMph) +
-             line.substr(b);
-    }
-    clubs += std::string(1, club) + "," + line + "\n";
-  }
+    if (club == 'C') cells[kClubSpeed] = std::to_string(std::stod(cells[kClubSpeed]) / kMpsPerMph);
+    cells.emplace_back(1, club);
+  });
   const LoopResult r = run(case_of(clubs));
   ASSERT_EQ(r.flagged.size(), 12U);
   for (const auto& f : r.flagged) {
