@@ -136,8 +136,7 @@ std::string bars(const std::vector<ChannelResult>& channels) {
 std::string without_name(const LoopResult& r) {
   std::string s =
       "<h2>What has no name</h2><div class='scroll'><table><tr><th>channel<th>RMS<th class='l'>along<th>share of it "
-      "that "
-      "goes with that column<th>largest<th>there</tr>";
+      "that goes with that column<th>largest<th>there</tr>";
   for (const Remainder::Place& p : r.remainder->places)
     s += fmt::format("<tr><td>{}<td>{}<td class='l'>{}<td>{:.0f} %<td>{}<td>{}</tr>",
                      escape_html(post::label(r.channel_names[std::size_t(p.channel)])), number(p.size),
@@ -168,8 +167,8 @@ std::string page(const LoopResult& r, const Shots& table) {
   const char* thing = records ? "samples" : "shots";
   const Selection& sel = r.selection;
   std::string s = fmt::format(
-      "<p class='lead'>Base model <b>{}</b>. {} {} read, {} used: {} to learn from, {} held out (seed {}). "
-      "{} flagged.</p>",
+      "<p class='lead'>Base model <b>{}</b>. {} {} read, {} used: {} to learn from, {} held out (seed {}). {} "
+      "flagged.</p>",
       escape_html(r.base), r.read, thing, r.used, r.train, r.holdout, r.seed, r.flagged.size());
   s += fmt::format("<p class='verdict {}'><b>{}</b><span>{}</span></p>", mood(r.verdict), name(r.verdict),
                    escape_html(sentence(r)));
@@ -191,20 +190,17 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += "</table></div>";
   s += gloss(
       "Residual: model minus measured. Noise: standard deviation of one reading: as declared, measured from the "
-      "readings' "
-      "own spread, or (repeats) from the rows whose mean a reading is. Scatter / noise: the scatter about the fit, "
-      "divided by that noise; it is 1 where both are right. Held out: "
-      "rows that no fit saw. RMS: root mean square of the residuals, its 95 % interval in brackets and as whiskers; by "
-      "noise: what the noise of readings and of inputs makes of it about the right model. "
-      "Bias: their mean.");
+      "readings' own spread, or (repeats) from the rows whose mean a reading is. Scatter / noise: the scatter about "
+      "the fit, divided by that noise; it is 1 where both are right. Held out: rows that no fit saw. RMS: root mean "
+      "square of the residuals, its 95 % interval in brackets and as whiskers; by noise: what the noise of readings "
+      "and of inputs makes of it about the right model. Bias: their mean.");
   if (smooth) s += without_name(r);
   if (r.corrected && !r.corrected->rows.empty()) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(
         "<h2>By the base model itself</h2><p>{}, no surrogate between, asked about {} of the held-out shots as it was "
         "declared and with the adopted effects in it:</p><div class='scroll'><table><tr><th>channel<th>RMS "
-        "before<th>RMS after<th>shots "
-        "with both answers</tr>",
+        "before<th>RMS after<th>shots with both answers</tr>",
         escape_html(r.base), rows.size());
     for (std::size_t c = 0; c < r.channels.size(); ++c)
       s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(post::label(r.channels[c].name)),
@@ -217,8 +213,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     const Balance &b = *r.balance_before, &a = *r.balance_after;
     s += "<h2>Contact, or kinematics and inertia?</h2><p>Whatever the contact, one impulse gives the ball both its "
          "velocity and its spin. An error that another impulse would remove comes from the contact law. An error that "
-         "no "
-         "impulse removes comes from the recorded motion of the head or from the ball's inertia.</p><div "
+         "no impulse removes comes from the recorded motion of the head or from the ball's inertia.</p><div "
          "class='scroll'><table><tr><th>mean square of the errors, in noise units<th>before<th>after</tr>";
     const auto ratio = [](double x, int n) {
       return n ? fmt::format("{:.2f} <small>({} values)</small>", x / n, n) : std::string("–");
@@ -237,8 +232,8 @@ std::string page(const LoopResult& r, const Shots& table) {
 
   if (records && !r.rows.empty()) {
     s += "<h2>Records</h2><p class='key'><small><i style='background:var(--ink)'></i>measured<i "
-         "style='background:var(--grey)'></i>before<i style='background:var(--blue)'></i>after"
-         "<i style='background:var(--band)'></i>held out</small></p>";
+         "style='background:var(--grey)'></i>before<i style='background:var(--blue)'></i>after<i "
+         "style='background:var(--band)'></i>held out</small></p>";
     std::vector<std::string> names;
     for (const std::string& n : table.find("record")->text)
       if (std::ranges::find(names, n) == names.end() && names.size() < 4) names.push_back(n);
@@ -249,9 +244,8 @@ std::string page(const LoopResult& r, const Shots& table) {
   }
 
   s += "<h2>Residuals</h2><p class='key'><small><i style='background:var(--grey)'></i>before<i "
-       "style='background:var(--blue)'></i>after, learnt from"
-       "<i style='background:var(--orange)'></i>after, held out<i style='background:var(--band)'></i>one standard "
-       "deviation of the noise</small></p><div class='figures'>";
+       "style='background:var(--blue)'></i>after, learnt from<i style='background:var(--orange)'></i>after, held out<i "
+       "style='background:var(--band)'></i>one standard deviation of the noise</small></p><div class='figures'>";
   for (std::size_t c = 0; c < r.channels.size(); ++c) {
     // Against the columns that the structure follows most.
     std::vector<std::string> columns;
@@ -291,22 +285,20 @@ std::string page(const LoopResult& r, const Shots& table) {
   if (!r.ties.empty()) {
     s += "<p><b>Tied:</b> ";
     for (const auto& t : r.ties) s += escape_html(fmt::format("{}. ", fmt::join(t, " or ")));
-    s += "</p>" + gloss(
-                      "Tied: these data cannot tell which of them acts. Under What to measure next stands what "
-                      "would tell.");
+    s += "</p>" +
+         gloss("Tied: these data cannot tell which of them acts. Under What to measure next stands what would tell.");
   }
   if (!r.likeness.absorption.empty()) {
     s += "<h2>What looks alike</h2><div class='scroll'><table><tr><th>effect<th class='l'>parameter<th>share that the "
-         "fitted "
-         "effects imitate<th class='l'>most like<th>correlation</tr>";
+         "fitted effects imitate<th class='l'>most like<th>correlation</tr>";
     for (const Absorption& a : r.likeness.absorption)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td>{:.1f} %<td class='l'>{}<td>{}</tr>", escape_html(a.effect),
                        escape_html(post::spoken(a.parameter)), 100 * a.absorbed, escape_html(a.nearest),
                        a.nearest.empty() ? std::string("–") : fmt::format("{:+.3f}", a.likeness));
     s += "</table></div>" + gloss(
-                                "An effect changes the predictions in a pattern. The share is how much of that "
-                                "pattern the fitted effects can make as well. Correlation: of the pattern with that of "
-                                "the nearest other effect; 1 where they are the same.");
+                                "An effect changes the predictions in a pattern. The share is how much of that pattern "
+                                "the fitted effects can make as well. Correlation: of the pattern with that of the "
+                                "nearest other effect; 1 where they are the same.");
     if (!r.likeness.null_vectors.empty()) {
       s += "<p>These sums of effects change the predictions by almost nothing. In brackets: the singular value of the "
            "Jacobian, in noise units, its columns of unit length.</p><ul>";
@@ -346,10 +338,9 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (std::size_t i = 0; i < std::min<std::size_t>(r.flagged.size(), 200); ++i)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}</tr>", escape_html(r.flagged[i].id),
                        escape_html(r.flagged[i].column), escape_html(r.flagged[i].reason), r.flagged[i].finding);
-    s += "</table></div>" +
-         gloss(
-             "Flagged: contradicts the other rows and is left out of every fit. Finding: rows with one cause "
-             "have one number.");
+    s += "</table></div>" + gloss(
+                                "Flagged: contradicts the other rows and is left out of every fit. Finding: rows with "
+                                "one cause have one number.");
     if (r.flagged.size() > 200)
       s += fmt::format("<p><small>and {} more, in report.json</small></p>", r.flagged.size() - 200);
   }

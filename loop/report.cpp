@@ -223,7 +223,7 @@ std::string residuals_csv(const LoopResult& r, const Shots& table) {
 namespace {
 
 /// The held-out error of the channel that is farthest above what instrument and inputs make of it, as numbers; in words
-/// only where none is farther than the data's own scatter may be from a declared noise.
+/// only where none is farther than the data's own scatter may be from a declared noise. After a space.
 std::string beside_noise(const LoopResult& r) {
   const ChannelResult* worst = nullptr;
   const auto ratio = [](const ChannelResult& c) { return c.after.holdout_rmse / c.expected; };
@@ -233,11 +233,11 @@ std::string beside_noise(const LoopResult& r) {
   // The root mean square of few values is beyond that by chance.
   const double chance =
       std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 0.975) / worst->after.holdout);
-  if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return "The held-out error is within the noise.";
+  if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return " The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
   const std::string unit = name.unit ? " " + std::string(name.unit->suffix) : "";
   return fmt::format(
-      "Held out, {} is off by {:.3g}{} (RMS), the noise of readings and inputs makes {:.3g}{}: {:.1f} times.",
+      " Held out, {} is off by {:.3g}{} (RMS), the noise of readings and inputs makes {:.3g}{}: {:.1f} times.",
       name.stem, worst->after.holdout_rmse, unit, worst->expected, unit, ratio(*worst));
 }
 
@@ -248,16 +248,12 @@ std::string sentence(const LoopResult& r) {
   std::vector<std::string> alternatives;
   for (const auto& tie : r.ties) alternatives.push_back(fmt::format("{}", fmt::join(tie, " or ")));
   const std::string ties = fmt::format("{}", fmt::join(alternatives, "; and "));
+  const std::string tied =
+      r.ties.empty() ? "" : fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
   switch (r.verdict) {
-    case Verdict::no_residual: {
-      const std::string held_out = beside_noise(r);
-      return "No structure beyond the noise: the base model explains these shots." +
-             (held_out.empty() ? "" : " " + held_out);
-    }
-    case Verdict::explained: {
-      const std::string held_out = beside_noise(r);
-      return fmt::format("The model lacked: {}.{}", list(r.adopted), held_out.empty() ? "" : " " + held_out);
-    }
+    case Verdict::no_residual:
+      return "No structure beyond the noise: the base model explains these shots." + beside_noise(r);
+    case Verdict::explained: return fmt::format("The model lacked: {}.{}", list(r.adopted), beside_noise(r));
     case Verdict::ambiguous:
       return fmt::format("{}The data cannot separate {}.",
                          r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), ties);
@@ -273,8 +269,7 @@ std::string sentence(const LoopResult& r) {
                                                   first.channel, first.regressor);
       }
       if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
-      if (!r.ties.empty()) s += fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
-      return s;
+      return s + tied;
     }
     case Verdict::insufficient:
       if (r.minimum_detectable.empty()) return "Too little to name anything.";
@@ -285,8 +280,7 @@ std::string sentence(const LoopResult& r) {
         if (c.refuted) which += (which.empty() ? "" : "; ") + c.refutation();
       std::string s = "The declared noise is contradicted by the data's own scatter: " + which + ".";
       if (!r.adopted.empty()) s += fmt::format(" The model lacked all the same: {}.", list(r.adopted));
-      if (!r.ties.empty()) s += fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
-      return s;
+      return s + tied;
     }
   }
   return "";
