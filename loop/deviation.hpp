@@ -1,13 +1,26 @@
-/// Middles and standard deviations that a few bad values do not move.
+/// Ranges, and middles and standard deviations that a few bad values do not move.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
 namespace hosel::loop {
+
+/// Least and largest of what `of` says of each, values that are none left out; infinite, the least above, of none.
+template <class Of>
+std::pair<double, double> range_of(const auto& all, const Of& of) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& x : all) {
+    const double value = of(x);
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return {low, high};
+}
 
 /// The upper of the two middle values where their number is even; 0 of none.
 inline double median(std::vector<double> x) {
@@ -21,6 +34,14 @@ inline double median(std::vector<double> x) {
 inline double robust_deviation(std::vector<double> distances) {
   constexpr double of_median = 1.4826;
   return of_median * median(std::move(distances));
+}
+
+/// The median, and the standard deviation by the distances from it.
+inline std::pair<double, double> robust_moments(const std::vector<double>& x) {
+  const double middle = median(x);
+  std::vector<double> off;
+  for (const double v : x) off.push_back(std::abs(v - middle));
+  return {middle, robust_deviation(std::move(off))};
 }
 
 /// Of what rounding to steps of this size adds: a uniform distribution's.

@@ -28,13 +28,18 @@ bool misspelt(std::string_view name, std::string_view meant) {
   return x.substr(1) == y.substr(1) || (x.size() > 1 && x[0] == y[1] && x[1] == y[0] && x.substr(2) == y.substr(2));
 }
 
+/// Number of different values, at most twenty.
+std::size_t different(const std::vector<double>& values) {
+  std::set<double> seen;
+  for (const double x : values)
+    if (std::isfinite(x) && seen.size() < 20) seen.insert(x);
+  return seen.size();
+}
+
 /// The step of a recording with so many decimals, and a coarser one that all values share (100 rpm recorded without
 /// decimals), in the values' unit.
 double shared_step(const std::vector<double>& values, double step) {
-  std::set<double> different;
-  for (const double x : values)
-    if (std::isfinite(x) && different.size() < 20) different.insert(x);
-  if (different.size() < 8) return step;
+  if (different(values) < 8) return step;
   for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
     const auto off = [&](double x) {
       const double q = x / (step * factor);
@@ -45,20 +50,23 @@ double shared_step(const std::vector<double>& values, double step) {
   return step;
 }
 
-/// The step of the recording, header's unit: 10^-d for the most digits that at least 2 % of the cells carry.
-double written_step(const std::vector<std::string>& cells, const std::vector<double>& native) {
+/// The most digits that at least 2 % of the cells with a value carry; none: there is no value.
+std::optional<int> most_digits(const std::vector<std::string>& cells, const std::vector<double>& native,
+                               int (*digits_of)(const std::string&)) {
   std::map<int, std::size_t> count;
   std::size_t n = 0;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (std::isfinite(native[i])) {
-      ++count[post::decimals(cells[i])];
-      ++n;
-    }
-  if (!n) return 0;
-  int digits = count.begin()->first;
-  for (const auto& [d, k] : count)
-    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
-  return std::pow(10.0, -digits);
+    if (std::isfinite(native[i])) ++count[digits_of(cells[i])], ++n;
+  std::optional<int> digits;
+  for (const auto& [d, k] : count)  // rising
+    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = d;
+  return digits;
+}
+
+/// The step of the recording, header's unit; 0 without a value.
+double written_step(const std::vector<std::string>& cells, const std::vector<double>& native) {
+  const std::optional<int> digits = most_digits(cells, native, post::decimals);
+  return digits ? std::pow(10.0, -*digits) : 0;
 }
 
 /// Digits of a number from its first that is no zero.
@@ -74,13 +82,7 @@ int significant(const std::string& cell) {
 /// What the last digit of each value may be off by, header's unit. A converted column has as many decimals everywhere,
 /// or as many digits: then more decimals where its values are small.
 std::vector<double> last_digits(const std::vector<std::string>& cells, const std::vector<double>& native, double step) {
-  std::map<int, std::size_t> count;
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (std::isfinite(native[i])) ++count[significant(cells[i])], ++n;
-  int digits = 1;
-  for (const auto& [d, k] : count)
-    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = std::max(digits, d);
+  const int digits = std::max(1, most_digits(cells, native, significant).value_or(1));
   std::vector<double> last(native.size(), step);
   for (std::size_t i = 0; i < native.size(); ++i)
     if (std::isfinite(native[i]) && native[i] != 0)
@@ -94,9 +96,7 @@ std::vector<double> last_digits(const std::vector<std::string>& cells, const std
 double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step, const std::vector<double>& last) {
   constexpr double kCoarser = 4;  // than what is written; and so many bits against chance, over all different values
   constexpr double kBits = 24;
-  std::set<double> different;
-  for (const double x : si)
-    if (std::isfinite(x) && different.size() < 20) different.insert(x);
+  const double apart = double(different(si));
   double best = 0;
   std::vector<double> taken;
   for (const Unit& other : units()) {
@@ -105,7 +105,7 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
     for (int digits = 0; digits <= 6; ++digits) {
       const double power = std::pow(10.0, digits), coarse = other.si / power;
       const double ratio = coarse / std::max(step * unit.si, 1e-9 * coarse);
-      if (ratio < kCoarser || double(different.size()) * std::log2(ratio) < kBits) break;
+      if (ratio < kCoarser || apart * std::log2(ratio) < kBits) break;
       std::vector<double> values = si;
       std::size_t off = 0, n = 0;
       for (std::size_t i = 0; i < values.size(); ++i) {

@@ -40,6 +40,14 @@ struct Shots {
 
 /// All rows by their values, so that what is sampled or split from them does not hang on the file's order.
 std::vector<std::size_t> rows_by_value(const Shots& shots);
+/// At most so many of these, from all over.
+template <class T>
+std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
+  if (all.size() <= most) return all;
+  std::vector<T> some;
+  for (std::size_t k = 0; k < most; ++k) some.push_back(all[k * all.size() / most]);
+  return some;
+}
 
 /// Roles, units, SI values and recording resolution of a sheet. Columns stand in the order of the quantities, rows in
 /// that of their shot numbers where each has one. Values that were recorded in another unit and converted are taken
