@@ -14,8 +14,6 @@
 #include "golf/dense.hpp"
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
-#include "loop/shots/predictable.hpp"
-#include "loop/shots/relations.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -34,17 +32,20 @@ struct Source {
   bool fine;  ///< enough different values to show a formula with free numbers
 };
 
+/// Its value where `of` gives that of a source by its number.
+double evaluate(const Term& f, const auto& of) {
+  if (f.how == '/') return of(f.a) / of(f.b);
+  if (f.how == '*') return of(f.a) * of(f.b);
+  return of(f.a);
+}
+
 double evaluate(const Term& f, const std::vector<Source>& s, Eigen::Index i) {
-  const double x = s[std::size_t(f.a)].x[i];
-  if (f.how == '/') return x / s[std::size_t(f.b)].x[i];
-  if (f.how == '*') return x * s[std::size_t(f.b)].x[i];
-  return x;
+  return evaluate(f, [&](int k) { return s[std::size_t(k)].x[i]; });
 }
 
 /// What one of a term in the units of its headers is in SI.
 double term_unit(const Term& f, const std::vector<Source>& s) {
-  const double a = s[std::size_t(f.a)].column->si, b = f.b < 0 ? 1 : s[std::size_t(f.b)].column->si;
-  return f.how == '/' ? a / b : a * b;
+  return evaluate(f, [&](int k) { return s[std::size_t(k)].column->si; });
 }
 
 std::string term_name(const Term& f, const std::vector<Source>& s) {
@@ -141,16 +142,10 @@ class Audit {
     std::vector<DerivedColumn> found;
     std::set<int> gone;
     const auto accept = [&](int target, const Formula& f) {
-      const Source& y = sources_[std::size_t(target)];
-      DerivedColumn d;
-      d.column = y.column->name;
-      for (const int k : f.from) d.from.push_back(sources_[std::size_t(k)].column->name);
-      d.formula = f.text;
-      d.residual_sd = f.residual / y.column->si;
-      d.recording_resolution = y.resolution / y.column->si;
-      d.rows = f.rows;
-      d.input = y.column->role == Role::input;
-      found.push_back(d);
+      std::vector<std::string> from;
+      for (const int k : f.from) from.push_back(sources_[std::size_t(k)].column->name);
+      found.push_back(derived_column(*sources_[std::size_t(target)].column, std::move(from), f.text, f.residual));
+      found.back().rows = f.rows;
       gone.insert(target);
     };
     // Formulas of the field first, magnitudes before components.
@@ -230,9 +225,7 @@ class Audit {
              Formula& out) const {
     const Source& y = sources_[std::size_t(target)];
     if (rows.empty()) return false;
-    std::vector<double> residual;
-    std::vector<double> wobbles;
-    std::vector<double> x(sources_.size());
+    std::vector<double> residual, wobbles, x(sources_.size());
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
       residual.push_back(y.x[i] - f(x));
@@ -372,13 +365,8 @@ class Audit {
       Formula out;
       const auto f = [&](const std::vector<double>& x) {
         double sum = c[0];
-        for (std::ptrdiff_t j = 1; j < p; ++j) {
-          const Term& g = features[std::size_t(j - 1)];
-          double v = x[std::size_t(g.a)];
-          if (g.how == '/') v /= x[std::size_t(g.b)];
-          if (g.how == '*') v *= x[std::size_t(g.b)];
-          sum += c[j] * transform(v);
-        }
+        for (std::ptrdiff_t j = 1; j < p; ++j)
+          sum += c[j] * transform(evaluate(features[std::size_t(j - 1)], [&](int k) { return x[std::size_t(k)]; }));
         return logarithmic ? std::exp(sum) : sum;
       };
       // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
@@ -386,12 +374,9 @@ class Audit {
         return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {
-        double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-        for (const Eigen::Index i : judged) {
-          const double v = c[j] * transform(evaluate(features[std::size_t(j - 1)], sources_, i));
-          lo = std::min(lo, v);
-          hi = std::max(hi, v);
-        }
+        const auto [lo, hi] = range_of(judged, [&](Eigen::Index i) {
+          return c[j] * transform(evaluate(features[std::size_t(j - 1)], sources_, i));
+        });
         const double scale = logarithmic ? y.x.cwiseAbs().maxCoeff() : 1;
         if ((hi - lo) * scale < 4 * out.tolerance) return false;
       }
@@ -452,17 +437,18 @@ class Audit {
     for (const Term& f : logs) consider({f}, true);
     if (found) return true;
     for (const auto& [f, g] : promising(target, all)) consider({f, g}, false);
-    for (std::size_t i = 0; i < raw.size(); ++i)
-      for (std::size_t j = i + 1; j < raw.size(); ++j) consider({raw[i], raw[j]}, false);
-    for (std::size_t i = 0; i < logs.size(); ++i)
-      for (std::size_t j = i + 1; j < logs.size(); ++j) consider({logs[i], logs[j]}, true);
+    for (const bool logarithmic : {false, true}) {
+      const std::vector<Term>& of = logarithmic ? logs : raw;
+      for (std::size_t i = 0; i < of.size(); ++i)
+        for (std::size_t j = i + 1; j < of.size(); ++j) consider({of[i], of[j]}, logarithmic);
+    }
     if (found) return true;
-    for (std::size_t i = 0; i < raw.size(); ++i)
-      for (std::size_t j = i + 1; j < raw.size(); ++j)
-        for (std::size_t k = j + 1; k < raw.size(); ++k) consider({raw[i], raw[j], raw[k]}, false);
-    for (std::size_t i = 0; i < logs.size(); ++i)
-      for (std::size_t j = i + 1; j < logs.size(); ++j)
-        for (std::size_t k = j + 1; k < logs.size(); ++k) consider({logs[i], logs[j], logs[k]}, true);
+    for (const bool logarithmic : {false, true}) {
+      const std::vector<Term>& of = logarithmic ? logs : raw;
+      for (std::size_t i = 0; i < of.size(); ++i)
+        for (std::size_t j = i + 1; j < of.size(); ++j)
+          for (std::size_t k = j + 1; k < of.size(); ++k) consider({of[i], of[j], of[k]}, logarithmic);
+    }
     return found;
   }
 
@@ -472,13 +458,8 @@ class Audit {
     std::vector<const Term*> kept;
     std::set<int> everything;
     for (const Term& f : all) everything.insert(f.a);
-    std::vector<Eigen::Index> rows = complete(target, everything);
+    const std::vector<Eigen::Index> rows = evenly(complete(target, everything), 400);  // in the order of their values
     if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
-    constexpr std::size_t most = 400;
-    if (const std::size_t count = rows.size(); count > most) {  // in the order of their values: evenly, not the first
-      for (std::size_t k = 0; k < most; ++k) rows[k] = rows[k * count / most];
-      rows.resize(most);
-    }
     const auto n = std::ptrdiff_t(rows.size());
     const auto ranks = [&](auto&& value) {
       Eigen::VectorXd v(n);
@@ -523,6 +504,15 @@ class Audit {
 };
 
 }  // namespace
+
+DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std::string formula, double residual) {
+  return {.column = y.name,
+          .from = std::move(from),
+          .formula = std::move(formula),
+          .residual_sd = residual / y.si,
+          .recording_resolution = y.resolution / y.si,
+          .input = y.role == Role::input};
+}
 
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise) {
   std::vector<DerivedColumn> found = Audit(shots, ball).run();

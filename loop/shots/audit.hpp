@@ -19,10 +19,29 @@ struct DerivedColumn {
   double share = 1;                 ///< of those that could show it
   bool input = false;               ///< the column is an input of the models
 };
+/// On all rows; `residual` [SI].
+DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std::string formula, double residual);
 
-/// Formulas that hold on all rows, then (relations) those that hold on many, then (predictable) what follows from
-/// others more closely than noise allows, whatever the formula. `noise`: declared of inputs and outputs, by header, in
-/// the header's unit.
+/// Formulas that hold on all rows, then what is `partly_derived`, then what is `predictable`. `noise`: declared of
+/// inputs and outputs, by header, in the header's unit.
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise = {});
+
+/// Relations that hold on a part of the rows only, to the last digit: a column that was filled in by computation where
+/// the instrument saw nothing. Columns that on 35 % of the rows and more are a formula of others: sums, products,
+/// quotients and means of columns with at most one free number, and the directions of club, face and ball. Told once,
+/// for the column that was computed. `whole`: what is known to hold on all rows.
+std::vector<DerivedColumn> partly_derived(const Shots& shots, const std::vector<DerivedColumn>& whole);
+
+/// Columns that are a smooth function of up to four others on all rows or on a part, whatever the formula.
+///
+/// A reading has an error of its own, and so have those that foretell it: its departure from any function f of them has
+/// at least the variance s^2 + sum (df/dx_k)^2 s_k^2, where s are the declared noises with the rounding. A column that
+/// departs less was computed from the others as they were recorded. f is quadratic, fitted together with the share of
+/// the rows on which it holds; on the others the column scatters about a plane. Told is the column that is likelier by
+/// its function than by no more than noise allows, beyond the number of functions that were tried; then the next
+/// without it. `noise`: of inputs and outputs, by header, in the header's unit; a column without is never told.
+/// `known`: computed columns that are left out.
+std::vector<DerivedColumn> predictable(const Shots& shots, const std::map<std::string, double>& noise,
+                                       const std::vector<DerivedColumn>& known);
 
 }  // namespace hosel::loop

@@ -1,4 +1,4 @@
-#include "loop/shots/predictable.hpp"
+#include "loop/shots/audit.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -64,7 +64,8 @@ class Predictable {
     });
     complete_ = rows.size();
     if (complete_ < kLeastRows) columns_.clear();
-    n_ = std::ptrdiff_t(std::min(complete_, kRowsAsked));
+    rows = evenly(rows, kRowsAsked);
+    n_ = std::ptrdiff_t(rows.size());
     const auto m = std::ptrdiff_t(columns_.size());
     z_.resize(n_, m);
     sd_.resize(m);
@@ -73,7 +74,7 @@ class Predictable {
     told_.resize(columns_.size());
     for (std::ptrdiff_t k = 0; k < m; ++k) {
       const Column& c = *columns_[std::size_t(k)];
-      for (std::ptrdiff_t i = 0; i < n_; ++i) z_(i, k) = c.value[rows[std::size_t(i) * complete_ / std::size_t(n_)]];
+      for (std::ptrdiff_t i = 0; i < n_; ++i) z_(i, k) = c.value[rows[std::size_t(i)]];
       const auto declared = noise.find(c.name);
       const double own = declared == noise.end() ? 0 : declared->second * c.si;
       z_.col(k).array() -= z_.col(k).mean();
@@ -110,14 +111,12 @@ class Predictable {
     });
     const int column = best->of;
     const Column& c = *columns_[std::size_t(column)];
-    DerivedColumn d{.column = c.name, .from = {}, .formula = {}};
-    for (const int k : best->from) d.from.push_back(columns_[std::size_t(k)]->name);
-    d.formula = fmt::format("a smooth function of {}", fmt::join(d.from, ", "));
-    d.residual_sd = best->scatter * sd_[column] / c.si;
-    d.recording_resolution = c.resolution / c.si;
+    std::vector<std::string> from;
+    for (const int k : best->from) from.push_back(columns_[std::size_t(k)]->name);
+    const std::string formula = fmt::format("a smooth function of {}", fmt::join(from, ", "));
+    DerivedColumn d = derived_column(c, std::move(from), formula, best->scatter * sd_[column]);
     d.share = best->share > 1 - kBadRows ? 1 : best->share;
     d.rows = int(std::lround(d.share * double(complete_)));
-    d.input = c.role == Role::input;
     return d;
   }
 

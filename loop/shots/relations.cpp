@@ -1,4 +1,4 @@
-#include "loop/shots/relations.hpp"
+#include "loop/shots/audit.hpp"
 
 #include <fmt/format.h>
 
@@ -93,13 +93,24 @@ double edge_evidence(const std::vector<double>& residual, double t) {
   return both - alone;
 }
 
+/// Where an interval begins (1) or ends (-1).
+using End = std::pair<double, int>;
+/// Middle of the stretch that most intervals cover, and how many do; `ends` rising.
+End most_covered(const std::vector<End>& ends) {
+  double middle = 0;
+  int open = 0, most = 0;
+  for (std::size_t e = 0; e + 1 < ends.size(); ++e)
+    if ((open += ends[e].second) > most) {
+      most = open;
+      middle = 0.5 * (ends[e].first + ends[e + 1].first);
+    }
+  return {middle, most};
+}
+
 class Relations {
  public:
   explicit Relations(const Shots& shots) {
-    std::vector<std::size_t> rows;
-    const std::size_t n = std::min(shots.rows(), kMostRelated);
-    const std::vector<std::size_t> sorted = rows_by_value(shots);
-    for (std::size_t k = 0; k < n; ++k) rows.push_back(sorted[k * shots.rows() / n]);
+    const std::vector<std::size_t> rows = evenly(rows_by_value(shots), kMostRelated);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
       RelationSource s{&c, {}, c.resolution, 0, false};
@@ -143,7 +154,6 @@ class Relations {
   }
   const std::string& header(int k) const { return sources_[std::size_t(k)].column->name; }
   const Column& column(int k) const { return *sources_[std::size_t(k)].column; }
-  double step(int k) const { return sources_[std::size_t(k)].step; }
 
  private:
   std::vector<RelationSource> sources_;
@@ -211,10 +221,6 @@ class Relations {
   /// y = u + k v: the number that most rows agree on, to rounding.
   template <class U, class V>
   void linear(int y, const std::vector<int>& from, std::optional<double> known, U&& u, V&& v, auto&& text) {
-    struct End {
-      double k;
-      int change;
-    };
     std::vector<End> ends;
     struct Part {
       std::size_t row;
@@ -226,22 +232,16 @@ class Relations {
       const double a = x(y, i) - u(i), b = v(i);
       if (!std::isfinite(a) || !std::isfinite(b) || b == 0) continue;
       parts.push_back({i, a, b});
-      ends.push_back({a / b - t / std::abs(b), 1});
-      ends.push_back({a / b + t / std::abs(b), -1});
+      ends.emplace_back(a / b - t / std::abs(b), 1);
+      ends.emplace_back(a / b + t / std::abs(b), -1);
     }
     if (parts.size() < 20) return;
-    double k = 0;
-    if (known) {
-      k = *known;
-    } else {
-      std::ranges::sort(ends, {}, &End::k);
-      int open = 0, most = 0;
-      for (std::size_t e = 0; e + 1 < ends.size(); ++e)
-        if ((open += ends[e].change) > most) {
-          most = open;
-          k = 0.5 * (ends[e].k + ends[e + 1].k);
-        }
-      if (most < kLeastHeld * double(parts.size())) return;
+    double k = known.value_or(0);
+    if (!known) {
+      std::ranges::sort(ends, {}, &End::first);
+      const End agreed = most_covered(ends);
+      if (agreed.second < kLeastHeld * double(parts.size())) return;
+      k = agreed.first;
     }
     std::vector<Residual> residual;
     for (const auto& [row, a, b] : parts) residual.push_back({row, a - k * b});
@@ -314,7 +314,7 @@ class Relations {
     if (good.size() < 20) return;
     double k = 1;
     if (free) {
-      std::vector<std::pair<double, int>> ends;
+      std::vector<End> ends;
       for (const std::size_t i : good) {
         double at = 0.8, slope = 0;
         for (int pass = 0; pass < 6; ++pass) {
@@ -326,13 +326,9 @@ class Relations {
         ends.emplace_back(at + t / std::abs(slope), -1);
       }
       std::ranges::sort(ends);
-      int open = 0, most = 0;
-      for (std::size_t e = 0; e + 1 < ends.size(); ++e)
-        if ((open += ends[e].second) > most) {
-          most = open;
-          k = 0.5 * (ends[e].first + ends[e + 1].first);
-        }
-      if (most < kLeastHeld * double(good.size())) return;
+      const End agreed = most_covered(ends);
+      if (agreed.second < kLeastHeld * double(good.size())) return;
+      k = agreed.first;
     }
     std::vector<Residual> residual;
     for (const std::size_t i : good) residual.push_back({i, miss(i, k)});
@@ -394,29 +390,21 @@ class Relations {
 
 std::vector<DerivedColumn> partly_derived(const Shots& shots, const std::vector<DerivedColumn>& whole) {
   Relations relations(shots);
-  const auto names = [&](const Relation& r) {
-    std::set<std::string> all;
-    for (const int k : r.columns()) all.insert(relations.header(k));
-    return all;
-  };
   std::vector<DerivedColumn> told;
   for (const Relation& r : relations.run()) {
-    const std::set<std::string> columns = names(r);
+    std::set<std::string> columns;
+    for (const int k : r.columns()) columns.insert(relations.header(k));
     // A relation can be solved for any column in it: the likeliest, then nothing that follows from it on the same rows.
     const auto follows = [&](const DerivedColumn& d) {
       const auto common = [&](const std::string& name) { return columns.contains(name); };
       return d.column == relations.header(r.target) || std::ranges::count_if(d.from, common) + common(d.column) >= 2;
     };
     if (std::ranges::any_of(whole, follows) || std::ranges::any_of(told, follows)) continue;
-    DerivedColumn d{.column = relations.header(r.target), .from = {}, .formula = r.text};
-    for (const int k : r.from) d.from.push_back(relations.header(k));
-    const double si = relations.column(r.target).si;
-    d.residual_sd = r.residual / si;
-    d.recording_resolution = relations.step(r.target) / si;
-    d.rows = r.held;
-    d.share = double(r.held) / double(r.rows);
-    d.input = relations.column(r.target).role == Role::input;
-    told.push_back(d);
+    std::vector<std::string> from;
+    for (const int k : r.from) from.push_back(relations.header(k));
+    told.push_back(derived_column(relations.column(r.target), std::move(from), r.text, r.residual));
+    told.back().rows = r.held;
+    told.back().share = double(r.held) / double(r.rows);
   }
   return told;
 }
