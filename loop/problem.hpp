@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "loop/effect.hpp"
-#include "loop/mechanism.hpp"
-#include "loop/remainder.hpp"
 #include "solvers/least_squares.hpp"
 
 namespace hosel::loop {
@@ -50,6 +48,14 @@ struct Model {
   std::vector<const Parameter*> parameters() const;
   Model with(const Parametrisation* more) const;
   std::vector<std::string> effects(std::size_t first = 0) const;  ///< of its forms, from that one on
+  /// `act` of every form and its own of all the parameters.
+  template <class Act>
+  void each(const double* p, Act&& act) const {
+    for (const Parametrisation* f : forms) {
+      act(*f, std::span<const double>(p, f->parameters.size()));
+      p += f->parameters.size();
+    }
+  }
 };
 
 /// Which of the data: those that effects are selected on (not more than needed), all that train, those held out.
@@ -77,6 +83,37 @@ struct Effort {
 struct Scatter {
   double ratio = 1;  ///< over the noise
   double error = 1;  ///< of log ratio
+};
+
+/// One function that acts through one mechanism, as a verdict sees it.
+struct Mechanism {
+  std::string acts;                ///< through what, in words
+  std::string along;               ///< the column that it is a function of; "shot": of the place in the session
+  bool step = false;               ///< it changes at one shot of the session
+  int channel = 0;                 ///< that it moves most, in noise units
+  double criterion = 0;            ///< deviance with it, and what the freedom of the function costs
+  std::vector<std::string> names;  ///< effects that such a function is; none: it has no name
+};
+
+/// What a model leaves that follows the inputs and has no name: a rival of every name, and what corrects a prediction
+/// beside the named effects.
+struct Remainder {
+  /// Where it is in one channel.
+  struct Place {
+    int channel = 0;
+    double size = 0;     ///< root mean square over the training rows, header's unit
+    std::string along;   ///< the column that it follows most
+    double share = 0;    ///< of its square that goes when this column stands still
+    double largest = 0;  ///< header's unit
+    double at = 0;       ///< value of that column there, its unit; of "shot": place in the session
+  };
+  /// Rows x channels, header's units: to be taken from model minus measured. Of a training row as the others foretell
+  /// it.
+  Eigen::MatrixXd value;
+  double before = 0, after = 0;  ///< deviance of the training rows that it is judged on, without it and with it
+  std::vector<Place> places;     ///< the largest in noise units first; none: it foretells nothing
+
+  double fall() const { return before - after; }
 };
 
 class Problem {

@@ -2,7 +2,6 @@
 /// how the channels move together, whatever the function is.
 #pragma once
 
-#include "loop/mechanism.hpp"
 #include "loop/shots/structure.hpp"
 
 namespace hosel::loop {

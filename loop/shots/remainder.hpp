@@ -2,7 +2,6 @@
 /// columns that no model knows.
 #pragma once
 
-#include "loop/remainder.hpp"
 #include "loop/shots/structure.hpp"
 
 namespace hosel::loop {
