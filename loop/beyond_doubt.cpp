@@ -109,30 +109,20 @@ Eigen::VectorXd held_out(const Problem& problem, const Fit& f) {
 }
 
 /// Of a set of effects those that pass every test, fitted to all training rows.
-struct Kept {
-  std::vector<std::string> effects;
-  Fit fit;
-  double criterion = 0;
-};
-
-std::optional<Kept> keep(const Study& study, const Fit& start) {
+std::optional<Candidate> keep(const Study& study, const Fit& start) {
   const Problem& problem = study.problem;
-  Kept out;
-  out.fit = start;
+  Candidate out{.effects = {}, .fit = start};
   do {
     const std::vector<const Parametrisation*> passed = steady(study, out.fit);
     if (passed.empty()) return {};
     if (study.base.size() + passed.size() == out.fit.model.forms.size()) break;
     Model model{study.base};
     std::vector<double> p;
-    const double* at = out.fit.p.data();
-    for (const Parametrisation* form : out.fit.model.forms) {
-      const auto count = form->parameters.size();
-      const bool of_base = std::ranges::count(study.base, form) > 0;
-      if (std::ranges::count(passed, form)) model = model.with(form);
-      if (of_base || std::ranges::count(passed, form)) p.insert(p.end(), at, at + count);
-      at += count;
-    }
+    out.fit.model.each(out.fit.p.data(), [&](const Parametrisation& form, std::span<const double> own) {
+      const bool passes = std::ranges::count(passed, &form) > 0;
+      if (passes) model = model.with(&form);
+      if (passes || std::ranges::count(study.base, &form)) p.insert(p.end(), own.begin(), own.end());
+    });
     out.fit = fit(problem, Part::train, model, {Eigen::Map<const Eigen::VectorXd>(p.data(), Eigen::Index(p.size()))}, 1,
                   true);
   } while (true);
@@ -142,8 +132,7 @@ std::optional<Kept> keep(const Study& study, const Fit& start) {
   const Eigen::VectorXd before = held_out(problem, base), after = held_out(problem, out.fit);
   if (!(after.array() <= (1 + study.rules.worse) * before.array()).all()) return {};
   out.criterion = criterion(out.fit, study.rules);
-  for (std::size_t k = study.base.size(); k < out.fit.model.forms.size(); ++k)
-    out.effects.push_back(out.fit.model.forms[k]->effect);
+  out.effects = out.fit.model.effects(study.base.size());
   return out;
 }
 
@@ -157,19 +146,19 @@ BeyondDoubt beyond_doubt(const Study& study) {
   const std::size_t size = s.chosen.model.forms.size();
   // The sum of three effects follows any smooth form.
   if (size > study.base.size() + 2) return {};
-  std::vector<Kept> kept;
+  std::vector<Candidate> kept;
   for (const Candidate& c : s.candidates) {
     if (c.fit.model.forms.size() != size) continue;
     if (!(s.base.deviance - c.fit.deviance > study.rules.stand_in * (s.base.deviance - s.chosen.deviance))) continue;
     if (auto k = keep(study, fit(problem, Part::train, c.fit.model, {c.fit.p}, 1, true))) kept.push_back(*std::move(k));
   }
   if (kept.empty()) return {};
-  const Kept& best = *std::ranges::min_element(kept, {}, &Kept::criterion);
+  const Candidate& best = *std::ranges::min_element(kept, {}, &Candidate::criterion);
   // Two together follow many a form that neither is: where structure remains, most such pairs are wrong.
   if (best.effects.size() > 1) return {};
   BeyondDoubt out{.adopted = {}, .ties = {}, .fit = best.fit};
   std::vector<std::string> tie = best.effects;
-  for (const Kept& k : kept)
+  for (const Candidate& k : kept)
     for (const std::string& other : k.effects)
       if (!std::ranges::count(k.effects, tie.front()) && !std::ranges::count(tie, other)) tie.push_back(other);
   if (tie.size() > 1) out.ties.push_back(std::move(tie));

@@ -127,7 +127,6 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
   if (near) std::erase_if(stages, [](const Stage& s) { return std::isfinite(s.window); });
   if (model.size() == 0) {
     best.deviance = deviance(problem, part, best);
-    best.converged = std::isfinite(best.deviance);
     return best;
   }
   if (from.size() > most) {
@@ -180,7 +179,6 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
     if (&m != &minimum) best.others.push_back(m.parameters.cwiseProduct(scale));
   best.p = minimum.parameters.cwiseProduct(scale);
   best.deviance = 2 * minimum.cost;
-  best.converged = minimum.converged;
   best.at_bound = at_bound(model, best.p);
   return best;
 }

@@ -7,9 +7,8 @@ namespace hosel::loop {
 
 struct Fit {
   Model model;
-  Eigen::VectorXd p;    ///< parameters [SI]
-  double deviance = 0;  ///< see deviance(); infinite where the model has no answer
-  bool converged = false;
+  Eigen::VectorXd p;                         ///< parameters [SI]
+  double deviance = 0;                       ///< see deviance(); infinite where the model has no answer
   bool at_bound = false;                     ///< a parameter at the edge of its plausible range (zero excepted)
   std::vector<Eigen::VectorXd> others = {};  ///< further optima that other starts led to
   int size() const { return int(p.size()); }

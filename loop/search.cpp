@@ -8,7 +8,6 @@
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "loop/structure.hpp"
-
 namespace hosel::loop {
 namespace {
 
@@ -279,10 +278,8 @@ std::vector<Eigen::VectorXd> Search::other_optima(const Parametrisation* form) c
 }
 
 Candidate Search::candidate(Fit f) const {
-  Candidate c{.effects = {}, .fit = std::move(f)};
+  Candidate c{.effects = f.model.effects(base_forms_), .fit = std::move(f)};
   c.criterion = criterion(c.fit, rules_);
-  for (std::size_t k = base_forms_; k < c.fit.model.forms.size(); ++k)
-    c.effects.push_back(c.fit.model.forms[k]->effect);
   std::ranges::stable_sort(c.effects, {}, order_of);
   return c;
 }
