@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "loop/case.hpp"
 #include "loop/likeness.hpp"
 #include "loop/select.hpp"
 #include "loop/shots/audit.hpp"
@@ -53,6 +54,8 @@ struct Detectable {
 struct Location {
   std::string channel, regressor, detail;
 };
+/// Where a finding in one channel is.
+Location place_of(const Problem& problem, const Finding& finding);
 
 using DesignedShot = std::vector<std::pair<std::string, double>>;  ///< header, header's unit
 
@@ -73,16 +76,14 @@ struct UsedRow {
   std::string id;
   bool holdout;
   std::vector<double> measured, before, after;  ///< per channel, header's unit; before and after: model minus measured
-  std::vector<double> with_remainder =
-      {};  ///< after, the remainder taken away: of a training row as others foretell it
+  std::vector<double> with_remainder = {};      ///< after, less the remainder: of a training row as others foretell it
 };
 
 /// A slow base itself, without a surrogate, asked about shots that were held out.
 struct Corrected {
   struct Row {
     std::string id;
-    std::vector<double> before,
-        after;  ///< per channel, header's unit: model minus measured; both NaN where one has no answer
+    std::vector<double> before, after;  ///< as of a UsedRow; both NaN where one has no answer
   };
   std::vector<Row> rows;
   /// Shots with the adopted effects in them, as the base is asked about them, and what was measured.
@@ -102,6 +103,8 @@ int answered(const std::vector<Corrected::Row>& rows, std::size_t channel);
 
 struct LoopResult {
   LoopResult() = default;
+  /// Of a case whose data have so many rows, before anything is found.
+  LoopResult(const Case& c, std::size_t of) : title(c.title), base(c.base), read(int(of)), seed(c.split.seed) {}
   LoopResult(LoopResult&&) = default;  // the models below point into `forms`: moved, never copied
   LoopResult& operator=(LoopResult&&) = default;
 

@@ -219,6 +219,10 @@ std::string_view name(Verdict v) {
   return "";
 }
 
+Location place_of(const Problem& problem, const Finding& f) {
+  return {problem.channel(f.channel).name, f.regressor, f.what()};
+}
+
 std::string ChannelResult::refutation() const {
   return fmt::format("{}: declared noise {:.4g}, the data's own scatter shows {:.4g}", name, *refuted, noise);
 }
@@ -266,7 +270,7 @@ void conclude(const Study& study, LoopResult& result) {
   Rival one = one_function(study);
   const std::vector<std::string> restitution = through_one_restitution(study);
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
-  for (const std::string& note : problem.notes()) result.notes.push_back(note);
+  std::ranges::move(problem.notes(), std::back_inserter(result.notes));
   if (result.verdict == Verdict::noise_contradicted) result.tails = problem.heavy_tails(s).value_or("");
   else if (result.verdict == Verdict::no_residual)
     if (const auto tails = problem.heavy_tails(s)) result.notes.push_back(*tails);

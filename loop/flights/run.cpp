@@ -7,11 +7,7 @@ namespace hosel::loop {
 
 LoopResult run(const FlightCase& c) {
   FlightProblem problem(c);
-  LoopResult result;
-  result.title = c.title;
-  result.base = c.base;
-  result.seed = c.split.seed;
-  result.read = int(c.shots.rows());
+  LoopResult result(c, c.shots.rows());
   result.unused = problem.unused();
   result.forms = problem.forms();
   result.notes = c.notes;

@@ -9,11 +9,7 @@ namespace hosel::loop {
 LoopResult run(const HistoryCase& c) {
   if (c.records.empty()) throw DataError("no record to look at");
   HistoryProblem problem(*c.model, c.setting, c.records, c.split, c.notes, c.own);
-  LoopResult result;
-  result.title = c.title;
-  result.base = c.base;
-  result.seed = c.split.seed;
-  result.read = int(problem.measured().rows());
+  LoopResult result(c, std::size_t(problem.measured().rows()));
   result.forms = problem.forms();
   const Study study(problem, result.forms, c.effects, c.rules, c.told);
   conclude(study, result);

@@ -141,11 +141,7 @@ double HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd
 bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double window, Solution& out,
                            Eigen::VectorXd* z) const {
   TestSetup setup(setting_.channels.size());
-  const double* at = p.data();
-  for (const Parametrisation* f : model.forms) {
-    f->setup({at, f->parameters.size()}, setup);
-    at += f->parameters.size();
-  }
+  model.each(p.data(), [&](const Parametrisation& f, std::span<const double> q) { f.setup(q, setup); });
   if (!model_.answer(setup, out.answers)) return false;
   if (z) z->resize(measured_.size());
   out.unknowns.assign(records_.size(), {});
@@ -373,12 +369,9 @@ std::vector<Location> HistoryProblem::places(const Selection& s) const {
   std::vector<Location> all;
   for (const Finding& f : told)
     if (std::ranges::find(all, channel(f.channel).name, &Location::channel) == all.end())
-      all.push_back({channel(f.channel).name, f.regressor, f.what()});
+      all.push_back(place_of(*this, f));
   return all;
 }
-
-/// Readings that stand alone are few, and a record that is missed has structure.
-std::vector<Location> HistoryProblem::doubts(const Selection&) const { return {}; }
 
 NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
   NextExperiment next;

@@ -17,11 +17,7 @@ namespace {
 LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
                 const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {}) {
   ShotProblem problem(c, derived, held_rows, doubted);
-  LoopResult result;
-  result.title = c.title;
-  result.base = c.base;
-  result.seed = c.split.seed;
-  result.read = int(c.shots.rows());
+  LoopResult result(c, c.shots.rows());
   result.derived = derived;
   result.unused = problem.unused();
   result.forms = problem.forms();
@@ -52,25 +48,15 @@ Shots without_flagged(const Shots& shots, const LoopResult& r, const std::set<in
   return clean;
 }
 
-/// A fold may have fewer channels than all rows have: values in the order of the latter, NaN where it has none.
-class InOrder {
- public:
-  InOrder(const LoopResult& whole, const LoopResult& fold) {
-    for (const ChannelResult& c : whole.channels) {
-      const auto at = std::ranges::find(fold.channels, c.name, &ChannelResult::name);
-      from_.push_back(at == fold.channels.end() ? -1 : int(at - fold.channels.begin()));
-    }
+/// Of each channel of all rows its number in a fold, which may have fewer; -1: it has none.
+std::vector<int> places_in(const LoopResult& fold, const LoopResult& whole) {
+  std::vector<int> from;
+  for (const ChannelResult& c : whole.channels) {
+    const auto at = std::ranges::find(fold.channels, c.name, &ChannelResult::name);
+    from.push_back(at == fold.channels.end() ? -1 : int(at - fold.channels.begin()));
   }
-  const std::vector<int>& from() const { return from_; }
-  std::vector<double> operator()(const std::vector<double>& values) const {
-    std::vector<double> out;
-    for (const int k : from_) out.push_back(k < 0 ? kNaN : values[std::size_t(k)]);
-    return out;
-  }
-
- private:
-  std::vector<int> from_;
-};
+  return from;
+}
 
 /// What the folds adopted must not fail on the rows that they did not see: squares over the noise, each up to a cap.
 bool fails_held_out(const LoopResult& r, double loss) {
@@ -105,7 +91,12 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
                                           g.name[k], fold.holdout));
       continue;
     }
-    const InOrder in_order(whole, fold);
+    const std::vector<int> from = places_in(fold, whole);
+    const auto in_order = [&](const std::vector<double>& values) {
+      std::vector<double> out;
+      for (const int k : from) out.push_back(k < 0 ? kNaN : values[std::size_t(k)]);
+      return out;
+    };
     for (const UsedRow& u : fold.rows)
       if (u.holdout)
         pooled.push_back({.row = u.row,
@@ -116,7 +107,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
                           .after = in_order(u.after),
                           .with_remainder = in_order(u.with_remainder)});
     for (std::size_t j = 0; j < expected.size(); ++j) {
-      const int at = in_order.from()[j];
+      const int at = from[j];
       if (at < 0 || !std::isfinite(fold.channels[std::size_t(at)].expected)) continue;
       const ChannelResult& ch = fold.channels[std::size_t(at)];
       expected[j].first += ch.before.holdout * std::pow(ch.expected, 2);
