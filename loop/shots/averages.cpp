@@ -38,8 +38,7 @@ void leave_out(Column& c, const std::vector<std::vector<int>>& rows_of, const Sh
   for (std::size_t i = 0; i < off.size() && deviation > 0; ++i)
     if (std::abs(off[i]) > kFar * deviation) {
       out.notes.push_back(
-          fmt::format("{}: {:g} of row {} lies {:.0f} deviations from the others of its {}: left out of "
-                      "the mean",
+          fmt::format("{}: {:g} of row {} lies {:.0f} deviations from the others of its {}: left out of the mean",
                       c.name, c.native(i), single.id[i], std::abs(off[i]) / deviation, out.by));
       c.value[i] = kNaN;
     }
@@ -123,15 +122,13 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
     out.degrees += here - 1;
   }
   if (out.degrees < kFewestDegrees)
-    throw DataError(
-        fmt::format("{}: {} rows more than values of {}: too few to tell how rows scatter about their mean "
-                    "({} are needed)",
-                    single.file, out.degrees, by, kFewestDegrees));
+    throw DataError(fmt::format(
+        "{}: {} rows more than values of {}: too few to tell how rows scatter about their mean ({} are needed)",
+        single.file, out.degrees, by, kFewestDegrees));
   out.scatter /= out.degrees;
-  out.notes.push_back(
-      fmt::format("{} rows stand as {} means by {}; the noise of a mean is the rows' own scatter about "
-                  "it, {} degrees of freedom",
-                  n, rows_of.size(), by, out.degrees));
+  out.notes.push_back(fmt::format(
+      "{} rows stand as {} means by {}; the noise of a mean is the rows' own scatter about it, {} degrees of freedom",
+      n, rows_of.size(), by, out.degrees));
   return {std::move(means), std::move(out)};
 }
 

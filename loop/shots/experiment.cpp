@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "golf/dense.hpp"
+#include "loop/deviation.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
@@ -58,23 +59,14 @@ struct Box {
     for (int k = 0; k < kInputs; ++k) {
       const Column* col = shots.find_stem(stem(Input(k)));
       if (!col || k == int(Input::head_mass)) continue;
-      double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-      for (const int i : rows) {
-        const double x = get(model.trial(i).blow, Input(k));
-        lo = std::min(lo, x);
-        hi = std::max(hi, x);
-      }
+      const auto [lo, hi] = range_of(rows, [&](int i) { return get(model.trial(i).blow, Input(k)); });
       const bool place = k == int(Input::impact_toe) || k == int(Input::impact_high);
       const double aimed = place ? 0.008 : radians(1.5);  // half of a range that aim alone makes
       const double wide = std::max(0.1 * (hi - lo), k == int(Input::club_speed) ? 0.0 : aimed - 0.5 * (hi - lo));
       const double slower = k == int(Input::club_speed) ? std::max(wide, 0.15 * hi) : wide;
-      lo -= slower;
-      hi += wide;
-      lo = std::max(lo, quantity(Input(k)).low);
-      hi = std::min(hi, quantity(Input(k)).high);
       input.push_back(k);
-      low.push_back(lo);
-      high.push_back(hi);
+      low.push_back(std::max(lo - slower, quantity(Input(k)).low));
+      high.push_back(std::min(hi + wide, quantity(Input(k)).high));
       column.push_back(col);
     }
   }
@@ -159,9 +151,11 @@ class Separation {
     g_ += s.J.transpose() * s.d;
     dd_ += s.d.squaredNorm();
   }
-  double squared() const { return squared(G_, g_, dd_); }
+  double squared() const { return std::max(0.0, dd_ - g_.dot(dense::Ldlt(G_).solve(g_))); }
   double squared_with(const Site& s) const {
-    return squared(G_ + s.J.transpose() * s.J, g_ + s.J.transpose() * s.d, dd_ + s.d.squaredNorm());
+    Separation more = *this;
+    more.add(s);
+    return more.squared();
   }
 
  private:
@@ -171,10 +165,6 @@ class Separation {
   Eigen::MatrixXd G_;
   Eigen::VectorXd g_;
   double dd_ = 0;
-
-  static double squared(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, double dd) {
-    return std::max(0.0, dd - g.dot(dense::Ldlt(G).solve(g)));
-  }
 };
 
 /// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
@@ -294,18 +284,16 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       for (const std::string& s : of_pair)
         if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
-      sentences.push_back(fmt::format(
-          "shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by {:.1f} "
-          "after {} more shots, and 4.8 are needed. Measure {}",
-          r.one, r.two, before, after, more.size(), fmt::join(of_pair, "; or ")));
+      sentences.push_back(
+          fmt::format("shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by "
+                      "{:.1f} after {} more shots, and 4.8 are needed. Measure {}",
+                      r.one, r.two, before, after, more.size(), fmt::join(of_pair, "; or ")));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
-      sentences.push_back(
-          chosen.empty()
-              ? fmt::format("more shots of the same kind separate {} from {}", r.one, r.two)
-              : fmt::format("{} shots at these inputs separate {} from {}: they differ by {:.1f} noise units now, by "
-                            "{:.1f} then, and 4.8 are needed",
-                            chosen.size(), r.one, r.two, before, after));
+      sentences.push_back(chosen.empty() ? fmt::format("more shots of the same kind separate {} from {}", r.one, r.two)
+                                         : fmt::format("{} shots at these inputs separate {} from {}: they differ by "
+                                                       "{:.1f} noise units now, by {:.1f} then, and 4.8 are needed",
+                                                       chosen.size(), r.one, r.two, before, after));
     }
   }
   if (chosen.empty()) chosen = partial;
