@@ -15,6 +15,7 @@
 #include "golf/parallel.hpp"
 #include "loop/deviation.hpp"
 #include "loop/shots/inputs.hpp"
+#include "loop/shots/scatter.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/random.hpp"
 
@@ -272,12 +273,10 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
   Launch launch = t.shot.launch;
   models::FlightConditions c = case_.conditions;
   c.air = t.shot.air;
-  for (const Parametrisation* f : model.forms) {
-    const std::span<const double> q(p, f->parameters.size());
-    if (f->seen) f->seen(q, launch);
-    if (f->flight) f->flight(q, c);
-    p += f->parameters.size();
-  }
+  model.each(p, [&](const Parametrisation& f, std::span<const double> q) {
+    if (f.seen) f.seen(q, launch);
+    if (f.flight) f.flight(q, c);
+  });
   launch = models::launched(launch, own);
   c = models::with_own(std::move(c), own, group.head<2>());
   c.ground.slope += group[2];
@@ -316,12 +315,8 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
     if (!errors(all, model, p, e)) throw DataError("the model has no answer for these data");
     double change = 0;
     const GroupUnknowns of_group = group_sd();
-    std::map<int, Eigen::Index> place;
-    for (std::size_t k = 0; k < all.size(); ++k) place[all[k]] = Eigen::Index(k);
     for (const Block& b : blocks(all)) {
-      Eigen::VectorXd r(Eigen::Index(b.readings.size()));
-      for (std::size_t k = 0; k < b.readings.size(); ++k)
-        r[Eigen::Index(k)] = e(place.at(b.trials[std::size_t(b.readings[k].first)]), b.readings[k].second);
+      Eigen::VectorXd r = b.of(e);
       const auto L = b.factor.triangularView<Eigen::Lower>();
       L.solveInPlace(r);
       L.transpose().solveInPlace(r);
@@ -386,11 +381,13 @@ void FlightProblem::slopes(const Model& model, const Eigen::VectorXd& p) {
 
 std::vector<FlightProblem::Block> FlightProblem::blocks(const std::vector<int>& trials) const {
   std::vector<Block> all(groups_.size());
-  for (const int i : trials) {
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const int i = trials[k];
     Block& b = all[std::size_t(trials_[std::size_t(i)].shot.group)];
     for (int c = 0; c < width(); ++c)
       if (std::isfinite(measured_(i, c))) b.readings.emplace_back(int(b.trials.size()), c);
     b.trials.push_back(i);
+    b.place.push_back(Eigen::Index(k));
   }
   std::erase_if(all, [](const Block& b) { return b.trials.empty(); });
   const GroupUnknowns sd = group_sd();
@@ -429,7 +426,7 @@ void FlightProblem::factor() {
     order[Eigen::Index(i)] = trials_[i].order;
   }
   for (const Column& c : case_.shots.columns) {
-    if (!c.numeric || c.name == "shot" || c.role == Role::bookkeeping) continue;
+    if (!c.numeric || c.role == Role::bookkeeping) continue;
     const auto output = c.role == Role::output ? output_of(c.stem) : std::nullopt;
     if (output && of_flight(*output)) continue;
     Eigen::VectorXd x(order.size());
@@ -457,18 +454,23 @@ bool FlightProblem::errors(const std::vector<int>& trials, const Model& model, c
 }
 
 Eigen::VectorXd FlightProblem::whiten(Part part, const Eigen::MatrixXd& e) const {
-  const std::vector<int>& of = trials(part);
-  std::map<int, Eigen::Index> place;
-  for (std::size_t k = 0; k < of.size(); ++k) place[of[k]] = Eigen::Index(k);
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(Eigen::Index(of.size()) * width());
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(e.rows() * width());
   for (const Block& b : blocks(part)) {
-    Eigen::VectorXd r(Eigen::Index(b.readings.size()));
-    const auto at = [&](std::size_t k) { return place.at(b.trials[std::size_t(b.readings[k].first)]); };
-    for (std::size_t k = 0; k < b.readings.size(); ++k) r[Eigen::Index(k)] = e(at(k), b.readings[k].second);
+    Eigen::VectorXd r = b.of(e);
     b.factor.triangularView<Eigen::Lower>().solveInPlace(r);
-    for (std::size_t k = 0; k < b.readings.size(); ++k) z[at(k) * width() + b.readings[k].second] = r[Eigen::Index(k)];
+    for (std::size_t k = 0; k < b.readings.size(); ++k) {
+      const auto [i, c] = b.readings[k];
+      z[b.place[std::size_t(i)] * width() + c] = r[Eigen::Index(k)];
+    }
   }
   return z;
+}
+
+Eigen::VectorXd FlightProblem::Block::of(const Eigen::MatrixXd& e) const {
+  Eigen::VectorXd r(Eigen::Index(readings.size()));
+  for (std::size_t k = 0; k < readings.size(); ++k)
+    r[Eigen::Index(k)] = e(place[std::size_t(readings[k].first)], readings[k].second);
+  return r;
 }
 
 std::vector<Problem::Row> FlightProblem::rows() const {
@@ -549,10 +551,7 @@ Problem::Density FlightProblem::density(Part part) const {
   return d;
 }
 
-std::vector<Stage> FlightProblem::stages() const {
-  const solvers::Loss loss = loss_of_shot(width());
-  return {{.loss = loss.uncapped()}, {.loss = loss}};
-}
+std::vector<Stage> FlightProblem::stages() const { return stages_of_shots(width()); }
 
 /// Flights that no model of the family explains: beyond what the noise allows once in a hundred such sets.
 bool FlightProblem::screen(const Selection& selection) {
@@ -567,16 +566,10 @@ bool FlightProblem::screen(const Selection& selection) {
   for (const Part part : {Part::train, Part::holdout}) {
     Eigen::MatrixXd e;
     if (trials(part).empty() || !errors(trials(part), at.model, at.p, e)) continue;
-    std::map<int, Eigen::Index> place;
-    for (std::size_t k = 0; k < trials(part).size(); ++k) place[trials(part)[k]] = Eigen::Index(k);
     for (const Block& b : blocks(part)) {
-      Eigen::VectorXd r(Eigen::Index(b.readings.size()));
       std::vector<int> of;
-      for (const auto& [flight, c] : b.readings) {
-        r[Eigen::Index(of.size())] = e(place.at(b.trials[std::size_t(flight)]), c);
-        of.push_back(flight);
-      }
-      for (const Stranger& s : strangers(b.factor, r, of, limit)) {
+      for (const auto& [flight, c] : b.readings) of.push_back(flight);
+      for (const Stranger& s : strangers(b.factor, b.of(e), of, limit)) {
         const int i = b.trials[std::size_t(s.flight)];
         now.insert(i);
         const Trial& t = trials_[std::size_t(i)];
@@ -611,20 +604,10 @@ Scatter FlightProblem::scatter(int c, const Eigen::MatrixXd& residuals, int fitt
   if (!residuals.size()) return {};
   for (std::size_t k = 0; k < train_.size(); ++k) e.row(Eigen::Index(k)) = residuals.row(train_[k]);
   const Eigen::VectorXd z = whiten(Part::train, e);
-  double sum = 0, fourth = 0, n = 0;
-  for (std::size_t k = 0; k < train_.size(); ++k) {
-    if (!std::isfinite(measured_(train_[k], c))) continue;
-    const double s = std::min(std::pow(z[Eigen::Index(k) * width() + c], 2), 36.0);
-    sum += s;
-    fourth += s * s;
-    ++n;
-  }
-  Scatter out;
-  if (n < 3 || !(sum > 0)) return out;
-  const double dof = std::max(1.0, n - double(fitted) / width()), mean = sum / n;
-  out.ratio = std::sqrt(sum / dof);
-  out.error = std::max(std::sqrt(std::max(0.0, fourth / n - mean * mean) / n) / mean / 2, 1 / std::sqrt(2 * dof));
-  return out;
+  std::vector<double> readings;
+  for (std::size_t k = 0; k < train_.size(); ++k)
+    if (std::isfinite(measured_(train_[k], c))) readings.push_back(z[Eigen::Index(k) * width() + c]);
+  return scatter_of(readings, double(fitted) / width());
 }
 
 /// Noise that is not declared, or refuted.
@@ -640,12 +623,10 @@ void FlightProblem::estimate_noise(const Fit* at) {
     if (at && ch.noise > 0) {
       sd = ch.noise * scatter(c, r, at->size()).ratio;
     } else {
-      std::vector<double> value, size;
+      std::vector<double> value;
       for (const int i : train_)
         if (std::isfinite(measured_(i, c))) value.push_back(r(i, c));
-      const double middle = median(value);
-      for (const double v : value) size.push_back(std::abs(v - middle));
-      sd = robust_deviation(size);
+      sd = robust_moments(value).second;
       if (trials_.front().by_own.size()) {  // what is unknown is counted separately
         double known = 0;
         for (const int i : train_) known += std::pow(sigma(i, c), 2) - ch.noise * ch.noise;
@@ -671,23 +652,14 @@ double FlightProblem::update_noise(const Fit& selected, const Fit&) {
 
 StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                                       const Rules& rules) const {
-  const solvers::Loss loss = stages().back().loss;
-  const Eigen::VectorXd z = loop::whitened(*this, Part::select, fit.model, fit.p),
-                        noise = loop::whitened(*this, Part::select, near.model, near.p);
-  if (!z.size() || !noise.size()) return {};
-  Eigen::VectorXd weights(Eigen::Index(train_.size()));
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
-  Whitened view{.width = width(), .order = {}, .column = {}, .channel = {}};
+  Whitened view{.rows = train_, .order = {}, .column = {}};
   for (const int i : train_) view.order.push_back(trials_[std::size_t(i)].order);
   view.column = [&](int c, const Eigen::VectorXd& value) {
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(value.size(), width());
     e.col(c) = value;
     return whiten(Part::select, e);
   };
-  view.channel = [&](int c) -> const Channel& { return channel(c); };
-  return loop::structure(view, train_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
-                         directions, rules.flips, rules.seed);
+  return loop::structure(*this, view, fit, near, regressors_, directions, rules);
 }
 
 /// The scatter is not what is declared of noise and unknowns, or too many flights are explained by nothing.

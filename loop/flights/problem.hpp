@@ -72,8 +72,11 @@ class FlightProblem final : public Problem {
   /// The rows of a part that belong to one group, their observed readings, and the factor of their covariance.
   struct Block {
     std::vector<int> trials;
+    std::vector<Eigen::Index> place;            ///< of each trial among those of the part
     std::vector<std::pair<int, int>> readings;  ///< place in `trials`, channel
     Eigen::MatrixXd factor;                     ///< L
+
+    Eigen::VectorXd of(const Eigen::MatrixXd& e) const;  ///< these readings of the part's errors
   };
 
   void read();

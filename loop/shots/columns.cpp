@@ -15,7 +15,6 @@
 #include "loop/rules.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
-#include "models/rigid/rigid_eccentric.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -77,7 +76,6 @@ Columns::~Columns() = default;
 Columns::Columns(const ShotCase& c) : case_(c) {
   read();
   if (rows_.size() < 8 || outputs_.empty()) return;
-  static const models::RigidEccentric companion;
   std::vector<ShotChannel> channels;
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
     const Column& column = *columns_[inputs_.size() + k];
@@ -85,7 +83,7 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   }
   std::vector<Shot> shots;
   for (Eigen::Index i = 0; i < values_.rows(); ++i) shots.push_back(shot(i, values_));
-  model_ = std::make_unique<ShotModel>(quick() ? *c.model : companion, true, std::move(shots), std::move(channels),
+  model_ = std::make_unique<ShotModel>(quick() ? *c.model : closed_form(), true, std::move(shots), std::move(channels),
                                        values_.rightCols(std::ptrdiff_t(outputs_.size())));
   estimate_noise();
   as_recorded_ = deviance(values_, noise_, Model{}, {});
@@ -124,8 +122,8 @@ void Columns::read() {
     }
     if (needed && output) complete.push_back(int(i));
   }
-  const std::size_t n = std::min(complete.size(), kMostRows);
-  for (std::size_t k = 0; k < n; ++k) rows_.push_back(complete[k * complete.size() / n]);
+  rows_ = evenly(complete, kMostRows);
+  const std::size_t n = rows_.size();
   order_ = session_order(shots, rows_);
   if (case_.loft_unknown)
     for (const int row : rows_) loft_.push_back(loft[std::size_t(row)]);
@@ -424,11 +422,7 @@ void Columns::try_sizes() {
     return std::pair{t, value};
   };
 
-  struct Trial {
-    Slip slip;
-    double criterion;
-  };
-  std::vector<Trial> trials;
+  std::vector<Slip> trials;
   const Eigen::MatrixXd z = r * W.transpose();
   struct PartOfRows {
     std::vector<char> member;
@@ -470,8 +464,8 @@ void Columns::try_sizes() {
     const auto consider = [&](Slip slip, const Eigen::MatrixXd& j) {
       const auto [t, value] = fitted(z, j);
       (slip.finding == "scale" ? slip.factor : slip.offset) += t;
-      const double cost = slip.cost;
-      trials.push_back({std::move(slip), value + cost});
+      slip.deviance = value;
+      trials.push_back(std::move(slip));
     };
     consider({.finding = "offset", .column = k, .cost = 8}, J);
     const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
@@ -504,17 +498,17 @@ void Columns::try_sizes() {
       known->second = std::min(known->second, value);
     }
   }
-  for (Trial& t : trials)
-    if (const auto it = physics.find(t.slip.what); t.slip.finding == "level-shift" && it != physics.end())
-      t.slip.disputed = t.slip.disputed || it->second + t.slip.cost < t.criterion + case_.rules.tie;
-  std::ranges::stable_sort(trials, {}, &Trial::criterion);
+  for (Slip& t : trials)
+    if (const auto it = physics.find(t.what); t.finding == "level-shift" && it != physics.end())
+      t.disputed = t.disputed || it->second + t.cost < t.criterion() + case_.rules.tie;
+  std::ranges::stable_sort(trials, {}, &Slip::criterion);
   // The best few, of different columns or kinds, about themselves.
   std::vector<Slip> kept;
-  for (const Trial& t : trials) {
+  for (const Slip& t : trials) {
     if (kept.size() == 10) break;
-    const auto same = std::ranges::count_if(
-        kept, [&](const Slip& s) { return s.column == t.slip.column && s.finding == t.slip.finding; });
-    if (same < (t.slip.finding == "level-shift" ? 2 : 1)) kept.push_back(t.slip);
+    const auto same =
+        std::ranges::count_if(kept, [&](const Slip& s) { return s.column == t.column && s.finding == t.finding; });
+    if (same < (t.finding == "level-shift" ? 2 : 1)) kept.push_back(t);
   }
   for (Slip& slip : kept) {
     for (int pass = 0; pass < 3; ++pass) {

@@ -9,18 +9,16 @@
 
 #include "golf/dense.hpp"
 #include "loop/deviation.hpp"
-#include "models/rigid/rigid_eccentric.hpp"
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
-
 namespace {
 
 /// The loft at which the closed form shows a launch angle; some 0.8 of a change of loft show.
 double loft_of(Blow blow, double launch_angle) {
-  static const models::RigidEccentric model;
   double& loft = blow.delivery.dynamic_loft;
   loft = launch_angle;
-  for (int k = 0; k < 8; ++k) loft += (launch_angle - model.launch(blow).launch_angle()) / 0.8;
+  for (int k = 0; k < 8; ++k) loft += (launch_angle - closed_form().launch(blow).launch_angle()) / 0.8;
   return loft;
 }
 
@@ -113,10 +111,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (const int row : in.row_of)
       if (std::isfinite(c->value[std::size_t(row)])) x.push_back(c->value[std::size_t(row)]);
     if (x.empty()) continue;
-    const double mid = median(x);
-    std::vector<double> off;
-    for (const double v : x) off.push_back(std::abs(v - mid));
-    const double mad = robust_deviation(off);
+    const auto [mid, mad] = robust_moments(x);
     const double fence = mad > 0 ? 4 * mad : std::numeric_limits<double>::infinity();
     double sum = 0, square = 0, count = 0;
     for (const double v : x)
@@ -128,7 +123,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (const double v : x)
       if (std::abs(v - mid) <= fence) square += (v - sum / count) * (v - sum / count);
     spread[std::size_t(k)] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
-    if (const auto it = noise.find(c->name); it != noise.end()) sigma[std::size_t(k)] = it->second;
+    if (const auto it = noise.find(c->name); it != noise.end()) sigma[std::size_t(k)] = it->second * c->si;
     for (std::size_t i = 0; i < n; ++i)
       if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) ++filled[std::size_t(k)];
     any = any || sigma[std::size_t(k)] > 0 || filled[std::size_t(k)] > 0;
@@ -137,17 +132,17 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
                  error = sigma[std::size_t(k)] * sigma[std::size_t(k)];
     nominal[std::size_t(k)] = variance < error * std::max(0.1, 1 - 3 * std::sqrt(2 / count));
     if (nominal[std::size_t(k)])
-      in.notes.push_back(fmt::format(
-          "{}: the records differ by less than their declared error: each is taken as what was set, and what was as "
-          "uncertain by that error",
-          c->name));
+      in.notes.push_back(
+          fmt::format("{}: the records differ by less than their declared error: each is taken as what was set, and "
+                      "what was as uncertain by that error",
+                      c->name));
   }
   for (int k = 0; k < kInputs; ++k)
     if (filled[std::size_t(k)])
-      in.notes.push_back(fmt::format(
-          "{}: {} missing values are inferred from the row's other inputs; these shots count as uncertain by what "
-          "those leave open",
-          column[std::size_t(k)]->name, filled[std::size_t(k)]));
+      in.notes.push_back(
+          fmt::format("{}: {} missing values are inferred from the row's other inputs; these shots count as uncertain "
+                      "by what those leave open",
+                      column[std::size_t(k)]->name, filled[std::size_t(k)]));
   if (!any) return in;
 
   // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.

@@ -27,10 +27,10 @@ struct Inputs {
 /// Place of some rows in the session, 0 the first, 1 the last: by the shot number where it is one, else by the row.
 std::vector<double> session_order(const Shots& shots, const std::vector<int>& rows);
 
-/// Rows without club speed, dynamic loft or any output are unused; a missing column is zero. `noise` by header [SI].
-/// Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean) over what the row holds, with robust
-/// moments: for an input that is missing there too.
-/// `loft_unknown`: the recorded loft is not looked at; a first idea is what shows the launch angle in the closed form.
+/// Rows without club speed, dynamic loft or any output are unused; a missing column is zero. `noise` by header,
+/// header's unit. Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean) over what the row holds,
+/// with robust moments: for an input that is missing there too. `loft_unknown`: the recorded loft is not looked at; a
+/// first idea is what shows the launch angle in the closed form.
 Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
                    const std::map<std::string, double>& noise, bool loft_unknown = false);
 

@@ -257,9 +257,7 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                   const std::vector<int>& all, bool session, const Fit& base, const Fit& chosen,
                                   double tie) {
-  std::vector<int> rows;
-  const std::size_t count = std::min(all.size(), kMechanismRows);
-  for (std::size_t k = 0; k < count; ++k) rows.push_back(all[k * all.size() / count]);
+  const std::vector<int> rows = evenly(all, kMechanismRows);
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   if (n < kFewestRows) return {};
   const solvers::Loss loss = loss_of_shot(model.width());

@@ -22,11 +22,6 @@ constexpr double kLaunchPerLoft = 0.8;              // nearly: what a search for
 constexpr double kFlightStep = 1e-2;
 constexpr models::FlightOptions kFlight = {.tolerance = 1e-6};
 
-const models::RigidEccentric& companion() {
-  static const models::RigidEccentric model;
-  return model;
-}
-
 Launch plus(Launch a, const Launch& b, double sign) {
   a.velocity += sign * b.velocity;
   a.spin += sign * b.spin;
@@ -46,9 +41,19 @@ static_assert(models::kFlightAnswers == kOutputs - kLaunchOutputs &&
 
 }  // namespace
 
+const models::ImpactModel& closed_form() {
+  static const models::RigidEccentric model;
+  return model;
+}
+
 solvers::Loss loss_of_shot(int channels) {
   const double knee = quantile(complement(boost::math::chi_squared(channels), kByChance));
   return {solvers::Loss::Tail::logarithmic, knee, 12 * knee, channels};
+}
+
+std::vector<Stage> stages_of_shots(int channels) {
+  const solvers::Loss loss = loss_of_shot(channels);
+  return {{.loss = loss.uncapped()}, {.loss = loss}};
 }
 
 ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<Shot> trials,
@@ -69,7 +74,7 @@ ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<S
   if (!direct_) {
     offset_.reserve(trials_.size());
     for (Shot& t : trials_) {
-      offset_.push_back(plus(base_.launch(t.blow), companion().launch(t.blow), -1));
+      offset_.push_back(plus(base_.launch(t.blow), closed_form().launch(t.blow), -1));
       t.blow.club.shaft.reset();  // the companion needs none, and copies stay cheap
     }
   }
@@ -86,31 +91,39 @@ std::map<Output, double> ShotModel::seen(int shot) const {
 Launch ShotModel::answer(const Shot& trial, int shot) const {
   if (surrogate_) return surrogate_->launch(trial);
   if (direct_) return base_.launch(trial.blow);
-  const Launch l = companion().launch(trial.blow);
+  const Launch l = closed_form().launch(trial.blow);
   return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
 }
 
-void ShotModel::change(const Model& model, const double* p, Shot& trial) {
-  for (const Parametrisation* f : model.forms) {
-    if (f->before) f->before({p, f->parameters.size()}, trial);
-    p += f->parameters.size();
-  }
+void ShotModel::change(const Model& model, const double* parameters, Shot& trial) {
+  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+    if (f.before) f.before(p, trial);
+  });
 }
 
-void ShotModel::change(const Model& model, const double* p, const Shot& trial, Launch& launch) {
-  for (const Parametrisation* f : model.forms) {
-    if (f->after) f->after({p, f->parameters.size()}, trial, launch);
-    p += f->parameters.size();
-  }
+void ShotModel::change(const Model& model, const double* parameters, const Shot& trial, Launch& launch) {
+  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+    if (f.after) f.after(p, trial, launch);
+  });
 }
 
-double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* p,
+Launch ShotModel::launched(Shot& trial, int shot, const Model& model, const double* parameters) const {
+  change(model, parameters, trial);
+  Launch launch = answer(trial, shot);
+  change(model, parameters, trial, launch);
+  return launch;
+}
+
+double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
                           double value) const {
-  for (const Parametrisation* f : model.forms) {
-    if (f->reading) value = f->reading({p, f->parameters.size()}, trial, channel.output, value);
-    p += f->parameters.size();
-  }
+  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+    if (f.reading) value = f.reading(p, trial, channel.output, value);
+  });
   return value;
+}
+
+double ShotModel::seen_angle(const Shot& trial, const Model& model, const double* parameters, const Launch& l) const {
+  return reading(seen_->channel, trial, model, parameters, get(l, seen_->channel.output));
 }
 
 void ShotModel::follow_seen(int shot) {
@@ -126,12 +139,11 @@ void ShotModel::follow_seen(int shot) {
     if (of_flight(channels_[std::size_t(c)].output)) measured_(shot, c) = std::numeric_limits<double>::quiet_NaN();
 }
 
-models::FlightConditions ShotModel::conditions(const Model& model, const double* p) const {
+models::FlightConditions ShotModel::conditions(const Model& model, const double* parameters) const {
   models::FlightConditions changed = *flight_;
-  for (const Parametrisation* f : model.forms) {
-    if (f->flight) f->flight({p, f->parameters.size()}, changed);
-    p += f->parameters.size();
-  }
+  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+    if (f.flight) f.flight(p, changed);
+  });
   return changed;
 }
 
@@ -168,11 +180,8 @@ bool ShotModel::find_loft(Shot& trial, int shot, const Model& model, const doubl
   double slope = kLaunchPerLoft, before = 0, step = 0;
   for (int k = 0; k < 30; ++k) {
     Shot t = trial;
-    change(model, parameters, t);
-    Launch l = answer(t, shot);
-    change(model, parameters, t, l);
-    const double miss = reading(seen_->channel, t, model, parameters, get(l, seen_->channel.output)) -
-                        seen_->value[shot] * seen_->channel.si;
+    const Launch l = launched(t, shot, model, parameters);
+    const double miss = seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si;
     if (!std::isfinite(miss)) return false;
     if (std::abs(miss) < 1e-11) return true;
     if (k > 0 && std::abs(miss - before) > 1e-14) slope = std::clamp((miss - before) / step, 0.2, 2.0);
@@ -202,9 +211,7 @@ bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model
     change(model, parameters, t);
     Launch l = other(t);
     change(model, parameters, t, l);
-    const double miss = seen_ ? reading(seen_->channel, t, model, parameters, get(l, seen_->channel.output)) -
-                                    seen_->value[shot] * seen_->channel.si
-                              : 0;
+    const double miss = seen_ ? seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si : 0;
     if (std::abs(miss) < radians(0.02)) return read(t, shot, model, parameters, l, out);
     if (k > 0 && step != 0) slope = std::clamp((miss - before) / step, 0.3, 2.0);
     before = miss;
@@ -218,9 +225,7 @@ bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const d
   try {
     Shot t = trial;
     if (seen_ && shot >= 0 && !find_loft(t, shot, model, parameters)) return false;
-    change(model, parameters, t);
-    Launch l = answer(t, shot);
-    change(model, parameters, t, l);
+    const Launch l = launched(t, shot, model, parameters);
     return read(t, shot, model, parameters, l, out);
   } catch (const std::invalid_argument&) { return false; }
 }
@@ -274,9 +279,7 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
 
 bool ShotModel::launch(Shot t, const Model& model, const double* parameters, Launch& out) const {
   try {
-    change(model, parameters, t);
-    out = answer(t, -1);
-    change(model, parameters, t, out);
+    out = launched(t, -1, model, parameters);
     return out.velocity.allFinite() && out.spin.allFinite();
   } catch (const std::invalid_argument&) { return false; }
 }
@@ -304,8 +307,7 @@ ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, c
     change(model, parameters, s, l);
     Eigen::VectorXd out(m + 1);
     read(s, shot, model, parameters, l, out.data());
-    out[m] = seen_ ? reading(seen_->channel, s, model, parameters, get(l, seen_->channel.output)) / seen_->channel.si
-                   : 0;
+    out[m] = seen_ ? seen_angle(s, model, parameters, l) / seen_->channel.si : 0;
     return out;
   };
   Shown out{Eigen::VectorXd::Zero(m), Eigen::MatrixXd::Zero(m, 6)};
@@ -468,10 +470,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
       if (observed(i, c)) seen.push_back(c);
     const int k = int(seen.size());
     if (!k) continue;
-    Eigen::MatrixXd part(k, k);
-    for (int a = 0; a < k; ++a)
-      for (int b = 0; b < k; ++b) part(a, b) = cov(seen[std::size_t(a)], seen[std::size_t(b)]);
-    const Eigen::MatrixXd W = dense::Cholesky(part).lower_inverse();
+    const Eigen::MatrixXd W = dense::Cholesky(cov(seen, seen)).lower_inverse();
     double* out = whiten_.data() + std::ptrdiff_t(i) * m * m;
     for (int a = 0; a < k; ++a)
       for (int b = 0; b <= a; ++b) out[seen[std::size_t(a)] * m + seen[std::size_t(b)]] = W(a, b);

@@ -12,6 +12,9 @@
 
 namespace hosel::loop {
 
+/// What stands for a base that answers slowly: the closed-form eccentric impact of rigid bodies.
+const models::ImpactModel& closed_form();
+
 struct ShotChannel : Channel {
   Output output;
 };
@@ -24,6 +27,8 @@ struct SeenLaunch {
 /// Of a whole shot: quadratic up to the 99.9 % quantile of its squared distance, then logarithmic, constant beyond
 /// twelve times that.
 solvers::Loss loss_of_shot(int channels);
+/// Of a fit to shots: the loss without its cap sees farther.
+std::vector<Stage> stages_of_shots(int channels);
 
 class ShotModel {
  public:
@@ -46,6 +51,7 @@ class ShotModel {
   /// What was measured of a shot [SI], the launch angle that its loft is found from with it.
   std::map<Output, double> seen(int shot) const;
   bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
+  int observed(int shot) const { return int((measured_.row(shot).array() == measured_.row(shot).array()).count()); }
 
   /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
   /// happen.
@@ -109,6 +115,10 @@ class ShotModel {
 
  private:
   Launch answer(const Shot& trial, int shot) const;
+  /// The launch of a trial, which is left as the effects change it.
+  Launch launched(Shot& trial, int shot, const Model& model, const double* parameters) const;
+  /// What the instrument shows of the launch angle that the loft follows [SI].
+  double seen_angle(const Shot& trial, const Model& model, const double* parameters, const Launch& launch) const;
   /// Puts the trial's loft where the model shows the launch angle that was seen.
   bool find_loft(Shot& trial, int shot, const Model& model, const double* parameters) const;
   /// What the instrument shows of `value` [SI].
@@ -126,7 +136,7 @@ class ShotModel {
     Eigen::MatrixXd by_error;
   };
   Shown shown(int shot, const Shot& asked, const Model& model, const double* parameters) const;
-  /// The three stages of a prediction: the blow as the effects change it, the launch, the readings.
+  /// The stages of a prediction: the blow as the effects change it, the launch, the readings.
   static void change(const Model& model, const double* parameters, Shot& trial);
   static void change(const Model& model, const double* parameters, const Shot& trial, Launch& launch);
   bool read(const Shot& trial, int shot, const Model& model, const double* parameters, const Launch& launch,

@@ -17,10 +17,10 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewestToTest = 4;  // training rows that can test anything
-
-constexpr double kMixture = 20;       // least gain of two populations over one
-constexpr double kKnownMixture = 11;  // the same where their scatter is the declared noise
+constexpr std::size_t kFewestToTest = 4;    // training rows that can test anything
+constexpr std::size_t kMostToSelect = 450;  // what names an effect does not need thousands, whose cost would be felt
+constexpr double kMixture = 20;             // least gain of two populations over one
+constexpr double kKnownMixture = 11;        // the same where their scatter is the declared noise
 
 }  // namespace
 
@@ -36,10 +36,7 @@ ShotProblem::ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& de
 
 void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<Input> doubted) {
   const Shots& shots = case_.shots;
-  std::map<std::string, double> input_noise;
-  for (const auto& [header, value] : case_.input_noise)
-    if (const Column* c = shots.find(header)) input_noise[header] = value * c->si;
-  inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, input_noise, case_.loft_unknown);
+  inputs_ = make_inputs(shots, case_.blow, case_.head_mass_declared, case_.input_noise, case_.loft_unknown);
   notes_ = case_.notes;
   notes_.insert(notes_.end(), inputs_.notes.begin(), inputs_.notes.end());
   for (const Known& k : case_.known)
@@ -58,7 +55,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     if (bad.insert(row).second) flag(row, column, reason, -1);
 
   std::vector<ShotChannel> channels;
-  std::vector<const Column*> columns;
+  std::vector<const Column*> columns;  // of each channel
   std::optional<SeenLaunch> seen;
   const Column* seen_in = nullptr;
   bool any = false;
@@ -159,11 +156,7 @@ void ShotProblem::vary(const std::vector<Parametrisation>& all, const Known& k) 
 void ShotProblem::distrust(Input input) {
   if (inputs_.covariance.empty())
     inputs_.covariance.assign(inputs_.trials.size(), Eigen::MatrixXd::Zero(kInputs, kInputs));
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-  for (const Shot& t : inputs_.trials) {
-    lo = std::min(lo, get(t.blow, input));
-    hi = std::max(hi, get(t.blow, input));
-  }
+  const auto [lo, hi] = range_of(inputs_.trials, [&](const Shot& t) { return get(t.blow, input); });
   for (Eigen::MatrixXd& cov : inputs_.covariance)
     cov(int(input), int(input)) += std::pow(10 * std::max(hi - lo, 1e-3), 2);
 }
@@ -210,7 +203,7 @@ void ShotProblem::split(const std::set<int>& without) {
   std::erase_if(all.train, flagged);
   std::erase_if(all.holdout, flagged);
   rows_ = std::move(all);
-  select_ = thinned(rows_.train);
+  select_ = evenly(rows_.train, kMostToSelect);
 }
 
 const std::vector<int>& ShotProblem::shots(Part part) const {
@@ -320,11 +313,7 @@ std::vector<std::vector<bool>> ShotProblem::subsets(Part part) const {
   return all;
 }
 
-/// The loss without its cap sees farther.
-std::vector<Stage> ShotProblem::stages() const {
-  const solvers::Loss loss = loss_of_shot(width());
-  return {{.loss = loss.uncapped()}, {.loss = loss}};
-}
+std::vector<Stage> ShotProblem::stages() const { return stages_of_shots(width()); }
 
 bool ShotProblem::screen(const Selection& selection) {
   const auto look = [&](const Fit& at, bool clean) {
@@ -408,14 +397,16 @@ void ShotProblem::estimate_noise(const Fit* at) {
 
 StructureMap ShotProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                                     const Rules& rules) const {
-  const solvers::Loss loss = stages().back().loss;
-  const Eigen::VectorXd z = model_->whitened(select_, fit.model, fit.p),
-                        noise = model_->whitened(select_, near.model, near.p);
-  Eigen::VectorXd weights(std::ptrdiff_t(select_.size()));
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    weights[i] = loss.weight(noise.segment(i * width(), width()).squaredNorm());
-  return loop::structure(*model_, select_, z, noise, weights, jacobian(Part::select, fit.model, fit.p), regressors_,
-                         directions, rules.flips, rules.seed);
+  Whitened view{.rows = select_, .order = {}, .column = {}};
+  for (const int i : select_) view.order.push_back(model_->trial(i).order);
+  view.column = [&](int c, const Eigen::VectorXd& value) {
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(value.size() * width());
+    for (Eigen::Index i = 0; i < value.size(); ++i)
+      if (const int shot = select_[std::size_t(i)]; model_->observed(shot, c))
+        a.segment(i * width(), width()) = model_->whitening(shot).col(c) * value[i];
+    return a;
+  };
+  return loop::structure(*this, view, fit, near, regressors_, directions, rules);
 }
 
 /// Whole clusters are held out: whole clusters foretell each other.
@@ -435,13 +426,10 @@ std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& 
   const Shots& shots = as_read(case_);
   const bool session = case_.shots.has_shot_column && !sorted_by(shots) && !one_club_after_another(shots);
   // Where nothing is chosen, nothing was fitted: what was held out may ask as well.
-  std::vector<int> rows = s.level == 0 ? rows_.train : select_;
-  if (s.level == 0) rows.insert(rows.end(), rows_.holdout.begin(), rows_.holdout.end());
+  std::vector<int> rows = s.level == 0 ? rows_.all() : select_;
   std::ranges::sort(rows);
   return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, session, s.base, s.chosen, rules.tie);
 }
-
-Location ShotProblem::place(const Finding& f) const { return {channel(f.channel).name, f.regressor, f.what()}; }
 
 std::vector<Location> ShotProblem::places(const Selection& s) const {
   std::vector<Location> told = plainest_places(*this, s);
@@ -457,8 +445,7 @@ std::vector<Mixture> parted_by(const Parametrisation& f, const Fit& base, const 
                                const std::function<Eigen::MatrixXd(const Model&, const Eigen::VectorXd&)>& seen,
                                double one) {
   constexpr double visible = 6;  // standard deviations
-  Model with = base.model;
-  with.forms.push_back(&f);
+  const Model with = base.model.with(&f);
   const auto n = Eigen::Index(f.parameters.size());
   Eigen::VectorXd low(n), high(n), scale(n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -506,7 +493,7 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   std::vector<int> rows;
   for (const int i : usable_)
     if (!slipped.contains(i)) rows.push_back(i);
-  rows = thinned(rows);
+  rows = evenly(rows, kMostToSelect);
   ShotModel model = *model_;
   if (refuted) {  // what was declared is what either population should show
     for (int c = 0; c < width(); ++c)
@@ -572,7 +559,7 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
     const std::string& name = channel(c).name;
     if (!channel(c).refuted && name != widespread_) continue;
     for (const Finding& f : s.after.findings)
-      if (f.channel == c && f.p_adjusted < 0.05) return {place(f)};
+      if (f.channel == c && f.p_adjusted < 0.05) return {place_of(*this, f)};
     if (name == widespread_) {
       Location l = told(name, "");
       for (const StructureMap* map : {&s.after, &s.before})
@@ -595,8 +582,7 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
   for (const RowFlag& f : flags_)
     if (of_finding[f.finding] == 1 && !unasked.contains(f.row)) ++out.rows, ++of_column[f.column];
   out.lost = int(flags_.size());
-  std::vector<int> used = rows_.train;
-  used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
+  const std::vector<int> used = rows_.all();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
   const solvers::Loss loss = stages().back().loss;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -621,8 +607,7 @@ std::optional<std::string> ShotProblem::heavy_tails(const Selection& s) const {
 /// scales.
 std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   constexpr double lost_share = 0.2, many = 3, wide = 1.75;
-  std::vector<int> used = rows_.train;
-  used.insert(used.end(), rows_.holdout.begin(), rows_.holdout.end());
+  const std::vector<int> used = rows_.all();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
   std::vector<Location> told;
   std::vector<std::vector<double>> size(static_cast<std::size_t>(width()));

@@ -70,7 +70,6 @@ class ShotProblem : public Problem {
   void estimate_noise(const Fit* at);
   void set_covariance(const Model& model, const double* parameters);
   const std::vector<int>& shots(Part part) const;
-  Location place(const Finding& f) const;
   std::optional<Location> two_populations(const Selection& s) const;
   /// Shots beyond what noise does to one in a thousand.
   struct FarOff {

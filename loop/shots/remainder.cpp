@@ -59,16 +59,14 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
                      const RemainderInputs& in, const Eigen::VectorXd& residual) {
   constexpr double far = 4;  // scales
   std::vector<int> seen;
-  std::vector<double> r, size;
+  std::vector<double> r;
   for (const int i : rows)
     if (std::isfinite(residual[i])) {
       seen.push_back(i);
       r.push_back(residual[i]);
     }
   if (seen.size() < kFewestForRemainder) return {};
-  const double middle = median(r);
-  for (const double v : r) size.push_back(std::abs(v - middle));
-  const double scale = robust_deviation(size);
+  const auto [middle, scale] = robust_moments(r);
   if (!(scale > 0)) return {};
   const auto n = std::ptrdiff_t(seen.size());
   Eigen::MatrixXd x(n, in.x.cols()), y(n, 1);
@@ -125,9 +123,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
 
 std::optional<Remainder> remainder(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                    const std::vector<int>& all, const std::vector<int>& group, const Fit& fit) {
-  std::vector<int> rows;
-  const std::size_t most = std::min(all.size(), kMostForRemainder);
-  for (std::size_t k = 0; k < most; ++k) rows.push_back(all[k * all.size() / most]);
+  const std::vector<int> rows = evenly(all, kMostForRemainder);
   // Whole groups in turn.
   std::map<int, int> part_of;
   std::vector<int> part(group.size(), 0);

@@ -52,18 +52,23 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
 
 Scatter scatter(const ShotModel& model, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,
                 int fitted) {
-  double sum = 0, fourth = 0, n = 0;
-  for (const int i : rows) {
-    if (!std::isfinite(residuals(i, channel))) continue;
-    const double u = residuals(i, channel) / model.sigma(i, channel), s = std::min(u * u, 36.0);
+  std::vector<double> readings;
+  for (const int i : rows)
+    if (std::isfinite(residuals(i, channel))) readings.push_back(residuals(i, channel) / model.sigma(i, channel));
+  return scatter_of(readings, double(fitted) / model.width());
+}
+
+Scatter scatter_of(const std::vector<double>& readings, double fitted) {
+  double sum = 0, fourth = 0;
+  const double n = double(readings.size());
+  for (const double u : readings) {
+    const double s = std::min(u * u, 36.0);
     sum += s;
     fourth += s * s;
-    ++n;
   }
-  const double dof = std::max(1.0, n - double(fitted) / model.width());
   Scatter out;
   if (n < 3 || !(sum > 0)) return out;
-  const double mean = sum / n;
+  const double dof = std::max(1.0, n - fitted), mean = sum / n;
   out.ratio = std::sqrt(sum / dof);
   out.error = std::max(std::sqrt(std::max(0.0, fourth / n - mean * mean) / n) / mean / 2, 1 / std::sqrt(2 * dof));
   return out;

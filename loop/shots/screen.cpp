@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -142,12 +143,7 @@ std::string likeliest_column(const ShotModel& model, const Row& row, int shot,
       const double curve = up + down - 2 * d, slope = (up - down) / 2;
       if (curve > 0) d -= slope * slope / (2 * curve);
     } else {
-      double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-      for (const double v : u->column->value)
-        if (std::isfinite(v)) {
-          lo = std::min(lo, v);
-          hi = std::max(hi, v);
-        }
+      const auto [lo, hi] = range_of(u->column->value, std::identity());
       for (int k = 0; k <= 40; ++k) d = std::min(d, row.distance({{*u, lo + (hi - lo) * k / 40.0}}));
     }
     if (d < least) {
@@ -254,25 +250,18 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     if (flags[k].shot >= 0) known[flags[k].shot] = k;
   // Against the bulk: where the fit misses everything by some factor, that is the fit's fault, not the rows'.
   std::vector<double> relative;
-  for (int i = 0; i < n; ++i) {
-    int seen = 0;
-    for (int c = 0; c < model.width(); ++c) seen += model.observed(i, c);
-    if (seen) relative.push_back(Row(model, fit, i).distance() / quantile(boost::math::chi_squared(seen), 0.5));
-  }
+  for (int i = 0; i < n; ++i)
+    if (const int seen = model.observed(i))
+      relative.push_back(Row(model, fit, i).distance() / quantile(boost::math::chi_squared(seen), 0.5));
   if (relative.empty()) return screening;
   std::ranges::sort(relative);
   double bulk = std::max(1.0, relative[relative.size() / 2]);
-  if (!clean)
-    bulk =
-        2 *
-        std::max(
-            bulk,
-            0.65 * relative[relative.size() * 3 / 4]);  // 0.65: median over upper quartile of chi-squared, 5 channels
+  // 0.65: median over upper quartile of chi-squared, 5 channels.
+  if (!clean) bulk = 2 * std::max(bulk, 0.65 * relative[relative.size() * 3 / 4]);
   for (int i = 0; i < n; ++i) {
-    const Row row(model, fit, i);
-    int seen = 0;
-    for (int c = 0; c < model.width(); ++c) seen += model.observed(i, c);
+    const int seen = model.observed(i);
     if (!seen) continue;
+    const Row row(model, fit, i);
     const boost::math::chi_squared law(seen);
     const double distance = row.distance();
     const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))),
@@ -324,10 +313,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
   int count = 0;
   const auto unexplained = [&](const RowFlag& f) { return !f.slip && f.shot >= 0 && !known.contains(f.shot); };
   for (const RowFlag& f : flags)
-    if (unexplained(f)) {
-      ++count;
-      ++unreasoned[f.column];
-    }
+    if (unexplained(f)) ++count, ++unreasoned[f.column];
   if (count > std::max(2.0, kMany * n)) {
     std::erase_if(flags, unexplained);
     widespread(unreasoned);

@@ -15,7 +15,6 @@
 #include "loop/shots/problem.hpp"
 #include "loop/shots/run.hpp"
 #include "loop/shots/spread.hpp"
-#include "models/rigid/rigid_eccentric.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::loop {
@@ -26,11 +25,6 @@ constexpr int kRounds = 6;                         // of asking where the decisi
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSmallDoubt = 3;  // of deviance: an error that moves it by less decides nothing
 constexpr double kSurprise = 2;    // chi-squared per output up to which its error was told truly
-
-const models::RigidEccentric& closed_form() {
-  static const models::RigidEccentric model;
-  return model;
-}
 
 /// It sticks and knows one law of restitution: what a slow base does otherwise is smooth beside it.
 Launch first_answer(const Shot& s) {
@@ -56,10 +50,7 @@ std::vector<Shot> recorded(const ShotCase& c) {
   look.blow.contact = {};
   std::set<int> flagged;
   for (const Flag& f : run(look).flagged) flagged.insert(f.row);
-  std::map<std::string, double> noise;
-  for (const auto& [header, value] : c.input_noise)
-    if (const Column* column = c.shots.find(header)) noise[header] = value * column->si;
-  Inputs in = make_inputs(c.shots, c.blow, c.head_mass_declared, noise, c.loft_unknown);
+  Inputs in = make_inputs(c.shots, c.blow, c.head_mass_declared, c.input_noise, c.loft_unknown);
   std::vector<Shot> out;
   for (std::size_t i = 0; i < in.trials.size(); ++i)
     if (!flagged.contains(in.row_of[i])) out.push_back(std::move(in.trials[i]));
@@ -92,14 +83,6 @@ std::function<void(int)> told(const ShotCase& c, const char* what, std::size_t o
   return [&c, what, of](int done) {
     if (c.told) c.told(what, double(done) / double(of));
   };
-}
-
-/// At most so many, from all over.
-std::vector<int> evenly(const std::vector<int>& all, std::size_t most) {
-  if (all.size() <= most) return all;
-  std::vector<int> some;
-  for (std::size_t k = 0; k < most; ++k) some.push_back(all[k * all.size() / most]);
-  return some;
 }
 
 bool same_question(const Shot& a, const Shot& b) {

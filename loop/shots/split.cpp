@@ -25,6 +25,12 @@ std::size_t whole_share(double fraction) {
 
 }  // namespace
 
+std::vector<int> Rows::all() const {
+  std::vector<int> both = train;
+  both.insert(both.end(), holdout.begin(), holdout.end());
+  return both;
+}
+
 Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
                 const std::vector<int>& usable) {
   // Thresholds show at the most oblique shots only, so these are never held out: beyond them nothing would be learnt.
@@ -88,14 +94,6 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
   Rows rows;
   for (std::size_t i = 0; i < usable.size(); ++i) (held[i] ? rows.holdout : rows.train).push_back(usable[i]);
   return rows;
-}
-
-std::vector<int> thinned(const std::vector<int>& rows) {
-  constexpr std::size_t most = 450;
-  if (rows.size() <= most) return rows;
-  std::vector<int> some;
-  for (std::size_t k = 0; k < most; ++k) some.push_back(rows[k * rows.size() / most]);
-  return some;
 }
 
 }  // namespace hosel::loop

@@ -8,14 +8,13 @@ namespace hosel::loop {
 
 struct Rows {
   std::vector<int> train, holdout;  ///< shots of the model
+
+  std::vector<int> all() const;  ///< the former, then the latter
 };
 
 /// Whole clusters, by a seeded shuffle of their names in order of appearance, or single rows; never the most oblique
 /// ones. `row_of[shot]` is the row of the file, `usable` the shots to be divided.
 Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
                 const std::vector<int>& usable);
-
-/// At most so many rows, evenly spread: what names an effect does not need thousands, and their cost would be felt.
-std::vector<int> thinned(const std::vector<int>& rows);
 
 }  // namespace hosel::loop

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
+#include "loop/deviation.hpp"
 #include "loop/shots/features.hpp"
 #include "solvers/random.hpp"
 
@@ -67,11 +67,7 @@ std::vector<Shot> spread(const std::vector<Shot>& recorded, const std::vector<Pa
   const Reaches reaches(recorded.front(), effects);
   std::vector<std::vector<double>> inputs;
   for (int k = 0; k < kInputs; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Shot& s : recorded) {
-      low = std::min(low, get(s.blow, Input(k)));
-      high = std::max(high, get(s.blow, Input(k)));
-    }
+    const auto [low, high] = range_of(recorded, [&](const Shot& s) { return get(s.blow, Input(k)); });
     const double spare = 0.02 * (high - low);
     const Reach own = Input(k) == Input::head_mass ? Reach{} : reaches.inputs[std::size_t(k)];
     inputs.push_back(solvers::latin_column(low - spare + 0.5 * own.low, high + spare + 0.5 * own.high, n, random));

@@ -44,18 +44,6 @@ bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
   return true;
 }
 
-Eigen::VectorXd ranks_clipped(const Eigen::VectorXd& x) {
-  // One wild cell must not be the regressor: beyond four robust deviations values are drawn in.
-  return x.cwiseMax(-4.0).cwiseMin(4.0);
-}
-
-void describe(const Regressor& r, Finding& f) {
-  f.regressor = r.column;
-  f.kind = r.kind;
-  f.detail = r.detail;
-  f.foreign = r.foreign;
-}
-
 void remove_trend(Eigen::VectorXd& q, const Eigen::VectorXd& x, const std::vector<int>& rows) {
   double xx = 0, xq = 0;
   for (const int i : rows) {
@@ -123,8 +111,7 @@ std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of,
   const int n = model.shots();
   std::vector<Line> lines;
   for (const Column& c : shots.columns) {
-    if (c.role == Role::output || !c.numeric || c.name == "shot") continue;
-    if (c.role == Role::bookkeeping) continue;
+    if (c.role == Role::output || !c.numeric || c.role == Role::bookkeeping) continue;
     Eigen::VectorXd x(n);
     for (int i = 0; i < n; ++i) {
       x[i] = c.value[std::size_t(row_of[std::size_t(i)])];
@@ -165,7 +152,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
   std::vector<Line> lines;
   const auto add_line = [&](const std::string& name, bool foreign, Eigen::VectorXd x) {
     if (!standardise(x, rows)) return;
-    x = ranks_clipped(x);
+    x = x.cwiseMax(-4.0).cwiseMin(4.0).eval();  // one wild cell must not be the regressor
     if (!standardise(x, rows)) return;
     lines.push_back({name, foreign, x});
   };
@@ -229,30 +216,18 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
   return all;
 }
 
-StructureMap structure(const ShotModel& model, const std::vector<int>& rows, const Eigen::VectorXd& z,
-                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
-                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
-                       unsigned long seed) {
-  Whitened view{.width = model.width(), .order = {}, .column = {}, .channel = {}};
-  for (const int i : rows) view.order.push_back(model.trial(i).order);
-  view.column = [&](int c, const Eigen::VectorXd& value) {
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(std::ptrdiff_t(rows.size()) * model.width());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (model.observed(rows[i], c))
-        a.segment(std::ptrdiff_t(i) * model.width(), model.width()) = model.whitening(rows[i]).col(c) *
-                                                                      value[std::ptrdiff_t(i)];
-    return a;
-  };
-  view.channel = [&](int c) -> const Channel& { return model.channel(c); };
-  return structure(view, rows, z, noise, weights, nuisance, regressors, directions, flips, seed);
-}
-
-StructureMap structure(const Whitened& view, const std::vector<int>& rows, const Eigen::VectorXd& z,
-                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
-                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
-                       unsigned long seed) {
-  const int n = int(rows.size()), m = view.width;
-  const Eigen::MatrixXd Q = orthonormal(nuisance);
+StructureMap structure(const Problem& problem, const Whitened& view, const Fit& fit, const Fit& near,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions,
+                       const Rules& rules) {
+  const std::vector<int>& rows = view.rows;
+  const int n = int(rows.size()), m = problem.width();
+  const Eigen::VectorXd z = whitened(problem, Part::select, fit.model, fit.p),
+                        noise = whitened(problem, Part::select, near.model, near.p);
+  if (!z.size() || !noise.size()) return {};
+  const solvers::Loss loss = problem.stages().back().loss;
+  Eigen::VectorXd weights(n);
+  for (int i = 0; i < n; ++i) weights[i] = loss.weight(noise.segment(std::ptrdiff_t(i) * m, m).squaredNorm());
+  const Eigen::MatrixXd Q = orthonormal(problem.jacobian(Part::select, fit.model, fit.p));
 
   StructureMap map;
   std::vector<Eigen::VectorXf> scores;  // normalised contributions of the shots
@@ -272,8 +247,9 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
     }
     const double norm = u.norm();
     if (!(norm > 0)) return;
-    map.findings.push_back({.channel = channel, .statistic = sum / norm, .signal = sum / after});
-    if (r) describe(*r, map.findings.back());
+    Finding f{.channel = channel, .statistic = sum / norm, .signal = sum / after};
+    if (r) f.regressor = r->column, f.kind = r->kind, f.detail = r->detail, f.foreign = r->foreign;
+    map.findings.push_back(std::move(f));
     scores.push_back((u / norm).cast<float>());
   };
   for (const Regressor& r : regressors)
@@ -319,11 +295,11 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
   Eigen::MatrixXf U(n, std::ptrdiff_t(plain)), V(n, std::ptrdiff_t(scores.size() - plain));
   for (std::size_t k = 0; k < scores.size(); ++k)
     (k < plain ? U.col(std::ptrdiff_t(k)) : V.col(std::ptrdiff_t(k - plain))) = scores[k];
-  std::mt19937_64 random(seed);
+  std::mt19937_64 random(rules.seed);
   std::vector<double> largest;
   constexpr int batch = 128;
   Eigen::MatrixXf S(batch, n), P(batch, n);
-  for (int done = 0; done < flips; done += batch) {
+  for (int done = 0; done < rules.flips; done += batch) {
     for (int b = 0; b < batch; ++b) {
       std::uint64_t bits = 0;
       for (int i = 0; i < n; ++i) {
@@ -334,7 +310,7 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
         P(b, k) = k + 1 < n ? S(b, by_order[std::size_t(k)]) * S(b, by_order[std::size_t(k) + 1]) : 1.0F;
     }
     const Eigen::MatrixXf A = S * U, B = P * V;
-    for (int b = 0; b < batch && done + b < flips; ++b)
+    for (int b = 0; b < batch && done + b < rules.flips; ++b)
       largest.push_back(double(std::max(U.cols() ? A.row(b).cwiseAbs().maxCoeff() : 0.0F,
                                         V.cols() ? B.row(b).cwiseAbs().maxCoeff() : 0.0F)));
   }
@@ -342,16 +318,16 @@ StructureMap structure(const Whitened& view, const std::vector<int>& rows, const
   bool all = true;
   double least_of_any = std::numeric_limits<double>::infinity();
   for (int c = 0; c < m; ++c) {
-    all = all && view.channel(c).trusted();
-    least_of_any = std::min(least_of_any, least_signal(view.channel(c)));
+    all = all && problem.channel(c).trusted();
+    least_of_any = std::min(least_of_any, least_signal(problem.channel(c)));
   }
-  const auto known = [&](const Finding& f) { return f.channel >= 0 ? view.channel(f.channel).trusted() : all; };
+  const auto known = [&](const Finding& f) { return f.channel >= 0 ? problem.channel(f.channel).trusted() : all; };
   double top = 0;
   for (Finding& f : map.findings) {
     const double t = std::abs(f.statistic);
     const auto above = largest.end() - std::ranges::lower_bound(largest, t - 1e-5);
     f.p_adjusted = (1.0 + double(above)) / (1.0 + double(largest.size()));
-    if (std::abs(f.signal) > (f.channel >= 0 ? least_signal(view.channel(f.channel)) : least_of_any))
+    if (std::abs(f.signal) > (f.channel >= 0 ? least_signal(problem.channel(f.channel)) : least_of_any))
       top = std::max(top, t);
     else f.p_adjusted = 1;
   }
@@ -367,7 +343,7 @@ std::vector<Location> plainest_places(const Problem& problem, const Selection& s
   std::vector<Location> told;
   const auto add = [&](const Finding* f) {
     if (!f) return;
-    const Location l{problem.channel(f->channel).name, f->regressor, f->what()};
+    const Location l = place_of(problem, *f);
     const auto same = [&](const Location& k) { return k.channel == l.channel && k.regressor == l.regressor; };
     if (std::ranges::none_of(told, same)) told.push_back(l);
   };

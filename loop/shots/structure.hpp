@@ -38,29 +38,19 @@ std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of,
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
                                   const std::vector<Line>& lines, const Eigen::VectorXd& order);
 
-/// What the test needs of whitened residuals in blocks of `width`, one a row.
+/// What effects are selected on: whitened residuals in blocks of all channels, one a row.
 struct Whitened {
-  int width;
+  std::vector<int> rows;      ///< shot of the model, by which regressors are read
   std::vector<double> order;  ///< per row, place in the session
   /// A residual of `value` per row in one channel and none in the others, whitened.
   std::function<Eigen::VectorXd(int channel, const Eigen::VectorXd& value)> column;
-  std::function<const Channel&(int)> channel;
 };
-/// As below, of any such residuals; `rows[i]`: shot of the model in block i, by which regressors are read.
-StructureMap structure(const Whitened& view, const std::vector<int>& rows, const Eigen::VectorXd& z,
-                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
-                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
-                       unsigned long seed);
-
-/// `z` whitened residuals of the rows, `weights` per row, `nuisance` whitened Jacobian of what was fitted (its
-/// span is projected out of every regressor), `directions` whitened candidate directions, each a regressor of its
-/// own (channel -1). `noise` are the whitened residuals whose signs are flipped: those of the best model, so that a
-/// strong effect does not hide in its own scatter; for a test of what remains the same as `z`. Findings by falling
-/// |signal|.
-StructureMap structure(const ShotModel& model, const std::vector<int>& rows, const Eigen::VectorXd& z,
-                       const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const Eigen::MatrixXd& nuisance,
-                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, int flips,
-                       unsigned long seed);
+/// Of the residual of `fit`, what it fitted projected out of every regressor; `directions`: whitened candidate
+/// directions, each a regressor of its own (channel -1). The signs that are flipped are those of `near`'s residual: of
+/// the best model, so that a strong effect does not hide in its own scatter; for a test of what remains `fit` itself.
+/// Findings by falling |signal|; none where a model has no answer.
+StructureMap structure(const Problem& problem, const Whitened& view, const Fit& fit, const Fit& near,
+                       const std::vector<Regressor>& regressors, const Eigen::MatrixXd& directions, const Rules& rules);
 
 /// Where structure sits: what remains after the best model if a foreign column drives it, else the map of the base,
 /// before anything was fitted to it.
