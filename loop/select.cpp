@@ -1,7 +1,6 @@
 #include "loop/select.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace hosel::loop {

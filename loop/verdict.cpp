@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "golf/units.hpp"
 #include "loop/beyond_doubt.hpp"

@@ -1,5 +1,4 @@
 // The recorded tilt of the spin is not the spin's.
-#include <cmath>
 
 #include "loop/effects/all.hpp"
 

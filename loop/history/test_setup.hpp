@@ -1,7 +1,6 @@
 /// A club test as recorded: what stands on the bench or in the hands, and what is read. Effects change it.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "loop/problem.hpp"

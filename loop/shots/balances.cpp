@@ -1,7 +1,6 @@
 #include "loop/shots/balances.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "golf/dense.hpp"
 #include "golf/first_contact.hpp"

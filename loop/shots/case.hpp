@@ -1,7 +1,6 @@
 /// A loop on shots: the measured ones, the base model, what is known of club, ball and noise.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 

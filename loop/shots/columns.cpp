@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
 
 #include "golf/dense.hpp"
 #include "golf/quantities.hpp"

@@ -5,7 +5,6 @@
 
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
-#include "golf/units.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {

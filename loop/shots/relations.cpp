@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "golf/vector.hpp"
-#include "loop/deviation.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {

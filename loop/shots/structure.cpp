@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <random>
-#include <set>
 
 #include "loop/deviation.hpp"
 #include "loop/result.hpp"

@@ -2,7 +2,6 @@
 // declaration that declaration moved by as much.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
