@@ -1,7 +1,6 @@
 // The club behind the head: during the contact the shaft's tip acts as a small mass at the hosel that also
 // resists being turned across its axis (about its axis it twists easily). The augmented rigid head has the mass,
 // the centre and the inertia of both.
-
 #include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {

@@ -1,5 +1,4 @@
 // Vibrations die away faster or slower than declared. Parameters are damping ratios at the first mode's frequency.
-
 #include "loop/effects/all.hpp"
 #include "loop/history/test_setup.hpp"
 

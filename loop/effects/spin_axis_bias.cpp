@@ -1,5 +1,4 @@
 // The recorded tilt of the spin is not the spin's.
-
 #include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
