@@ -458,7 +458,8 @@ class Audit {
     std::vector<const Term*> kept;
     std::set<int> everything;
     for (const Term& f : all) everything.insert(f.a);
-    const std::vector<Eigen::Index> rows = evenly(complete(target, everything), 400);  // in the order of their values
+    constexpr std::size_t most = 400;
+    const std::vector<Eigen::Index> rows = evenly(complete(target, everything), most);  // in the order of their values
     if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
     const auto n = std::ptrdiff_t(rows.size());
     const auto ranks = [&](auto&& value) {
