@@ -94,7 +94,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
     const std::vector<int> from = places_in(fold, whole);
     const auto in_order = [&](const std::vector<double>& values) {
       std::vector<double> out;
-      for (const int k : from) out.push_back(k < 0 ? kNaN : values[std::size_t(k)]);
+      for (const int place : from) out.push_back(place < 0 ? kNaN : values[std::size_t(place)]);
       return out;
     };
     for (const UsedRow& u : fold.rows)
