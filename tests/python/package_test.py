@@ -84,7 +84,7 @@ class InFolder(unittest.TestCase):
         return self.folder / name
 
 
-class Launches(unittest.TestCase):
+class Launches(InFolder):
     def test_an_array_of_blows_is_each_blow_by_itself(self):
         model = hosel.Model("driver-toe", "rigid-eccentric")
         toe = np.array([[-20.0, 0.0], [10.0, 20.0]])
@@ -99,9 +99,7 @@ class Launches(unittest.TestCase):
                 self.assertAlmostEqual(values[i], float(one[name]), delta=1e-9 * (1 + abs(values[i])), msg=name)
 
     def test_the_model_is_the_commands(self):
-        with tempfile.TemporaryDirectory() as folder:
-            run = hosel.run("driver-toe", Path(folder) / "out", set=FAST)
-            said = run.launches()["rigid-eccentric"]
+        said = hosel.run("driver-toe", self.out, set=FAST).launches()["rigid-eccentric"]
         asked = hosel.Model("driver-toe", "rigid-eccentric").launch()
         self.assertGreater(said["ball_speed_mps"], 50)
         for name in asked:
@@ -109,12 +107,11 @@ class Launches(unittest.TestCase):
 
     def test_each_blow_has_the_parameters_that_the_command_takes(self):
         lofts, said, stiffness = [12.0, 20.0, 30.0], [], set()
-        with tempfile.TemporaryDirectory() as folder:
-            for loft in lofts:
-                run = hosel.run("driver-toe", Path(folder) / f"{loft}",
-                                set=['models=["volumetric"]', f"delivery.dynamic_loft_deg={loft}"])
-                said.append(run.launches()["volumetric"])
-                stiffness.add(run.case["volumetric"]["stiffness_N_per_m3"])
+        for loft in lofts:
+            run = hosel.run("driver-toe", self.folder / f"{loft}",
+                            set=['models=["volumetric"]', f"delivery.dynamic_loft_deg={loft}"])
+            said.append(run.launches()["volumetric"])
+            stiffness.add(run.case["volumetric"]["stiffness_N_per_m3"])
         self.assertEqual(len(stiffness), 3)  # the ball has another set for each of these lofts
         model = hosel.Model("driver-toe", "volumetric")
         together = model.launch(dynamic_loft_deg=lofts)
@@ -125,9 +122,8 @@ class Launches(unittest.TestCase):
 
     def test_a_blow_that_the_command_refuses_is_refused(self):
         refused = "ball.model: 'tour' has several sets of parameters and none of them saw this loft"
-        with tempfile.TemporaryDirectory() as folder:
-            with self.assertRaisesRegex(hosel.InputError, refused):
-                hosel.run("driver-toe", Path(folder) / "out", set=FAST + ["delivery.dynamic_loft_deg=45"])
+        with self.assertRaisesRegex(hosel.InputError, refused):
+            hosel.run("driver-toe", self.out, set=FAST + ["delivery.dynamic_loft_deg=45"])
         for name in ("rigid-eccentric", "volumetric"):
             model = hosel.Model("driver-toe", name)
             self.assertGreater(float(model.launch(dynamic_loft_deg=43)["ball_speed_mps"]), 20)
@@ -145,7 +141,7 @@ class Launches(unittest.TestCase):
             hosel.Model("driver-toe", "rigid-eccentric", set=sought)
 
     def test_what_is_stable_is_what_is_offered(self):
-        page = Path(__file__).resolve().parents[2] / "docs" / "stability.md"
+        page = ROOT / "docs" / "stability.md"
         row = next(line for line in page.read_text().splitlines() if "`hosel.__all__`" in line)
         self.assertGreater(len(hosel.__all__), 5)
         self.assertEqual(sorted(row.split("lists:")[1].replace("`", "").strip(" |").split(", ")), sorted(hosel.__all__))
@@ -174,14 +170,12 @@ class Launches(unittest.TestCase):
             hosel.check("driver-toe", set=["head.mass_kg=200"])
 
 
-class Studies(unittest.TestCase):
+class Studies(InFolder):
     TOE, SPEED = "delivery.impact_toe_mm", "delivery.club_speed_mph"
     BALL, SIDE = "models.rigid-eccentric.ball_speed_mps", "models.rigid-eccentric.sidespin_rpm"
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.out = Path(folder.name) / "out"
+        super().setUp()
         self.study = hosel.Study("driver-toe", set=FAST, outputs=[self.BALL, self.SIDE])
         self.model = hosel.Model("driver-toe", "rigid-eccentric")
 
@@ -402,23 +396,21 @@ class Results(InFolder):
         self.assertEqual(repr(run), f"hosel.Run({str(self.out)!r})")
 
     def test_a_run_is_read_back(self):
-        with tempfile.TemporaryDirectory() as folder:
-            out = Path(folder) / "map"
-            hosel.run("face-map-driver-reduced", out, set=["grid.columns=5", "grid.rows=3"])
-            run = hosel.read(out)
-            self.assertEqual(run.case["grid"]["columns"], 5)
-            self.assertIn("face_map.csv", run.tables)
-            table = run["face_map.csv"]
-            models = np.unique(table["model"])
-            xs, ys, speed = table.where(model=models[0]).grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
-            self.assertEqual(speed.shape, (3, 5))
-            self.assertTrue(np.isfinite(speed).all() and speed.min() > 40)
-            with self.assertRaisesRegex(ValueError, "twice"):
-                table.grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
-            with self.assertRaisesRegex(KeyError, "face_map.csv"):
-                run["nothing.csv"]
-            with self.assertRaisesRegex(ValueError, "finished"):  # as the command: not without force
-                hosel.run("face-map-driver-reduced", out)
+        hosel.run("face-map-driver-reduced", self.out, set=["grid.columns=5", "grid.rows=3"])
+        run = hosel.read(self.out)
+        self.assertEqual(run.case["grid"]["columns"], 5)
+        self.assertIn("face_map.csv", run.tables)
+        table = run["face_map.csv"]
+        models = np.unique(table["model"])
+        xs, ys, speed = table.where(model=models[0]).grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
+        self.assertEqual(speed.shape, (3, 5))
+        self.assertTrue(np.isfinite(speed).all() and speed.min() > 40)
+        with self.assertRaisesRegex(ValueError, "twice"):
+            table.grid("impact_toe_mm", "impact_high_mm", "ball_speed_mps")
+        with self.assertRaisesRegex(KeyError, "face_map.csv"):
+            run["nothing.csv"]
+        with self.assertRaisesRegex(ValueError, "finished"):  # as the command: not without force
+            hosel.run("face-map-driver-reduced", self.out)
 
     def test_a_forced_run_leaves_nothing_of_the_one_before(self):
         before = hosel.run("driver-toe", self.out, set=['models=["fe-free-body"]', "accuracy=look"])
@@ -453,10 +445,7 @@ class Results(InFolder):
         self.assertEqual((self.out / ".written").read_text(), old)
 
     def test_an_empty_cell_is_nan_and_a_word_stays_a_word(self):
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "t.csv"
-            file.write_text("x_mm,who\n1.5,a\n,b\n")
-            table = hosel.read_table(file)
+        table = self.table("x_mm,who\n1.5,a\n,b\n")
         self.assertEqual(table.x_mm[0], 1.5)
         self.assertTrue(np.isnan(table.x_mm[1]))
         self.assertEqual(list(table.who), ["a", "b"])
