@@ -4,8 +4,8 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <map>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -35,21 +35,18 @@ bool missing(const std::string& cell) {
 namespace {
 
 /// Units that no header of ours has: numbers in them are converted.
-struct OtherUnit {
-  std::string_view name;
-  Dimension dimension;
-  double si;
-};
 constexpr std::array kOtherUnits = {
-    OtherUnit{"cm", Dimension::length, 0.01},         OtherUnit{"in", Dimension::length, 0.0254},
-    OtherUnit{"ft", Dimension::length, 0.3048},       OtherUnit{"ft/s", Dimension::speed, 0.3048},
-    OtherUnit{"kn", Dimension::speed, 1852.0 / 3600}, OtherUnit{"mrad", Dimension::angle, 1e-3},
-    OtherUnit{"gon", Dimension::angle, kPi / 200},    OtherUnit{"turn/s", Dimension::angular_velocity, 2 * kPi},
+    Unit{"cm", Dimension::length, 0.01},         Unit{"in", Dimension::length, 0.0254},
+    Unit{"ft", Dimension::length, 0.3048},       Unit{"ft/s", Dimension::speed, 0.3048},
+    Unit{"kn", Dimension::speed, 1852.0 / 3600}, Unit{"mrad", Dimension::angle, 1e-3},
+    Unit{"gon", Dimension::angle, kPi / 200},    Unit{"turn/s", Dimension::angular_velocity, 2 * kPi},
 };
 
-const OtherUnit* other_unit(std::string_view name) {
-  const auto at = std::ranges::find(kOtherUnits, name, &OtherUnit::name);
-  return at == kOtherUnits.end() ? nullptr : &*at;
+/// One of these, or of a header of ours.
+std::optional<Unit> known_unit(std::string_view name) {
+  for (const std::span<const Unit> all : {std::span<const Unit>(kOtherUnits), units()})
+    if (const auto at = std::ranges::find(all, name, &Unit::suffix); at != all.end()) return *at;
+  return {};
 }
 
 /// What stands in brackets, without them; empty where there are none.
@@ -63,6 +60,8 @@ std::vector<std::string> brackets(const std::string& header) {
   return out;
 }
 
+}  // namespace
+
 std::vector<std::string> words_of(std::string_view text, std::string_view between) {
   std::vector<std::string> out;
   while (!text.empty()) {
@@ -73,64 +72,35 @@ std::vector<std::string> words_of(std::string_view text, std::string_view betwee
   return out;
 }
 
-}  // namespace
-
 std::string unit_of(std::string text) {
   text = lower(text);
   std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' ' || c == '.'; });
-  static const std::map<std::string, std::string> spellings = {{"mph", "mph"},
-                                                               {"mi/h", "mph"},
-                                                               {"kmh", "kmh"},
-                                                               {"km/h", "kmh"},
-                                                               {"kph", "kmh"},
-                                                               {"mps", "mps"},
-                                                               {"m/s", "mps"},
-                                                               {"m/sec", "mps"},
-                                                               {"ft/s", "ft/s"},
-                                                               {"ft/sec", "ft/s"},
-                                                               {"fps", "ft/s"},
-                                                               {"kn", "kn"},
-                                                               {"kt", "kn"},
-                                                               {"knots", "kn"},
-                                                               {"grad", "deg"},
-                                                               {"deg", "deg"},
-                                                               {"degrees", "deg"},
-                                                               {"degree", "deg"},
-                                                               {"\xC2\xB0", "deg"},
-                                                               {"\xC2\xBA", "deg"},
-                                                               {"rad", "rad"},
-                                                               {"mrad", "mrad"},
-                                                               {"gon", "gon"},
-                                                               {"rpm", "rpm"},
-                                                               {"rev/min", "rpm"},
-                                                               {"1/min", "rpm"},
-                                                               {"u/min", "rpm"},
-                                                               {"rad/s", "rad_per_s"},
-                                                               {"rad/sec", "rad_per_s"},
-                                                               {"deg/s", "deg_per_s"},
-                                                               {"\xC2\xB0/s", "deg_per_s"},
-                                                               {"rps", "turn/s"},
-                                                               {"rev/s", "turn/s"},
-                                                               {"hz", "turn/s"},
-                                                               {"\xC2\xB5m", "um"},
-                                                               {"\xCE\xBCm", "um"},
-                                                               {"um", "um"},
-                                                               {"mm", "mm"},
-                                                               {"cm", "cm"},
-                                                               {"in", "in"},
-                                                               {"inch", "in"},
-                                                               {"inches", "in"},
-                                                               {"m", "m"},
-                                                               {"yd", "yd"},
-                                                               {"yds", "yd"},
-                                                               {"yards", "yd"},
-                                                               {"ft", "ft"},
-                                                               {"feet", "ft"},
-                                                               {"s", "s"},
-                                                               {"sec", "s"},
-                                                               {"%", "pct"}};
-  const auto at = spellings.find(text);
-  return at == spellings.end() ? "" : at->second;
+  static const std::vector<std::pair<std::string, std::set<std::string>>> spellings = {
+      {"mph", {"mph", "mi/h"}},
+      {"kmh", {"kmh", "km/h", "kph"}},
+      {"mps", {"mps", "m/s", "m/sec"}},
+      {"ft/s", {"ft/s", "ft/sec", "fps"}},
+      {"kn", {"kn", "kt", "knots"}},
+      {"deg", {"grad", "deg", "degrees", "degree", "\xC2\xB0", "\xC2\xBA"}},
+      {"rad", {"rad"}},
+      {"mrad", {"mrad"}},
+      {"gon", {"gon"}},
+      {"rpm", {"rpm", "rev/min", "1/min", "u/min"}},
+      {"rad_per_s", {"rad/s", "rad/sec"}},
+      {"deg_per_s", {"deg/s", "\xC2\xB0/s"}},
+      {"turn/s", {"rps", "rev/s", "hz"}},
+      {"um", {"\xC2\xB5m", "\xCE\xBCm", "um"}},
+      {"mm", {"mm"}},
+      {"cm", {"cm"}},
+      {"in", {"in", "inch", "inches"}},
+      {"m", {"m"}},
+      {"yd", {"yd", "yds", "yards"}},
+      {"ft", {"ft", "feet"}},
+      {"s", {"s", "sec"}},
+      {"pct", {"%"}}};
+  for (const auto& [unit, words] : spellings)
+    if (words.contains(text)) return unit;
+  return "";
 }
 
 std::string unit_in(const std::string& header) {
@@ -162,18 +132,16 @@ std::string figure_of(const std::string& cell) {
 }
 
 double si_of(const std::string& unit) {
-  if (const OtherUnit* other = other_unit(unit)) return other->si;
-  for (const Unit& u : units())
-    if (u.suffix == unit) return u.si;
-  return 1;
+  const auto known = known_unit(unit);
+  return known ? known->si : 1;
 }
 
 std::optional<Dimension> dimension_of(const std::string& unit) {
-  if (const OtherUnit* other = other_unit(unit)) return other->dimension;
-  for (const Unit& u : units())
-    if (u.suffix == unit) return u.dimension;
-  return {};
+  const auto known = known_unit(unit);
+  return known ? std::optional(known->dimension) : std::nullopt;
 }
+
+std::string negated(const std::string& digits) { return digits.starts_with('-') ? digits.substr(1) : "-" + digits; }
 
 namespace {
 
@@ -183,42 +151,26 @@ struct Side {
 };
 
 std::optional<Side> side_of(const std::string& words, Sides sides) {
-  using Words = std::map<std::string, Side, std::less<>>;
-  static const std::map<Sides, Words> known = {
-      {Sides::across,
-       {{"r", {1, false}},
-        {"right", {1, false}},
-        {"l", {-1, false}},
-        {"left", {-1, false}},
-        {"open", {1, true}},
-        {"o", {1, true}},
-        {"closed", {-1, true}},
-        {"c", {-1, true}},
-        {"fade", {1, true}},
-        {"draw", {-1, true}},
-        {"in out", {1, true}},
-        {"in to out", {1, true}},
-        {"inside out", {1, true}},
-        {"i o", {1, true}},
-        {"o i", {-1, true}},
-        {"out in", {-1, true}},
-        {"out to in", {-1, true}},
-        {"outside in", {-1, true}}}},
-      {Sides::height,
-       {{"u", {1, false}},
-        {"up", {1, false}},
-        {"h", {1, false}},
-        {"high", {1, false}},
-        {"d", {-1, false}},
-        {"down", {-1, false}},
-        {"l", {-1, false}},
-        {"low", {-1, false}}}},
-      {Sides::toe, {{"t", {1, false}}, {"toe", {1, false}}, {"h", {-1, false}}, {"heel", {-1, false}}}}};
-  const std::string last = words.substr(std::min(words.size(), words.rfind(' ') + 1));
-  for (const auto& [of, all] : known) {
+  struct Known {
+    Sides of;
+    Side side;
+    std::set<std::string> words;
+  };
+  static const std::vector<Known> known = {
+      {Sides::across, {1, false}, {"r", "right"}},
+      {Sides::across, {-1, false}, {"l", "left"}},
+      {Sides::across, {1, true}, {"open", "o", "fade", "in out", "in to out", "inside out", "i o"}},
+      {Sides::across, {-1, true}, {"closed", "c", "draw", "out in", "out to in", "outside in", "o i"}},
+      {Sides::height, {1, false}, {"u", "up", "h", "high"}},
+      {Sides::height, {-1, false}, {"d", "down", "l", "low"}},
+      {Sides::toe, {1, false}, {"t", "toe"}},
+      {Sides::toe, {-1, false}, {"h", "heel"}}};
+  const std::string last = words.substr(words.rfind(' ') + 1);
+  for (const Sides of : {Sides::across, Sides::height, Sides::toe}) {
     if (sides != Sides::any && sides != of) continue;
     for (const std::string& text : {words, last})
-      if (const auto at = all.find(text); at != all.end()) return at->second;
+      for (const Known& k : known)
+        if (k.of == of && k.words.contains(text)) return k.side;
   }
   return {};
 }
@@ -328,36 +280,35 @@ HeaderSign sign_in(const std::string& header, Sides sides) {
 std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides) {
   Cell out;
   double sign = 1;
-  const bool side = sides != Sides::none;
+  const auto take = [&](const Side& side) {
+    sign = side.sign;
+    out.own = side.own;
+    out.sided = true;
+  };
   out.marked = take_mark(text);
   // `R1.1`, `L 0,6`: the side stands in front.
-  if (side && !text.empty() && std::isalpha(static_cast<unsigned char>(text.front()))) {
+  if (sides != Sides::none && !text.empty() && std::isalpha(static_cast<unsigned char>(text.front()))) {
     const auto gap = text.find_first_of("0123456789.,+-\xE2");
     const auto before = gap == std::string::npos ? std::nullopt : side_of(plain(text.substr(0, gap)), sides);
     if (!before) return {};
-    sign = before->sign;
-    out.own = before->own;
-    out.sided = true;
+    take(*before);
     text.erase(0, gap);
   }
   for (const char* minus : {"\xE2\x88\x92", "\xE2\x80\x93"})  // typographic ones
     if (text.starts_with(minus)) text.replace(0, 3, "-");
+  const auto of_number = [](char c) { return std::string_view("0123456789.,-+eE'").find(c) != std::string_view::npos; };
   std::size_t end = 0;
-  while (end < text.size() &&
-         (std::isdigit(static_cast<unsigned char>(text[end])) || text[end] == '.' || text[end] == ',' ||
-          text[end] == '-' || text[end] == '+' || text[end] == 'e' || text[end] == 'E' || text[end] == '\'' ||
-          (text[end] == ' ' && end + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[end + 1])))))
+  while (end < text.size() && (of_number(text[end]) || (text[end] == ' ' && end + 1 < text.size() &&
+                                                        std::isdigit(static_cast<unsigned char>(text[end + 1])))))
     ++end;
   const std::string tail = trimmed(std::string_view(text).substr(end));
   std::string digits = text.substr(0, end);
   std::erase_if(digits, [&](char c) { return c == ' ' || c == '\'' || c == (comma_is_decimal ? '.' : ','); });
   std::ranges::replace(digits, ',', '.');
   if (!tail.empty()) {
-    if (const auto behind = side ? side_of(plain(tail), sides) : std::nullopt) {
+    if (const auto behind = side_of(plain(tail), sides)) {
       if (out.sided) return {};
-      sign = behind->sign;
-      out.own = behind->own;
-      out.sided = true;
+      take(*behind);
       // `5 mm Toe`: a unit may stand before the side.
       if (const auto gap = tail.find_first_of(" \t"); gap != std::string::npos) out.unit = unit_of(tail.substr(0, gap));
     } else if (out.unit = unit_of(tail); out.unit.empty()) {
@@ -370,10 +321,15 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides)
   if (out.sided && out.value < 0) return {};  // `-2.5 L`: to which side?
   if (sign < 0) {
     out.value = -out.value;
-    digits = digits.front() == '-' ? digits.substr(1) : "-" + digits;
+    digits = negated(digits);
   }
   out.digits = digits;
   return out;
+}
+
+std::optional<double> plain_number(const std::string& cell) {
+  const auto x = number(cell, false, Sides::none);
+  return x ? std::optional(x->value) : std::nullopt;
 }
 
 }  // namespace hosel::app

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "golf/units.hpp"
 
@@ -20,6 +21,9 @@ enum class Sides {
 
 std::string trimmed(std::string_view text);
 std::string lower(std::string_view text);
+
+/// The words of a text, parted by any of the characters `between`.
+std::vector<std::string> words_of(std::string_view text, std::string_view between = " ");
 
 bool missing(const std::string& cell);
 
@@ -44,6 +48,9 @@ double si_of(const std::string& unit);
 /// Of a unit that headers of ours may have, or of one that only files of others have.
 std::optional<Dimension> dimension_of(const std::string& unit);
 
+/// A number as text with the other sign.
+std::string negated(const std::string& digits);
+
 struct Cell {
   std::string digits;  ///< as recorded, with a decimal point and our sign
   double value = 0;
@@ -55,5 +62,7 @@ struct Cell {
 /// `1.234,5`, `2 540`, `27.8 L`, `3.5R`, `R1.1`, `5 mm Toe`, `94.2 mph`, `6.1 Down`, `2.3 In-Out`. Right, toe, up,
 /// in-to-out and open are positive; `sides`: which of these words a cell may have.
 std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides);
+/// The value of a cell with a decimal point and no side.
+std::optional<double> plain_number(const std::string& cell);
 
 }  // namespace hosel::app

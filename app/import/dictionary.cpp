@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <sstream>
 
-#include "app/import/cells.hpp"
 #include "app/reader.hpp"
 #include "build_info.hpp"
 
@@ -31,11 +29,10 @@ std::string plain(std::string_view text) {
 }
 
 bool names_a_hand(const std::string& words) {
-  std::istringstream parts(words);
-  std::string part;
-  while (parts >> part)
-    if (part == "handed" || part == "handedness" || part == "dexterity") return true;
-  return part == "hand";
+  const std::vector<std::string> parts = words_of(words);
+  return (!parts.empty() && parts.back() == "hand") || std::ranges::any_of(parts, [](const std::string& part) {
+           return part == "handed" || part == "handedness" || part == "dexterity";
+         });
 }
 
 void Dictionary::read(const fs::path& file) {
@@ -75,11 +72,10 @@ void Dictionary::read(const fs::path& file) {
   if (auto t = root.optional_table("head"))
     for (const std::string& key : t->keys()) {
       Table head = t->table(key);
+      const auto list = [](const Vec3& v) { return fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()); };
       const Vec3 cg = head.vector("cg", "mm") * 1e3;
       const Mat3 I = head.matrix("inertia", "kg_m2");
-      heads_[key] = {fmt::format("[{:g}, {:g}, {:g}]", cg.x(), cg.y(), cg.z()),
-                     fmt::format("[[{:g}, {:g}, {:g}], [{:g}, {:g}, {:g}], [{:g}, {:g}, {:g}]]", I(0, 0), I(0, 1),
-                                 I(0, 2), I(1, 0), I(1, 1), I(1, 2), I(2, 0), I(2, 1), I(2, 2))};
+      heads_[key] = {list(cg), fmt::format("[{}, {}, {}]", list(I.row(0)), list(I.row(1)), list(I.row(2)))};
     }
   for (Table& t : root.tables("layout"))
     layouts_.push_back({t.text("name"), plain(t.text("has", "")), t.text("preamble", ""),
@@ -146,7 +142,7 @@ bool Dictionary::says(std::string_view list, const std::string& cell) const {
 
 bool Dictionary::begins_or_ends(std::string_view list, const std::string& cell) const {
   const std::string word = plain(cell);
-  const std::string last = word.substr(word.rfind(' ') == word.npos ? 0 : word.rfind(' ') + 1);
+  const std::string last = word.substr(word.rfind(' ') + 1);
   return says(list, cell) || says(list, word.substr(0, word.find(' '))) || says(list, last) ||
          says(std::string(list) + "_end", last);
 }

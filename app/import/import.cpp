@@ -9,7 +9,6 @@
 #include <ranges>
 #include <set>
 
-#include "app/import/cells.hpp"
 #include "app/import/session.hpp"
 #include "app/offer.hpp"
 #include "app/reader.hpp"
@@ -22,15 +21,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_csv(const fs::path& file, const std::vector<const Understood*>& columns,
-               const std::vector<std::string>& names) {
+/// A column under its name, or its header where it has none.
+void write_csv(const fs::path& file, const std::vector<const Understood*>& columns) {
   std::string text;
-  for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + post::csv_cell(names[c]);
-  text += '\n';
-  for (std::size_t r = 0; !columns.empty() && r < columns.front()->cells.size(); ++r) {
-    for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + post::csv_cell(columns[c]->cells[r]);
+  const auto line = [&](const auto& said) {
+    for (const Understood* u : columns) text += (u == columns.front() ? "" : ",") + post::csv_cell(said(*u));
     text += '\n';
-  }
+  };
+  line([](const Understood& u) { return u.name.empty() ? u.header : u.name; });
+  for (std::size_t r = 0; r < columns.front()->cells.size(); ++r) line([&](const Understood& u) { return u.cells[r]; });
   post::write_file(file, text);
 }
 
@@ -114,14 +113,14 @@ Session join(std::vector<Session>& sessions, const Dictionary& d) {
       const auto to = split_unit(all.name).unit, from = split_unit(u.name).unit;
       const bool other_unit = !u.name.empty() && to && from && to->suffix != from->suffix;
       for (const std::string& cell : u.cells) {
-        const auto x = other_unit ? number(cell, false, Sides::none) : std::nullopt;
-        all.cells.push_back(x ? fmt::format("{:.6g}", x->value * from->si / to->si) : cell);
+        const auto x = other_unit ? plain_number(cell) : std::nullopt;
+        all.cells.push_back(x ? fmt::format("{:.6g}", *x * from->si / to->si) : cell);
       }
     }
     if (!s.carry.cells.empty() && out.carry.name.empty()) out.carry = {.name = s.carry.name, .cells = Row(out.shots)};
     for (const std::string& cell : s.carry.cells) {
-      const auto x = number(cell, false, Sides::none);
-      out.carry.cells.push_back(x ? fmt::format("{:.6g}", x->value * si_of(s.carry.name) / si_of(out.carry.name)) : "");
+      const auto x = plain_number(cell);
+      out.carry.cells.push_back(x ? fmt::format("{:.6g}", *x * si_of(s.carry.name) / si_of(out.carry.name)) : "");
     }
     out.shots += s.shots;
     out.left_handed += s.left_handed;
@@ -157,10 +156,7 @@ void show_clubs(Session& all) {
   const auto add = [&](std::string_view title, const Understood* u, std::string_view unit, int digits) {
     if (!u) return;
     Shown column{title, unit, {}, digits};
-    for (const std::string& cell : u->cells) {
-      const auto x = number(cell, false, Sides::none);
-      column.value.push_back(x ? x->value : std::nan(""));
-    }
+    for (const std::string& cell : u->cells) column.value.push_back(plain_number(cell).value_or(kNaN));
     shown.push_back(std::move(column));
   };
   for (const auto& [stem, title, digits] :
@@ -264,21 +260,13 @@ void import_shots(const ImportOptions& o) {
 
   // The case.
   fs::create_directories(o.out);
-  std::vector<const Understood*> good, rest;
-  std::vector<std::string> good_names, rest_names;
-  for (const Understood& u : columns) {
-    if (one_mass && u.name == "head_mass_kg") continue;
-    (u.name.empty() ? rest : good).push_back(&u);
-    (u.name.empty() ? rest_names : good_names).push_back(u.name.empty() ? u.header : u.name);
-  }
-  write_csv(o.out / "shots.csv", good, good_names);
-  if (!rest.empty()) write_csv(o.out / "kept.csv", rest, rest_names);
-  if (sideways) {
-    std::vector<const Understood*> whole;
-    std::vector<std::string> whole_names;
-    for (const Understood& u : launches) whole.push_back(&u), whole_names.push_back(u.name);
-    write_csv(o.out / "launches.csv", whole, whole_names);
-  }
+  std::vector<const Understood*> good, rest, whole;
+  for (const Understood& u : columns)
+    if (!one_mass || u.name != "head_mass_kg") (u.name.empty() ? rest : good).push_back(&u);
+  for (const Understood& u : launches) whole.push_back(&u);
+  write_csv(o.out / "shots.csv", good);
+  if (!rest.empty()) write_csv(o.out / "kept.csv", rest);
+  if (sideways) write_csv(o.out / "launches.csv", whole);
   std::string names;
   for (const fs::path& file : o.files) names += (names.empty() ? "" : ", ") + file.filename().string();
   const std::string title =

@@ -7,9 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <regex>
-#include <sstream>
 
-#include "app/import/cells.hpp"
 #include "app/reader.hpp"
 #include "loop/deviation.hpp"
 #include "models/flight/flight.hpp"
@@ -91,16 +89,25 @@ bool says_any(const std::string& cell, std::initializer_list<const char*> words)
   return std::ranges::any_of(words, [&](const char* w) { return text.find(w) != std::string::npos; });
 }
 
+/// Whether a cell answers a question with yes or with no, or with neither.
+std::optional<bool> yes_or_no(const std::string& cell) {
+  static const std::set<std::string> yes = {"yes", "y", "true", "1"}, no = {"no", "n", "false", "0"};
+  const std::string word = plain(cell);
+  return yes.contains(word) ? std::optional(true) : no.contains(word) ? std::optional(false) : std::nullopt;
+}
+
+/// A header as a person copies it.
+std::string copied(const std::string& header) { return lower(trimmed(header)); }
+
 /// Face minus path under the name of a place on the face, as one connector writes it: nine cells in ten agree.
 bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
   if (!face || !path || !face->filled || !path->filled) return false;
   std::size_t same = 0, seen = 0;
   for (std::size_t i = 0; i < u.cells.size(); ++i) {
-    const auto a = number(u.cells[i], false, Sides::none), f = number(face->cells[i], false, Sides::none),
-               p = number(path->cells[i], false, Sides::none);
+    const auto a = plain_number(u.cells[i]), f = plain_number(face->cells[i]), p = plain_number(path->cells[i]);
     if (!a || !f || !p) continue;
     ++seen;
-    same += std::abs(a->value - (f->value - p->value)) < 0.15;
+    same += std::abs(*a - (*f - *p)) < 0.15;
   }
   return seen > 2 && 10 * same >= 9 * seen;
 }
@@ -153,7 +160,7 @@ class Reading {
       std::string r = d_.bookkeeping_of(sheet.names[c]);
       if ((r == "club" || r == "ball") && d_.quantity_of(sheet.names[c]) && is_speed(c, r)) r.clear();
       if (r.empty() && tells_how_spin_was_found(c)) r = "accuracy";
-      if (r.empty() || std::ranges::all_of(sheet.rows, [&](const Row& row) { return missing(row[c]); })) continue;
+      if (r.empty() || is_empty(c)) continue;
       if (r == "accuracy") {  // one for the rate and one for the axis
         role_[c] = r;
         continue;
@@ -167,15 +174,32 @@ class Reading {
     for (const auto& [r, at] : best) role_[at.second] = r;
   }
 
+  bool is_empty(std::size_t c) const {
+    return std::ranges::all_of(out_.sheet.rows, [&](const Row& row) { return missing(row[c]); });
+  }
+
+  /// The cells of a column, those that say nothing empty.
+  Row cells(std::size_t c) const {
+    Row out;
+    for (const Row& row : out_.sheet.rows) out.push_back(missing(row[c]) ? "" : row[c]);
+    return out;
+  }
+
+  /// The unit in a column's header or in the row of units; empty where neither has one.
+  std::string headed_unit(std::size_t c) const {
+    const std::string unit = unit_in(out_.sheet.names[c]);
+    return unit.empty() && c < out_.sheet.units.size() ? unit_of(out_.sheet.units[c]) : unit;
+  }
+
   /// "Club" and "Ball" are names where their cells are not numbers, speeds where they are; "Ball" without a unit, and
   /// beside a column of ball speed, is a number of the ball.
   bool is_speed(std::size_t c, const std::string& role) const {
     const Sheet& sheet = out_.sheet;
     const auto same = std::ranges::count_if(
         sheet.names, [&](const std::string& n) { return d_.quantity_of(n) == d_.quantity_of(sheet.names[c]); });
-    const bool unit = !unit_in(sheet.names[c]).empty() || (c < sheet.units.size() && !unit_of(sheet.units[c]).empty());
+    const bool unit = !headed_unit(c).empty();
     return std::ranges::all_of(sheet.rows, [&](const Row& row) {
-      return missing(row[c]) || (number(row[c], false, Sides::none) && (unit || (role == "ball" && same == 1)));
+      return missing(row[c]) || (plain_number(row[c]) && (unit || (role == "ball" && same == 1)));
     });
   }
 
@@ -230,18 +254,17 @@ class Reading {
         q = d_.quantity_of(header);
       }
       // A second column of one quantity is kept aside, and one that is empty.
-      const bool empty = std::ranges::all_of(sheet.rows, [&](const Row& row) { return missing(row[c]); });
-      if (q && (empty || !quantities.insert(q->name).second)) q = nullptr;
+      if (q && (is_empty(c) || !quantities.insert(q->name).second)) q = nullptr;
       if (!q) {
         keep(c);
         continue;
       }
       if (unit.empty()) unit = unit_of_column(*q, c);
       const HeaderSign said = sign_in(header, q->sides);
-      const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(lower(trimmed(header)));
+      const std::string whole = copied(header);
+      const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(whole);
       out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
       if (said.strange && !turned) out_.columns.back().remark("signs in the header not understood: taken as ours");
-      const std::string whole = lower(trimmed(header));
       if (!o_.modelled && !hand &&
           (whole.find("estimated") != whole.npos || whole.find("calculated") != whole.npos ||
            whole.find("modelled") != whole.npos))
@@ -251,8 +274,7 @@ class Reading {
 
   /// From the header, the row of units or the first cell, of a column of distances; empty where none of them says.
   std::string stated_length(std::size_t c) const {
-    std::string unit = unit_in(out_.sheet.names[c]);
-    if (unit.empty() && c < out_.sheet.units.size()) unit = unit_of(out_.sheet.units[c]);
+    std::string unit = headed_unit(c);
     for (const Row& row : out_.sheet.rows) {
       if (!unit.empty() || missing(row[c])) continue;
       if (const auto cell = number(row[c], false, Sides::none)) unit = cell->unit;
@@ -264,17 +286,14 @@ class Reading {
   /// From the header, the row of units or the cells; empty where none of them says.
   std::string stated_unit(const MonitorQuantity& q, std::size_t c) const {
     const Sheet& sheet = out_.sheet;
-    std::string unit = unit_in(sheet.names[c]);
-    if (unit.empty() && c < sheet.units.size()) unit = unit_of(sheet.units[c]);
+    std::string unit = headed_unit(c);
     const std::string& header = sheet.names[c];
-    const std::string strange = unit.empty() && c < sheet.units.size() ? strange_unit(sheet.units[c]) : "",
-                      inside = unit.empty()
-                                   ? strange_unit(header.substr(std::min(header.find_first_of("(["), header.size())))
-                                   : "";
-    if (!strange.empty() || !inside.empty())
+    std::string strange = unit.empty() && c < sheet.units.size() ? strange_unit(sheet.units[c]) : "";
+    if (unit.empty() && strange.empty())
+      strange = strange_unit(header.substr(std::min(header.find_first_of("(["), header.size())));
+    if (!strange.empty())
       throw InputError(fmt::format("{}: column '{}': the unit '{}' is not known; --column '{}={}_{}' states one",
-                                   out_.file.string(), header, strange.empty() ? inside : strange, header, q.name,
-                                   q.metric));
+                                   out_.file.string(), header, strange, header, q.name, q.metric));
     if (unit.empty() && family_ == "si" && q.metric == "mm") unit = "m";
     if (unit.empty() && q.imperial == q.metric) unit = q.imperial;  // degrees, rpm, mm: no monitor uses others
     if (!unit.empty()) return unit;
@@ -318,6 +337,12 @@ class Reading {
     return unit;
   }
 
+  /// Of the shots, in a unit; NaN where there is none.
+  struct Numbers {
+    std::vector<double> value;
+    double si = 1;
+  };
+
   /// The numbers of a quantity as they stand, of a role likewise; NaN where there is none.
   std::vector<double> raw(std::string_view quantity, std::string_view role = "") const {
     const Sheet& sheet = out_.sheet;
@@ -325,11 +350,10 @@ class Reading {
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       const MonitorQuantity* q = d_.quantity_of(sheet.names[c]);
       if (role.empty() ? !q || q->name != quantity || !role_[c].empty() : role_[c] != role) continue;
-      std::vector<std::string> cells;
-      for (const Row& row : sheet.rows) cells.push_back(missing(row[c]) ? "" : row[c]);
-      const bool comma = decimal_comma(cells, sheet, sheet.names[c], out_.file);
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        if (const auto x = number(cells[i], comma, role.empty() ? q->sides : Sides::none)) out[i] = x->value;
+      const Row said = cells(c);
+      const bool comma = decimal_comma(said, sheet, sheet.names[c], out_.file);
+      for (std::size_t i = 0; i < said.size(); ++i)
+        if (const auto x = number(said[i], comma, role.empty() ? q->sides : Sides::none)) out[i] = x->value;
       return out;
     }
     return out;
@@ -338,8 +362,8 @@ class Reading {
   /// A file that names no unit: that of the ball's speed by which its shots carry most nearly as far as the file says.
   /// Empty where no shot has what this takes.
   std::string unit_by_carry() const {
-    const auto speed = raw("ball_speed"), launch = raw("launch_angle"), spin = raw("spin_rate"),
-               carry = raw("", "carry");
+    Numbers speed{raw("ball_speed")}, carry{raw("", "carry")};
+    const Numbers launch{raw("launch_angle"), si_of("deg")}, spin{raw("spin_rate"), si_of("rpm")};
     const auto carried = column_of("carry");
     const std::string carry_unit = carried ? stated_length(*carried) : "";
     // What --units says stands; of metric units there are two.
@@ -352,10 +376,9 @@ class Reading {
     bool told = false;
     double least = std::log(kCarryFits);
     for (const std::string& unit : units) {
-      const auto ratio = carry_ratio(speed, si_of(unit), launch, si_of("deg"), spin, si_of("rpm"), carry,
-                                     si_of(!carry_unit.empty() ? carry_unit
-                                           : unit == "mph"     ? "yd"
-                                                               : "m"));
+      speed.si = si_of(unit);
+      carry.si = si_of(!carry_unit.empty() ? carry_unit : unit == "mph" ? "yd" : "m");
+      const auto ratio = carry_ratio(speed, launch, spin, carry);
       if (!ratio) continue;  // no shot has all of it, or none flies at such speeds
       told = true;
       const double off = std::abs(std::log(*ratio));
@@ -374,17 +397,15 @@ class Reading {
 
   /// Recorded over computed carry in the median, of at most 25 shots that have speed and launch; a spin that is
   /// missing is that of a middle iron, 5,000 rpm. Nothing where there are none.
-  static std::optional<double> carry_ratio(const std::vector<double>& speed, double of_speed,
-                                           const std::vector<double>& launch, double of_launch,
-                                           const std::vector<double>& spin, double of_spin,
-                                           const std::vector<double>& carry, double of_carry) {
+  static std::optional<double> carry_ratio(const Numbers& speed, const Numbers& launch, const Numbers& spin,
+                                           const Numbers& carry) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < speed.size() && ratios.size() < 25; ++i) {
-      const double v = of_speed * speed[i], a = of_launch * launch[i];
-      if (!(v > 3 && v < 150 && a > 0.03 && a < 1.2 && carry[i] > 0)) continue;
-      const double rate = spin[i] > 0 ? of_spin * spin[i] : 5000 * si_of("rpm");
+    for (std::size_t i = 0; i < speed.value.size() && ratios.size() < 25; ++i) {
+      const double v = speed.si * speed.value[i], a = launch.si * launch.value[i];
+      if (!(v > 3 && v < 150 && a > 0.03 && a < 1.2 && carry.value[i] > 0)) continue;
+      const double rate = spin.value[i] > 0 ? spin.si * spin.value[i] : 5000 * si_of("rpm");
       try {
-        if (const double x = carry_of(v, a, rate); x > 0) ratios.push_back(of_carry * carry[i] / x);
+        if (const double x = carry_of(v, a, rate); x > 0) ratios.push_back(carry.si * carry.value[i] / x);
       } catch (const solvers::NonConvergence&) {}  // no flight that ends: another shot tells
     }
     return ratios.empty() ? std::nullopt : std::optional(loop::median(ratios));
@@ -397,8 +418,7 @@ class Reading {
     const auto fail = [&](const std::string& why) {
       return InputError(fmt::format("{}: column '{}'{}", out_.file.string(), out.header, why));
     };
-    std::vector<std::string> raw;
-    for (const Row& row : sheet.rows) raw.push_back(missing(row[column]) ? "" : row[column]);
+    const Row raw = cells(column);
     const bool comma = decimal_comma(raw, sheet, out.header, out_.file);
     std::vector<double> values;
     const std::string given = unit;
@@ -433,7 +453,7 @@ class Reading {
       const bool as_recorded = of_cell == unit;
       out.cells.push_back(!as_recorded ? fmt::format("{:.6g}", si / si_of(unit))
                           : turn > 0   ? cell->digits
-                                       : (cell->digits.front() == '-' ? cell->digits.substr(1) : "-" + cell->digits));
+                                       : negated(cell->digits));
       values.push_back(si);
       ++out.filled;
     }
@@ -468,15 +488,12 @@ class Reading {
     const std::string& header = sheet.names[c];
     Understood u;
     u.header = header.empty() ? fmt::format("column {}", c + 1) : header;
-    for (const Row& row : sheet.rows) {
-      u.cells.push_back(missing(row[c]) ? "" : row[c]);
-      // A session is a day, not a second.
-      if (std::string& day = u.cells.back(); role_[c] == "session" && !day.empty() &&
-                                             std::isdigit(static_cast<unsigned char>(day.front())) &&
-                                             day.find(':') != day.npos)
-        day.erase(std::min(day.find_first_of(" T"), day.size()));
-      u.filled += !u.cells.back().empty();
-    }
+    u.cells = cells(c);
+    if (role_[c] == "session")  // a day, not a second
+      for (std::string& day : u.cells)
+        if (!day.empty() && std::isdigit(static_cast<unsigned char>(day.front())) && day.find(':') != day.npos)
+          day.erase(std::min(day.find_first_of(" T"), day.size()));
+    u.filled = std::size_t(std::ranges::count_if(u.cells, [](const std::string& cell) { return !cell.empty(); }));
     if (role_[c] == "carry") {
       std::string unit = stated_length(c);
       const bool imperial = speed_unit_.empty() ? family_ == "imperial" : speed_unit_ == "mph";
@@ -538,13 +555,12 @@ class Reading {
       const std::string& header = out_.sheet.names[c];
       const bool of_spin = says_any(header, {"spin"}), asks = says_any(header, {"measured"}),
                  of_axis = says_any(header, {"axis"});
-      static const std::set<std::string> no = {"no", "n", "false", "0"}, yes = {"yes", "y", "true", "1"};
       const auto estimated = [&](const std::string& cell) {
-        return d_.begins_or_ends("estimated", cell) || (asks && no.contains(plain(cell))) ||
+        return d_.begins_or_ends("estimated", cell) || (asks && yes_or_no(cell) == false) ||
                says_any(cell, {"estim", "calc", "model", "simul", "predict"});
       };
       const auto measured = [&](const std::string& cell) {
-        return d_.begins_or_ends("measured", cell) || (asks && yes.contains(plain(cell)));
+        return d_.begins_or_ends("measured", cell) || (asks && yes_or_no(cell) == true);
       };
       // A word that is neither leaves the spin out too, where others are known; a column of other words says nothing.
       const bool speaks = of_spin && std::ranges::any_of(out_.sheet.rows, [&](const Row& row) {
@@ -564,10 +580,8 @@ class Reading {
 
   /// Whether a cell names the left hand (1), the right one (0), or says nothing of a hand.
   std::optional<bool> left_hand(const std::string& cell, bool asked) const {
-    const std::string word = plain(cell);
-    static const std::set<std::string> yes = {"yes", "y", "true", "1"}, no = {"no", "n", "false", "0"};
-    if (d_.says("left_hand", cell) || (asked && yes.contains(word))) return true;
-    if (d_.says("right_hand", cell) || missing(cell) || (asked && no.contains(word))) return false;
+    if (d_.says("left_hand", cell) || (asked && yes_or_no(cell) == true)) return true;
+    if (d_.says("right_hand", cell) || missing(cell) || (asked && yes_or_no(cell) == false)) return false;
     return {};
   }
 
@@ -577,9 +591,7 @@ class Reading {
     const Sheet& sheet = out_.sheet;
     std::vector<bool> left(sheet.rows.size(), o_.left_handed);
     for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
-      std::istringstream text(plain(fmt::format("{}", fmt::join(row, " "))));
-      std::vector<std::string> words;
-      for (std::string word; text >> word;) words.push_back(word);
+      const std::vector<std::string> words = words_of(plain(fmt::format("{}", fmt::join(row, " "))));
       for (std::size_t i = 0; i < words.size(); ++i) {  // the words beside the hand's name, not those further on
         if (!names_a_hand(words[i])) continue;
         const std::string next = i + 1 < words.size() ? words[i + 1] : "";
@@ -605,8 +617,7 @@ class Reading {
       Understood* u = find(q);
       if (!u) continue;
       for (std::size_t i = 0; i < u->cells.size(); ++i)
-        if (left[i] && !u->own[i] && !u->cells[i].empty())
-          u->cells[i] = u->cells[i].front() == '-' ? u->cells[i].substr(1) : "-" + u->cells[i];
+        if (left[i] && !u->own[i] && !u->cells[i].empty()) u->cells[i] = negated(u->cells[i]);
       count_again(*u);
     }
     out_.left_handed = std::size_t(std::ranges::count(left, true));
@@ -621,8 +632,7 @@ class Reading {
         if (!u || !u->filled) continue;
         std::vector<bool> zero, silent_zero;
         for (std::size_t i = 0; i < out_.shots; ++i) {
-          const auto x = number(u->cells[i], false, Sides::none);
-          zero.push_back(x && x->value == 0);
+          zero.push_back(plain_number(u->cells[i]) == 0);
           silent_zero.push_back(zero.back() && measured && measured->cells[i].empty());
         }
         const bool all = std::size_t(std::ranges::count(zero, true)) == u->filled && out_.shots > 1;
@@ -650,8 +660,8 @@ class Reading {
         face.name = "face_angle_deg";
         const double a = split_unit(across->name).unit->si, p = split_unit(path->name).unit->si;
         for (std::size_t i = 0; i < out_.shots; ++i) {
-          const auto x = number(across->cells[i], false, Sides::none), y = number(path->cells[i], false, Sides::none);
-          face.cells.push_back(x && y ? fmt::format("{:.6g}", (a * x->value + p * y->value) / si_of("deg")) : "");
+          const auto x = plain_number(across->cells[i]), y = plain_number(path->cells[i]);
+          face.cells.push_back(x && y ? fmt::format("{:.6g}", (a * *x + p * *y) / si_of("deg")) : "");
         }
         count_again(face);
         out_.columns.push_back(std::move(face));
@@ -698,19 +708,18 @@ class Reading {
           fmt::format("{}: ball over club speed is {:.2f} in the median, no blow's ({} over {}): one of "
                       "the two units is wrong; --column '{}=ball_speed_UNIT' or '{}=club_speed_UNIT' corrects it",
                       out_.file.string(), smash, said(*ball), said(*club), ball->header, club->header));
-    const auto values = [&](std::string_view stem) {
-      const Understood* u = find(stem);
-      std::vector<double> out(out_.shots, NAN);
-      for (std::size_t i = 0; u && i < out_.shots; ++i)
-        if (const auto x = number(u->cells[i], false, Sides::none)) out[i] = x->value * split_unit(u->name).unit->si;
+    if (out_.carry.cells.empty()) return;
+    const auto numbers = [&](const Understood* u, double si) {
+      Numbers out{std::vector<double>(out_.shots, NAN), si};
+      for (std::size_t i = 0; u && i < out_.shots; ++i) out.value[i] = plain_number(u->cells[i]).value_or(NAN);
       return out;
     };
-    if (out_.carry.cells.empty()) return;
-    std::vector<double> carry(out_.shots, NAN);
-    for (std::size_t i = 0; i < out_.shots; ++i)
-      if (const auto x = number(out_.carry.cells[i], false, Sides::none)) carry[i] = x->value;
-    const auto ratio = carry_ratio(values("ball_speed"), 1, values("launch_angle"), 1, values("spin_rate"), 1, carry,
-                                   si_of(out_.carry.name));
+    const auto quantity = [&](std::string_view stem) {
+      const Understood* u = find(stem);
+      return numbers(u, u ? split_unit(u->name).unit->si : 1);
+    };
+    const auto ratio = carry_ratio(quantity("ball_speed"), quantity("launch_angle"), quantity("spin_rate"),
+                                   numbers(&out_.carry, si_of(out_.carry.name)));
     if (ratio && !(*ratio > 1 / kCarryFits && *ratio < kCarryFits))
       throw InputError(fmt::format(
           "{}: '{}' is {:.2f} of what the ball's speed ({}), launch angle and spin make in the median: a unit "
@@ -771,11 +780,11 @@ class Reading {
 }  // namespace
 
 const std::string* ByHand::of(const std::string& header, const Row& headers) const {
-  if (const auto at = quantity.find(lower(trimmed(header))); at != quantity.end()) return &at->second;
+  if (const auto at = quantity.find(copied(header)); at != quantity.end()) return &at->second;
   const auto at = quantity.find(plain(header));
   if (at == quantity.end()) return nullptr;
   for (const std::string& other : headers)
-    if (other != header && plain(other) == plain(header) && lower(trimmed(other)) == at->first) return nullptr;
+    if (other != header && plain(other) == plain(header) && copied(other) == at->first) return nullptr;
   return &at->second;
 }
 
@@ -783,24 +792,23 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
   ByHand out;
   auto& [by_hand, turned] = out;
   // By its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
-  const auto key = [](const std::string& header) {
-    return unit_in(header).empty() ? plain(header) : lower(trimmed(header));
-  };
+  const auto key = [](const std::string& header) { return unit_in(header).empty() ? plain(header) : copied(header); };
   for (const std::string& c : o.columns) {
     const auto at = c.rfind('=');
     if (at == std::string::npos || at == 0)
       throw InputError(fmt::format("--column '{}': header=quantity_unit is wanted", c));
+    const std::string header = c.substr(0, at);
     std::string name = c.substr(at + 1);
-    if (name.starts_with('-')) turned.insert(key(c.substr(0, at))), name.erase(0, 1);
-    by_hand[key(c.substr(0, at))] = name;
+    if (name.starts_with('-')) turned.insert(key(header)), name.erase(0, 1);
+    by_hand[key(header)] = name;
     if (name.empty()) {
-      d.learn(c.substr(0, at), "");
+      d.learn(header, "");
       continue;
     }
     const std::vector<std::string> roles = d.roles();
     if (std::ranges::count(roles, name)) {
-      d.learn(c.substr(0, at), name);
-      by_hand.erase(key(c.substr(0, at)));
+      d.learn(header, name);
+      by_hand.erase(key(header));
       continue;
     }
     const SplitName part = split_unit(name);
@@ -808,7 +816,7 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
     if (!part.unit || !std::ranges::count(known, part.stem))
       throw InputError(fmt::format("--column '{}': no such quantity with a unit, nor {}; quantities: {}", c,
                                    fmt::join(roles, ", "), fmt::join(known, ", ")));
-    d.learn(c.substr(0, at), part.stem);
+    d.learn(header, part.stem);
   }
   return out;
 }
@@ -822,7 +830,7 @@ Understood* Session::find(std::string_view stem) {
 void count_again(Understood& u) {
   std::vector<double> values;
   for (const std::string& cell : u.cells)
-    if (const auto x = number(cell, false, Sides::none)) values.push_back(x->value * split_unit(u.name).unit->si);
+    if (const auto x = plain_number(cell)) values.push_back(*x * split_unit(u.name).unit->si);
   u.filled = values.size();
   u.median = loop::median(values);
 }

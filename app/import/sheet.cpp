@@ -13,7 +13,6 @@
 #include <set>
 #include <sstream>
 
-#include "app/import/cells.hpp"
 #include "app/reader.hpp"
 #include "post/parse_json.hpp"
 
@@ -92,6 +91,9 @@ std::vector<Row> split(const std::string& text, char delimiter) {
   return rows;
 }
 
+/// Of a text, a number or a truth.
+std::string cell_of(const nlohmann::json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
 /// The part of a path of names that the dictionary knows, from the left: `data Measurement BallSpeed` -> `BallSpeed`.
 std::string known_name(const Dictionary& d, std::string path) {
   while (!path.empty()) {
@@ -105,14 +107,11 @@ std::string known_name(const Dictionary& d, std::string path) {
 void flatten(const nlohmann::json& node, const std::string& path, std::map<std::string, std::string>& out) {
   if (node.is_object() && node.contains("value") && node.contains("unit") && node["unit"].is_string() &&
       (node["value"].is_number() || node["value"].is_string())) {  // {"value": 111.2, "unit": "mph"}
-    const std::string value = node["value"].is_string() ? node["value"].get<std::string>() : node["value"].dump();
-    out[path] = value + " " + node["unit"].get<std::string>();
+    out[path] = cell_of(node["value"]) + " " + cell_of(node["unit"]);
   } else if (node.is_object()) {
     for (const auto& [key, value] : node.items()) flatten(value, path.empty() ? key : path + " " + key, out);
-  } else if (node.is_string()) {
-    out[path] = node.get<std::string>();
-  } else if (node.is_number() || node.is_boolean()) {
-    out[path] = node.dump();
+  } else if (node.is_primitive() && !node.is_null()) {
+    out[path] = cell_of(node);
   } else if (node.is_array() && !node.empty() && node.front().is_string()) {
     for (const auto& word : node)
       if (word.is_string()) out[path] += (out[path].empty() ? "" : " ") + word.get<std::string>();
@@ -152,8 +151,8 @@ void find_lists(const Dictionary& d, const nlohmann::json& node, const std::stri
   for (const auto& [key, value] : node.items())
     if (value.is_primitive() && !value.is_null()) {
       const std::string role = d.bookkeeping_of(known_name(d, key));
-      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-      if (!role.empty() && role != "shot" && role != "carry" && !number(text, false, Sides::none)) said[key] = text;
+      const std::string text = cell_of(value);
+      if (!role.empty() && role != "shot" && role != "carry" && !plain_number(text)) said[key] = text;
     }
   for (const auto& [key, value] : node.items())
     if (value.is_structured()) find_lists(d, value, path + "/" + key, said, out);
@@ -205,14 +204,10 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
     std::map<std::string, std::string> said;
     flatten(shots[k], "", said);
     for (const auto& [key, value] : said) every.insert(key);
-    const auto quantity = [&](const auto& entry) {
-      return d.quantity_of(known_name(d, entry.first)) && number(entry.second, false, Sides::any);
-    };
-    const auto zero = [](const auto& entry) {
+    const auto reading = [&](const auto& entry) {
       const auto x = number(entry.second, false, Sides::any);
-      return x && x->value == 0;
+      return x && x->value != 0 && d.quantity_of(known_name(d, entry.first));
     };
-    const auto reading = [&](const auto& entry) { return quantity(entry) && !zero(entry); };
     if (std::ranges::none_of(said, reading)) {
       ++sheet.messages;
       for (const auto& [key, value] : said) {
@@ -265,7 +260,7 @@ bool is_row_of_units(const Row& row) {
   for (const std::string& c : row) {
     const bool bracketed = (c.starts_with('[') && c.ends_with(']')) || (c.starts_with('(') && c.ends_with(')'));
     if (!unit_of(c).empty()) ++units;
-    else if (number(c, false, Sides::none)) return false;
+    else if (plain_number(c)) return false;
     else other += !bracketed && !missing(c);
   }
   return units > 0 && (other == 0 || (units >= 3 && units > 2 * other));
@@ -287,11 +282,11 @@ bool counts(const std::vector<Row>& rows, std::size_t column) {
   std::size_t steps = 0, numbers = 0;
   double last = 0;
   for (const Row& row : rows) {
-    const auto x = number(row[column], false, Sides::none);
+    const auto x = plain_number(row[column]);
     if (!x) continue;
     ++numbers;
-    steps += x->value == last + 1 || x->value == 1;
-    last = x->value;
+    steps += *x == last + 1 || *x == 1;
+    last = *x;
   }
   return numbers > 2 && numbers == steps && 2 * numbers > rows.size();
 }
@@ -349,7 +344,7 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
     const std::string role = d.bookkeeping_of(sheet.names[c]);
     if (!(role == "shot" || (c == 0 && role.empty() && !d.quantity_of(sheet.names[c]))) || !counts(shots, c)) continue;
     for (std::size_t r = shots.size(); r-- > 0;)
-      if (!missing(shots[r][c]) && !number(shots[r][c], false, Sides::none)) {
+      if (!missing(shots[r][c]) && !plain_number(shots[r][c])) {
         shots.erase(shots.begin() + long(r));
         clubs.erase(clubs.begin() + long(r));
         ++sheet.summaries;
