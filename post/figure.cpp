@@ -12,6 +12,7 @@
 
 #include "post/file.hpp"
 #include "post/html.hpp"
+#include "post/svg.hpp"
 
 extern char** environ;
 
@@ -58,24 +59,20 @@ std::string shortened(std::string_view text, std::size_t most) {
 /// What is to be read in a picture.
 std::string shown(std::string_view text) { return literal(shortened(text, 80)); }
 
-void append_number(std::string& out, double value) {
-  out += std::isfinite(value) ? fmt::format("{:.10g}", value) : "NaN";
+/// A line of a data block.
+std::string data_line(std::initializer_list<double> numbers) {
+  std::string out;
+  for (const double x : numbers)
+    out += (out.empty() ? "" : " ") + (std::isfinite(x) ? fmt::format("{:.10g}", x) : std::string("NaN"));
+  return out + "\n";
 }
 
 std::string data_block(const std::string& name, const Series& s) {
   if (s.x.size() != s.y.size() || (!s.error.empty() && s.error.size() != s.x.size()))
     throw std::invalid_argument("figure: series '" + s.label + "' has columns of different length");
   std::string out = "$" + name + " << EOD\n";
-  for (std::size_t i = 0; i < s.x.size(); ++i) {
-    append_number(out, s.x[i]);
-    out += ' ';
-    append_number(out, s.y[i]);
-    if (!s.error.empty()) {
-      out += ' ';
-      append_number(out, s.error[i]);
-    }
-    out += '\n';
-  }
+  for (std::size_t i = 0; i < s.x.size(); ++i)
+    out += s.error.empty() ? data_line({s.x[i], s.y[i]}) : data_line({s.x[i], s.y[i], s.error[i]});
   return out + "EOD\n";
 }
 
@@ -84,14 +81,8 @@ std::string map_block(const std::string& name, const Panel& p) {
     throw std::invalid_argument("figure: map '" + p.title + "' does not fill its grid");
   std::string out = "$" + name + " << EOD\n";
   for (std::size_t j = 0; j < p.map_y.size(); ++j) {
-    for (std::size_t i = 0; i < p.map_x.size(); ++i) {
-      append_number(out, p.map_x[i]);
-      out += ' ';
-      append_number(out, p.map_y[j]);
-      out += ' ';
-      append_number(out, p.map[j * p.map_x.size() + i]);
-      out += '\n';
-    }
+    for (std::size_t i = 0; i < p.map_x.size(); ++i)
+      out += data_line({p.map_x[i], p.map_y[j], p.map[j * p.map_x.size() + i]});
     out += '\n';
   }
   return out + "EOD\n";
@@ -115,14 +106,6 @@ std::string title(std::string_view whole, int width) {
   }
   flush();
   return out;
-}
-
-/// Between marks of an axis so that at most six stand on it: their numbers do not touch in a narrow map.
-double between_marks(double range) {
-  const double least = range / 5, ten = std::pow(10, std::floor(std::log10(least)));
-  for (const double step : {1, 2, 5})
-    if (step * ten >= least) return step * ten;
-  return 10 * ten;
 }
 
 bool shows_something(const Panel& p) {
@@ -176,7 +159,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
         p.map_equal_axes && !alone ? "ratio -1" : "noratio", shown(p.map_label), low, high, p.map_x.front(),
         p.map_x.back(), p.map_y.front(), p.map_y.back());
     const double range = p.map_x.back() - p.map_x.front();
-    if (range > 0) s += fmt::format("set xtics {:.10g}\n", between_marks(range));
+    // At most six marks: their numbers do not touch in a narrow map.
+    if (range > 0) s += fmt::format("set xtics {:.10g}\n", round_step(range, 5));
     if (p.map_contours)
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"

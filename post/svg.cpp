@@ -15,19 +15,18 @@ namespace {
 constexpr std::size_t kMost = 1500;  // points of a series
 constexpr double kLeft = 62, kRight = 12, kTop = 10, kBottom = 44;
 
-/// Round steps of about a quarter of the range.
-double tick(double range) {
-  const double raw = range / 4, power = std::pow(10, std::floor(std::log10(raw)));
-  for (const double f : {1.0, 2.0, 5.0, 10.0})
-    if (raw <= f * power) return f * power;
-  return 10 * power;
-}
-
 std::string opened(double width, double height, const std::string& told) {
   return fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='{}'>", width, height, escape_html(told));
 }
 
 }  // namespace
+
+double round_step(double range, double parts) {
+  const double least = range / parts, ten = std::pow(10, std::floor(std::log10(least)));
+  for (const double step : {1, 2, 5})
+    if (step * ten >= least) return step * ten;
+  return 10 * ten;
+}
 
 std::string svg(const SvgPlot& p) {
   const double w = p.width - kLeft - kRight, h = p.height - kTop - kBottom;
@@ -40,7 +39,7 @@ std::string svg(const SvgPlot& p) {
                      X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
   const auto round = [](double x, double step) { return std::abs(x) < 1e-9 * step ? 0.0 : x; };
   // Numbers beside each other need more room than above each other.
-  const double dy = tick(p.y1 - p.y0), dx = tick((p.x1 - p.x0) / std::max(1.0, p.width / 480));
+  const double dy = round_step(p.y1 - p.y0, 4), dx = round_step((p.x1 - p.x0) / std::max(1.0, p.width / 480), 4);
   for (double y = std::ceil(p.y0 / dy) * dy; y <= p.y1; y += dy)
     s += fmt::format(
         "<line class='grid' x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}'/><text x='{}' y='{:.1f}' "

@@ -6,6 +6,9 @@
 
 namespace hosel::post {
 
+/// The least of 1, 2 and 5 times a power of ten that is no less than a range over `parts`: between marks of an axis.
+double round_step(double range, double parts);
+
 struct SvgSeries {
   std::string style;  ///< class
   std::vector<double> x, y;
