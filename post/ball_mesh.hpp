@@ -33,6 +33,6 @@ class RevolvedPoints {
 /// contact_pressure [Pa], both of the field; cell arrays: layer, and angle [rad], theta of the cell's
 /// middle: below and above pi lie the two sides of the plane of the mesh's axis and the slip.
 VtkMesh ball_mesh(const fem::HarmonicSolid& ball, const fem::State& state, const fem::TractionField& acting,
-                  int angles = 32);
+                  int angles);
 
 }  // namespace hosel::post

@@ -17,7 +17,8 @@ Vec3 face_point(const Face& face, double u, double v, double width, double heigh
 
 }  // namespace
 
-VtkMesh face_mesh(const Face& face, double width, double height, int n) {
+VtkMesh face_mesh(const Face& face, double width, double height) {
+  constexpr int n = 24;
   VtkMesh m;
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= n; ++i) m.points.push_back(face_point(face, 2.0 * i / n - 1, 2.0 * j / n - 1, width, height));

@@ -14,8 +14,8 @@ struct Pose {
   Mat3 rotation = Mat3::Identity();
 };
 
-/// The face with its bulge and roll, as quads of an n x n grid over width x height [m], face frame.
-VtkMesh face_mesh(const Face& face, double width, double height, int n = 24);
+/// The face with its bulge and roll, as quads of a grid over width x height [m], face frame.
+VtkMesh face_mesh(const Face& face, double width, double height);
 /// A stylised head behind that face: a rounded body twice as deep as the cg lies behind the face. It
 /// is for looking; mass and inertia are the case's own.
 VtkMesh head_mesh(const Head& head, double width, double height);

@@ -57,12 +57,8 @@ struct ImpactRecorder::State {
   }
 
   void write(const std::string& body, double time, const VtkMesh& mesh) {
-    auto it = series.find(body);
-    if (it == series.end()) {
-      const VtkSeries::Mark* kept = resumed ? &resumed->series.at(body) : nullptr;
-      it = series.emplace(body, VtkSeries(directory / "vtk", body, form(body), kept)).first;
-    }
-    it->second.write(time, mesh);
+    const VtkSeries::Mark* kept = resumed ? &resumed->series.at(body) : nullptr;
+    series.try_emplace(body, directory / "vtk", body, form(body), kept).first->second.write(time, mesh);
   }
 };
 
@@ -176,11 +172,7 @@ void ImpactRecorder::operator()(const models::ImpactView& view) {
 }
 
 std::vector<fs::path> ImpactRecorder::files() const {
-  std::vector<fs::path> out;
-  for (const char* body : {"ball", "patch", "face", "head", "shaft", "hands"})
-    if (const fs::path file = state_->directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file))
-      out.push_back(file);
-  return out;
+  return series_in(state_->directory / "vtk", {"ball", "patch", "face", "head", "shaft", "hands"});
 }
 
 }  // namespace hosel::post

@@ -1,18 +1,11 @@
 #include "post/swing_recorder.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "post/file.hpp"
 
 namespace hosel::post {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::array kBodies = {"shaft", "head", "hands", "trail"};
 constexpr double kHeadWidth = 0.11, kHeadHeight = 0.06;  // of the drawn face [m]
 }  // namespace
 
@@ -27,10 +20,7 @@ SwingRecorder::SwingRecorder(fs::path directory, const Club& club, const models:
 void SwingRecorder::finish() const { write_file(directory_ / "shaft.csv", loads_.table()); }
 
 void SwingRecorder::write(const char* body, double time, const VtkMesh& mesh) {
-  auto it = series_.find(body);
-  if (it == series_.end())
-    it = series_.emplace(body, VtkSeries(directory_ / "vtk", body, VtkSeries::Form::surface)).first;
-  it->second.write(time, mesh);
+  series_.try_emplace(body, directory_ / "vtk", body, VtkSeries::Form::surface).first->second.write(time, mesh);
 }
 
 void SwingRecorder::operator()(const models::SwingSample& sample, const fem::State& state) {
@@ -70,10 +60,7 @@ void SwingRecorder::operator()(const models::SwingSample& sample, const fem::Sta
 Figure SwingRecorder::figure(double span) const { return {.panels = loads_.panels(span), .columns = 3}; }
 
 std::vector<fs::path> SwingRecorder::files(const fs::path& directory) {
-  std::vector<fs::path> out;
-  for (const char* body : kBodies)
-    if (const fs::path file = directory / "vtk" / fmt::format("{}.pvd", body); fs::exists(file)) out.push_back(file);
-  return out;
+  return series_in(directory / "vtk", {"shaft", "head", "hands", "trail"});
 }
 
 }  // namespace hosel::post

@@ -110,6 +110,13 @@ VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3
   return f;
 }
 
+std::vector<fs::path> series_in(const fs::path& directory, std::initializer_list<const char*> bodies) {
+  std::vector<fs::path> out;
+  for (const char* body : bodies)
+    if (const fs::path file = directory / fmt::format("{}.pvd", body); fs::exists(file)) out.push_back(file);
+  return out;
+}
+
 VtkSeries::VtkSeries(fs::path directory, std::string name, Form form, const Mark* kept)
     : directory_(std::move(directory)), name_(std::move(name)), form_(form) {
   if (kept) mark_ = *kept;

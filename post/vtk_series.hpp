@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,10 @@ struct VtkMesh {
 
 /// Vectors have three components always: a two-component array would warp silently wrong.
 VtkField vector_field(std::string name, std::string unit, const std::vector<Vec3>& values);
+
+/// The .pvd files of those of the bodies that a directory has, in their order, for a person to open.
+std::vector<std::filesystem::path> series_in(const std::filesystem::path& directory,
+                                             std::initializer_list<const char*> bodies);
 
 class VtkSeries {
  public:
