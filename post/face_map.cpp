@@ -58,20 +58,18 @@ bool nowhere(const std::vector<double>& v) {
   return std::ranges::none_of(v, [](double x) { return std::isfinite(x); });
 }
 
-using Column = std::function<std::vector<double>(std::size_t map, const MapQuantity&)>;
-
-/// Of those maps that are not left out.
-std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const Column& column,
-                const std::function<bool(std::size_t)>& left_out) {
+/// Of the maps, or of those that have a reference minus it.
+std::string csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const References* references) {
   Table out{{{"model"}, {"impact_toe_mm", "{:.6g}"}, {"impact_high_mm", "{:.6g}"}}};
   std::span<const MapQuantity> quantities;  // those of a map that has flights, where one has
   for (const FaceMap& map : maps)
     if (map_quantities(map).size() > quantities.size()) quantities = map_quantities(map);
   for (const MapQuantity& q : quantities) out.in_files({fmt::format("{}_{}", q.name, q.unit)}, "{:.9g}");
   for (std::size_t m = 0; m < maps.size(); ++m) {
-    if (left_out(m)) continue;
+    if (references && !(*references)[m]) continue;
     std::vector<std::vector<double>> columns;
-    for (const MapQuantity& q : quantities) columns.push_back(column(m, q));
+    for (const MapQuantity& q : quantities)
+      columns.push_back(references ? differences(maps[m], maps[*(*references)[m]], q) : values(maps[m], q));
     for (std::size_t p = 0; p < grid.size(); ++p) {
       out.add(maps[m].title, 1e3 * grid.toe_at(p), 1e3 * grid.high_at(p));
       for (const auto& c : columns) out.more(if_finite(c.empty() ? kNaN : c[p]));
@@ -110,16 +108,10 @@ std::vector<double> differences(const FaceMap& map, const FaceMap& reference, co
   return a;
 }
 
-std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps) {
-  return csv(
-      grid, maps, [&](std::size_t m, const MapQuantity& q) { return values(maps[m], q); },
-      [](std::size_t) { return false; });
-}
+std::string face_map_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps) { return csv(grid, maps, nullptr); }
 
 std::string difference_csv(const FaceGrid& grid, const std::vector<FaceMap>& maps, const References& references) {
-  return csv(
-      grid, maps, [&](std::size_t m, const MapQuantity& q) { return differences(maps[m], maps[*references[m]], q); },
-      [&](std::size_t m) { return !references[m]; });
+  return csv(grid, maps, &references);
 }
 
 void frame_face(Panel& p) {

@@ -24,21 +24,6 @@ std::array<FlightChannel, 6> channels_in(DistanceUnit unit) {
                         [](const ShotFlight& s) { return std::optional(s.flight.landing_angle); }}};
 }
 
-/// The rows of models::FlightAnswers.
-struct AnswerRow {
-  std::string_view name, unit;
-  double si;
-};
-std::array<AnswerRow, models::kFlightAnswers> answer_rows(DistanceUnit unit) {
-  const std::string_view d = suffix(unit);
-  const double si = size(unit);
-  return {AnswerRow{"carry", d, si},
-          {"side", d, si},
-          {"apex", d, si},
-          {"flight_time", "s", 1},
-          {"landing_angle", "deg", kRadPerDeg}};
-}
-
 }  // namespace
 
 std::string_view suffix(DistanceUnit unit) { return unit == DistanceUnit::yards ? "yd" : "m"; }
@@ -48,6 +33,18 @@ std::span<const FlightChannel> flight_channels(DistanceUnit unit) {
   static const auto yards = channels_in(DistanceUnit::yards), metres = channels_in(DistanceUnit::metres);
   return unit == DistanceUnit::yards ? yards : metres;
 }
+
+namespace {
+
+/// The rows of models::FlightAnswers: the channels without a run.
+std::vector<FlightChannel> answer_rows(DistanceUnit unit) {
+  const auto all = flight_channels(unit);
+  std::vector<FlightChannel> rows(all.begin(), all.end());
+  std::erase_if(rows, [](const FlightChannel& c) { return c.name == "total"; });
+  return rows;
+}
+
+}  // namespace
 
 nlohmann::json to_json(const ShotFlight& shot) {
   nlohmann::json out;
@@ -71,7 +68,7 @@ TextTable budget_table(const models::FlightBudget& b, const std::vector<models::
   for (const auto& law : b.laws) head.push_back(law.name);
   const auto rows = answer_rows(unit);
   for (int a = 0; a < models::kFlightAnswers; ++a) {
-    const AnswerRow& r = rows[std::size_t(a)];
+    const FlightChannel& r = rows[std::size_t(a)];
     auto& row = table.rows.emplace_back();
     row = {fmt::format("{} [{}]", r.name, r.unit), fmt::format("{:.2f}", b.value[a] / r.si),
            fmt::format("+- {:.0e}", b.numerical[a] / r.si)};
@@ -93,7 +90,7 @@ nlohmann::json to_json(const models::FlightBudget& b, const std::vector<models::
   nlohmann::json out;
   const auto rows = answer_rows(unit);
   for (int a = 0; a < models::kFlightAnswers; ++a) {
-    const AnswerRow& row = rows[std::size_t(a)];
+    const FlightChannel& row = rows[std::size_t(a)];
     nlohmann::json& j = out[fmt::format("{}_{}", row.name, row.unit)];
     j = {{"value", b.value[a] / row.si}, {"integration", b.numerical[a] / row.si}};
     for (std::size_t i = 0; i < errors.size(); ++i) j["launch"][errors[i].source] = b.launch[i][a] / row.si;

@@ -201,15 +201,12 @@ std::string json_for_viewer(const MovingBlow& blow) {
     if (body.grid[0] > 0) j["grid"] = body.grid;
     if (!body.cells.empty()) j[body.name == "section" ? "elements" : "triangles"] = base64(body.cells);
     if (!body.radius.empty()) j["radius"] = body.radius;
-    const MovingBlow::Instant& first = frames.front()->bodies[b];
-    if (!first.stress.empty())
-      j["fields"]["stress"] = {{"title", "von Mises stress [MPa]"},
-                               {"most", 1e-6 * stress},
-                               {"values", rounded(&MovingBlow::Instant::stress, b, stress)}};
-    if (!first.pressure.empty())
-      j["fields"]["pressure"] = {{"title", "contact pressure [MPa]"},
-                                 {"most", 1e-6 * pressure},
-                                 {"values", rounded(&MovingBlow::Instant::pressure, b, pressure)}};
+    const auto tell = [&](const char* name, const char* title, Values of, double scale) {
+      if (!(frames.front()->bodies[b].*of).empty())
+        j["fields"][name] = {{"title", title}, {"most", 1e-6 * scale}, {"values", rounded(of, b, scale)}};
+    };
+    tell("stress", "von Mises stress [MPa]", &MovingBlow::Instant::stress, stress);
+    tell("pressure", "contact pressure [MPa]", &MovingBlow::Instant::pressure, pressure);
     out["bodies"].push_back(std::move(j));
   }
   std::string text = out.dump();

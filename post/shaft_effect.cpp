@@ -45,11 +45,13 @@ double at(const FaceGrid& g, const Field& f, double toe, double high) {
   return (1 - b) * ((1 - a) * v(i, j) + a * v(i + 1, j)) + b * ((1 - a) * v(i, j + 1) + a * v(i + 1, j + 1));
 }
 
-struct Slope {
-  double toe, high;  ///< per mm
+/// Towards the toe and upwards.
+struct OnFace {
+  double toe, high;
 };
 
-Slope slope(const FaceGrid& g, const Field& f) {
+/// [per mm]
+OnFace slope(const FaceGrid& g, const Field& f) {
   Eigen::MatrixX3d A(Eigen::Index(g.size()), 3);
   for (std::size_t p = 0; p < g.size(); ++p) A.row(Eigen::Index(p)) << 1, 1e3 * g.toe_at(p), 1e3 * g.high_at(p);
   const Eigen::Vector3d c =
@@ -57,19 +59,15 @@ Slope slope(const FaceGrid& g, const Field& f) {
   return {c[1], c[2]};
 }
 
-struct Place {
-  double toe, high;  ///< [mm]
-};
-
-/// Of the least value: a parabola in each direction through the least grid point and its neighbours.
-Place least(const FaceGrid& g, const Field& f) {
+/// Place of the least value [mm]: a parabola in each direction through the least grid point and its neighbours.
+OnFace least(const FaceGrid& g, const Field& f) {
   const std::size_t best = std::size_t(std::ranges::min_element(f) - f.begin());
   const int i = int(best) % g.columns, j = int(best) / g.columns;
   const auto vertex = [](double below, double here, double above) {
     const double curvature = below - 2 * here + above;
     return curvature > 0 ? 0.5 * (below - above) / curvature : 0.0;  // in steps, within one half
   };
-  Place p{1e3 * g.toe(i), 1e3 * g.high(j)};
+  OnFace p{1e3 * g.toe(i), 1e3 * g.high(j)};
   if (i > 0 && i + 1 < g.columns) p.toe += 1e3 * g.width / (g.columns - 1) * vertex(f[best - 1], f[best], f[best + 1]);
   const std::size_t row = std::size_t(g.columns);
   if (j > 0 && j + 1 < g.rows) p.high += 1e3 * g.height / (g.rows - 1) * vertex(f[best - row], f[best], f[best + row]);
@@ -96,7 +94,6 @@ Field flight_gain(const FaceMap& club, const FaceMap& free, double models::Fligh
 }  // namespace
 
 std::vector<NamedFigure> shaft_effect(const FaceGrid& g, const FaceMap& club, const FaceMap& free) {
-  const auto speed = [](const Launch& l) { return l.ball_speed(); };
   const auto launch = [](const Launch& l) { return degrees(l.launch_angle()); };
   const auto azimuth = [](const Launch& l) { return degrees(l.azimuth()); };
   const auto side = [](const Launch& l) { return rpm(l.sidespin()); };
@@ -104,17 +101,18 @@ std::vector<NamedFigure> shaft_effect(const FaceGrid& g, const FaceMap& club, co
   const auto turn = [](const Launch& l) { return l.head_spin.norm(); };
   const auto turn2 = [](const Launch& l) { return l.head_spin.squaredNorm(); };
 
-  const Field v_free = field(free, speed), v_club = field(club, speed), gain = minus(v_club, v_free);
+  const Field v_free = field(free, &Launch::ball_speed), v_club = field(club, &Launch::ball_speed),
+              gain = minus(v_club, v_free);
   const double toe = 0.5 * g.width, high = 0.5 * g.height;
-  const Slope gain_slope = slope(g, gain);
-  const Place fastest_club = least(g, negative(v_club)), fastest_free = least(g, negative(v_free));
-  const Place calm_club = least(g, field(club, turn2)), calm_free = least(g, field(free, turn2));
-  const Place most = least(g, negative(gain));
+  const OnFace gain_slope = slope(g, gain);
+  const OnFace fastest_club = least(g, negative(v_club)), fastest_free = least(g, negative(v_free));
+  const OnFace calm_club = least(g, field(club, turn2)), calm_free = least(g, field(free, turn2));
+  const OnFace most = least(g, negative(gain));
   const Field d_side = minus(field(club, side), field(free, side)),
               d_back = minus(field(club, back), field(free, back));
-  const Slope launch_free = slope(g, field(free, launch)), launch_club = slope(g, field(club, launch));
-  const Slope azimuth_free = slope(g, field(free, azimuth)), azimuth_club = slope(g, field(club, azimuth));
-  const Slope side_free = slope(g, field(free, side)), side_slope = slope(g, d_side), back_slope = slope(g, d_back);
+  const OnFace launch_free = slope(g, field(free, launch)), launch_club = slope(g, field(club, launch));
+  const OnFace azimuth_free = slope(g, field(free, azimuth)), azimuth_club = slope(g, field(club, azimuth));
+  const OnFace side_free = slope(g, field(free, side)), side_slope = slope(g, d_side), back_slope = slope(g, d_back);
   const Field turn_free = field(free, turn), turn_club = field(club, turn);
   const double gain_min = *std::ranges::min_element(gain), gain_max = *std::ranges::max_element(gain);
   const double share = double(std::ranges::count_if(gain, [](double x) { return x > 0; })) / double(gain.size());
@@ -208,20 +206,15 @@ std::vector<NamedFigure> mass_figures(const FaceGrid& g, const std::vector<doubl
 
 double mirror_error(const FaceGrid& g, const FaceMap& map) {
   struct Kept {
-    std::function<double(const Launch&)> value;
+    double (Launch::*value)() const;
     double sign;
-  };
-  const auto largest = [](const Field& f) {
-    double most = 0;
-    for (const double x : f) most = std::max(most, std::abs(x));
-    return most;
   };
   double worst = 0;
   const auto compare = [&](const std::vector<Kept>& kind) {
     double scale = 0, error = 0;
     for (const Kept& k : kind) {
       const Field f = field(map, k.value);
-      scale = std::max(scale, largest(f));
+      for (const double x : f) scale = std::max(scale, std::abs(x));
       for (int j = 0; j < g.rows; ++j)
         for (int i = 0; i < g.columns; ++i) {
           const std::size_t row = std::size_t(j) * std::size_t(g.columns);
@@ -230,9 +223,9 @@ double mirror_error(const FaceGrid& g, const FaceMap& map) {
     }
     if (scale > 0) worst = std::max(worst, error / scale);
   };
-  compare({{[](const Launch& l) { return l.ball_speed(); }, 1}});
-  compare({{[](const Launch& l) { return l.launch_angle(); }, 1}, {[](const Launch& l) { return l.azimuth(); }, -1}});
-  compare({{[](const Launch& l) { return l.backspin(); }, 1}, {[](const Launch& l) { return l.sidespin(); }, -1}});
+  compare({{&Launch::ball_speed, 1}});
+  compare({{&Launch::launch_angle, 1}, {&Launch::azimuth, -1}});
+  compare({{&Launch::backspin, 1}, {&Launch::sidespin, -1}});
   return worst;
 }
 
