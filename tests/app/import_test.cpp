@@ -21,6 +21,15 @@ using test::command;
 
 std::string monitor(const std::string& name) { return HOSEL_SOURCE_DIR "/tests/app/monitors/" + name; }
 
+/// `hosel import` of a file with this text in DIR, into DIR/case.
+test::Outcome import_text(const fs::path& dir, const std::string& text, const std::string& options = "") {
+  const fs::path file = dir / (text.starts_with('{') || text.starts_with('[') ? "a.json" : "a.csv");
+  test::write(file, text);
+  return command("import '" + file.string() + "' --out '" + (dir / "case").string() + "' " + options);
+}
+
+loop::Shots imported_shots(const fs::path& dir) { return loop::read_shots(post::read_csv(dir / "case" / "shots.csv")); }
+
 struct Expected {
   std::string file;
   std::size_t shots;
@@ -74,12 +83,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Import, LeftAndRightBecomeSigns) {
   const fs::path dir = test::fresh_directory("import_sides");
-  test::write(dir / "a.csv",
-              "Club,Ball (mph),Club (mph),Launch V (°),Launch H (°),Spin (rpm),Dynamic Loft (°)\n"
-              "7 Iron,115,82,16,2.5 L,\"6,400\",22\n7 Iron,116,82,16.5,1.5R,6500,22.5\n7 Iron,114,81,16.2,-,6450,22\n");
-  const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+  const auto o = import_text(
+      dir,
+      "Club,Ball (mph),Club (mph),Launch V (°),Launch H (°),Spin (rpm),Dynamic Loft (°)\n"
+      "7 Iron,115,82,16,2.5 L,\"6,400\",22\n7 Iron,116,82,16.5,1.5R,6500,22.5\n7 Iron,114,81,16.2,-,6450,22\n");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   const auto& azimuth = shots.find("azimuth_deg")->value;
   EXPECT_NEAR(azimuth[0], radians(-2.5), 1e-12);
   EXPECT_NEAR(azimuth[1], radians(1.5), 1e-12);
@@ -121,13 +130,13 @@ TEST(Import, UnitsAndSidesMeanWhatTheyMeanForTheirQuantity) {
                         {"Club Path (deg in to out +)", "3,-4", "club_path_deg", 3, -4}}) {
     fs::remove_all(dir / "case");
     const auto comma = t.cells.find(',');
-    test::write(dir / "a.csv", "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (in degrees),Spin Rate (rpm),\"" +
-                                   t.header + "\"\n7i,115,82,16,6400," + t.cells.substr(0, comma) +
-                                   "\n7i,116,82,16,6500," + t.cells.substr(comma + 1) + "\n");
-    const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+    const auto o =
+        import_text(dir, "Club,Ball Speed (mph),Club Speed (mph),Launch Angle (in degrees),Spin Rate (rpm),\"" +
+                             t.header + "\"\n7i,115,82,16,6400," + t.cells.substr(0, comma) + "\n7i,116,82,16,6500," +
+                             t.cells.substr(comma + 1) + "\n");
     ASSERT_EQ(o.status, 0) << t.header << o.text;
     EXPECT_EQ(o.text.find("not understood"), std::string::npos) << o.text;
-    const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+    const loop::Shots shots = imported_shots(dir);
     ASSERT_TRUE(shots.find(t.column)) << t.header << o.text;
     EXPECT_NEAR(shots.find(t.column)->native(0), t.first, 1e-9) << t.header;
     EXPECT_NEAR(shots.find(t.column)->native(1), t.second, 1e-9) << t.header;
@@ -137,12 +146,11 @@ TEST(Import, UnitsAndSidesMeanWhatTheyMeanForTheirQuantity) {
 
 TEST(Import, UnitsThatOnlyOthersUseAreConverted) {
   const fs::path dir = test::fresh_directory("import_other_units");
-  test::write(dir / "a.csv",
-              "Club,Ball Speed (ft/s),Club Speed (knots),Launch Angle (mrad),Spin Rate (rad/s)\n"
-              "7i,168.7,71.3,280,675.4\n7i,170.1,71.5,281,680.6\n");
-  const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+  const auto o = import_text(dir,
+                             "Club,Ball Speed (ft/s),Club Speed (knots),Launch Angle (mrad),Spin Rate (rad/s)\n"
+                             "7i,168.7,71.3,280,675.4\n7i,170.1,71.5,281,680.6\n");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   EXPECT_NEAR(shots.find("ball_speed_mps")->native(0), 168.7 * 0.3048, 1e-4);
   EXPECT_NEAR(shots.find("club_speed_mps")->native(0), 71.3 * 1852 / 3600, 1e-4);
   EXPECT_NEAR(shots.find("launch_angle_deg")->native(0), degrees(0.28), 1e-4);
@@ -152,10 +160,9 @@ TEST(Import, UnitsThatOnlyOthersUseAreConverted) {
 TEST(Import, AWrongUnitIsCaught) {
   const fs::path dir = test::fresh_directory("import_units");
   const auto file = [&](const std::string& club_unit, const std::string& ball_unit) {
-    test::write(dir / "a.csv",
-                "Club Type,Ball Speed (" + ball_unit + "),Club Speed (" + club_unit +
-                    "),Launch Angle,Spin Rate,Dynamic Loft\n7 Iron,115,82,16,6400,22\n7 Iron,116,82,16,6500,22\n");
-    return command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+    return import_text(
+        dir, "Club Type,Ball Speed (" + ball_unit + "),Club Speed (" + club_unit +
+                 "),Launch Angle,Spin Rate,Dynamic Loft\n7 Iron,115,82,16,6400,22\n7 Iron,116,82,16,6500,22\n");
   };
   const auto ball = file("mph", "m/s");  // 115 m/s is no ball's
   EXPECT_EQ(ball.status, 2);
@@ -170,9 +177,7 @@ TEST(Import, AWrongUnitIsCaught) {
 TEST(Import, SaysWhatItCannotRead) {
   const fs::path dir = test::fresh_directory("import_refusals");
   const auto refuse = [&](const std::string& text, const std::string& options, const std::string& why) {
-    test::write(dir / "a.csv", text);
-    const auto o =
-        command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "' " + options);
+    const auto o = import_text(dir, text, options);
     EXPECT_EQ(o.status, 2) << o.text;
     EXPECT_NE(o.text.find(why), std::string::npos) << o.text;
     EXPECT_FALSE(fs::exists(dir / "case"));
@@ -209,12 +214,10 @@ class Layouts : public testing::TestWithParam<Layout> {};
 TEST_P(Layouts, ReadAsTheyCome) {
   const Layout& e = GetParam();
   const fs::path dir = test::fresh_directory("layout_" + e.name);
-  const fs::path file = dir / (e.text.front() == '{' ? "a.json" : "a.csv");
-  test::write(file, e.text);
-  const auto o = command("import '" + file.string() + "' --out '" + (dir / "case").string() + "' " + e.options);
+  const auto o = import_text(dir, e.text, e.options);
   ASSERT_EQ(o.status, 0) << o.text;
   for (const std::string& part : e.said) EXPECT_NE(o.text.find(part), std::string::npos) << part << "\n" << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   for (const auto& [name, values] : e.columns) {
     const loop::Column* c = shots.find(name);
     ASSERT_NE(c, nullptr) << name << "\n" << o.text;
@@ -513,8 +516,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Import, WhatWouldBeReadWrongIsRefused) {
   const fs::path dir = test::fresh_directory("import_wrong");
   const auto refuse = [&](const std::string& text, const std::string& why) {
-    test::write(dir / "a.csv", text);
-    const auto o = command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'");
+    const auto o = import_text(dir, text);
     EXPECT_EQ(o.status, 2) << o.text;
     EXPECT_NE(o.text.find(why), std::string::npos) << o.text;
   };
@@ -586,12 +588,14 @@ TEST(Import, SeveralFilesMakeOneBag) {
 /// The page of an imported session: a line for each club, and its shots where the flight of each measured launch ends.
 TEST(Import, ThePageSaysWhereTheShotsLand) {
   const fs::path dir = test::fresh_directory("import_landings");
-  test::write(
-      dir / "a.csv",
-      "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n"
-      "L,7i,115,82,16,1,6400,0,22\nL,7i,117,83,17,-1,6500,2,23\nL,7i,116,82,16,0,6450,-1,22\n"
-      "L,PW,100,76,24,0,8500,1,33\nL,PW,101,76,24,,8500,1,33\n");
-  ASSERT_EQ(command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() + "'").status, 0);
+  ASSERT_EQ(
+      import_text(
+          dir,
+          "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n"
+          "L,7i,115,82,16,1,6400,0,22\nL,7i,117,83,17,-1,6500,2,23\nL,7i,116,82,16,0,6450,-1,22\n"
+          "L,PW,100,76,24,0,8500,1,33\nL,PW,101,76,24,,8500,1,33\n")
+          .status,
+      0);
   const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
   const post::Sheet landings = post::read_csv(dir / "out" / "landings.csv");
@@ -630,16 +634,15 @@ TEST(Import, ACarryThatTellsTheUnitIsReadInItsOwn) {
 
 TEST(Import, ByHand) {
   const fs::path dir = test::fresh_directory("import_by_hand");
-  test::write(dir / "a.csv",
-              "Schlaeger;Ballgeschw.;Kopfgeschw.;Abflug;Drall;Loft dyn.;Wetter\n7i;185,1;132,0;16,4;6400;22,1;warm\n"
-              "7i;186,2;133,1;16,1;6500;22,3;kalt\n");
-  const auto o =
-      command("import '" + (dir / "a.csv").string() + "' --out '" + (dir / "case").string() +
-              "' --column 'Ballgeschw.=ball_speed_kmh' --column 'Kopfgeschw.=club_speed_kmh' --column "
-              "'Abflug=launch_angle_deg' --column 'Drall=spin_rate_rpm' --column 'Loft dyn.=dynamic_loft_deg' "
-              "--keep Wetter --club 7i");
+  const auto o = import_text(
+      dir,
+      "Schlaeger;Ballgeschw.;Kopfgeschw.;Abflug;Drall;Loft dyn.;Wetter\n7i;185,1;132,0;16,4;6400;22,1;warm\n"
+      "7i;186,2;133,1;16,1;6500;22,3;kalt\n",
+      "--column 'Ballgeschw.=ball_speed_kmh' --column 'Kopfgeschw.=club_speed_kmh' --column "
+      "'Abflug=launch_angle_deg' --column 'Drall=spin_rate_rpm' --column 'Loft dyn.=dynamic_loft_deg' "
+      "--keep Wetter --club 7i");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   EXPECT_NEAR(shots.find("ball_speed_kmh")->native(0), 185.1, 1e-9);
   EXPECT_EQ(shots.find("head_mass_kg"), nullptr) << "one club: its mass is the head's own";
   EXPECT_NE(test::content(dir / "case" / "case.toml").find("[head]\nmass_kg = 0.269 "), std::string::npos);
@@ -648,14 +651,13 @@ TEST(Import, ByHand) {
 
 TEST(Import, KeptNumbersWithADecimalCommaAreNumbers) {
   const fs::path dir = test::fresh_directory("import_kept_comma");
-  test::write(
-      dir / "a.csv",
+  const auto o = import_text(
+      dir,
       "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Tempo;Wind;Day;Temp\n"
-      "7i;115,1;82,0;16,4;6400;0,85;kalt, nass;01.11.2025;21,5\n7i;116,2;82,1;16,1;6500;0,9;;01.11.2025;21.5\n");
-  const auto o = command("import '" + (dir / "a.csv").string() +
-                         "' --keep Tempo --keep Wind --keep Day --keep Temp --out '" + (dir / "case").string() + "'");
+      "7i;115,1;82,0;16,4;6400;0,85;kalt, nass;01.11.2025;21,5\n7i;116,2;82,1;16,1;6500;0,9;;01.11.2025;21.5\n",
+      "--keep Tempo --keep Wind --keep Day --keep Temp");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   ASSERT_TRUE(shots.find("kept_tempo") && shots.find("kept_tempo")->numeric) << o.text;
   EXPECT_NEAR(shots.find("kept_tempo")->native(0), 0.85, 1e-12);
   EXPECT_EQ(shots.find("kept_wind")->text[0], "kalt, nass");
@@ -671,23 +673,21 @@ TEST(Import, ObjectsOfValueAndUnitAreCells) {
         R"("LaunchAngle":{{"value":16,"unit":"deg"}},"SpinRate":{{"value":6400,"unit":"rpm"}}}})",
         ball);
   };
-  test::write(dir / "a.json", "[" + shot(111) + "," + shot(112.5) + "]");
-  const auto o = command("import '" + (dir / "a.json").string() + "' --out '" + (dir / "case").string() + "'");
+  const auto o = import_text(dir, "[" + shot(111) + "," + shot(112.5) + "]");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   EXPECT_NEAR(shots.find("ball_speed_mph")->native(1), 112.5, 1e-9);
 }
 
 /// Headers that read alike are columns of their own, each with its cells.
 TEST(Import, KeptColumnsOfOneNameStayApart) {
   const fs::path dir = test::fresh_directory("import_kept_twice");
-  test::write(
-      dir / "a.csv",
-      "Club,BallSpeed,ClubSpeed,VLA,HLA,TotalSpin,Mat,mat\n7i,115,82,16,1,6400,new,wet\n7i,116,82,16,0,6400,old,dry\n");
-  const auto o = command("import '" + (dir / "a.csv").string() + "' --units imperial --keep mat --out '" +
-                         (dir / "case").string() + "'");
+  const auto o = import_text(
+      dir,
+      "Club,BallSpeed,ClubSpeed,VLA,HLA,TotalSpin,Mat,mat\n7i,115,82,16,1,6400,new,wet\n7i,116,82,16,0,6400,old,dry\n",
+      "--units imperial --keep mat");
   ASSERT_EQ(o.status, 0) << o.text;
-  const loop::Shots shots = loop::read_shots(post::read_csv(dir / "case" / "shots.csv"));
+  const loop::Shots shots = imported_shots(dir);
   ASSERT_TRUE(shots.find("kept_mat") && shots.find("kept_mat_2"));
   EXPECT_EQ(shots.find("kept_mat")->text[1], "old");
   EXPECT_EQ(shots.find("kept_mat_2")->text[1], "dry");

@@ -87,60 +87,52 @@ TEST(History, GoesOnOnlyWithWhatItWrote) {
   EXPECT_THROW(History(file, {"time_s", "x_m"}, &mark), std::runtime_error);
 }
 
+/// Every floating-point number of an impact but those of what is drawn.
+std::vector<double*> numbers_of(SavedImpact& s) {
+  std::vector<double*> out;
+  const auto add = [&](auto&& several) {
+    for (double& x : several) out.push_back(&x);
+  };
+  solvers::Checkpoint& solver = s.impact.solver;
+  for (Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) add(*x);
+  add(solver.history);
+  solvers::Ledger& l = solver.ledger;
+  for (auto& [body, energy] : l.strain) out.push_back(&energy);
+  for (double* x : {&l.time, &l.kinetic, &l.contact, &l.friction, &l.viscous, &l.numerical, &l.external})
+    out.push_back(x);
+  for (double* x : {&l.initial, &l.closure, &solver.state.time, &solver.step, &solver.last_step}) out.push_back(x);
+  for (double* x : {&solver.friction_before, &solver.viscous_before, &solver.external_before}) out.push_back(x);
+  models::FeImpactResult& r = s.impact.so_far;
+  for (double* x : {&r.penetration, &r.creep, &r.counts.worst_residual}) out.push_back(x);
+  for (double* x : {&s.impact.last_touch, &s.impact.last_nearest, &s.impact.last_gap}) out.push_back(x);
+  for (solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) {
+    for (double* x : {&p->value, &p->time}) out.push_back(x);
+    add(p->times);
+    add(p->values);
+  }
+  add(s.impact.release.time);
+  add(s.impact.release.force);
+  add(s.face_centre);
+  add(s.face_axes.reshaped());
+  return out;
+}
+
 /// No number twice, so that none can stand in another's place.
 SavedImpact some_impact() {
   SavedImpact s;
+  solvers::Checkpoint& solver = s.impact.solver;
+  for (Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) x->resize(40);
+  solver.ledger.strain = {{"ball", 0}, {"shaft", 0}};
+  solver.history.resize(3);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto one = [&] { return uniform(random); };
-  const auto many = [&](auto&& x) {
-    for (double& value : x) value = one();
-  };
-  solvers::Checkpoint& solver = s.impact.solver;
-  for (Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) {
-    x->resize(40);
-    many(*x);
-  }
-  solvers::Ledger& l = solver.ledger;
-  l.strain = {{"ball", one()}, {"shaft", one()}};
-  for (double* x : {&solver.state.time,
-                    &solver.step,
-                    &solver.last_step,
-                    &l.time,
-                    &l.kinetic,
-                    &l.contact,
-                    &l.friction,
-                    &l.viscous,
-                    &l.numerical,
-                    &l.external,
-                    &l.initial,
-                    &l.closure,
-                    &solver.friction_before,
-                    &solver.viscous_before,
-                    &solver.external_before,
-                    &s.impact.so_far.penetration,
-                    &s.impact.so_far.creep,
-                    &s.impact.last_touch,
-                    &s.impact.last_nearest,
-                    &s.impact.last_gap})
-    *x = one();
-  solver.history = {one(), one(), one()};
-  s.impact.so_far.counts = {101, 102, 103, 104, 105, one()};
+  for (double* x : numbers_of(s)) *x = uniform(random);
+  s.impact.so_far.counts = {101, 102, 103, 104, 105, s.impact.so_far.counts.worst_residual};
   int steps = 110;
-  for (solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) {
-    p->value = one();
-    p->time = one();
-    many(p->times);
-    many(p->values);
-    p->steps = ++steps;
-  }
+  for (solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) p->steps = ++steps;
   s.impact.touched = true;
   s.impact.release.apart = true;
   s.impact.release.known = 3;
-  many(s.impact.release.time);
-  many(s.impact.release.force);
-  many(s.face_centre);
-  many(s.face_axes.reshaped());
   s.section = BallSection{.time = 2e-4, .force = 9e3, .points = {{0.01, -0.02}, {0, 0.02}}, .von_mises = {1e6, 2e6}};
   s.section->cells = {{0, 1, 1, 0}};
   s.section->seams = {{1, 0, 1}};
@@ -155,52 +147,16 @@ SavedImpact some_impact() {
   return s;
 }
 
-/// Every number of an impact but those of what is drawn, in one row.
-std::vector<double> all_numbers(const SavedImpact& s) {
-  const solvers::Checkpoint& solver = s.impact.solver;
-  const solvers::Ledger& l = solver.ledger;
-  const solvers::GeneralizedAlpha::Counts& n = s.impact.so_far.counts;
+/// The same and the whole numbers, in one row.
+std::vector<double> all_numbers(SavedImpact s) {
   std::vector<double> out;
-  const auto add = [&](const auto& x) { out.insert(out.end(), x.begin(), x.end()); };
-  for (const Eigen::VectorXd* x : {&solver.state.q, &solver.state.v, &solver.state.a, &solver.auxiliary}) add(*x);
-  add(solver.history);
-  for (const solvers::Peak* p : {&s.impact.force, &s.impact.compression, &s.impact.face_travel}) {
-    add(std::array{p->value, p->time, double(p->steps)});
-    add(p->times);
-    add(p->values);
-  }
-  add(s.impact.release.time);
-  add(s.impact.release.force);
-  add(s.face_centre);
-  add(s.face_axes.reshaped());
-  for (const auto& [body, energy] : l.strain) out.push_back(energy);
-  add(std::array{solver.state.time,
-                 solver.step,
-                 solver.last_step,
-                 l.time,
-                 l.kinetic,
-                 l.contact,
-                 l.friction,
-                 l.viscous,
-                 l.numerical,
-                 l.external,
-                 l.initial,
-                 l.closure,
-                 solver.friction_before,
-                 solver.viscous_before,
-                 solver.external_before,
-                 s.impact.so_far.penetration,
-                 s.impact.so_far.creep,
-                 double(n.steps),
-                 double(n.rejected),
-                 double(n.iterations),
-                 double(n.factorisations),
-                 double(n.dense_factorisations),
-                 n.worst_residual,
-                 s.impact.last_touch,
-                 s.impact.last_nearest,
-                 s.impact.last_gap,
-                 double(s.impact.release.known)});
+  for (const double* x : numbers_of(s)) out.push_back(*x);
+  const solvers::GeneralizedAlpha::Counts& n = s.impact.so_far.counts;
+  for (const long x : {n.steps, n.rejected, n.iterations, n.factorisations, n.dense_factorisations})
+    out.push_back(double(x));
+  for (const solvers::Peak& p : {s.impact.force, s.impact.compression, s.impact.face_travel})
+    out.push_back(double(p.steps));
+  out.push_back(double(s.impact.release.known));
   return out;
 }
 

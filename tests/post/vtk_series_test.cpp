@@ -13,9 +13,8 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "post/file.hpp"
 #include "post/vtk_series.hpp"
 #include "tests/support/fresh_directory.hpp"
 
@@ -35,13 +34,6 @@ VtkMesh one_hexahedron() {
   m.point_fields.push_back(vector_field("displacement", "m", std::vector<Vec3>(24, Vec3(1e-3, 0, 2e-3))));
   m.cell_fields.push_back({"cauchy_stress", "Pa", 6, {1, 2, 3, 4, 5, 6}});
   return m;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
 }
 
 TEST(VtkSeries, VolumeReadsBack) {
@@ -74,7 +66,7 @@ TEST(VtkSeries, VolumeReadsBack) {
   ASSERT_NE(s, nullptr);
   EXPECT_STREQ(s->GetComponentName(5), "XZ");
   EXPECT_EQ(grid->GetFieldData()->GetArray("TimeValue")->GetComponent(0, 0), 2.5e-4);
-  EXPECT_NE(text_of(series.file()).find("timestep=\"0.00025\""), std::string::npos);
+  EXPECT_NE(read_file(series.file()).find("timestep=\"0.00025\""), std::string::npos);
 }
 
 TEST(VtkSeries, SurfaceAndLinesReadBack) {
@@ -107,14 +99,14 @@ TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
     for (const double t : {0.0, t1}) series.write(t, one_hexahedron());
     mark = series.mark();
     for (const double t : {t2, 3.0}) series.write(t, one_hexahedron());
-    whole = text_of(series.file());
+    whole = read_file(series.file());
   }
   ASSERT_TRUE(VtkSeries::holds(dir, "ball", form, mark));
   {
     VtkSeries series(dir, "ball", form, &mark);
     EXPECT_FALSE(fs::exists(dir / "ball/ball_0002.vtu")) << "written after the mark";
     for (const double t : {t2, 3.0}) series.write(t, one_hexahedron());
-    EXPECT_EQ(text_of(series.file()), whole);
+    EXPECT_EQ(read_file(series.file()), whole);
   }
   fs::resize_file(dir / "ball/ball_0001.vtu", 100);
   EXPECT_FALSE(VtkSeries::holds(dir, "ball", form, mark));
@@ -123,7 +115,7 @@ TEST(VtkSeries, ResumeKeepsWhatItsMarkSaysAndStartOverRemovesIt) {
   VtkSeries again(dir, "ball", form);
   again.write(0, one_hexahedron());
   EXPECT_FALSE(fs::exists(dir / "ball/ball_0002.vtu"));
-  EXPECT_EQ(text_of(again.file()).find("ball_0001"), std::string::npos);
+  EXPECT_EQ(read_file(again.file()).find("ball_0001"), std::string::npos);
 }
 
 TEST(VtkSeries, RefusesAnArrayOfTheWrongLength) {
