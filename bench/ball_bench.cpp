@@ -8,6 +8,7 @@
 
 #include <Eigen/LU>
 
+#include "bench/cpu_time.hpp"
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
 #include "models/fe/impact.hpp"
@@ -16,6 +17,7 @@
 namespace {
 using namespace hosel;
 using namespace hosel::models;
+using bench::seconds;
 
 Blow oblique() {
   Blow b;
@@ -32,69 +34,81 @@ FeImpactOptions options(int sector, int harmonics) {
   return o;
 }
 
-/// CPU time of all threads, since other work may run beside.
-template <class Work>
-double seconds(int repeats, const Work& work) {
-  const std::clock_t start = std::clock();
-  for (int i = 0; i < repeats; ++i) work();
-  return double(std::clock() - start) / CLOCKS_PER_SEC / repeats;
-}
+/// A blow and its system at the largest force, with what is kept of the tangent there.
+struct AtPeak {
+  AtPeak(const FeImpactOptions& o, const Blow& blow)
+      : impact(Impact(o).assemble(blow)),
+        smooth(impact.system, solvers::SparseTangent::Terms::smooth),
+        abrupt(smooth),
+        inertia(fem::Vector::Zero(impact.system.dof_map.size())),
+        internal(inertia) {
+    double force = 0;
+    const auto at_peak = [&](const ImpactView& view) {
+      if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
+    };
+    whole = seconds(1, [&] { counts = Impact(o).run(blow, at_peak).result.counts; });
+    impact.contact->start(impact.initial);
+    touch();
+    assemble();
+    apart = solvers::weakly_coupled(impact.system, smooth);
+    definite = factorise();
+  }
+  void ball_residual() { impact.ball->residual(peak, inertia, internal); }
+  void contact_residual() { impact.contact->residual(peak, inertia, internal); }
+  void energies() { benchmark::DoNotOptimize(impact.ball->energies(peak)); }
+  void touch() {
+    abrupt.clear();
+    impact.contact->tangent(peak, weights, abrupt);
+  }
+  void assemble() { smooth.assemble(impact.system, peak, weights); }
+  bool factorise() { return factors.factorise(smooth, abrupt.touched(), apart); }
+  void dense_factors() {
+    const auto kept = static_cast<Eigen::Index>(factors.kept().size());
+    benchmark::DoNotOptimize((factors.schur() + abrupt.on(factors.places(), kept)).partialPivLu().matrixLU().sum());
+  }
+  void solve(const fem::Vector& right) {
+    const Eigen::VectorXf half = factors.eliminate(right);
+    benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
+  }
+
+  ImpactBodies impact;
+  solvers::SparseTangent smooth;
+  solvers::DenseTangent abrupt;
+  solvers::CondensedFactorisation factors;
+  fem::Vector inertia, internal;
+  fem::Weights weights{1, 0, 1e10};
+  solvers::GeneralizedAlpha::Counts counts;
+  fem::State peak;
+  std::vector<char> apart;
+  double whole = 0;       ///< CPU time of the blow [s]
+  bool definite = false;  ///< the ball's tangent is positive definite
+};
 
 /// Unit costs at largest force times how often each was needed, over the time of the whole run (one factorisation more
 /// than counted: the first accelerations); and one solution of the linear system by LU of the whole tangent, as it was
 /// once done, over one by what is kept of it.
 void Shares(benchmark::State& state) {
   for (auto _ : state) {
-    const FeImpactOptions o = options(3, 3);
-    const ImpactBodies impact = Impact(o).assemble(oblique());
-    FeImpactResult result;
-    fem::State peak;
-    double force = 0;
-    const double whole = seconds(1, [&] {
-      result = Impact(o)
-                   .run(oblique(),
-                        [&](const ImpactView& view) {
-                          if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
-                        })
-                   .result;
-    });
-    impact.contact->start(impact.initial);
-    fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
-    const fem::Weights weights{1, 0, 1e10};
-    solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth), all(impact.system);
-    solvers::DenseTangent abrupt(smooth);
-    solvers::CondensedFactorisation factors;
+    AtPeak at(options(3, 3), oblique());
+    if (!at.definite) return state.SkipWithError("the ball's tangent is not positive definite");
+    solvers::SparseTangent all(at.impact.system);
     solvers::Factorisation lu;
-    const auto touch = [&] {
-      abrupt.clear();
-      impact.contact->tangent(peak, weights, abrupt);
-    };
-    touch();
-    smooth.assemble(impact.system, peak, weights);
-    all.assemble(impact.system, peak, weights);
-    const std::vector<char> apart = solvers::weakly_coupled(impact.system, smooth);
-    if (!factors.factorise(smooth, abrupt.touched(), apart)) {
-      state.SkipWithError("the ball's tangent is not positive definite");
-      return;
-    }
+    all.assemble(at.impact.system, at.peak, at.weights);
     lu.factorise(all);
-    const double ball = seconds(20, [&] { impact.ball->residual(peak, inertia, internal); });
-    const double contact = seconds(20, [&] { impact.contact->residual(peak, inertia, internal); });
-    const double assembly = seconds(5, [&] { smooth.assemble(impact.system, peak, weights); });
-    const double factorisation = seconds(5, [&] { factors.factorise(smooth, abrupt.touched(), apart); });
+    const double whole = at.whole;
+    const double ball = seconds(20, [&] { at.ball_residual(); });
+    const double contact = seconds(20, [&] { at.contact_residual(); });
+    const double assembly = seconds(5, [&] { at.assemble(); });
+    const double factorisation = seconds(5, [&] { at.factorise(); });
     const double dense = seconds(20, [&] {
-      touch();
-      const auto m = static_cast<Eigen::Index>(factors.kept().size());
-      benchmark::DoNotOptimize((factors.schur() + abrupt.on(factors.places(), m)).partialPivLu().matrixLU().sum());
+      at.touch();
+      at.dense_factors();
     });
-    const double stock = seconds(5, [&] { benchmark::DoNotOptimize(impact.ball->energies(peak)); });
-    const fem::Vector right = smooth.gather(internal);
-    const double solve = seconds(20, [&] {
-      const Eigen::VectorXf half = factors.eliminate(right);
-      benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
-    });
-    const auto n = double(result.counts.iterations), f = double(result.counts.factorisations),
-               d = double(result.counts.dense_factorisations), steps = double(result.counts.steps);
+    const double stock = seconds(5, [&] { at.energies(); });
+    const fem::Vector right = at.smooth.gather(at.internal);
+    const double solve = seconds(20, [&] { at.solve(right); });
+    const auto n = double(at.counts.iterations), f = double(at.counts.factorisations),
+               d = double(at.counts.dense_factorisations), steps = double(at.counts.steps);
     state.counters["share_ball_residual"] = (n + steps) * ball / whole;
     state.counters["share_contact"] = (n + steps) * contact / whole;
     state.counters["share_tangent_assembly"] = f * assembly / whole;
@@ -181,35 +195,11 @@ void Roofline(benchmark::State& state) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   FeImpactOptions o;
   o.resolve(static_cast<Accuracy>(state.range(0)));
-  const ImpactBodies impact = Impact(o).assemble(iron7());
-  FeImpactResult result;
-  fem::State peak;
   for (auto _ : state) {
-    double force = 0;
-    const auto at_peak = [&](const ImpactView& view) {
-      if (view.report.normal_force > force) force = view.report.normal_force, peak = view.state;
-    };
-    const double whole = seconds(1, [&] { result = Impact(o).run(iron7(), at_peak).result; });
-    impact.contact->start(impact.initial);
-    const fem::Weights weights{1, 0, 1e10};
-    solvers::SparseTangent smooth(impact.system, solvers::SparseTangent::Terms::smooth);
-    solvers::DenseTangent abrupt(smooth);
-    solvers::CondensedFactorisation factors;
-    const auto touch = [&] {
-      abrupt.clear();
-      impact.contact->tangent(peak, weights, abrupt);
-    };
-    touch();
-    smooth.assemble(impact.system, peak, weights);
-    const std::vector<char> apart = solvers::weakly_coupled(impact.system, smooth);
-    if (!factors.factorise(smooth, abrupt.touched(), apart)) {
-      state.SkipWithError("the ball's tangent is not positive definite");
-      return;
-    }
-    const auto kept = static_cast<Eigen::Index>(factors.kept().size());
-    fem::Vector inertia = fem::Vector::Zero(impact.system.dof_map.size()), internal = inertia;
-
-    const fem::HarmonicSolid& ball = *impact.ball;
+    AtPeak at(o, iron7());
+    if (!at.definite) return state.SkipWithError("the ball's tangent is not positive definite");
+    const auto& factors = at.factors;
+    const fem::HarmonicSolid& ball = *at.impact.ball;
     constexpr double P = 4;  // Gauss points of an element
     const auto K = double(ball.unknowns()), elements = double(ball.mesh().elements.size()),
                angles = double(2 * o.harmonics + 4);
@@ -219,45 +209,39 @@ void Roofline(benchmark::State& state) {
     double pairs = 0;
     for (int c = 0; c < 3; ++c)
       for (int d = c; d < 3; ++d) pairs += functions[c] * functions[d];
-    const std::vector<fem::ContactPoint> points = impact.contact->points(peak);
+    const std::vector<fem::ContactPoint> points = at.impact.contact->points(at.peak);
     const double stations = double(std::ranges::count_if(points, [](const auto& p) { return p.pressure > 0; })) /
                             double(3 * o.harmonics + 8);
 
     const double rate = peak_operations();
-    const auto n = double(result.counts.iterations), f = double(result.counts.factorisations) + 1,
-               d = double(result.counts.dense_factorisations), steps = double(result.counts.steps);
+    const auto n = double(at.counts.iterations), f = double(at.counts.factorisations) + 1,
+               d = double(at.counts.dense_factorisations), steps = double(at.counts.steps);
     const auto tell = [&](const std::string& unit, double times, double operations, double bytes, double spent) {
       const double limit = std::max(operations / rate, bytes > 0 ? bytes / read_rate(std::size_t(bytes / 2)) : 0.0);
-      state.counters[unit + "_share"] = times * spent / whole;
+      state.counters[unit + "_share"] = times * spent / at.whole;
       state.counters[unit + "_us"] = 1e6 * spent;
       state.counters[unit + "_limit_us"] = 1e6 * limit;
       state.counters[unit + "_over_limit"] = spent / limit;
     };
     const double gradients = elements * (48 * K * P + 6 * angles * K * P);
-    tell("residual", n + steps, 2 * gradients + elements * 128 * K, 0,
-         seconds(50, [&] { ball.residual(peak, inertia, internal); }));
-    tell("energies", 2 * steps, gradients, 0, seconds(50, [&] { benchmark::DoNotOptimize(ball.energies(peak)); }));
-    tell("assembly", f, elements * pairs * 18 * P * (angles + 64), 0,
-         seconds(10, [&] { smooth.assemble(impact.system, peak, weights); }));
-    tell("factorisation", f, factors.operations(), 0,
-         seconds(10, [&] { factors.factorise(smooth, abrupt.touched(), apart); }));
-    const fem::Vector right = smooth.gather(internal);
-    tell("solve", n, 4 * double(factors.entries()), 8 * double(factors.entries()), seconds(50, [&] {
-           const Eigen::VectorXf half = factors.eliminate(right);
-           benchmark::DoNotOptimize(factors.recover(half, factors.condensed(half)));
-         }));
+    tell("residual", n + steps, 2 * gradients + elements * 128 * K, 0, seconds(50, [&] { at.ball_residual(); }));
+    tell("energies", 2 * steps, gradients, 0, seconds(50, [&] { at.energies(); }));
+    tell("assembly", f, elements * pairs * 18 * P * (angles + 64), 0, seconds(10, [&] { at.assemble(); }));
+    tell("factorisation", f, factors.operations(), 0, seconds(10, [&] { at.factorise(); }));
+    const fem::Vector right = at.smooth.gather(at.internal);
+    tell("solve", n, 4 * double(factors.entries()), 8 * double(factors.entries()),
+         seconds(50, [&] { at.solve(right); }));
     const double columns = K + 6;
     tell("contact", n + steps, stations * 18 * K * (3 * o.harmonics + 8), 0,
-         seconds(50, [&] { impact.contact->residual(peak, inertia, internal); }));
-    tell("contact_tangent", d, stations * 6 * (3 * o.harmonics + 8) * columns * (columns + 3), 0, seconds(20, touch));
-    tell("dense_factors", d, 2.0 / 3 * std::pow(double(kept), 3), 0, seconds(20, [&] {
-           benchmark::DoNotOptimize(
-               (factors.schur() + abrupt.on(factors.places(), kept)).partialPivLu().matrixLU().sum());
-         }));
+         seconds(50, [&] { at.contact_residual(); }));
+    tell("contact_tangent", d, stations * 6 * (3 * o.harmonics + 8) * columns * (columns + 3), 0,
+         seconds(20, [&] { at.touch(); }));
+    tell("dense_factors", d, 2.0 / 3 * std::pow(double(factors.kept().size()), 3), 0,
+         seconds(20, [&] { at.dense_factors(); }));
     state.counters["Gflop_per_s"] = 1e-9 * rate;
     state.counters["GB_per_s_of_the_factors"] = 1e-9 * read_rate(4 * factors.entries());
     state.counters["GB_per_s_of_memory"] = 1e-9 * read_rate(std::size_t{1} << 28);
-    state.counters["seconds"] = whole;
+    state.counters["seconds"] = at.whole;
   }
 }
 BENCHMARK(Roofline)->Arg(0)->Arg(1)->Arg(2)->ArgName("level")->Iterations(1)->Unit(benchmark::kSecond);
@@ -329,9 +313,7 @@ void YieldingFace(benchmark::State& state) {
     double cpu[2] = {};
     Counts counts[2];
     for (int i = 0; i < 8; ++i) {
-      const std::clock_t start = std::clock();
-      counts[i % 2] = impact.run(i % 2 ? yielding : blow).result.counts;
-      cpu[i % 2] += double(std::clock() - start) / CLOCKS_PER_SEC / 4;
+      cpu[i % 2] += seconds(1, [&] { counts[i % 2] = impact.run(i % 2 ? yielding : blow).result.counts; }) / 4;
     }
     state.counters["rigid_s"] = cpu[0];
     state.counters["yielding_over_rigid"] = cpu[1] / cpu[0];

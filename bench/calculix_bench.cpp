@@ -5,16 +5,15 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 
+#include "bench/calculix.hpp"
 #include "fem/materials/linear_elastic.hpp"
 #include "fem/materials/st_venant_kirchhoff.hpp"
 #include "tests/support/elastic_sphere.hpp"
@@ -106,10 +105,7 @@ std::map<int, Vec3> write_deck(const ThrownSphere& impact, const fs::path& path)
                 corner(k + 2, c), middle(k + 1, a), middle(k, a),     middle(k + 2, b), middle(k + 2, a)};
         if (outer >= 0) faces += fmt::format("{}, S{}\n", element, outer == (k + 3) % 4 ? 1 : 2);
       }
-      std::string& text = axis < 0 ? bricks : wedges;
-      text += fmt::format("{}", element);
-      for (std::size_t i = 0; i < list.size(); ++i) text += fmt::format("{}{}", i == 9 ? ",\n" : ", ", list[i]);
-      text += "\n";
+      (axis < 0 ? bricks : wedges) += bench::element_line(element, list);
     }
   std::map<int, Vec3> plate;
   const int first = int(ids.size()) + 1;
@@ -183,19 +179,14 @@ Answer read_answer(const ThrownSphere& impact, const fs::path& path, const std::
 }
 
 std::optional<Answer> calculix(const ThrownSphere& impact) {
-  const fs::path dir = fs::temp_directory_path() / fmt::format("hosel_calculix_{}", getpid());
-  fs::create_directories(dir);
-  const auto plate = write_deck(impact, dir / "impact.inp");
+  const bench::Calculix ccx("impact");
+  const auto plate = write_deck(impact, ccx.deck());
   const double before = cpu_seconds(RUSAGE_CHILDREN);
-  const int status =
-      std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx impact > log.txt 2>&1", dir.string()).c_str());
+  const bool done = ccx.run();
   const double cpu = cpu_seconds(RUSAGE_CHILDREN) - before;
-  std::optional<Answer> out;
-  if (status == 0) {
-    out = read_answer(impact, dir / "impact.dat", plate);
-    out->cpu = cpu;
-  }
-  fs::remove_all(dir);
+  if (!done) return {};
+  Answer out = read_answer(impact, ccx.results(), plate);
+  out.cpu = cpu;
   return out;
 }
 
@@ -218,7 +209,7 @@ Answer hosel(const ThrownSphere& impact, const mesh::MeridianOptions& mesh, int 
 void report(benchmark::State& state, const ThrownSphere& impact, const mesh::MeridianOptions& mesh, int harmonics,
             int steps, double penalty) {
   for (auto _ : state) {
-    if (std::system("command -v ccx > /dev/null") != 0) {
+    if (!bench::Calculix::installed()) {
       state.SkipWithError("CalculiX is not installed (apt-get install calculix-ccx)");
       return;
     }

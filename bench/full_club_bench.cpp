@@ -2,22 +2,14 @@
 // elements and against its own duration. CPU time, in turn.
 #include <benchmark/benchmark.h>
 
-#include <ctime>
-
+#include "bench/cpu_time.hpp"
 #include "models/fe/impact.hpp"
 #include "tests/support/swing_motion.hpp"
 
 namespace {
 using namespace hosel;
 using namespace hosel::models;
-
-/// CPU time of all threads.
-template <class Work>
-double seconds(const Work& work) {
-  const std::clock_t start = std::clock();
-  work();
-  return double(std::clock() - start) / CLOCKS_PER_SEC;
-}
+using bench::seconds;
 
 void FullClub(benchmark::State& state) {
   Blow blow;
@@ -31,7 +23,7 @@ void FullClub(benchmark::State& state) {
   for (auto _ : state) {
     double cpu[2] = {};
     for (int i = 0; i < 6; ++i)
-      cpu[i % 2] += seconds([&] {
+      cpu[i % 2] += seconds(1, [&] {
         benchmark::DoNotOptimize(i % 2 ? Impact(options, ShaftMount{}).run(blow).launch
                                        : Impact(options).run(blow).launch);
       });
@@ -48,7 +40,7 @@ void SwingElements(benchmark::State& state) {
   for (auto _ : state) {
     double cpu[2] = {};
     for (int i = 0; i < 4; ++i)
-      cpu[i % 2] += seconds([&] {
+      cpu[i % 2] += seconds(1, [&] {
         Swing s(test::driver_club(), {.elements = i % 2 ? 160 : 40}, {.motion = motion});
         benchmark::DoNotOptimize(s.run(s.start(-kDuration, s.equilibrium(-kDuration)), 0, {}));
       });

@@ -11,6 +11,11 @@
 namespace {
 using namespace hosel;
 
+Head driver() {
+  return {
+      .mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+}
+
 post::Sheet shots(int rows) {
   post::Sheet sheet{.file = "bench",
                     .names = {"club_speed_mps", "attack_angle_deg", "club_path_deg", "face_angle_deg",
@@ -22,10 +27,7 @@ post::Sheet shots(int rows) {
   const models::RigidEccentric model;
   for (int i = 0; i < rows; ++i) {
     Blow b;
-    b.club.head = {.mass = 0.2,
-                   .cg = Vec3(-0.035, 0, 0),
-                   .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(),
-                   .face = {0.3, 0.3}};
+    b.club.head = driver();
     b.delivery = {.club_speed = 45 + 3 * gauss(random),
                   .attack_angle = radians(2 * gauss(random)),
                   .club_path = radians(2 * gauss(random)),
@@ -60,8 +62,7 @@ void Loop(benchmark::State& state) {
   c.base = "rigid-eccentric";
   c.model = &model;
   c.head_mass_declared = c.inertia_declared = true;
-  c.blow.club.head = {
-      .mass = 0.2, .cg = Vec3(-0.035, 0, 0), .inertia = Vec3(3.7e-4, 2.9e-4, 4.8e-4).asDiagonal(), .face = {0.3, 0.3}};
+  c.blow.club.head = driver();
   c.shots = loop::read_shots(shots(int(state.range(0))));
   c.noise = {{"ball_speed_mps", 0.25},
              {"launch_angle_deg", 0.2},

@@ -4,18 +4,17 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <fmt/os.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
 
+#include "bench/calculix.hpp"
 #include "golf/units.hpp"
 #include "models/fe/plate_face.hpp"
 #include "models/fe/plate_strike.hpp"
@@ -87,12 +86,8 @@ void write_deck(const fs::path& path, const mesh::PlateMesh& m, int layers) {
       } else {
         add(0, 4, low), add(0, 4, low + 2), add(4, 8, low), add(4, 8, low + 2), add(0, 4, low + 1);
       }
-      elements += fmt::format("{}", ++count);
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        elements += fmt::format("{}{}", i == 9 ? ",\n" : ", ", nodes[i]);
-        used[std::size_t(nodes[i] - 1)] = 1;
-      }
-      elements += "\n";
+      elements += bench::element_line(++count, nodes);
+      for (const int node : nodes) used[std::size_t(node - 1)] = 1;
     }
   out.print("*NODE, NSET=ALL\n");
   for (std::size_t n = 0; n < m.nodes.size(); ++n) {
@@ -134,13 +129,11 @@ struct Answer {
 };
 
 Answer calculix(const mesh::PlateMesh& m, int layers) {
-  const fs::path dir = fs::temp_directory_path() / fmt::format("hosel_plate_calculix_{}", getpid());
-  fs::create_directories(dir);
-  write_deck(dir / "face.inp", m, layers);
-  const int status =
-      std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx face > log.txt 2>&1", dir.string()).c_str());
+  const bench::Calculix ccx("face");
+  write_deck(ccx.deck(), m, layers);
+  if (!ccx.run()) return {};
   Answer out;
-  std::ifstream in(dir / "face.dat");
+  std::ifstream in(ccx.results());
   const int levels = node_levels(layers);
   std::map<int, double> share;
   for (std::string line; std::getline(in, line);) {
@@ -158,8 +151,7 @@ Answer calculix(const mesh::PlateMesh& m, int layers) {
       out.deflections.back() -= share.at((n - 1) / levels) * a;
     }
   }
-  if (!std::getenv("HOSEL_KEEP")) fs::remove_all(dir);
-  if (status != 0 || out.frequencies.size() < kModes || out.deflections.size() < kPlaces.size()) out = {};
+  if (out.frequencies.size() < kModes || out.deflections.size() < kPlaces.size()) out = {};
   return out;
 }
 
@@ -172,7 +164,7 @@ Answer plate(const mesh::PlateMeshOptions& mesh) {
 }
 
 void Face90x50(benchmark::State& state) {
-  if (std::system("command -v ccx > /dev/null") != 0)
+  if (!bench::Calculix::installed())
     return state.SkipWithError("SKIPPED: CalculiX is not installed (apt-get install calculix-ccx)");
   const int core = int(state.range(1));
   for (auto _ : state) {

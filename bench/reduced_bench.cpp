@@ -6,9 +6,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <vector>
 
+#include "bench/cpu_time.hpp"
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
 #include "models/reduced/shaft_coupled.hpp"
@@ -125,14 +125,12 @@ void batch(benchmark::State& state, const models::ImpactModel& model, const Blow
   for (auto _ : state) {
     double alone = 0, together = 0;
     for (int round = 0; round < 5; ++round) {
-      std::clock_t clock = std::clock();
-      for (const Blow& b : blows) benchmark::DoNotOptimize(model.launch(b));
-      alone += double(std::clock() - clock);
-      clock = std::clock();
-      benchmark::DoNotOptimize(model.launches(blows));
-      together += double(std::clock() - clock);
+      alone += bench::seconds(1, [&] {
+        for (const Blow& b : blows) benchmark::DoNotOptimize(model.launch(b));
+      });
+      together += bench::seconds(1, [&] { benchmark::DoNotOptimize(model.launches(blows)); });
     }
-    const double us = 1e6 / CLOCKS_PER_SEC / (5 * double(blows.size()));
+    const double us = 1e6 / (5 * double(blows.size()));
     state.counters["us_alone"] = us * alone;
     state.counters["us_together"] = us * together;
     state.counters["ratio"] = alone / together;
@@ -167,13 +165,13 @@ void TenThousand(benchmark::State& state) {
     for (int i = 0; i < 6; ++i) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(1 + i % 2));
       const double start = wall();
-      const std::clock_t clock = std::clock();
-      tbb::parallel_for(tbb::blocked_range<int>(0, 10000, 50), [&](const auto& range) {
-        for (int k = range.begin(); k < range.end(); ++k)
-          benchmark::DoNotOptimize(model.launch(blow(-0.02 + 4e-6 * k)));
+      cpu[i % 2] += bench::seconds(1, [&] {
+        tbb::parallel_for(tbb::blocked_range<int>(0, 10000, 50), [&](const auto& range) {
+          for (int k = range.begin(); k < range.end(); ++k)
+            benchmark::DoNotOptimize(model.launch(blow(-0.02 + 4e-6 * k)));
+        });
       });
       spent[i % 2] += wall() - start;
-      cpu[i % 2] += double(std::clock() - clock) / CLOCKS_PER_SEC;
     }
     state.counters["efficiency"] = spent[0] / (2 * spent[1]);
     state.counters["by_cpu"] = cpu[0] / cpu[1];

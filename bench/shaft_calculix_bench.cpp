@@ -3,16 +3,15 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <fmt/os.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
 
+#include "bench/calculix.hpp"
 #include "solvers/generalized_alpha.hpp"
 #include "solvers/modes.hpp"
 #include "tests/support/beams.hpp"
@@ -29,13 +28,9 @@ double outer_radius(double x) { return 0.5 * (15.2 + (9.4 - 15.2) * x / kLength)
 constexpr double kPush = 20, kPushed = 1e-3, kEnd = 20e-3, kStep = 20e-6;  // [N, s, s, s]
 double push(double t) { return t < kPushed ? kPush * std::sin(kPi * t / kPushed) : 0; }
 
-struct Tip {
-  int node;
-  double share;  ///< of the end's force, and of its mean displacement
-};
-
-/// x along the tube, z across it in the plane of symmetry y = 0. Returns the nodes of the tip's face.
-std::vector<Tip> write_deck(const fs::path& path, int along, int around, const std::string& step) {
+/// x along the tube, z across it in the plane of symmetry y = 0. Returns the nodes of the tip's face, each with its
+/// share of the end's force and of its mean displacement.
+std::map<int, double> write_deck(const fs::path& path, int along, int around, const std::string& step) {
   auto out = fmt::output_file(path.string());
   std::map<std::array<int, 3>, int> ids;
   std::string nodes, elements, clamped, middle;
@@ -60,15 +55,11 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
            {i + 2, j, 2},     {i + 2, j + 2, 2}, {i + 2, j + 2, 0}, {i, j, 1},         {i, j + 1, 2},
            {i, j + 2, 1},     {i, j + 1, 0},     {i + 2, j, 1},     {i + 2, j + 1, 2}, {i + 2, j + 2, 1},
            {i + 2, j + 1, 0}, {i + 1, j, 0},     {i + 1, j, 2},     {i + 1, j + 2, 2}, {i + 1, j + 2, 0}}};
-      elements += fmt::format("{}", a * around + b + 1);
-      for (std::size_t n = 0; n < list.size(); ++n) {
-        // CalculiX wants the first face anticlockwise seen against its outward normal.
-        static constexpr std::array<std::size_t, 20> order{0, 3, 2,  1,  4,  7,  6,  5,  11, 10,
-                                                           9, 8, 15, 14, 13, 12, 16, 19, 18, 17};
-        const auto& c = list[order[n]];
-        elements += fmt::format("{}{}", n == 9 ? ",\n" : ", ", id(c[0], c[1], c[2]));
-      }
-      elements += "\n";
+      // CalculiX wants the first face anticlockwise seen against its outward normal.
+      std::vector<int> brick;
+      for (const std::size_t n : {0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17})
+        brick.push_back(id(list[n][0], list[n][1], list[n][2]));
+      elements += bench::element_line(a * around + b + 1, brick);
       if (a + 1 == along)
         for (const std::size_t n : {4, 5, 6, 7, 12, 13, 14, 15}) {
           const auto& c = list[n];
@@ -76,9 +67,7 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
         }
     }
   std::string ends, loads;
-  std::vector<Tip> face;
   for (const auto& [n, share] : tip) {
-    face.push_back({n, share});
     ends += fmt::format("{},\n", n);
     loads += fmt::format("{}, 3, {:.12g}\n", n, 0.5 * kPush * share);  // half the tube, half the force
   }
@@ -97,30 +86,24 @@ std::vector<Tip> write_deck(const fs::path& path, int along, int around, const s
     out.print("*STEP, INC=100000\n*DYNAMIC, DIRECT, ALPHA=0\n{}, {}\n*CLOAD, AMPLITUDE=PUSH\n{}", kStep, kEnd, loads);
     out.print("*NODE PRINT, NSET=TIP, FREQUENCY=1\nU\n*END STEP\n");
   }
-  return face;
+  return tip;
 }
 
-/// Runs `ccx`; the text of its .dat file. Empty where it failed.
 struct Peer {
-  std::vector<Tip> tip;
-  std::string dat;
+  std::map<int, double> tip;
+  std::string dat;  ///< the text of ccx's results; empty where it failed
 };
 Peer calculix(int along, int around, const std::string& step) {
-  const fs::path dir = fs::temp_directory_path() / fmt::format("hosel_shaft_calculix_{}", getpid());
-  fs::create_directories(dir);
-  Peer out{write_deck(dir / "tube.inp", along, around, step), {}};
-  const int status =
-      std::system(fmt::format("cd '{}' && OMP_NUM_THREADS=1 ccx tube > log.txt 2>&1", dir.string()).c_str());
-  std::ifstream in(dir / "tube.dat");
-  std::stringstream text;
-  text << in.rdbuf();
-  if (status == 0) out.dat = text.str();
-  if (!std::getenv("HOSEL_KEEP")) fs::remove_all(dir);
+  const bench::Calculix ccx("tube");
+  Peer out{write_deck(ccx.deck(), along, around, step), {}};
+  if (!ccx.run()) return out;
+  std::ifstream in(ccx.results());
+  out.dat.assign(std::istreambuf_iterator<char>(in), {});
   return out;
 }
 
 bool without_peer(benchmark::State& state) {
-  if (std::system("command -v ccx > /dev/null") == 0) return false;
+  if (bench::Calculix::installed()) return false;
   state.SkipWithError("SKIPPED: CalculiX is not installed (apt-get install calculix-ccx)");
   return true;
 }
@@ -167,8 +150,6 @@ void TipResponse(benchmark::State& state) {
   for (auto _ : state) {
     if (without_peer(state)) return;
     const Peer peer = calculix(40, 8, "blow");
-    std::map<int, double> share;
-    for (const Tip& t : peer.tip) share[t.node] = t.share;
     std::map<double, double> theirs;  // mean displacement over time [s, m]
     double time = -1;
     std::istringstream in(peer.dat);
@@ -177,7 +158,7 @@ void TipResponse(benchmark::State& state) {
       std::istringstream row(line);
       int node = 0;
       Vec3 u;
-      if (row >> node >> u.x() >> u.y() >> u.z()) theirs[time] += 1e-3 * share.at(node) * u.z();
+      if (row >> node >> u.x() >> u.y() >> u.z()) theirs[time] += 1e-3 * peer.tip.at(node) * u.z();
     }
     if (theirs.size() < 100) return state.SkipWithError("ccx has not finished the blow");
     test::BeamSystem b = tube(40);
