@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <csignal>
 #include <new>
 
@@ -53,31 +54,30 @@ class Model {
   py::array_t<double> launch(const Texts& names, const py::array_t<double, py::array::c_style>& inputs) const {
     if (inputs.ndim() != 2 || inputs.shape(1) != py::ssize_t(names.size()))
       throw app::InputError(fmt::format("{} names, so a table of as many columns is wanted", names.size()));
-    std::vector<std::pair<Input, double>> columns;
+    std::vector<Input> asked;  // of the columns
+    std::vector<double> si;
     for (const std::string& name : names) {
       const SplitName split = split_unit(name);
       const std::optional<Input> input = input_of(split.stem);
       if (!input || !split.unit || split.unit->dimension != quantity(*input).dimension)
         throw app::InputError(unknown(name));
-      for (const auto& [other, si] : columns)
-        if (other == *input)
-          throw app::InputError(fmt::format("'{}': {} is given twice, in two units", name, stem(other)));
-      columns.emplace_back(*input, split.unit->si);
+      if (std::ranges::count(asked, *input))
+        throw app::InputError(fmt::format("'{}': {} is given twice, in two units", name, stem(*input)));
+      asked.push_back(*input);
+      si.push_back(split.unit->si);
     }
     const auto in = inputs.unchecked<2>();
+    std::vector<double> values;
     // As in a case: a value outside what the reader allows is an error, and the first one is named.
     for (py::ssize_t i = 0; i < in.shape(0); ++i)
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const app::Range range = app::limits::of(columns[c].first);
-        if (const double x = in(i, py::ssize_t(c)); !range.contains(x * columns[c].second))
+      for (std::size_t c = 0; c < asked.size(); ++c) {
+        const app::Range range = app::limits::of(asked[c]);
+        const double x = in(i, py::ssize_t(c));
+        values.push_back(x * si[c]);
+        if (!range.contains(values.back()))
           throw app::InputError(
               fmt::format("blow {}: {}: {:g} is {}", i, names[c], x, range.sentence(split_unit(names[c]).unit)));
       }
-    std::vector<Input> asked;
-    for (const auto& [input, si] : columns) asked.push_back(input);
-    std::vector<double> values;
-    for (py::ssize_t i = 0; i < in.shape(0); ++i)
-      for (std::size_t c = 0; c < columns.size(); ++c) values.push_back(in(i, py::ssize_t(c)) * columns[c].second);
     std::vector<models::Answer> launches;
     {
       const py::gil_scoped_release released;
