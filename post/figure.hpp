@@ -15,6 +15,12 @@ struct Series {
   std::string style = "lines";         ///< gnuplot style: lines, points, linespoints, ...
   std::vector<double> error = {};      ///< half-length of a bar in y; empty: none
   int colour = 0;                      ///< 1 to 8, that of a curve which belongs with it; 0: the next in turn
+
+  /// One point more.
+  void add(double at_x, double at_y) {
+    x.push_back(at_x);
+    y.push_back(at_y);
+  }
 };
 
 /// One set of axes. With `map` non-empty it is a coloured map with contour lines, else curves.

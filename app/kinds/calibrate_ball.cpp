@@ -98,13 +98,10 @@ class CalibrateBallJob final : public Job {
       bounce.add(p.speed, p.target, p.restitution, p.contact_time, p.peak_force);
       out.say(fmt::format("{:11.1f} {:10.4f} {:8.4f} {:14.4f} {:11.2f}", p.speed, p.target, p.restitution,
                           1e3 * p.contact_time, 1e-3 * p.peak_force));
-      wanted.x.push_back(p.speed);
-      wanted.y.push_back(p.target);
+      wanted.add(p.speed, p.target);
       wanted.error.push_back(problem_.wall.restitution_sigma);
-      got.x.push_back(p.speed);
-      got.y.push_back(p.restitution);
-      time_got.x.push_back(p.speed);
-      time_got.y.push_back(1e3 * p.contact_time);
+      got.add(p.speed, p.restitution);
+      time_got.add(p.speed, 1e3 * p.contact_time);
     }
     out.page().answer(bounce.shown());
     summary["points"] = bounce.json();
@@ -408,8 +405,8 @@ class CalibrateBallJob final : public Job {
         if (p.seen != seen) continue;
         const models::ObliqueTarget& t = target_of(p);
         const double y = -double(&t - problem_.shots.data());
-        a.x.push_back(off(p.spin_rate, t.spin_rate)), a.y.push_back(y);
-        if (t.ball_speed) b.x.push_back(off(p.ball_speed, *t.ball_speed)), b.y.push_back(y);
+        a.add(off(p.spin_rate, t.spin_rate), y);
+        if (t.ball_speed) b.add(off(p.ball_speed, *t.ball_speed), y);
       }
       if (a.x.empty()) return;
       spin.series.push_back(a);

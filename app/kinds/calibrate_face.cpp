@@ -116,18 +116,16 @@ class CalibrateFaceJob final : public Job {
       for (const Tap& tap : target_.taps) {
         if (tap.*across != 0) continue;
         reach = std::max(reach, std::abs(tap.*along));
-        taps.x.push_back(1e3 * tap.*along);
-        taps.y.push_back(1e6 * tap.time);
+        taps.add(1e3 * tap.*along, 1e6 * tap.time);
         taps.error.push_back(1e6 * target_.tap_sigma);
       }
       if (reach == 0) continue;
       for (int i = -12; i <= 12; ++i) {
         Tap at;
         at.*along = 1.2 * reach * i / 12;
-        line.x.push_back(1e3 * at.*along);
-        line.y.push_back(1e6 * models::characteristic_time(sphere, models::mass_at(head_, -at.toe, at.high), face,
-                                                           face.shape(-at.toe, at.high).value, speeds)
-                                   .time);
+        line.add(1e3 * at.*along, 1e6 * models::characteristic_time(sphere, models::mass_at(head_, -at.toe, at.high),
+                                                                    face, face.shape(-at.toe, at.high).value, speeds)
+                                            .time);
       }
       out.panels.push_back({.x_label = toe ? "towards the toe [mm]" : "up the face [mm]",
                             .y_label = "characteristic time [µs]",

@@ -136,10 +136,8 @@ class FlightLawJob final : public Job {
       post::Series d{.label = label, .style = style}, c = d;
       for (double s = 0.03; s < 0.3005; s += 0.005) {
         const auto k = l.at(re, s);
-        d.x.push_back(s);
-        c.x.push_back(s);
-        d.y.push_back(k.drag);
-        c.y.push_back(k.lift);
+        d.add(s, k.drag);
+        c.add(s, k.lift);
       }
       drag.series.push_back(d);
       lift.series.push_back(c);
@@ -281,20 +279,16 @@ class FlightLawJob final : public Job {
       post::Series radar{.label = drawn == 1 ? "radar" : "", .style = "points"},
           radar_above = radar, line{.label = drawn == 1 ? "computed" : ""}, line_above = line;
       for (const Vec3& x : held[i].positions) {
-        radar.x.push_back(x.x());
-        radar.y.push_back(x.z());
-        radar_above.x.push_back(x.x());
-        radar_above.y.push_back(-x.y());
+        radar.add(x.x(), x.z());
+        radar_above.add(x.x(), -x.y());
       }
       const models::Flight f = models::fly(models::launched(held[i].launch, shots.shots[i]), data_.model.ball,
                                            models::conditions_of(held[i], data_.model, found.law, shots.shots[i],
                                                                  shots.winds[std::size_t(held[i].group)]),
                                            {.sample = 0.1});
       for (const models::FlightPoint& p : f.path) {
-        line.x.push_back(p.position.x());
-        line.y.push_back(p.position.z());
-        line_above.x.push_back(p.position.x());
-        line_above.y.push_back(-p.position.y());
+        line.add(p.position.x(), p.position.z());
+        line_above.add(p.position.x(), -p.position.y());
       }
       side.series.insert(side.series.end(), {radar, line});
       above.series.insert(above.series.end(), {radar_above, line_above});
@@ -324,16 +318,14 @@ class FlightLawJob final : public Job {
       };
       const auto group = std::size_t(held[i].group);
       post::Series& of = flights[i]->spin_tracked ? tracked : estimated;
-      of.x.push_back(held[i].launch.spin_rate() * data_.model.ball.radius / held[i].launch.ball_speed());
-      of.y.push_back(fly(none, found.winds[group]).carry - flights[i]->carry);
+      of.add(held[i].launch.spin_rate() * data_.model.ball.radius / held[i].launch.ball_speed(),
+             fly(none, found.winds[group]).carry - flights[i]->carry);
       const models::Flight f = fly(shots.shots[i], shots.winds[group]);
       const auto forward = [](double carry, double across) {
         return std::sqrt(std::max(0.0, carry * carry - across * across));
       };
-      radar.x.push_back(flights[i]->side);
-      radar.y.push_back(forward(flights[i]->carry, flights[i]->side));
-      computed.x.push_back(f.side);
-      computed.y.push_back(forward(f.carry, f.side));
+      radar.add(flights[i]->side, forward(flights[i]->carry, flights[i]->side));
+      computed.add(f.side, forward(f.carry, f.side));
     }
     by_spin.series = {tracked, estimated};
     fairway.series = {radar, computed};

@@ -205,13 +205,12 @@ class IdentifyJob final : public Job {
       post::Panel panel{.title = is_lead ? "lead" : "droop", .x_label = "time [s]", .y_label = "deflection [mm]"};
       post::Series measured{.label = "measured", .style = "points"};
       for (std::size_t i = 0; i < swing.times.size(); ++i)
-        if (swing.times[i] > end - 0.6)
-          measured.x.push_back(swing.times[i]), measured.y.push_back(1e3 * (is_lead ? swing.lead : swing.droop)[i]);
+        if (swing.times[i] > end - 0.6) measured.add(swing.times[i], 1e3 * (is_lead ? swing.lead : swing.droop)[i]);
       panel.series.push_back(measured);
       for (const auto& [label, samples] : {std::pair{"nominal", &nominal}, {"identified", &identified}}) {
         post::Series line{.label = label};
         for (const auto& s : *samples)
-          if (s.time > end - 0.6) line.x.push_back(s.time), line.y.push_back(1e3 * (is_lead ? s.lead : s.droop));
+          if (s.time > end - 0.6) line.add(s.time, 1e3 * (is_lead ? s.lead : s.droop));
         panel.series.push_back(line);
       }
       figure.panels.push_back(panel);

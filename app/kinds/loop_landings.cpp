@@ -111,7 +111,7 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
     const post::Scatter scatter(std::move(c.landed));
     if (flew <= most_points) {
       post::Series balls{.label = c.name, .style = "points", .colour = colour};
-      for (const auto& p : scatter.at) balls.x.push_back(p.x()), balls.y.push_back(p.y());
+      for (const auto& p : scatter.at) balls.add(p.x(), p.y());
       panel.series.push_back(std::move(balls));
     }
     if (scatter.at.size() < 3) continue;

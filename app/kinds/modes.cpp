@@ -73,8 +73,7 @@ class ModesJob final : public Job {
         list.push_back({{"frequency_Hz", omega / (2 * kPi)}, {"eta", omega / unit}});
         table.rows.push_back({name, fmt::format("{:.3f}", omega / (2 * kPi)), fmt::format("{:.6f}", omega / unit)});
         post::Series& level = name == kTorsion ? twist : ring;
-        level.x.push_back(m);
-        level.y.push_back(1e-3 * omega / (2 * kPi));
+        level.add(m, 1e-3 * omega / (2 * kPi));
         csv += fmt::format("{},{},{:.9g},{:.9g}\n", name, m, omega / (2 * kPi), omega / unit);
       }
       if (!list.empty())

@@ -392,12 +392,8 @@ class PlateFaceJob final : public PointJob {
                              (1 - s) * grid_.high_at(a) + s * grid_.high_at(b));
       }
       for (std::size_t k = 0; k + 1 < crossed.size(); k += 2) {
-        for (const Vector2d& at : {crossed[k], crossed[k + 1]}) {
-          line.x.push_back(1e3 * at.x());
-          line.y.push_back(1e3 * at.y());
-        }
-        line.x.push_back(std::nan(""));  // the pen is lifted
-        line.y.push_back(std::nan(""));
+        for (const Vector2d& at : {crossed[k], crossed[k + 1]}) line.add(1e3 * at.x(), 1e3 * at.y());
+        line.add(std::nan(""), std::nan(""));  // the pen is lifted
       }
     }
     if (!line.x.empty()) panel.series.push_back(line);

@@ -111,8 +111,8 @@ class ShaftModesJob final : public Job {
       return {};
     post::Series s;
     for (std::size_t n = 0; n < beam.nodes().size(); ++n) {
-      s.x.push_back(1e3 * (beam.line()[n].arc_length + clamped_));
-      s.y.push_back(across.row(Eigen::Index(n)).dot(across.row(at)) / (largest * largest));
+      s.add(1e3 * (beam.line()[n].arc_length + clamped_),
+            across.row(Eigen::Index(n)).dot(across.row(at)) / (largest * largest));
     }
     return s;
   }

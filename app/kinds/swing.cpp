@@ -62,12 +62,9 @@ class SwingJob final : public Job {
       // The wrench in grip axes, as [@shaft-influence] shows it.
       const Vec3 force = s.grip.rotation.conjugate() * s.force;
       table.add(s.time, 1e3 * s.lead, 1e3 * s.droop, degrees(s.twist.z()), s.head.velocity.norm(), force, s.moment);
-      lead.x.push_back(s.time);
-      lead.y.push_back(1e3 * s.lead);
-      droop.x.push_back(s.time);
-      droop.y.push_back(1e3 * s.droop);
-      speed.x.push_back(s.time);
-      speed.y.push_back(s.head.velocity.norm());
+      lead.add(s.time, 1e3 * s.lead);
+      droop.add(s.time, 1e3 * s.droop);
+      speed.add(s.time, s.head.velocity.norm());
       if (std::abs(s.lead) > std::abs(peak_lead)) peak_lead = s.lead;
       if (std::abs(s.droop) > std::abs(peak_droop)) peak_droop = s.droop;
     }

@@ -488,8 +488,7 @@ class TuneJob final : public Job {
                                      {"after", to_json(a)}});
         post::Series cloud{.label = fmt::format("{} {:.3g} +- {:.3g}", set, a.mean, a.sd), .style = "points"};
         for (std::size_t i = 0; i < rows->size(); ++i) {
-          cloud.x.push_back(measured_[(*rows)[i]][c] / channels_[c].si);
-          cloud.y.push_back(error((*rows)[i], c, model_after[i]));
+          cloud.add(measured_[(*rows)[i]][c] / channels_[c].si, error((*rows)[i], c, model_after[i]));
         }
         figure.panels[c].series.push_back(cloud);
       }

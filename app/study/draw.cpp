@@ -119,7 +119,7 @@ post::Series measured_at(const StudyTable& table, std::size_t output, F x) {
   post::Series s{.label = "measured", .style = "points"};
   for (std::size_t d = 0; d < table.design.size(); ++d)
     if (const auto seen = table.seen(d, output))
-      for (const double y : {seen->low, seen->high}) s.x.push_back(x(d)), s.y.push_back(y);
+      for (const double y : {seen->low, seen->high}) s.add(x(d), y);
   return s;
 }
 
@@ -239,7 +239,7 @@ post::Figure bars(const StudyTable& table, const std::string& title, const std::
     for (std::size_t m = 0; m < table.models.size(); ++m) {
       post::Series s{.label = table.one_model(m) ? table.models[m] : "answer", .style = "points"};
       for (std::size_t d = 0; d < names.size(); ++d)
-        if (const double y = table.at(m, o).y[d]; std::isfinite(y)) s.x.push_back(y), s.y.push_back(-double(d));
+        if (const double y = table.at(m, o).y[d]; std::isfinite(y)) s.add(y, -double(d));
       panel.series.push_back(std::move(s));
     }
     post::Series measured = measured_at(table, o, [](std::size_t d) { return -double(d); });

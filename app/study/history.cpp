@@ -49,11 +49,9 @@ void report_histories(Output& out, const StudyTable& table, const std::vector<nl
       for (const nlohmann::json& s : points[point]["history"]) {
         const double time = 1e3 * s.at(0).get<double>(), normal = s.at(1).get<double>(), along = s.at(2).get<double>();
         histories.add(point, table.model_of(point), table.design.cells(d), time, normal, along);
-        line.x.push_back(time);
-        line.y.push_back(1e-3 * along);
+        line.add(time, 1e-3 * along);
         if (normal <= 1) continue;  // [N]: nothing over nothing
-        share.x.push_back(time);
-        share.y.push_back(along / normal);
+        share.add(time, along / normal);
       }
       tangential.series.push_back(std::move(line));
       ratio.series.push_back(std::move(share));

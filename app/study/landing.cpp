@@ -110,7 +110,7 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     out.say(said);
     out.page().sentence(said);
     post::Series balls{.label = "a ball", .style = "points"};
-    for (const Vector2d& p : all.at) balls.x.push_back(p.x()), balls.y.push_back(p.y());
+    for (const Vector2d& p : all.at) balls.add(p.x(), p.y());
     const double reach = 2.6 * sd.y();  // a little beyond the larger ellipse
     post::Panel panel{.title = table.models.size() > 1 ? name : "",
                       .x_label = fmt::format("side, to the right [{}]", m),

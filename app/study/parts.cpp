@@ -163,8 +163,7 @@ class PartsReport {
           const StudySeries::Spread s = difference(part, model, o, places_[p]).spread();
           mean.push_back(s.mean);
           if (p / std::size_t(grid.columns) != std::size_t(middle)) continue;
-          line.x.push_back(1e3 * grid.toe_at(p));
-          line.y.push_back((s.low + s.high) / 2);
+          line.add(1e3 * grid.toe_at(p), (s.low + s.high) / 2);
           line.error.push_back((s.high - s.low) / 2);
         }
         const std::string what = part.name + ": " + name.substr(0, name.size() - unit.size());

@@ -84,8 +84,7 @@ post::Series distribution(const Side& side, const std::string& label) {
   constexpr int steps = 100;
   for (int k = 0; k <= steps; ++k) {
     const double share = double(k) / steps;
-    s.x.push_back(quantile(side.ordered(), share));
-    s.y.push_back(100 * share);
+    s.add(quantile(side.ordered(), share), 100 * share);
   }
   return s;
 }
@@ -93,7 +92,7 @@ post::Series distribution(const Side& side, const std::string& label) {
 post::Series cloud(const Side& side, const std::string& label) {
   post::Series s{.label = label, .style = "points"};
   const std::size_t step = std::max<std::size_t>(1, side.y().size() / kMostMarks);
-  for (std::size_t i = 0; i < side.y().size(); i += step) s.x.push_back(side.x()[i]), s.y.push_back(side.y()[i]);
+  for (std::size_t i = 0; i < side.y().size(); i += step) s.add(side.x()[i], side.y()[i]);
   return s;
 }
 
