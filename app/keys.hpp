@@ -1,7 +1,6 @@
 /// The keys of a case, as the reader declares them: what `hosel keys` prints and docs/reference.md holds.
 #pragma once
 
-#include <map>
 #include <set>
 #include <string>
 #include <string_view>

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <string>
 #include <system_error>
-#include <utility>
 
 namespace hosel::app {
 

@@ -4,14 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <toml++/toml.h>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
 
-#include "app/sweep_store.hpp"
 #include "app/version.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "post/file.hpp"

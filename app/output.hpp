@@ -1,7 +1,6 @@
 /// The output directory of one run, its log, and what a person sees while it works.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>

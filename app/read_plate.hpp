@@ -1,7 +1,6 @@
 /// `[face.plate]`: a face with a thickness.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "app/reader.hpp"

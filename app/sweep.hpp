@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "app/kinds/loop_common.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_markers.hpp"

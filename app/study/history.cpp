@@ -1,7 +1,5 @@
 #include "app/study/history.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "app/read_sheet.hpp"
 #include "app/study/compare.hpp"

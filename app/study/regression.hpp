@@ -3,7 +3,6 @@
 ///     [regression]   shots, first_shot, last_shot, of, on
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>

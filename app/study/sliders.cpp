@@ -1,6 +1,5 @@
 #include "app/study/sliders.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "post/labels.hpp"

@@ -1,7 +1,6 @@
 // What the command says of itself, and what it does with finished runs.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "app/cases.hpp"

@@ -15,7 +15,6 @@
 #include <vtkXMLUtilities.h>
 
 #include <Eigen/Core>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 

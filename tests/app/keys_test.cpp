@@ -1,10 +1,8 @@
 // The key reference covers what the reader accepts, and docs/reference.md is what the reader says now.
 #include "app/keys.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <regex>
 

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <vector>
 
 #include "build_info.hpp"
 #include "golf/vector.hpp"
