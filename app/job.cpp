@@ -88,14 +88,12 @@ std::span<const Kind> kinds() { return kKinds; }
 
 std::unique_ptr<Job> read_job(CaseFile& file) {
   Table root = file.root();
-  std::vector<std::string> names;
-  for (const Kind& k : kKinds) names.emplace_back(k.name);
   root.text({"title", "of tables, pages and figures"}, "");
   if (root.has("kind"))
     for (const FormerKind& f : kFormerKinds)
       if (root.text({"kind", "what the case does (`hosel list`)"}, "impact") == f.name)
         root.fail("kind", fmt::format("'{}' is now 'study': {} (docs/how-to.md)", f.name, f.now));
-  const std::string wanted = root.choice({"kind", "what the case does (`hosel list`)"}, names, "impact");
+  const std::string wanted = root.choice({"kind", "what the case does (`hosel list`)"}, names_in(kKinds), "impact");
   for (const Kind& k : kKinds)
     if (k.name == wanted) {
       auto job = k.read(file);

@@ -197,8 +197,7 @@ std::vector<AcceptedKey> accepted_keys() {
 }
 
 std::string keys_text(const std::vector<AcceptedKey>& keys, std::string_view of) {
-  std::vector<std::string> names;
-  for (const Kind& kind : kinds()) names.emplace_back(kind.name);
+  std::vector<std::string> names = names_in(kinds());
   const bool kind = std::ranges::find(names, of) != names.end();
   std::string out;
   for (const Section& s : by_table(keys)) {

@@ -360,8 +360,7 @@ std::optional<NamedContact> named_contact(Table root) {
   if (!model) return {};
   const std::vector<NamedContact> sets = library_ball(*model).reduced;
   if (sets.empty()) return {};
-  std::vector<std::string> names;
-  for (const NamedContact& s : sets) names.push_back(s.name);
+  const std::vector<std::string> names = names_in(sets);
   if (ball->has("reduced")) {
     const std::string wanted =
         ball->choice({"reduced", "which of the ball's sets of parameters the reduced models take"}, names);

@@ -11,9 +11,6 @@
 #include "models/registry.hpp"
 
 namespace hosel::app {
-namespace {
-constexpr double kInf = limits::inf;
-}
 
 Range limits::of(Input input) {
   switch (input) {
@@ -42,31 +39,30 @@ Ball read_ball(Table table) {
 }
 
 Head read_head(Table table, bool whole) {
-  const std::optional<std::string> name = named_entry(table, "name", Shelf::heads);
   std::optional<HeadEntry> named;
-  if (name) named = library_head(*name);
-  return read_head_values(table, whole, named ? std::optional(named->head) : std::nullopt);
+  if (const auto name = named_entry(table, "name", Shelf::heads)) named = library_head(*name);
+  return read_head_values(table, whole, standard_of(named, &HeadEntry::head));
 }
 
 Head read_head_values(Table table, bool whole, const std::optional<Head>& named) {
   Head head;
   table.decided_by("head.name");
   head.mass = table.quantity({"mass", "of the clubhead; inf is a head that no blow moves"}, "kg", limits::head_mass,
-                             named ? std::optional(named->mass) : std::nullopt);
+                             standard_of(named, &Head::mass));
   head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
-                                   limits::face_radius, named ? named->face.bulge : kInf);
+                                   limits::face_radius, named ? named->face.bulge : limits::inf);
   head.face.roll = table.quantity({"roll", "radius of the face's curvature up the face; inf is flat"}, "mm",
-                                  limits::face_radius, named ? named->face.roll : kInf);
+                                  limits::face_radius, named ? named->face.roll : limits::inf);
   const bool needed = whole && std::isfinite(head.mass);
   const bool given = table.has_quantity("inertia") || table.has_quantity("cg") || named;
   if (!needed && !given) {
-    if (std::isfinite(head.mass)) head.inertia = kInf * Mat3::Identity();
+    if (std::isfinite(head.mass)) head.inertia = limits::inf * Mat3::Identity();
     return head;
   }
   head.cg = table.vector({"cg", "centre of gravity in the face frame (Xc out of the face, Yc to the heel, Zc up)"},
-                         "mm", limits::head_place, named ? std::optional(named->cg) : std::nullopt);
+                         "mm", limits::head_place, standard_of(named, &Head::cg));
   head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2",
-                              named ? std::optional(named->inertia) : std::nullopt);
+                              standard_of(named, &Head::inertia));
   auto faults = head.faults();
   if (std::isfinite(head.mass) && faults.empty()) {
     const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
@@ -119,27 +115,26 @@ Delivery read_delivery(Table table, double loft) {
 }
 
 ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standard) {
-  const auto value = [&](double ContactLaw::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   ContactLaw law;
   table.decided_by("contact.name or ball.model");
   law.restitution = table.number({"restitution", "normal coefficient of restitution at 0 m/s approach speed"},
                                  Range{0, 1}.because("above 1 the blow creates energy"),
-                                 value(&ContactLaw::restitution));
+                                 standard_of(standard, &ContactLaw::restitution));
   law.restitution_slope = table.quantity({"restitution_slope", "change of restitution with approach speed"}, "s_per_m",
-                                         {-0.1, 0.1}, value(&ContactLaw::restitution_slope));
+                                         {-0.1, 0.1}, standard_of(standard, &ContactLaw::restitution_slope));
   law.restitution_falloff = table.number(
       {"restitution_falloff_per_m2", "fall of restitution with the squared distance from the face's centre"},
       {-1e4, 1e4}, standard ? standard->restitution_falloff : 0);
   law.tangential_restitution =
       table.number({"tangential_restitution",
                     "minus the contact point's tangential velocity after over before: 0 rolls, 1 returns everything"},
-                   {-1, 1}, value(&ContactLaw::tangential_restitution));
-  law.friction =
-      table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, kInf}, value(&ContactLaw::friction));
+                   {-1, 1}, standard_of(standard, &ContactLaw::tangential_restitution));
+  law.friction = table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, limits::inf},
+                              standard_of(standard, &ContactLaw::friction));
   law.normal_force_offset =
       table.number({"normal_force_offset",
                     "the normal impulse passes this far above the ball's centre, over its radius; positive adds spin"},
-                   {-0.5, 0.5}, value(&ContactLaw::normal_force_offset));
+                   {-0.5, 0.5}, standard_of(standard, &ContactLaw::normal_force_offset));
   return law;
 }
 
@@ -164,15 +159,14 @@ Delivery read_delivery_of(Table root) {
 }
 
 std::vector<std::string> read_models(Table root) {
-  std::vector<std::string> known;
-  for (const auto& m : models::registry()) known.emplace_back(m.name);
   std::vector<std::string> wanted =
       root.texts({"models", "the models that answer (`hosel list`); a study without them follows the stated [launch]"});
   if (wanted.empty()) root.fail("models", "name at least one model");
   for (const std::string& m : wanted) {
     if (std::ranges::count(wanted, m) > 1) root.fail("models", fmt::format("'{}' is there twice", m));
     if (!models::find(m))
-      root.fail("models", fmt::format("no model '{}'{}", m, or_nearest(m, known, "; `hosel list` shows them")));
+      root.fail("models", fmt::format("no model '{}'{}", m,
+                                      or_nearest(m, names_in(models::registry()), "; `hosel list` shows them")));
   }
   return wanted;
 }

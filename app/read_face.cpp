@@ -5,15 +5,12 @@
 namespace hosel::app {
 
 FaceCompliance read_compliance(Table table, const std::optional<FaceCompliance>& named) {
-  const auto standard = [&](double FaceCompliance::*value) {
-    return named ? std::optional((*named).*value) : std::nullopt;
-  };
   FaceCompliance face;
   table.decided_by("face.name");
   face.mass = table.quantity({"effective_mass", "of the face's mode, at its centre; part of the head's mass"}, "g",
-                             {1e-4, 0.1}, standard(&FaceCompliance::mass));
+                             {1e-4, 0.1}, standard_of(named, &FaceCompliance::mass));
   face.stiffness = table.quantity({"stiffness", "at the centre of the face"}, "N_per_m", {1e5, 1e12},
-                                  standard(&FaceCompliance::stiffness));
+                                  standard_of(named, &FaceCompliance::stiffness));
   face.damping =
       table.quantity({"damping", "at the centre of the face"}, "N_s_per_m", {0, 1e4}, named ? named->damping : 0.0);
   constexpr double kNoEnd = std::numeric_limits<double>::infinity();

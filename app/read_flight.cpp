@@ -33,9 +33,8 @@ models::TableLaw read_coefficients(Table& table) {
 
 models::FlightLaw published(Table& table, std::string_view key, const std::string& name) {
   if (const auto* entry = models::find_flight_law(name)) return entry->make();
-  std::vector<std::string> known;
-  for (const auto& l : models::flight_laws()) known.emplace_back(l.name);
-  table.fail(key, fmt::format("no flight law '{}'{}", name, or_nearest(name, known, "; `hosel list` shows them")));
+  table.fail(key, fmt::format("no flight law '{}'{}", name,
+                              or_nearest(name, names_in(models::flight_laws()), "; `hosel list` shows them")));
 }
 
 models::FlightLaw read_law(Table& table) {
@@ -236,10 +235,6 @@ std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::o
   return {};
 }
 
-models::FlightBudget FlightSetup::budget(const Launch& launch, const Ball& ball) const {
-  return models::flight_budget(launch, ball, conditions, options, errors, others);
-}
-
 nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
                              const Ball& ball, post::Table* by_law, bool draw) {
   constexpr double sample = 0.05;  // [s]
@@ -265,7 +260,8 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
       by_law->more(shot.flight.outside);
     }
   }
-  const models::FlightBudget budget = setup.budget(launch, ball);
+  const models::FlightBudget budget =
+      models::flight_budget(launch, ball, setup.conditions, setup.options, setup.errors, setup.others);
   const std::string how =
       fmt::format("{}, {} in air of {:.4f} kg/m^3", name, setup.conditions.law.name, setup.conditions.air.density);
   out.say(fmt::format("\n{}:", how));

@@ -21,7 +21,6 @@ struct FlightSetup {
   /// Distances in the unit that was asked for on the command line, if one was.
   void show_in(const Output& out);
   post::ShotFlight follow(const Launch& launch, const Ball& ball, double sample = 0) const;
-  models::FlightBudget budget(const Launch& launch, const Ball& ball) const;
 };
 
 /// Density, or the weather that makes it.

@@ -71,9 +71,7 @@ models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchF
                        {0, 5}),
         contact.quantity({"face_slip_distance", "slip over which friction falls from static to sliding by 1 - 1/e"},
                          "um", Range::positive())};
-  std::vector<std::string> methods;
-  for (const fem::NamedContactMethod& method : fem::contact_methods()) methods.push_back(method.name);
-  o.method = contact.choice({"method", "how ball and face are kept apart"}, methods, o.method);
+  o.method = contact.choice({"method", "how ball and face are kept apart"}, names_in(fem::contact_methods()), o.method);
   if (fem::contact_method(o.method)->reaches_penetration)
     o.penetration = contact.number({"penetration", "that a time step may leave, over the ball's radius"}, {1e-9, 1e-2},
                                    o.penetration);
@@ -177,39 +175,40 @@ post::RecorderOptions read_recorder(Table root) {
 models::VolumetricLaw read_volumetric_law(Table table, const std::optional<models::VolumetricLaw>& standard) {
   using Law = models::VolumetricLaw;
   const Range positive = Range::positive(), some = Range::non_negative();
-  const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   Law law;
   table.decided_by("published or contact.name or ball.model");
   law.stiffness = table.quantity({"stiffness", "volumetric stiffness: normal force per overlapping volume"}, "N_per_m3",
-                                 positive, value(&Law::stiffness));
-  law.damping =
-      table.quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", some, value(&Law::damping));
-  law.friction = table.number({"friction", "sliding friction coefficient"}, some, value(&Law::friction));
+                                 positive, standard_of(standard, &Law::stiffness));
+  law.damping = table.quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", some,
+                               standard_of(standard, &Law::damping));
+  law.friction =
+      table.number({"friction", "sliding friction coefficient"}, some, standard_of(standard, &Law::friction));
   law.static_friction = table.number({"static_friction", "coefficient at vanishing slip"}, some, law.friction);
   law.transition_speed = table.quantity({"transition_speed", "slip speed at which friction is fully developed"}, "mps",
-                                        positive, value(&Law::transition_speed));
+                                        positive, standard_of(standard, &Law::transition_speed));
   law.joint_stiffness = table.quantity({"joint_stiffness", "torsional spring between core and cover"}, "N_m_per_rad",
-                                       some, value(&Law::joint_stiffness));
+                                       some, standard_of(standard, &Law::joint_stiffness));
   law.joint_damping = table.quantity({"joint_damping", "torsional damper between core and cover"}, "N_m_s_per_rad",
-                                     some, value(&Law::joint_damping));
+                                     some, standard_of(standard, &Law::joint_damping));
   law.cover_thickness = table.quantity({"cover_thickness", "of the cover that turns against the core"}, "mm", positive,
-                                       value(&Law::cover_thickness));
+                                       standard_of(standard, &Law::cover_thickness));
   law.volume_exponent = table.number({"volume_exponent", "power of the overlapping volume in the normal force"},
-                                     {0.5, 1.5}, value(&Law::volume_exponent));
+                                     {0.5, 1.5}, standard_of(standard, &Law::volume_exponent));
   return law;
 }
 
 models::HertzMawLaw read_hertz_maw_law(Table table, const std::optional<models::HertzMawLaw>& standard) {
   using Law = models::HertzMawLaw;
-  const auto value = [&](double Law::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   Law law;
   table.decided_by("contact.name or ball.model");
-  law.modulus =
-      table.quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(), value(&Law::modulus));
-  law.poisson = table.number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, value(&Law::poisson));
-  law.friction = table.number({"friction", "Coulomb coefficient"}, Range::non_negative(), value(&Law::friction));
+  law.modulus = table.quantity({"modulus", "Young's modulus of the ball"}, "MPa", Range::positive(),
+                               standard_of(standard, &Law::modulus));
+  law.poisson =
+      table.number({"poisson", "Poisson's ratio of the ball"}, {0, 0.5}, standard_of(standard, &Law::poisson));
+  law.friction =
+      table.number({"friction", "Coulomb coefficient"}, Range::non_negative(), standard_of(standard, &Law::friction));
   law.damping = table.quantity({"damping", "of the normal force, per approach speed"}, "s_per_m", Range::non_negative(),
-                               value(&Law::damping));
+                               standard_of(standard, &Law::damping));
   return law;
 }
 

@@ -135,14 +135,12 @@ fem::PlateMaterial read_material(Table& t) {
   std::optional<fem::PlateMaterial> named;
   if (name == "titanium") named = fem::PlateMaterial{114e9, 0.34, 4430};
   if (name == "maraging-steel") named = fem::PlateMaterial{190e9, 0.30, 8000};
-  const auto standard = [&](double fem::PlateMaterial::*x) {
-    return named ? std::optional((*named).*x) : std::nullopt;
-  };
   fem::PlateMaterial out;
-  out.young = t.quantity({"young", "Young's modulus"}, "GPa", {1e9, 1e12}, standard(&fem::PlateMaterial::young));
-  out.poisson = t.number({"poisson", "Poisson's ratio"}, {0, 0.49}, standard(&fem::PlateMaterial::poisson));
-  out.density =
-      t.quantity({"density", "of the face"}, "kg_per_m3", {500, 2.5e4}, standard(&fem::PlateMaterial::density));
+  out.young =
+      t.quantity({"young", "Young's modulus"}, "GPa", {1e9, 1e12}, standard_of(named, &fem::PlateMaterial::young));
+  out.poisson = t.number({"poisson", "Poisson's ratio"}, {0, 0.49}, standard_of(named, &fem::PlateMaterial::poisson));
+  out.density = t.quantity({"density", "of the face"}, "kg_per_m3", {500, 2.5e4},
+                           standard_of(named, &fem::PlateMaterial::density));
   return out;
 }
 

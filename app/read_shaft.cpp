@@ -15,9 +15,7 @@ namespace hosel::app {
 namespace {
 
 Shaft by_name(Table& table) {
-  std::vector<std::string> names;
-  for (const NamedShaft& s : shaft_library()) names.emplace_back(s.name);
-  const std::string wanted = table.choice({"name", "a shaft of the library (`hosel list`)"}, names);
+  const std::string wanted = table.choice({"name", "a shaft of the library (`hosel list`)"}, names_in(shaft_library()));
   for (const NamedShaft& s : shaft_library())
     if (s.name == wanted) return s.make();
   return {};
@@ -202,16 +200,15 @@ Shaft read_shaft(Table table) {
 }
 
 HoselPlace read_hosel(Table table, const std::optional<HoselPlace>& standard) {
-  const auto value = [&](double HoselPlace::*x) { return standard ? std::optional((*standard).*x) : std::nullopt; };
   HoselPlace at;
   table.decided_by("head.name");
   at.position = table.vector({"position", "the hosel (where the shaft's axis enters the head) in the face frame"}, "mm",
-                             limits::head_place, standard ? std::optional(standard->position) : std::nullopt);
+                             limits::head_place, standard_of(standard, &HoselPlace::position));
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
   at.lie = table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
-                          {0, kPi / 2}, value(&HoselPlace::lie));
-  at.lean =
-      table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2}, value(&HoselPlace::lean));
+                          {0, kPi / 2}, standard_of(standard, &HoselPlace::lie));
+  at.lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2},
+                           standard_of(standard, &HoselPlace::lean));
   return at;
 }
 

@@ -102,9 +102,8 @@ void read_temperature(Table& table, std::span<fem::Solid* const> solids) {
 fem::Solid read_solid(Table table) {
   const double density =
       table.quantity({"density", "of the unstrained material"}, "kg_per_m3", Range::positive(), 1129.0);
-  std::vector<std::string> names;
-  for (const NamedLaw& l : kLaws) names.emplace_back(l.name);
-  const std::string name = table.choice({"law", "stored energy of the long-term response"}, names, "neo-hooke");
+  const std::string name =
+      table.choice({"law", "stored energy of the long-term response"}, names_in(kLaws), "neo-hooke");
   const auto law = std::ranges::find(kLaws, name, &NamedLaw::name);
   fem::Solid solid{.elastic = law->read(table), .branches = {}, .density = density};
   const auto moduli = table.quantities({"branch_moduli", "shear moduli of the Maxwell branches of the Prony series"},

@@ -78,7 +78,6 @@ struct Declared {
 
 namespace detail {
 struct Document;
-struct Node;
 }  // namespace detail
 
 /// A table of the case file. Reading a key marks it as known and echoes it, defaults included, into
@@ -218,6 +217,19 @@ class CaseFile {
 
 /// The word of `candidates` nearest in spelling, or empty where none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// The names of what may be chosen, entry by entry.
+std::vector<std::string> names_in(const auto& entries) {
+  std::vector<std::string> out;
+  for (const auto& entry : entries) out.emplace_back(entry.name);
+  return out;
+}
+
+/// A default of a key: that member of what may not be there.
+template <class Entry, class Value>
+std::optional<Value> standard_of(const std::optional<Entry>& entry, Value Entry::*member) {
+  return entry ? std::optional<Value>((*entry).*member) : std::nullopt;
+}
 
 /// "; did you mean 'NAME'?" with the nearest of them, else `otherwise`.
 std::string or_nearest(std::string_view word, const std::vector<std::string>& candidates,

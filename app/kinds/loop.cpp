@@ -31,9 +31,7 @@ class LoopJob final : public Job {
     Table root = file.root();
     read_loop_case(root, case_, [](const loop::EffectEntry& e) { return e.on_shots != nullptr; });
     Table model = root.table("model");
-    std::vector<std::string> names;
-    for (const auto& m : models::registry()) names.emplace_back(m.name);
-    model.choice({"base", "the model whose missing effect is sought"}, names);
+    model.choice({"base", "the model whose missing effect is sought"}, names_in(models::registry()));
     const bool fe = case_.base.starts_with("fe-");
     std::optional<Shaft> shaft;
     if (auto table = root.optional_table("shaft")) shaft = read_shaft(*table);
@@ -156,7 +154,7 @@ class LoopJob final : public Job {
     Head head;
     table.decided_by("head.name");
     head.mass = case_.head_mass_declared ? table.quantity({"mass", "of the clubhead"}, "kg", Range::positive(),
-                                                          named ? std::optional(named->mass) : std::nullopt)
+                                                          standard_of(named, &Head::mass))
                                          : 0.2;
     head.face.bulge = table.quantity({"bulge", "radius of the face's curvature from heel to toe; inf is flat"}, "mm",
                                      {0.01, inf}, named ? named->face.bulge : inf);
@@ -167,10 +165,9 @@ class LoopJob final : public Job {
       head.inertia = inf * Mat3::Identity();
       return head;
     }
-    head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm",
-                           named ? std::optional(named->cg) : std::nullopt);
+    head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm", standard_of(named, &Head::cg));
     head.inertia = table.matrix({"inertia", "inertia tensor about the centre of gravity, face frame"}, "kg_m2",
-                                named ? std::optional(named->inertia) : std::nullopt);
+                                standard_of(named, &Head::inertia));
     // A tensor that no body quite can have still gives an answer, and effects may be asked about it: said, not refused.
     const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Mat3>(head.inertia).eigenvalues();
     const auto faults = head.faults();

@@ -82,9 +82,7 @@ class TuneJob final : public Job {
  public:
   explicit TuneJob(CaseFile& file) {
     Table root = file.root();
-    std::vector<std::string> names;
-    for (const auto& m : models::registry()) names.emplace_back(m.name);
-    model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names);
+    model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names_in(models::registry()));
     blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     blow_.contact = read_contact(root, {model_});
@@ -140,8 +138,7 @@ class TuneJob final : public Job {
     train_fraction_ = split.number({"train_fraction", "share of the rows that is fitted"}, {0.05, 1}, 0.6667);
     seed_ = unsigned(split.integer({"seed", "of the split and the starts"}, 0, 1L << 31, 1));
 
-    std::vector<std::string> parameters;
-    for (const auto& p : models::parameters()) parameters.emplace_back(p.name);
+    const std::vector<std::string> parameters = names_in(models::parameters());
     for (Table t : root.tables("parameters")) {
       Free f{models::find_parameter(t.choice({"name", "the parameter that is tuned"}, parameters)), 0, {}};
       t.decided_by("name");
