@@ -336,10 +336,6 @@ void refuse(Table& table, std::string_view key, const std::string& called, const
     table.fail(key, fmt::format("'{}' {}: `extrapolate = true` beside its name uses it all the same", called, text));
 }
 
-}  // namespace
-
-namespace {
-
 /// The face that the case or its head names; empty where neither does.
 std::string face_name(Table root) {
   if (auto face = root.optional_table("face"); face && !face->keys().empty())

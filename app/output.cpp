@@ -30,7 +30,6 @@ struct Progress::State {
   std::string what;
   bool quiet, terminal;
   Clock::time_point start = Clock::now(), shown = start;
-  double shown_done = 0;
   bool open = true;
   std::mutex mutex;
 };
@@ -74,7 +73,6 @@ void Progress::update(double done, std::string_view note) {
   }
   std::fflush(stderr);
   s.shown = now;
-  s.shown_done = done;
 }
 
 void Progress::finish(std::string_view note) {

@@ -38,6 +38,11 @@ Ball read_ball(Table table) {
   return ball;
 }
 
+Ball read_optional_ball(Table root) {
+  if (auto ball = root.optional_table("ball")) return read_ball(*ball);
+  return {};
+}
+
 Head read_head(Table table, bool whole) {
   std::optional<HeadEntry> named;
   if (const auto name = named_entry(table, "name", Shelf::heads)) named = library_head(*name);
@@ -173,7 +178,7 @@ std::vector<std::string> read_models(Table root) {
 
 Blow read_blow(Table root, const std::vector<std::string>& models) {
   Blow blow;
-  blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+  blow.ball = read_optional_ball(root);
   const bool whole = std::ranges::any_of(models, [](const std::string& m) { return m != "rigid-planar"; });
   blow.club.head = read_head(root.table("head"), whole);
   blow.delivery = read_delivery_of(root);

@@ -32,6 +32,8 @@ inline constexpr Range face_radius = Range{0.01, 1e4}.or_infinite().because("inf
 
 /// `[ball]`: mass, radius and inertia, by default those of the library's `model` where it is named.
 Ball read_ball(Table table);
+/// `[ball]` of a case, a usual ball without it.
+Ball read_optional_ball(Table root);
 /// `[head]`: `name` of the library, single values of it replaced; without one all that is needed is required.
 /// `mass_kg = inf` is a rigid wall; `whole = false` reads the mass alone (rigid-planar). The centre of gravity lies
 /// behind the face.

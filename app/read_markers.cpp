@@ -28,8 +28,8 @@ MarkerInput read_markers(Table& table) {
   return in;
 }
 
-models::MarkerTrack read_marker_track(const std::filesystem::path& file) {
-  const post::Sheet sheet = read_sheet(file);
+models::MarkerSwing read_marker_swing(const MarkerInput& in, double end) {
+  const post::Sheet sheet = read_sheet(in.file);
   models::MarkerTrack track;
   track.times = column_with_gaps(sheet, "time_s");
   std::array<std::vector<Vec3>, 3> shaft, head;
@@ -43,7 +43,10 @@ models::MarkerTrack read_marker_track(const std::filesystem::path& file) {
     track.head.push_back({head[0][i], head[1][i], head[2][i]});
     track.wrists.push_back(0.5 * (left[i] + right[i]));
   }
-  return track;
+  const models::MarkerSwing swing = models::marker_swing(track, in.still, end);
+  if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
+    throw InputError(fmt::format("{}: {}", in.file.string(), wrong.front()));
+  return swing;
 }
 
 }  // namespace hosel::app

@@ -15,8 +15,8 @@ struct MarkerInput {
 };
 MarkerInput read_markers(Table& table);
 
-/// Columns `time_s`, `shaft_1_x_m` ... `shaft_3_z_m`, `head_1_x_m` ... `head_3_z_m`, `left_wrist_x_m` ...
-/// `right_wrist_z_m`; a drop-out is an empty cell. Throws InputError.
-models::MarkerTrack read_marker_track(const std::filesystem::path& file);
+/// The swing until `end` [s], in the file's columns `time_s`, `shaft_1_x_m` ... `shaft_3_z_m`, `head_1_x_m` ...
+/// `head_3_z_m`, `left_wrist_x_m` ... `right_wrist_z_m`; a drop-out is an empty cell. Throws InputError.
+models::MarkerSwing read_marker_swing(const MarkerInput& in, double end);
 
 }  // namespace hosel::app

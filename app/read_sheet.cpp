@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -62,14 +63,17 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
                                sheet.names.size() == 1 ? "; cells are separated by commas" : ""));
 }
 
+const std::vector<std::string>& cells_of(const post::Sheet& sheet, std::string_view name) {
+  const auto at = std::ranges::find(sheet.names, name);
+  if (at == sheet.names.end()) throw InputError(fmt::format("{}:1: no column '{}'", sheet.file, name));
+  return sheet.columns[std::size_t(at - sheet.names.begin())];
+}
+
 std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name) {
-  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
-    if (sheet.names[c] != name) continue;
-    std::vector<double> out;
-    for (std::size_t r = 0; r < sheet.rows(); ++r) out.push_back(number_in(sheet, c, r));
-    return out;
-  }
-  throw InputError(fmt::format("{}:1: no column '{}'", sheet.file, name));
+  const auto c = std::size_t(&cells_of(sheet, name) - sheet.columns.data());
+  std::vector<double> out;
+  for (std::size_t r = 0; r < sheet.rows(); ++r) out.push_back(number_in(sheet, c, r));
+  return out;
 }
 
 }  // namespace hosel::app

@@ -21,6 +21,8 @@ double number_in(const post::Sheet& sheet, std::size_t column, std::size_t row);
 std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dimension dimension,
                            bool unit_needed = true);
 
+/// The cells of the column of that name as they stand. Throws InputError.
+const std::vector<std::string>& cells_of(const post::Sheet& sheet, std::string_view name);
 /// The numeric column of that name in its header's unit, NaN where a cell is empty. Throws InputError.
 std::vector<double> column_with_gaps(const post::Sheet& sheet, std::string_view name);
 

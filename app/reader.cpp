@@ -357,10 +357,6 @@ Found find_quantity(const Table& t, Access access, std::string_view stem, std::s
   return {key, unit, nullptr};
 }
 
-}  // namespace
-
-namespace {
-
 /// A number as the resolved case has it: with it a default is the same when that case is read.
 double as_echoed(double x) { return std::isfinite(x) ? std::stod(fmt::format("{:.15g}", x)) : x; }
 

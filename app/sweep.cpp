@@ -128,8 +128,7 @@ Planned read_planned(const fs::path& where, const std::vector<std::string>& over
 /// The plan of a directory, with the case read again and found the same.
 Planned open_plan(const fs::path& out) {
   if (!fs::is_regular_file(out / "plan.json"))
-    throw InputError(
-        fmt::format("{}: no plan here; `hosel sweep plan CASE --out {}` makes one", out.string(), out.string()));
+    throw InputError(fmt::format("{0}: no plan here; `hosel sweep plan CASE --out {0}` makes one", out.string()));
   json plan;
   std::string named, version;
   std::vector<std::string> set;

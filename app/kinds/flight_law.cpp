@@ -51,9 +51,7 @@ class FlightLawJob final : public Job {
  public:
   explicit FlightLawJob(CaseFile& file) {
     Table root = file.root();
-    root.text({"title", "of tables, pages and figures"}, "");
-    Ball ball;
-    if (auto table = root.optional_table("ball")) ball = read_ball(*table);
+    const Ball ball = read_optional_ball(root);
     data_ = read_paths(root.table("paths"), ball);
     Table law = root.table("law");
     const std::string start =

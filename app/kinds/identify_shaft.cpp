@@ -159,12 +159,9 @@ class IdentifyJob final : public Job {
 
   void markers(Output& out) {
     if (!std::filesystem::exists(markers_.file)) return out.skip(markers_.file);
-    const models::MarkerTrack track = read_marker_track(markers_.file);
     const double end = test_[1];
-    const models::MarkerSwing swing = models::marker_swing(track, markers_.still, end);
+    const models::MarkerSwing swing = read_marker_swing(markers_, end);
     options_.grip_point = club_.shaft->length() - swing.length;
-    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
-      throw InputError(fmt::format("{}: {}", markers_.file.string(), wrong.front()));
     const models::GripMotion motion(swing.clamp, markers_.smoothing);
 
     const auto part = [&](double from, double to, bool train) {

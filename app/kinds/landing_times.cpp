@@ -11,6 +11,7 @@
 #include "app/read_flight.hpp"
 #include "app/read_sheet.hpp"
 #include "golf/parallel.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::app {
 namespace {
@@ -29,14 +30,10 @@ struct Site {
 
 /// Huber's mean and its standard error, the scale by the median deviation.
 std::pair<double, double> robust_mean(const std::vector<double>& x) {
-  const auto middle = [](std::vector<double> v) {
-    std::ranges::nth_element(v, v.begin() + std::ptrdiff_t(v.size() / 2));
-    return v[v.size() / 2];
-  };
-  double mean = middle(x);
+  double mean = loop::median(x);
   std::vector<double> size;
   for (const double v : x) size.push_back(std::abs(v - mean));
-  const double knee = 1.5 * 1.4826 * middle(size);
+  const double knee = 1.5 * 1.4826 * loop::median(size);
   double square = 0, weights = 0, inside = 0;
   for (int pass = 0; pass < 30; ++pass) {
     double sum = 0;
@@ -57,8 +54,7 @@ class LandingTimesJob final : public Job {
  public:
   explicit LandingTimesJob(CaseFile& file) {
     Table root = file.root();
-    root.text({"title", "of tables, pages and figures"}, "");
-    if (auto ball = root.optional_table("ball")) ball_ = read_ball(*ball);
+    ball_ = read_optional_ball(root);
     conditions_ = read_conditions(root.table("flight"));
     Table t = root.table("times");
     const auto path = t.data_file({"file",
@@ -84,9 +80,7 @@ class LandingTimesJob final : public Job {
       return;
     }
     const post::Sheet sheet = read_sheet(path);
-    const auto event = std::ranges::find(sheet.names, "event");
-    if (event == sheet.names.end()) throw InputError(fmt::format("{}:1: no column 'event'", sheet.file));
-    const auto& events = sheet.columns[std::size_t(event - sheet.names.begin())];
+    const auto& events = cells_of(sheet, "event");
     const auto v = column_with_gaps(sheet, "speed_mps"), up = column_with_gaps(sheet, "launch_deg"),
                right = column_with_gaps(sheet, "azimuth_deg"), landed = column_with_gaps(sheet, "landing_time_s"),
                seen = column_with_gaps(sheet, "measured_time_s");

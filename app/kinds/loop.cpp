@@ -50,7 +50,7 @@ class LoopJob final : public Job {
     }
     case_.head_turns = case_.base != "rigid-planar";
 
-    case_.blow.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    case_.blow.ball = read_optional_ball(root);
     case_.blow.contact = read_contact(root, {case_.base});
     case_.blow.contact.patch = declared.contact.patch;
     if (fe) case_.blow.contact.friction = case_.blow.contact.patch.coefficient;
@@ -130,12 +130,7 @@ class LoopJob final : public Job {
     if (repeated_ > 0)
       out.lack(
           fmt::format("{} rows of the shots repeat an earlier row letter for letter: each counts once", repeated_));
-    loop::LoopResult result;
-    case_.told = progress_of(out);
-    try {
-      result = loop::run(case_);
-    } catch (const DataError& e) { throw InputError(e.what()); }
-    case_.told = {};
+    const loop::LoopResult result = run_loop(out, case_);
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);
     offer_corrected(out, case_, result, fe_.get());

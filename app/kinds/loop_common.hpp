@@ -7,6 +7,7 @@
 
 #include "app/output.hpp"
 #include "app/reader.hpp"
+#include "golf/data_error.hpp"
 #include "loop/case.hpp"
 #include "loop/report.hpp"
 
@@ -24,6 +25,17 @@ std::map<std::string, double> read_noise(Table table, const loop::Shots* shots, 
 
 /// Tells the person what the loop is doing, each kind of work as a progress of its own, until it is destroyed.
 loop::Told progress_of(const Output& out);
+
+/// What the loop says of a ShotCase, FlightCase or HistoryCase. Throws InputError where its data cannot be used at all.
+template <class Case>
+loop::LoopResult run_loop(const Output& out, Case& of) {
+  of.told = progress_of(out);
+  try {
+    loop::LoopResult result = run(of);
+    of.told = {};
+    return result;
+  } catch (const DataError& e) { throw InputError(e.what()); }
+}
 
 /// Writes report.json, report.html, residuals.csv and the summary, and tells the person what came out. `table`: what
 /// the result's rows count; `rows`: what a flagged one is called.

@@ -29,7 +29,7 @@ class LoopFlightJob final : public Job {
   explicit LoopFlightJob(CaseFile& file) {
     Table root = file.root();
     read_loop_case(root, case_, acts_on_flights);
-    if (auto ball = root.optional_table("ball")) case_.ball = read_ball(*ball);
+    case_.ball = read_optional_ball(root);
     Table flight = root.default_table("flight");
     if (flight.has("turf")) flight.fail("turf", "the loop compares flights, which end at the first landing");
     case_.conditions = read_conditions(flight);
@@ -45,12 +45,7 @@ class LoopFlightJob final : public Job {
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
-    loop::LoopResult result;
-    case_.told = progress_of(out);
-    try {
-      result = loop::run(case_);
-    } catch (const DataError& e) { throw InputError(e.what()); }
-    case_.told = {};
+    const loop::LoopResult result = run_loop(out, case_);
     report_loop(out, result, case_.shots, "flights");
     for (const std::string& note : result.notes)
       if (note.starts_with("wind")) out.log(note);
@@ -103,9 +98,7 @@ class LoopFlightJob final : public Job {
   /// Every instant that some shot has is a channel for each axis.
   void read_points(const std::filesystem::path& file) {
     const post::Sheet sheet = read_sheet(file);
-    const auto shot = std::ranges::find(sheet.names, "shot");
-    if (shot == sheet.names.end()) throw InputError(fmt::format("{}:1: no column 'shot'", sheet.file));
-    const auto& ids = sheet.columns[std::size_t(shot - sheet.names.begin())];
+    const auto& ids = cells_of(sheet, "shot");
     const std::vector<double> time = column_with_gaps(sheet, "time_s");
     std::vector<double> instants;
     for (std::size_t i = 0; i < time.size(); ++i) {

@@ -43,12 +43,7 @@ class HistoryJob final : public Job {
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
-    loop::LoopResult result;
-    case_.told = progress_of(out);
-    try {
-      result = loop::run(case_);
-    } catch (const DataError& e) { throw InputError(e.what()); }
-    case_.told = {};
+    const loop::LoopResult result = run_loop(out, case_);
     report_loop(out, result, loop::as_shots(case_), "readings");
   }
 
@@ -207,9 +202,7 @@ class HistoryJob final : public Job {
       skipped_ = in.file;
       return;
     }
-    const models::MarkerSwing swing = models::marker_swing(read_marker_track(in.file), in.still, span[1]);
-    if (const auto wrong = swing.clamp.faults(0.02); !wrong.empty())
-      throw InputError(fmt::format("{}: {}", in.file.string(), wrong.front()));
+    const models::MarkerSwing swing = read_marker_swing(in, span[1]);
     options.grip_point = club_.shaft->length() - swing.length;
     loop::HistoryRecord record{.name = in.file.filename().string(), .times = {}, .measured = {}, .train = {}};
     std::vector<std::size_t> rows;

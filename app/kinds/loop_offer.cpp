@@ -110,20 +110,16 @@ Offer told_of(const loop::ShotCase& c, const loop::LoopResult& r, const std::vec
       .what = fmt::format("{}: {} with {}", r.title.empty() ? "a loop" : r.title, r.base, fmt::join(r.adopted, ", ")),
       .source = fmt::format("{} measured shots", r.used)};
   const loop::Fit& fit = r.selection.chosen;
-  for (const loop::Parametrisation* form : fit.model.forms)
-    for (const loop::Parameter& p : form->parameters) {
-      o.parameters.push_back(fmt::format("{}: {} [{}]", form->effect, p.name, p.unit));
-      o.values.push_back(fit.p[Eigen::Index(o.values.size())] / p.si);
-    }
-  o.of.assign(o.values.size(), "value");
   o.covariance = r.covariance;
-  int k = 0;
   for (const loop::Parametrisation* form : fit.model.forms)
     for (const loop::Parameter& p : form->parameters) {
+      const auto k = Eigen::Index(o.values.size());
+      o.parameters.push_back(fmt::format("{}: {} [{}]", form->effect, p.name, p.unit));
+      o.values.push_back(fit.p[k] / p.si);
       o.covariance.row(k) /= p.si;
       o.covariance.col(k) /= p.si;
-      ++k;
     }
+  o.of.assign(o.values.size(), "value");
   for (const auto& tie : r.ties)
     o.unidentified.push_back(fmt::format("the shots cannot separate {}", fmt::join(tie, " and ")));
   // Rows that the loop set aside are not what the entry saw.

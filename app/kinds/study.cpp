@@ -143,7 +143,7 @@ class StudyJob final : public PointJob {
 
   json compute(std::size_t point, const fs::path& scratch) const override {
     const std::size_t d = point / table_.models.size();
-    return studied_ ? compute_case(d, scratch) : compute_blow(d, point % table_.models.size());
+    return studied_ ? compute_case(overrides(d), scratch) : compute_blow(d, point % table_.models.size());
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
@@ -490,8 +490,6 @@ class StudyJob final : public PointJob {
     if (model != "volumetric" && model != "hertz-maw" && !model.starts_with("fe-"))
       root.fail("histories", "forces over time come from volumetric, hertz-maw and finite elements");
   }
-
-  json compute_case(std::size_t d, const fs::path& scratch) const { return compute_case(overrides(d), scratch); }
 
   json compute_case(const std::vector<std::string>& set, const fs::path& scratch) const {
     // A killed process may have finished the point, but only what is in the store is sealed: computed again.

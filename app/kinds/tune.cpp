@@ -83,7 +83,7 @@ class TuneJob final : public Job {
   explicit TuneJob(CaseFile& file) {
     Table root = file.root();
     model_ = root.choice({"model", "that is tuned (`hosel list`)"}, names_in(models::registry()));
-    blow_.ball = root.has("ball") ? read_ball(root.table("ball")) : Ball{};
+    blow_.ball = read_optional_ball(root);
     blow_.club.head = read_head(root.table("head"), model_ != "rigid-planar");
     blow_.contact = read_contact(root, {model_});
     check_use(root, {}, {model_});

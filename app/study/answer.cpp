@@ -253,7 +253,7 @@ Launch launch_with_history(const std::string& model, const models::Options& opti
 StudyBlow read_study_blow(Table root) {
   if (!root.has("models") && root.has("launch")) {
     StudyBlow stated{.models = {""}};
-    if (auto ball = root.optional_table("ball")) stated.blow.ball = read_ball(*ball);
+    stated.blow.ball = read_optional_ball(root);
     stated.launch = read_launch(root.table("launch"), true);
     stated.flight = read_optional_flight(root);
     return stated;
