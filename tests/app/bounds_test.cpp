@@ -102,23 +102,19 @@ TEST(Bounds, NumbersOfPointsAndVariants) {
     write(dir / name / "case.toml", text);
     return command("check " + (dir / name).string());
   };
-  std::string grid = kEccentricBlow;
-  grid.replace(grid.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  std::string grid = study_of_blow();
   grid.replace(grid.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-eccentric\", \"stick-slip\"]");
   // 65536^4 is 2^64, which is none.
   for (const char* key : {"impact_toe_mm", "impact_high_mm", "dynamic_loft_deg", "club_path_deg"})
     grid += std::string("[[axis]]\nkey = \"delivery.") + key + "\"\nrange = [1.0, 2.0]\ncount = 65536\n";
   expect_one_line(check("grid", grid), "the design has more than 100000 points");
 
-  std::string variants = kEccentricBlow;
-  variants.replace(variants.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
-  std::string many = variants;
+  std::string many = study_of_blow();
   for (int i = 0; i < 3000; ++i) many += "[[variant]]\nname = \"" + std::to_string(i) + "\"\n";
   expect_one_line(check("variants", many), "variant: more than 1000");
 
   // The names that come near a name are looked for among names, not among texts of any length.
-  std::string named = kEccentricBlow;
-  named.replace(named.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
+  std::string named = study_of_blow();
   named += "[compare]\nwith = \"variant\"\nvariant = \"" + std::string(300'000, 'a') + "\"\n";
   named += "[[variant]]\nname = \"" + std::string(300'000, 'b') + "\"\n";
   EXPECT_EQ(check("names", named).status, 2);

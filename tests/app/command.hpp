@@ -1,6 +1,7 @@
 /// The hosel command as a child process, for tests of what a person types.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,6 +28,12 @@ cg_mm = [-35.0, 0.0, 0.0]
 inertia_kg_m2 = [[3.7e-4, 0, 0], [0, 2.9e-4, 0], [0, 0, 4.8e-4]]
 )";
 
+/// That blow as a study, which a design and what stands in other tables may follow.
+inline std::string study_of_blow(const std::string& outputs = "[\"ball_speed_mps\"]") {
+  std::string text = kEccentricBlow;
+  return text.replace(text.find("\"impact\""), 8, "\"study\"\noutputs = " + outputs);
+}
+
 struct Outcome {
   int status;
   std::string text;  ///< both streams
@@ -47,6 +54,12 @@ inline Outcome shell(const std::string& line) {
 }
 
 inline Outcome command(const std::string& arguments) { return shell(hosel_command() + " " + arguments); }
+
+/// Status 2, and this part of the sentence.
+inline void expect_refused(const Outcome& o, const std::string& says) {
+  EXPECT_EQ(o.status, 2) << o.text;
+  EXPECT_NE(o.text.find(says), std::string::npos) << o.text;
+}
 
 /// An empty directory of this process, gone when it ends.
 inline std::filesystem::path fresh_directory(const std::string& name) {

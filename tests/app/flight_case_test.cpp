@@ -219,8 +219,7 @@ TEST(FlightCase, StatedLaunchesAreSweptAsBlowsAre) {
   EXPECT_FALSE(s.contains("launches")) << "a budget where the case asks for one";
   EXPECT_NEAR(s["range"]["ball_speed_mps"][0].get<double>(), 50, 1e-9);
   EXPECT_NEAR(s["range"]["ball_speed_mps"][1].get<double>(), 70, 1e-9);
-  std::string struck = kEccentricBlow;
-  struck.replace(struck.find("\"impact\""), 8, "\"study\"\noutputs = [\"carry_m\"]");
+  const std::string struck = study_of_blow("[\"carry_m\"]");
   const auto blow = run("flight_swept", struck +
                                             "[launch]\nball_speed_mps = 70\nlaunch_angle_deg = 12\nazimuth_deg = 0\n"
                                             "spin_rate_rpm = 2500\n[flight]\n[[variant]]\nname = \"stated\"\n");
@@ -260,8 +259,7 @@ TEST(FlightCase, OfAStatedLaunchNothingOfABlowIsKnown) {
 }
 
 TEST(FlightCase, AStudyOfBlowsTakesNoErrorOfALaunch) {
-  std::string struck = kEccentricBlow;
-  struck.replace(struck.find("\"impact\""), 8, "\"study\"\noutputs = [\"carry_m\"]");
+  const std::string struck = study_of_blow("[\"carry_m\"]");
   const std::string varied = "[[variant]]\nname = \"stated\"\n[flight]\n";
   for (const auto& [text, status] : {std::pair{"", 0},
                                      {"beside = [\"libgolf\"]\n", 2},

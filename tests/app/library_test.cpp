@@ -301,17 +301,23 @@ TEST(Library, AFaultyEntryNamesItsLine) {
   EXPECT_NE(refusal(dir, text, {"volumetric"}).find("a shipped head has this name"), std::string::npos);
 }
 
-/// A ball's parameters follow its loft: a 7-iron is not struck with a driver's.
-TEST(Library, ABallsSetsAreChosenByLoft) {
-  const OwnLibrary own("library_sets");
+/// A ball of one piece with the contact's constants, softer for drivers than for irons; `saw`: what both sets saw too.
+std::string ball_of_two_sets(const std::string& saw = "") {
   std::string text = content(shipped_library() / "balls" / "range-one-piece.toml");
-  for (const auto& [name, saw, stiffness] : {std::tuple{"driver", "[0, 20]", "7e9"}, {"irons", "[20, 40]", "8e9"}}) {
+  for (const auto& [name, lofts, stiffness] : {std::tuple{"driver", "[0, 20]", "7e9"}, {"irons", "[20, 40]", "8e9"}}) {
     std::string parts = kContact.substr(kContact.find("[volumetric]"));
     parts.replace(0, 12, "[reduced.volumetric]");
     parts.replace(parts.find("7e9"), 3, stiffness);
-    text += std::string("[[reduced]]\nname = \"") + name + "\"\n[reduced.saw]\nspin_loft_deg = " + saw + "\n" + parts;
+    text += std::string("[[reduced]]\nname = \"") + name + "\"\n[reduced.saw]\n" + saw + "spin_loft_deg = " + lofts +
+            "\n" + parts;
   }
-  write(own.home / "balls" / "mine.toml", text);
+  return text;
+}
+
+/// A ball's parameters follow its loft: a 7-iron is not struck with a driver's.
+TEST(Library, ABallsSetsAreChosenByLoft) {
+  const OwnLibrary own("library_sets");
+  write(own.home / "balls" / "mine.toml", ball_of_two_sets());
   const fs::path dir = fresh_directory("library_sets_case");
   const std::string blow = kBlow + "[head]\nname = \"iron-7\"\n[ball]\nmodel = \"mine\"\n";
   const auto stiffness = [&](const std::vector<std::string>& set) {
@@ -331,17 +337,7 @@ TEST(Library, ABallsSetsAreChosenByLoft) {
 /// One model asked about many blows takes each blow's own set, and refuses what the case is refused with.
 TEST(Library, AnAskedModelTakesTheSetOfEachBlow) {
   const OwnLibrary own("library_asked");
-  std::string text = content(shipped_library() / "balls" / "range-one-piece.toml");
-  for (const auto& [name, saw, stiffness] : {std::tuple{"driver", "[0, 20]", "7e9"}, {"irons", "[20, 40]", "8e9"}}) {
-    std::string parts = kContact.substr(kContact.find("[volumetric]"));
-    parts.replace(0, 12, "[reduced.volumetric]");
-    parts.replace(parts.find("7e9"), 3, stiffness);
-    text += std::string("[[reduced]]\nname = \"") + name +
-            "\"\n[reduced.saw]\nimpact_speed_mps = [20, 40]\nspin_loft_deg"
-            " = " +
-            saw + "\n" + parts;
-  }
-  write(own.home / "balls" / "mine.toml", text);
+  write(own.home / "balls" / "mine.toml", ball_of_two_sets("impact_speed_mps = [20, 40]\n"));
   const fs::path dir = fresh_directory("library_asked_case");
   write(dir / "case.toml", kBlow + "[head]\nname = \"iron-7\"\n[ball]\nmodel = \"mine\"\n");
   const std::string only = "models=[\"volumetric\"]";

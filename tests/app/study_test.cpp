@@ -332,8 +332,7 @@ club_speed_mps = 40
 mass_kg = 0.2
 )");
   const Outcome o = command("check " + dir.string());
-  EXPECT_EQ(o.status, 2) << o.text;
-  EXPECT_NE(o.text.find("stand there twice"), std::string::npos) << o.text;
+  expect_refused(o, "stand there twice");
 }
 
 TEST(Study, ALineCutShortIsComputedAgain) {
@@ -368,8 +367,7 @@ TEST(Study, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
   ASSERT_EQ(command("run " + sweep + " --quiet --out " + (dir / "one").string()).status, 0);
   ASSERT_EQ(command("sweep plan " + sweep + " --out " + out).status, 0);
   const Outcome early = command("sweep merge " + out);
-  EXPECT_EQ(early.status, 2);
-  EXPECT_NE(early.text.find("0 of 400 points are finished"), std::string::npos) << early.text;
+  expect_refused(early, "0 of 400 points are finished");
   Outcome first, second;
   std::thread other([&] { first = command("sweep run " + out + " --quiet --shard 1/2"); });
   second = command("sweep run " + out + " --quiet --shard 2/2");
@@ -401,16 +399,14 @@ TEST(Study, MixedCasesAndVersionsAreRefused) {
   header["check"] = post::digest(header.dump());
   write(points, header.dump() + good.substr(good.find('\n')));
   Outcome o = command("sweep merge " + out);
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("another version"), std::string::npos) << o.text;
+  expect_refused(o, "another version");
   write(points, good);
 
   std::string blow = kEccentricBlow;  // the case that is swept changes
   blow.replace(blow.find("mass_kg = 0.2"), 13, "mass_kg = 0.3");
   write(dir / "blow" / "case.toml", blow);
   o = command("sweep merge " + out);
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("has changed"), std::string::npos) << o.text;
+  expect_refused(o, "has changed");
   o = command("run " + sweep + " --quiet --out " + out);
   EXPECT_EQ(o.status, 2);
   EXPECT_FALSE(fs::exists(dir / "out" / "points.csv"));
@@ -499,8 +495,7 @@ range = [44.0, 46.0]
   EXPECT_EQ(drawn.find("set xlabel 'club speed"), std::string::npos);
   const Outcome bad =
       command("run " + (dir / "blow").string() + " --out " + (dir / "bad").string() + " --set 'head.cg_mm[4]=1'");
-  EXPECT_EQ(bad.status, 2);
-  EXPECT_NE(bad.text.find("there is no 'cg_mm[4]'"), std::string::npos) << bad.text;
+  expect_refused(bad, "there is no 'cg_mm[4]'");
 }
 
 /// A study of blows: head on the centre line, so that the rigid models have closed forms.
@@ -705,8 +700,7 @@ TEST(Study, APopulationIsComparedByQuantilesAndOverItsClubSpeed) {
   EXPECT_EQ(without.status, 0) << without.text;
   EXPECT_NE(without.text.find("SKIPPED"), std::string::npos) << without.text;
   const Outcome wrong = command("check " + dir.string() + " --set population[1].given=delivery.club_sped_mps");
-  EXPECT_EQ(wrong.status, 2);
-  EXPECT_NE(wrong.text.find("did you mean 'delivery.club_speed_mps'"), std::string::npos) << wrong.text;
+  expect_refused(wrong, "did you mean 'delivery.club_speed_mps'");
 }
 
 TEST(Study, ModelsAreComparedByPlaceAndCause) {
@@ -810,8 +804,7 @@ TEST(Study, RowsBringKeysAndMeasuredValues) {
             std::string::npos);
   write(dir / "blows.csv", "name,delivery.club_sped_mps\na,30\n");
   const Outcome bad = command("run " + dir.string() + " --quiet --out " + out + "-bad");
-  EXPECT_EQ(bad.status, 2);
-  EXPECT_NE(bad.text.find("did you mean"), std::string::npos) << bad.text;
+  expect_refused(bad, "did you mean");
 }
 
 TEST(Study, AQuantityThatTheDesignVariesIsSetNowhereElse) {
@@ -841,8 +834,7 @@ TEST(Study, AQuantityThatTheDesignVariesIsSetNowhereElse) {
   EXPECT_NE(command("check " + (dir / "both").string()).text.find("twice, as 'head."), std::string::npos);
   write(dir / "rows/blows.csv", "delivery.club_speed_mps,delivery.club_speed_mph\n30,90\n");
   const Outcome units = command("check " + (dir / "rows").string());
-  EXPECT_EQ(units.status, 2);
-  EXPECT_NE(units.text.find("are one quantity"), std::string::npos) << units.text;
+  expect_refused(units, "are one quantity");
 }
 
 TEST(Study, WhatIsMeasuredIsAnOutput) {
@@ -875,8 +867,7 @@ TEST(Study, NamesThatEndAlikeAreToldApart) {
     return command("run " + dir.string() + " --quiet --force --out " + (dir / "out").string());
   };
   const Outcome either = checked("mass_kg > 0.2");
-  EXPECT_EQ(either.status, 2);
-  EXPECT_NE(either.text.find("head_mass_kg"), std::string::npos) << either.text;
+  expect_refused(either, "head_mass_kg");
   ASSERT_EQ(checked("head_mass_kg > 0.2").status, 0);
   EXPECT_EQ(nlohmann::json::parse(content(dir / "out/summary.json"))["statements"][0]["points"], 2);
 }
@@ -907,8 +898,7 @@ TEST(Study, AFormerKindSaysWhatItIsNow) {
     const fs::path dir = fresh_directory("study_former");
     write(dir / "case.toml", std::string("kind = \"") + kind + "\"\n");
     const Outcome o = command("check " + dir.string());
-    EXPECT_EQ(o.status, 2);
-    EXPECT_NE(o.text.find(std::string("'") + kind + "' is now 'study': "), std::string::npos) << o.text;
+    expect_refused(o, std::string("'") + kind + "' is now 'study': ");
   }
 }
 
@@ -971,8 +961,7 @@ values = [0.0, 20.0, 40.0]
         std::string(kEccentricBlow).replace(kEccentricBlow.find("[\"rigid-eccentric\"]"), 19, "[\"rigid-planar\"]"));
   // `models` is a list, and a word is not: the error is the case's own.
   const Outcome refused = command("run " + (dir / "sweep").string() + " --out " + (dir / "out").string());
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.text.find("expected a list of texts"), std::string::npos) << refused.text;
+  expect_refused(refused, "expected a list of texts");
   EXPECT_FALSE(fs::exists(dir / "out"));
 
   std::string text = content(dir / "sweep" / "case.toml");
@@ -1068,16 +1057,13 @@ TEST(Study, AChangedBitOfAStoreIsNotTakenForAResult) {
   for (const std::string& bad : {plan.substr(0, 60), flipped}) {
     write(dir / "out/plan.json", bad);
     const Outcome o = command("sweep merge " + out + " --force");
-    EXPECT_EQ(o.status, 2);
-    EXPECT_NE(o.text.find("the plan is damaged"), std::string::npos) << o.text;
+    expect_refused(o, "the plan is damaged");
   }
 }
 
 TEST(Study, PointsMadeByHandAreNoResults) {
   const fs::path dir = sweep_case("sweep_hand", kSample);
-  std::string map = kEccentricBlow;
-  map.replace(map.find("\"impact\""), 8, "\"study\"\noutputs = [\"ball_speed_mps\"]");
-  write(dir / "map/case.toml", map + "[grid]\ncolumns = 3\nrows = 3\n");
+  write(dir / "map/case.toml", study_of_blow() + "[grid]\ncolumns = 3\nrows = 3\n");
   const auto merged = [&](const char* of, const std::string& more, std::size_t size,
                           const std::function<nlohmann::json(std::size_t)>& made) {
     const std::string out = (dir / "out").string();
@@ -1134,16 +1120,14 @@ TEST(Study, ASweepThatNamesItselfIsRefused) {
   self.replace(self.find("../blow"), 7, "../sweep");
   write(dir / "sweep/case.toml", self);
   Outcome o = command("check " + (dir / "sweep").string());
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("names itself"), std::string::npos) << o.text;
+  expect_refused(o, "names itself");
   // By way of another.
   self.replace(self.find("../sweep"), 8, "../other");
   write(dir / "sweep/case.toml", self);
   self.replace(self.find("../other"), 8, "../sweep");
   write(dir / "other/case.toml", self);
   o = command("check " + (dir / "sweep").string());
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("names itself"), std::string::npos) << o.text;
+  expect_refused(o, "names itself");
 }
 
 TEST(Study, AGridTooLargeToCountIsRefused) {
@@ -1157,8 +1141,7 @@ TEST(Study, AGridTooLargeToCountIsRefused) {
   }
   const fs::path dir = sweep_case("sweep_large", text);
   const Outcome o = command("check " + (dir / "sweep").string());
-  EXPECT_EQ(o.status, 2);
-  EXPECT_NE(o.text.find("more than 100000 points"), std::string::npos) << o.text;
+  expect_refused(o, "more than 100000 points");
 }
 
 TEST(Study, AKeySweptTwiceIsRefused) {
@@ -1166,8 +1149,7 @@ TEST(Study, AKeySweptTwiceIsRefused) {
     const fs::path dir =
         sweep_case("sweep_twice", kSample + "[[axis]]\nkey = \"delivery." + again + "\"\nrange = [40.0, 45.0]\n");
     const Outcome o = command("check " + (dir / "sweep").string());
-    EXPECT_EQ(o.status, 2);
-    EXPECT_NE(o.text.find("'delivery.club_speed_mps' is an axis already"), std::string::npos) << o.text;
+    expect_refused(o, "'delivery.club_speed_mps' is an axis already");
   }
 }
 
