@@ -7,6 +7,7 @@
 
 #include "app/read_solid.hpp"
 #include "post/figure.hpp"
+#include "post/table.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::app {
@@ -35,9 +36,12 @@ class MaterialPointJob final : public Job {
     post::Panel panel;
     panel.title = what_;
     post::Series curve;
-    std::string csv = what_ == "uniaxial"
-                          ? "time_s,stretch,lateral_stretch,nominal_stress_Pa,cauchy_stress_Pa,dissipated_J_per_m3\n"
-                          : "time_s,shear,shear_stress_Pa,work_J_per_m3,dissipated_J_per_m3\n";
+    post::Table table;
+    if (what_ == "uniaxial")
+      table.in_files(
+          {"time_s", "stretch", "lateral_stretch", "nominal_stress_Pa", "cauchy_stress_Pa", "dissipated_J_per_m3"},
+          "{:.9g}");
+    else table.in_files({"time_s", "shear", "shear_stress_Pa", "work_J_per_m3", "dissipated_J_per_m3"}, "{:.9g}");
     std::vector<double> history(static_cast<std::size_t>(solid_.history_size()));
     solid_.start(history);
     double work = 0, dissipated = 0, stress0 = 0, strain0 = 0, last = 0;
@@ -48,25 +52,22 @@ class MaterialPointJob final : public Job {
       dissipated += fem::update_internal_variables(solid_, F, step, history);
       if (what_ == "uniaxial") {
         last = r.stress(0, 0);
-        csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t, x, lateral, last,
-                           last / (lateral * lateral), dissipated);
-        curve.x.push_back(x);
+        table.add(t, x, lateral, last, last / (lateral * lateral), dissipated);
+        curve.add(x, last / 1e6);
       } else {
         last = r.stress(0, 1);
         work += 0.5 * (last + stress0) * (x - strain0);
         stress0 = last;
         strain0 = x;
-        csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t, x, last, work, dissipated);
-        curve.x.push_back(what_ == "relaxation" ? t * 1e3 : x);
+        table.add(t, x, last, work, dissipated);
+        curve.add(what_ == "relaxation" ? t * 1e3 : x, last / 1e6);
       }
-      curve.y.push_back(last / 1e6);
     };
     if (what_ == "uniaxial") {
       // Compression from 1 down, then tension from 1 up, each over the whole duration.
       for (const double end : {low_, high_}) {
         solid_.start(history);
         dissipated = 0;
-        std::vector<double> xs, ys;
         double lateral = 1;
         for (long i = 0; i <= steps_; ++i) {
           const double x = 1 + (end - 1) * double(i) / double(steps_), step = i == 0 ? 0 : dt;
@@ -74,8 +75,7 @@ class MaterialPointJob final : public Job {
           record(double(i) * dt, x, Vec3(x, lateral, lateral).asDiagonal(), lateral, step);
         }
         panel.series.push_back({end < 1 ? "compression" : "tension", curve.x, curve.y});
-        curve.x.clear();
-        curve.y.clear();
+        curve = {};
       }
       panel.x_label = "stretch";
       panel.y_label = "nominal stress [MPa]";
@@ -91,7 +91,7 @@ class MaterialPointJob final : public Job {
       panel.x_label = what_ == "relaxation" ? "time [ms]" : "shear";
       panel.y_label = "shear stress [MPa]";
     }
-    out.write("history.csv", csv);
+    out.write("history.csv", table.csv());
     post::Figure figure;
     figure.panels.push_back(panel);
     out.draw(figure, "curve");
