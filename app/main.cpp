@@ -17,7 +17,6 @@
 #include "app/cases.hpp"
 #include "app/command_help.hpp"
 #include "app/diff.hpp"
-#include "app/film.hpp"
 #include "app/import/import.hpp"
 #include "app/job.hpp"
 #include "app/keys.hpp"

@@ -1,6 +1,9 @@
 #include "app/paraview.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,12 +12,63 @@
 #include <vector>
 
 #include "app/command_help.hpp"
+#include "app/parse_toml.hpp"
 #include "app/reader.hpp"
+#include "app/resolved.hpp"
 #include "app/shipped.hpp"
 #include "post/file.hpp"
 
 namespace hosel::app {
+
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Runs a program in a folder to its end; what it prints goes to a file there.
+void run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder) {
+  const fs::path printed = folder / "printed";
+  words.insert(words.begin(), program.string());
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "printed", O_WRONLY | O_CREAT | O_APPEND, 0644);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int refused = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  if (!refused && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  std::string said = fs::exists(printed) ? post::read_file(printed) : "";
+  while (said.ends_with('\n')) said.pop_back();
+  throw std::runtime_error(fmt::format("the film could not be made: {} ended with an error: {}", program.string(),
+                                       said.substr(said.rfind('\n') + 1)));
+}
+
+fs::path needed(const char* name, const char* package, const fs::path& outside) {
+  const fs::path program = post::find_program(name, outside);
+  if (program.empty())
+    throw InputError(fmt::format("film: {} is not installed (Debian: apt-get install {})", name, package));
+  return program;
+}
+
+/// Of the folders of several models that of the last which the case names: it answers the case.
+fs::path answering(const fs::path& out, const std::vector<fs::path>& folders) {
+  const fs::path file = out / kResolvedCase;
+  if (folders.size() > 1 && fs::is_regular_file(file)) {
+    const toml::table resolved = parse_toml(post::read_file(file), file.string());
+    const toml::array* models = resolved["models"].as_array();
+    for (std::size_t k = models ? models->size() : 0; k-- > 0;)
+      for (const fs::path& folder : folders)
+        if (folder.parent_path().filename() == (*models)[k].value_or(std::string())) return folder;
+  }
+  return folders.back();
+}
+
+}  // namespace
 
 void open_in_paraview(const fs::path& out) {
   if (!fs::is_directory(out)) throw InputError(fmt::format("{}: no such directory", out.string()));
@@ -46,6 +100,41 @@ void open_in_paraview(const fs::path& out) {
   const std::string argument = "--script=" + shipped("post/paraview/open.py", "paraview/open.py").string();
   execl(program.c_str(), program.c_str(), argument.c_str(), static_cast<char*>(nullptr));
   throw std::runtime_error("ParaView could not be started");
+}
+
+fs::path film(const fs::path& out, const fs::path& file) {
+  if (!fs::is_directory(out)) throw InputError(fmt::format("{}: no such directory", out.string()));
+  const fs::path to = file.empty() ? out / "film.mp4" : file;
+  const bool gif = to.extension() == ".gif";
+  if (!gif && to.extension() != ".mp4") throw InputError(fmt::format("{}: a film is an .mp4 or a .gif", to.string()));
+  if (fs::exists(fs::symlink_status(to))) throw InputError(fmt::format("{}: exists; name another film", to.string()));
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(out))
+    if (entry.path().filename() == "ball.pvd") folders.push_back(entry.path().parent_path());
+  if (folders.empty())
+    throw InputError(fmt::format("{}: no series of a blow (vtk/ball.pvd) in this run", out.string()));
+  std::ranges::sort(folders);
+  const fs::path filmed = answering(out, folders);
+  needed("pvbatch", "paraview", out);
+  needed("xvfb-run", "xvfb xauth", out);
+  const fs::path ffmpeg = needed("ffmpeg", "ffmpeg", out);
+
+  const fs::path place = to.parent_path().empty() ? fs::path(".") : to.parent_path();
+  const post::WorkFolder work(place);
+  run_program(shipped("scripts/pvbatch", "scripts/pvbatch"),
+              {shipped("post/paraview/film.py", "paraview/film.py").string(), fs::absolute(filmed).string(), "."},
+              work.path());
+  const std::string made = gif ? "film.gif" : "film.mp4";
+  std::vector<std::string> words = {"-nostdin",        "-loglevel", "error",   "-framerate",
+                                    gif ? "12" : "15", "-i",        "%04d.png"};
+  const std::vector<std::string> form =
+      gif ? std::vector<std::string>{"-vf", "scale=640:-1,split[a][b];[a]palettegen[p];[b][p]paletteuse"}
+          : std::vector<std::string>{"-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
+  words.insert(words.end(), form.begin(), form.end());
+  words.push_back(made);
+  run_program(ffmpeg, words, work.path());
+  post::move_file(work.path() / made, to);
+  return to;
 }
 
 }  // namespace hosel::app
