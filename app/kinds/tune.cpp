@@ -252,14 +252,13 @@ class TuneJob final : public Job {
 
   /// A [[data.keep]] with its column.
   struct Kept {
+    const Keep& by;
     const loop::Column* column;
     std::vector<std::string> cells;  ///< of each row, where the text counts
-    std::string equals;
-    double min, max;
 
     bool keeps(std::size_t row) const {
-      if (!cells.empty() && cells[row] != equals) return false;
-      return !column->numeric || (column->native(row) >= min && column->native(row) <= max);
+      if (!cells.empty() && cells[row] != by.equals) return false;
+      return !column->numeric || (column->native(row) >= by.min && column->native(row) <= by.max);
     }
   };
 
@@ -276,7 +275,7 @@ class TuneJob final : public Job {
         if (!c->numeric && stated)
           k.table.fail(key, fmt::format("{:g}: the column '{}' of {} holds words (allowed: equals)", bound, k.column,
                                         shots_file_.string()));
-      Kept kept{c, {}, k.equals, k.min, k.max};
+      Kept kept{k, c, {}};
       if (!c->numeric || !k.equals.empty()) {
         const auto at = std::ranges::find(sheet.names, k.column);
         if (at == sheet.names.end())

@@ -38,7 +38,7 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
                      .holds = t.text({"holds", "a formula of outputs and axes that is true where the statement holds"}),
                      .where = t.text({"where", "a formula that is true at the points of which it speaks"}, ""),
                      .names = called,
-                     .figures = figures};
+                     .variables = names};
     for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
       if (formula->empty() && key == std::string_view("where")) continue;
       check_formula(t, key, *formula, names);
@@ -62,8 +62,7 @@ nlohmann::json judge(Output& out, const StudyTable& table, const std::vector<Stu
   for (const StudyStatement& s : statements)
     for (const StudyGroup& group : groups) {
       const std::size_t m = group.model;
-      const auto names = variables(s.names, s.figures, !references.empty());
-      Formula holds(s.holds, names), where(s.where.empty() ? "1" : s.where, names);
+      Formula holds(s.holds, s.variables), where(s.where.empty() ? "1" : s.where, s.variables);
       const auto set = [&](const std::string& name, double x) {
         holds.set(name, x);
         where.set(name, x);

@@ -19,7 +19,7 @@ struct StudyStatement {
   std::string text, holds, where;  ///< where: the points that it speaks of; empty: all
   FormulaNames names;              ///< what it calls columns and outputs
   std::vector<std::string>
-      figures;  ///< of a map, that it may name; where a map has none, what needs them is not judged
+      variables;  ///< all that it may name; where a map has no figures, what needs them is not judged
 };
 
 /// Points that are judged together, of one model.
