@@ -417,19 +417,10 @@ void Beam::commit(const State& s) {
   started_ = true;
 }
 
-void Beam::save(std::vector<double>& history) const {
-  history.insert(history.end(), {viscous_, power_, time_, height_, fall_, started_ ? 1.0 : 0.0});
-}
+void Beam::save(std::vector<double>& history) const { put(history, viscous_, power_, time_, height_, fall_, started_); }
 
 void Beam::restore(std::span<const double>& history) {
-  if (history.size() < 6) throw std::invalid_argument("the checkpoint is of another system");
-  viscous_ = history[0];
-  power_ = history[1];
-  time_ = history[2];
-  height_ = history[3];
-  fall_ = history[4];
-  started_ = history[5] != 0;
-  history = history.subspan(6);
+  take(history, "the checkpoint is of another system", viscous_, power_, time_, height_, fall_, started_);
 }
 
 std::vector<Beam::Strain> Beam::strains(const State& s) const {

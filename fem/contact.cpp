@@ -474,40 +474,19 @@ void Contact::commit(const State& s) {
 }
 
 void Contact::save(std::vector<double>& out) const {
-  out.insert(out.end(), {friction_work_, penetration_, elastic_slip_, started_ ? 1.0 : 0.0});
+  put(out, friction_work_, penetration_, elastic_slip_, started_);
   for (const Past& p : past_) {
-    out.insert(out.end(), p.place.begin(), p.place.end());
-    out.insert(out.end(), p.anchor.begin(), p.anchor.end());
-    out.insert(out.end(),
-               {p.gap, p.traction, p.stored, p.slip, p.slip_before, p.touching ? 1.0 : 0.0, p.sliding ? 1.0 : 0.0});
-    if (laws_.method->multipliers()) out.insert(out.end(), {p.multiplier, p.offset});
+    put(out, p.place, p.anchor, p.gap, p.traction, p.stored, p.slip, p.slip_before, p.touching, p.sliding);
+    if (laws_.method->multipliers()) put(out, p.multiplier, p.offset);
   }
 }
 
 void Contact::restore(std::span<const double>& in) {
-  const auto next = [&] {
-    if (in.empty()) throw std::invalid_argument("contact: the history is too short");
-    const double x = in.front();
-    in = in.subspan(1);
-    return x;
-  };
-  friction_work_ = next();
-  penetration_ = next();
-  elastic_slip_ = next();
-  started_ = next() != 0;
+  constexpr char fault[] = "contact: the history is too short";
+  take(in, fault, friction_work_, penetration_, elastic_slip_, started_);
   for (Past& p : past_) {
-    for (double& x : p.place) x = next();
-    for (double& x : p.anchor) x = next();
-    p.gap = next();
-    p.traction = next();
-    p.stored = next();
-    p.slip = next();
-    p.slip_before = next();
-    p.touching = next() != 0;
-    p.sliding = next() != 0;
-    if (!laws_.method->multipliers()) continue;
-    p.multiplier = next();
-    p.offset = next();
+    take(in, fault, p.place, p.anchor, p.gap, p.traction, p.stored, p.slip, p.slip_before, p.touching, p.sliding);
+    if (laws_.method->multipliers()) take(in, fault, p.multiplier, p.offset);
   }
   for (std::size_t i = 0; i < past_.size(); ++i) multipliers_[i] = past_[i].multiplier;
 }

@@ -153,17 +153,10 @@ void FaceSpring::commit(const State& s) {
   started_ = true;
 }
 
-void FaceSpring::save(std::vector<double>& h) const {
-  h.insert(h.end(), {viscous_, power_, time_, started_ ? 1.0 : 0.0});
-}
+void FaceSpring::save(std::vector<double>& h) const { put(h, viscous_, power_, time_, started_); }
 
 void FaceSpring::restore(std::span<const double>& h) {
-  if (h.size() < 4) throw std::invalid_argument("face: the history is too short");
-  viscous_ = h[0];
-  power_ = h[1];
-  time_ = h[2];
-  started_ = h[3] != 0;
-  h = h.subspan(4);
+  take(h, "face: the history is too short", viscous_, power_, time_, started_);
 }
 
 double FaceSpring::vibration(const State& s, double head_mass) const {

@@ -15,12 +15,17 @@
 namespace hosel::fem {
 namespace {
 
-using Fields = Eigen::Matrix<double, 8, Eigen::Dynamic>;
-
 int largest_order(const FourierBasis& basis) {
   int order = 0;
   for (const auto& f : basis) order = std::max(order, f.order);
   return order;
+}
+
+/// Columns e_s, e_rho, e_theta.
+Mat3 cylindrical(double theta) {
+  Mat3 frame;
+  frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
+  return frame;
 }
 
 }  // namespace
@@ -113,11 +118,7 @@ HarmonicSolid::HarmonicSolid(DofMap& dof_map, mesh::Meridian mesh, FourierBasis 
                       .transpose();
         }
     }
-  for (double theta : angles.theta) {
-    Mat3 frame;
-    frame << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
-    frames_.push_back(frame);
-  }
+  for (double theta : angles.theta) frames_.push_back(cylindrical(theta));
   frame_components_.resize(padded_, 9);
   for (Index j = 0; j < padded_; ++j)  // beyond the angles an undeformed point
     frame_components_.row(j) = frames_[static_cast<std::size_t>(std::min(j, n - 1))].reshaped().transpose();
@@ -288,17 +289,18 @@ void HarmonicSolid::find_gradients(const State& s, std::size_t e, Scratch& t) co
   }
 }
 
-/// Calls visit(point of the element, angle, F, frame) with F at every point; F in the placement's axes.
+/// Calls visit(point, point of the element, angle, F, frame) with F at every point; F in the placement's axes.
 template <class Visit>
 void HarmonicSolid::visit_points(const State& s, const Mat3& mean, std::size_t e, Scratch& t, Visit&& visit) const {
   find_gradients(s, e, t);
+  const std::size_t first = e * points_per_element();
   Mat3 F;
   for (Index p = 0; p < t.points; ++p)
     for (Index j = 0; j < t.angles; ++j) {
       const Mat3& frame = frames_[static_cast<std::size_t>(j)];
       for (int J = 0; J < 3; ++J)
         for (int c = 0; c < 3; ++c) F(c, J) = t.gradient[static_cast<std::size_t>(c)](j, t.column(p, J)) + frame(c, J);
-      visit(p, j, F, corotated_ ? Mat3(mean * frame) : frame);
+      visit(first + static_cast<std::size_t>(p), p, j, F, corotated_ ? Mat3(mean * frame) : frame);
     }
 }
 
@@ -323,7 +325,7 @@ void HarmonicSolid::visit_lanes(const State& s, std::size_t e, Scratch& t, Visit
           load(frame, &frame_components_(j, c + 3 * J));
           F[static_cast<std::size_t>(c + 3 * J)] = gradient + frame;
         }
-      visit(p, j, F, starts + j);
+      visit(point, p, j, F, starts + j);
     }
   }
 }
@@ -339,11 +341,11 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
     found.twist.setZero();
     found.energy = 0;
     if (solid.in_lanes()) {
-      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+      visit_lanes(s, e, t, [&](std::size_t point, Index p, Index j, const Mat3Lanes& F, const double* starts) {
         Mat3Lanes stress;
         Lanes energy;
         evaluate(solid, F, starts, padded_, stress, energy);
-        const double weight = points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
+        const double weight = points_[point].weight;
         for (int l = 0; l < std::min<Index>(kLanes, t.angles - j); ++l) found.energy += weight * energy[l];
         for (Index J = 0; J < 3; ++J)
           for (Index c = 0; c < 3; ++c)
@@ -351,8 +353,7 @@ void HarmonicSolid::residual(const State& s, Vector& inertia, Vector& force) con
                   weight * stress[static_cast<std::size_t>(c + 3 * J)]);
       });
     } else {
-      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-        const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+      visit_points(s, R, e, t, [&](std::size_t point, Index p, Index j, const Mat3& F, const Mat3& frame) {
         evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
         const double weight = points_[point].weight;
         found.energy += weight * t.response.energy;
@@ -415,8 +416,7 @@ void HarmonicSolid::add_stiffness(const State& s, double factor, const Mat3& mea
   };
   std::array<Eigen::MatrixXd, 6> slopes;
   for (auto& m : slopes) m.resize(t.angles, 9 * P);
-  visit_points(s, mean, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-    const std::size_t point = e * static_cast<std::size_t>(P) + static_cast<std::size_t>(p);
+  visit_points(s, mean, e, t, [&](std::size_t point, Index p, Index j, const Mat3& F, const Mat3& frame) {
     evaluate(solid, F, frame, dt, history_at(point, j), true, t.response);
     const double weight = factor * points_[point].weight;
     for (std::size_t q = 0; q < 6; ++q)
@@ -501,22 +501,18 @@ std::vector<double> HarmonicSolid::strain_by_layer(const State& s) const {
   const Mat3 R = mean_rotation(s);
   over_elements([&](std::size_t e, Scratch& t) {
     const Solid& solid = material(e);
-    const auto weight = [&](Index p) {
-      return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
-    };
     if (solid.in_lanes()) {
-      visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+      visit_lanes(s, e, t, [&](std::size_t point, Index, Index j, const Mat3Lanes& F, const double* starts) {
         Mat3Lanes stress;
         Lanes energy;
         evaluate(solid, F, starts, padded_, stress, energy);
-        for (int l = 0; l < std::min<Index>(kLanes, t.angles - j); ++l) found[e] += weight(p) * energy[l];
+        for (int l = 0; l < std::min<Index>(kLanes, t.angles - j); ++l) found[e] += points_[point].weight * energy[l];
       });
       return;
     }
-    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-      const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+    visit_points(s, R, e, t, [&](std::size_t point, Index, Index j, const Mat3& F, const Mat3& frame) {
       evaluate(solid, F, frame, dt, history_at(point, j), false, t.response);
-      found[e] += weight(p) * t.response.energy;
+      found[e] += points_[point].weight * t.response.energy;
     });
   });
   for (std::size_t e = 0; e < found.size(); ++e) out[static_cast<std::size_t>(mesh_.layer[e])] += found[e];
@@ -532,22 +528,19 @@ void HarmonicSolid::commit(const State& s) {
     over_elements([&](std::size_t e, Scratch& t) {
       const Solid& solid = material(e);
       const auto size = static_cast<std::size_t>(solid.history_size());
-      const auto history = [&](Index p, Index j) {
-        const std::size_t point = e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p);
+      const auto history = [&](std::size_t point, Index j) {
         return std::span(history_).subspan(history_start_[point] + static_cast<std::size_t>(j) * size);
       };
-      const auto weight = [&](Index p) {
-        return points_[e * static_cast<std::size_t>(t.points) + static_cast<std::size_t>(p)].weight;
-      };
       if (solid.in_lanes()) {
-        visit_lanes(s, e, t, [&](Index p, Index j, const Mat3Lanes& F, const double* starts) {
+        visit_lanes(s, e, t, [&](std::size_t point, Index, Index j, const Mat3Lanes& F, const double* starts) {
           const int count = static_cast<int>(std::min<Index>(kLanes, t.angles - j));
-          found[e] += weight(p) * update_internal_variables(solid, F, starts, padded_, dt, count, history(p, j));
+          found[e] += points_[point].weight *
+                      update_internal_variables(solid, F, starts, padded_, dt, count, history(point, j));
         });
         return;
       }
-      visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3&) {
-        found[e] += weight(p) * update_internal_variables(solid, F, dt, history(p, j).first(size));
+      visit_points(s, R, e, t, [&](std::size_t point, Index, Index j, const Mat3& F, const Mat3&) {
+        found[e] += points_[point].weight * update_internal_variables(solid, F, dt, history(point, j).first(size));
       });
     });
     std::ranges::fill(starts_of_, NAN);
@@ -556,42 +549,21 @@ void HarmonicSolid::commit(const State& s) {
   time_ = s.time;
 }
 
-void HarmonicSolid::save(std::vector<double>& out) const {
-  out.push_back(time_);
-  out.insert(out.end(), dissipated_.begin(), dissipated_.end());
-  out.insert(out.end(), history_.begin(), history_.end());
-}
+void HarmonicSolid::save(std::vector<double>& out) const { put(out, time_, dissipated_, history_); }
 
 void HarmonicSolid::restore(std::span<const double>& in) {
-  const auto take = [&](std::span<double> to) {
-    if (in.size() < to.size()) throw std::invalid_argument("harmonic solid: the history is too short");
-    std::ranges::copy(in.first(to.size()), to.begin());
-    in = in.subspan(to.size());
-  };
-  take({&time_, 1});
-  take(dissipated_);
-  take(history_);
+  take(in, "harmonic solid: the history is too short", time_, dissipated_, history_);
   found_time_ = NAN;
   std::ranges::fill(starts_of_, NAN);
 }
 
-Eigen::MatrixXd HarmonicSolid::displacement_fields(const State& s) const {
+Eigen::MatrixXd HarmonicSolid::fields(const Vector& numbers, Index shift) const {
   const Index K = unknowns();
   const auto nodes = static_cast<Index>(mesh_.nodes.size());
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(nodes, K);
   for (Index i = 0; i < nodes; ++i)
     for (Index k = 0; k < K; ++k)
-      if (const Index o = offset(static_cast<int>(i), k); o >= 0) out(i, k) = s.q[o];
-  return out;
-}
-
-Eigen::MatrixXd HarmonicSolid::velocity_fields(const State& s) const {
-  const Index K = unknowns();
-  const auto nodes = static_cast<Index>(mesh_.nodes.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(nodes, K);
-  for (Index i = 0; i < nodes; ++i)
-    for (Index k = 0; k < K; ++k)
-      if (const Index e = dof(static_cast<int>(i), k); e >= 0) out(i, k) = s.v[e];
+      if (const Index e = dof(static_cast<int>(i), k); e >= 0) out(i, k) = numbers[e + shift];
   return out;
 }
 
@@ -615,8 +587,7 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
   const double dt = s.time - time_;
   const Mat3 R = mean_rotation(s);
   over_elements([&](std::size_t e, Scratch& t) {
-    visit_points(s, R, e, t, [&](Index p, Index j, const Mat3& F, const Mat3& frame) {
-      const std::size_t point = e * per + static_cast<std::size_t>(p);
+    visit_points(s, R, e, t, [&](std::size_t point, Index, Index j, const Mat3& F, const Mat3& frame) {
       evaluate(material(e), F, frame, dt, history_at(point, j), false, t.response);
       // In the cylindrical frame, so that an axisymmetric state is constant over theta.
       const Mat3& Q = frames_[static_cast<std::size_t>(j)];
@@ -657,11 +628,7 @@ std::vector<Sym> HarmonicSolid::cauchy_at_nodes(const State& s, const std::vecto
         for (std::size_t p = 0; p < 4; ++p) out[node * angles + t] += w[p] * at_angles[e * per + p].col(Index(t));
     }
   std::vector<Mat3> turns;  // from the cylindrical frame
-  for (double t : theta) {
-    Mat3 frame;
-    frame << 1, 0, 0, 0, std::cos(t), -std::sin(t), 0, std::sin(t), std::cos(t);
-    turns.emplace_back(placement_.axes * frame);
-  }
+  for (double t : theta) turns.emplace_back(placement_.axes * cylindrical(t));
   for (std::size_t node = 0; node < nodes; ++node)
     for (std::size_t t = 0; t < angles; ++t) {
       const Mat3& Q = turns[t];

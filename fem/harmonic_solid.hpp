@@ -69,8 +69,8 @@ class HarmonicSolid final : public Term {
   Index offset(int node, Index k) const;  ///< the same as an entry of State::q, or -1
 
   /// Meridian fields U (nodes x unknowns) of the state's displacement [m], velocity [m/s].
-  Eigen::MatrixXd displacement_fields(const State& s) const;
-  Eigen::MatrixXd velocity_fields(const State& s) const;
+  Eigen::MatrixXd displacement_fields(const State& s) const { return fields(s.q, block_.q - block_.v); }
+  Eigen::MatrixXd velocity_fields(const State& s) const { return fields(s.v, 0); }
   /// Reference position of a node at an angle, global.
   Vec3 reference(int node, double theta) const;
   /// The angular functions there, global: the vector of a row of fields is this times the row.
@@ -115,8 +115,8 @@ class HarmonicSolid final : public Term {
   void find_gradients(const State& s, std::size_t element, Scratch& scratch) const;
   template <class Visit>
   void visit_points(const State& s, const Mat3& mean, std::size_t element, Scratch& scratch, Visit&& visit) const;
-  /// The same for several angles at a time, of a material that answers so; visit(point of the element, first angle,
-  /// Mat3Lanes F, what the step from the history starts from).
+  /// The same for several angles at a time, of a material that answers so; visit(point, point of the element, first
+  /// angle, Mat3Lanes F, what the step from the history starts from).
   template <class Visit>
   void visit_lanes(const State& s, std::size_t element, Scratch& scratch, Visit&& visit) const;
   void add_stiffness(const State& s, double factor, const Mat3& mean, std::size_t element, Scratch& scratch,
@@ -127,6 +127,7 @@ class HarmonicSolid final : public Term {
   }
   std::span<const double> history_at(std::size_t point, Index angle) const;
   void element_fields(const Vector& numbers, Index offset, std::size_t element, Eigen::MatrixXd& fields) const;
+  Eigen::MatrixXd fields(const Vector& numbers, Index shift) const;  // of all nodes
   Mat3 mean_rotation(const State& s) const;
 
   std::string body_;

@@ -57,17 +57,10 @@ void ModalDamping::commit(const State& s) {
   started_ = true;
 }
 
-void ModalDamping::save(std::vector<double>& h) const {
-  h.insert(h.end(), {viscous_, power_, time_, started_ ? 1.0 : 0.0});
-}
+void ModalDamping::save(std::vector<double>& h) const { put(h, viscous_, power_, time_, started_); }
 
 void ModalDamping::restore(std::span<const double>& h) {
-  if (h.size() < 4) throw std::invalid_argument("the checkpoint is of another system");
-  viscous_ = h[0];
-  power_ = h[1];
-  time_ = h[2];
-  started_ = h[3] != 0;
-  h = h.subspan(4);
+  take(h, "the checkpoint is of another system", viscous_, power_, time_, started_);
 }
 
 }  // namespace hosel::fem

@@ -1,6 +1,5 @@
 #include "fem/rigid_body.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 namespace hosel::fem {
@@ -69,17 +68,10 @@ void RigidBody::commit(const State& s) {
   has_position_ = true;
 }
 
-void RigidBody::save(std::vector<double>& h) const {
-  const Vec3& x = last_position_;
-  h.insert(h.end(), {external_work_, x.x(), x.y(), x.z(), has_position_ ? 1.0 : 0.0});
-}
+void RigidBody::save(std::vector<double>& h) const { put(h, external_work_, last_position_, has_position_); }
 
 void RigidBody::restore(std::span<const double>& h) {
-  if (h.size() < 5) throw std::invalid_argument("rigid body: the history is too short");
-  external_work_ = h[0];
-  last_position_ = Vec3(h[1], h[2], h[3]);
-  has_position_ = h[4] != 0;
-  h = h.subspan(5);
+  take(h, "rigid body: the history is too short", external_work_, last_position_, has_position_);
 }
 
 Vec3 RigidBody::position(const State& s) const {

@@ -1,11 +1,15 @@
 #include "fem/supports.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 #include "fem/rotation_forms.hpp"
 
 namespace hosel::fem {
+namespace {
+
+constexpr char kOther[] = "the checkpoint is of another system";
+
+}  // namespace
 
 Motion at_rest(const Vec3& position, const Eigen::Quaterniond& rotation) {
   return [pose = Pose{.position = position, .rotation = rotation}](double) { return pose; };
@@ -62,21 +66,11 @@ void NodeLoad::commit(const State& s) {
 }
 
 void NodeLoad::save(std::vector<double>& h) const {
-  h.push_back(started_ ? 1 : 0);
-  h.push_back(work_);
-  for (const Vec3& v : {position_, force_, moment_}) h.insert(h.end(), v.begin(), v.end());
-  h.insert(h.end(), rotation_.coeffs().begin(), rotation_.coeffs().end());
+  put(h, started_, work_, position_, force_, moment_, rotation_.coeffs());
 }
 
 void NodeLoad::restore(std::span<const double>& h) {
-  if (h.size() < 15) throw std::invalid_argument("the checkpoint is of another system");
-  started_ = h[0] != 0;
-  work_ = h[1];
-  position_ = {h[2], h[3], h[4]};
-  force_ = {h[5], h[6], h[7]};
-  moment_ = {h[8], h[9], h[10]};
-  rotation_.coeffs() = Eigen::Vector4d(h[11], h[12], h[13], h[14]);
-  h = h.subspan(15);
+  take(h, kOther, started_, work_, position_, force_, moment_, rotation_.coeffs());
 }
 
 /// d, r, their rates, and their derivative by the increments of both nodes (translations global,
@@ -200,19 +194,10 @@ void SpringJoint::commit(const State& s) {
   started_ = true;
 }
 
-void SpringJoint::save(std::vector<double>& h) const {
-  h.insert(h.end(), {viscous_, work_, power_, drive_, time_, started_ ? 1.0 : 0.0});
-}
+void SpringJoint::save(std::vector<double>& h) const { put(h, viscous_, work_, power_, drive_, time_, started_); }
 
 void SpringJoint::restore(std::span<const double>& h) {
-  if (h.size() < 6) throw std::invalid_argument("the checkpoint is of another system");
-  viscous_ = h[0];
-  work_ = h[1];
-  power_ = h[2];
-  drive_ = h[3];
-  time_ = h[4];
-  started_ = h[5] != 0;
-  h = h.subspan(6);
+  take(h, kOther, viscous_, work_, power_, drive_, time_, started_);
 }
 
 }  // namespace hosel::fem

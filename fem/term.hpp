@@ -8,7 +8,9 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "fem/state.hpp"
@@ -75,6 +77,33 @@ class Term {
   virtual void restore(std::span<const double>& history) { (void)history; }
 };
 
+/// Appends numbers, flags and ranges of numbers to a history.
+template <class... Part>
+void put(std::vector<double>& history, const Part&... parts) {
+  const auto one = [&](const auto& part) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(part)>>) history.push_back(part);
+    else history.insert(history.end(), part.begin(), part.end());
+  };
+  (one(parts), ...);
+}
+/// Takes them back from its front, in the same order. Throws std::invalid_argument(`fault`) where it is too short.
+template <class... Part>
+void take(std::span<const double>& history, const char* fault, Part&... parts) {
+  const auto number = [&] {
+    if (history.empty()) throw std::invalid_argument(fault);
+    const double x = history.front();
+    history = history.subspan(1);
+    return x;
+  };
+  const auto one = [&](auto& part) {
+    if constexpr (std::is_same_v<decltype(part), bool&>) part = number() != 0;
+    else if constexpr (std::is_same_v<decltype(part), double&>) part = number();
+    else
+      for (double& x : part) x = number();
+  };
+  (one(parts), ...);
+}
+
 /// A motion imposed on some equations: q, v, a are given, the residual there is a reaction.
 class Prescribed {
  public:
@@ -90,6 +119,8 @@ struct System {
   std::vector<std::unique_ptr<Prescribed>> prescribed;
 };
 
+/// inertia + force of all terms. `scale`, where given, becomes what that is small against: the sum of their norms.
+Vector unbalanced(const System& system, const State& trial, double* scale = nullptr);
 /// Term::begin_step() and Term::augment() of all terms.
 void begin_step(const System& system);
 bool augment(const System& system, const State& trial);

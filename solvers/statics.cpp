@@ -7,23 +7,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <memory>
 
 #include "solvers/contact_newton.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/sundials.hpp"
 
 namespace hosel::solvers {
-namespace {
-
-Vector residual_of(const fem::System& system, const fem::State& s, double* scale = nullptr) {
-  Vector inertia = Vector::Zero(system.dof_map.size()), force = inertia;
-  for (const auto& term : system.terms) term->residual(s, inertia, force);
-  if (scale) *scale = inertia.norm() + force.norm();
-  return inertia + force;
-}
-
-}  // namespace
 
 StaticsReport solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options) {
   const bool contact = std::ranges::any_of(system.terms, [](const auto& term) { return term->abrupt(); });
@@ -35,7 +24,7 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
   for (const auto& p : system.prescribed) p->impose(out.state);
   double scale0 = 0;
   fem::begin_step(system);
-  const Vector r0 = tangent.gather(residual_of(system, out.state, &scale0));
+  const Vector r0 = tangent.gather(fem::unbalanced(system, out.state, &scale0));
   double done = 0, step = 1.0 / std::max(1, options.load_steps);
   int bisections = 0, augmented = 0;
   fem::State trial = out.state;
@@ -45,7 +34,7 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
     trial = out.state;
     Vector full = Vector::Zero(system.dof_map.size());
     const auto residual = [&](double& scale) {
-      const Vector r = tangent.gather(residual_of(system, trial, &scale)) - (1 - next) * r0;
+      const Vector r = tangent.gather(fem::unbalanced(system, trial, &scale)) - (1 - next) * r0;
       scale = std::max(scale, scale0);
       return r;
     };
@@ -93,7 +82,7 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
       step /= 2;
     }
   }
-  out.reactions = residual_of(system, out.state);
+  out.reactions = fem::unbalanced(system, out.state);
   return out;
 }
 
@@ -115,7 +104,7 @@ struct KinsolProblem {
 int kinsol_residual(N_Vector y, N_Vector f, void* user) {
   auto& p = *static_cast<KinsolProblem*>(user);
   p.set(y);
-  Eigen::Map<Vector>(N_VGetArrayPointer(f), p.tangent.size()) = p.tangent.gather(residual_of(p.system, p.trial));
+  Eigen::Map<Vector>(N_VGetArrayPointer(f), p.tangent.size()) = p.tangent.gather(fem::unbalanced(p.system, p.trial));
   return 0;
 }
 
@@ -158,7 +147,7 @@ StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& s
   if (status != KIN_SUCCESS && status != KIN_INITIAL_GUESS_OK)  // a step too short to go on is no equilibrium
     throw NonConvergence("KINSOL found no static equilibrium (flag " + std::to_string(status) +
                          "): start nearer to it, or look for a body that nothing holds");
-  return {problem.trial, residual_of(system, problem.trial), static_cast<int>(iterations), 1};
+  return {problem.trial, fem::unbalanced(system, problem.trial), static_cast<int>(iterations), 1};
 }
 
 }  // namespace hosel::solvers
