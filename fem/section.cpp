@@ -4,9 +4,9 @@
 
 namespace hosel::fem {
 
-SectionLaw shaft_sections(const Shaft& shaft, bool shear) {
-  return [shaft, shear](double s) {
-    const ShaftStation st = shaft.at(s);
+SectionLaw shaft_sections(const Shaft& shaft, bool shear, double from) {
+  return [shaft, shear, from](double s) {
+    const ShaftStation st = shaft.at(s + from);
     const bool yields = shear && st.shear_stiffness > 0;
     const double kga = yields ? st.shear_stiffness : std::numeric_limits<double>::infinity();
     return Section{.axial = st.axial_stiffness,

@@ -22,7 +22,7 @@ struct Section {
 using SectionLaw = std::function<Section(double)>;
 
 /// Sections of a shaft from its table. Rayleigh beam theory where `shear` is false or the table has no shear stiffness:
-/// rotary inertia counts, and sections stay normal to the axis.
-SectionLaw shaft_sections(const Shaft& shaft, bool shear = true);
+/// rotary inertia counts, and sections stay normal to the axis. The beam begins at `from` on the shaft [m].
+SectionLaw shaft_sections(const Shaft& shaft, bool shear = true, double from = 0);
 
 }  // namespace hosel::fem

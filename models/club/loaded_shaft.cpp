@@ -1,6 +1,5 @@
 #include "models/club/loaded_shaft.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "fem/section.hpp"
@@ -61,7 +60,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
       std::make_unique<fem::RigidBody>("head", head.translation, head.rotation,
                                        fem::RigidBodyProperties{club.head.mass, club.head.inertia, c}, gravity));
   const auto line = shaft_line(club, grip_point, elements, growth);
-  auto owned = std::make_unique<fem::Beam>(system.dof_map, line, mounted_sections(club, grip_point, shear),
+  auto owned = std::make_unique<fem::Beam>(system.dof_map, line, fem::shaft_sections(*club.shaft, shear, grip_point),
                                            fem::BeamOptions{.gravity = gravity, .last = head});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));
@@ -86,9 +85,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
   };
   /// What is out of balance: force and moment about the hosel.
   const auto resultant = [&] {
-    fem::Vector inertia = fem::Vector::Zero(system.dof_map.size()), force = inertia;
-    for (const auto& term : system.terms) term->residual(s, inertia, force);
-    const fem::Vector r = inertia + force;
+    const fem::Vector r = fem::unbalanced(system, s);
     Eigen::Matrix<double, 6, 1> out = Eigen::Matrix<double, 6, 1>::Zero();
     for (const fem::Node& n : beam.nodes()) {
       const Vec3 f = r.segment<3>(n.translation.v), x = s.q.segment<3>(n.translation.q);

@@ -16,10 +16,6 @@ std::vector<mesh::LineNode> shaft_line(const Club& club, double grip_point, int 
   return mesh::straight(mesh::graded(length, elements, growth), length * axis, mesh::frame_along(-axis, Vec3::UnitX()));
 }
 
-fem::SectionLaw mounted_sections(const Club& club, double grip_point, bool shear) {
-  return [law = fem::shaft_sections(*club.shaft, shear), grip_point](double s) { return law(s + grip_point); };
-}
-
 const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem::Node& head, const Club& club,
                              const ShaftMount& mount) {
   if (mount.joint.kind == HeadJoint::Kind::none) throw std::invalid_argument("a blow needs a head on the shaft");
@@ -41,7 +37,7 @@ const fem::Beam& mount_shaft(fem::System& system, fem::State& initial, const fem
         "joint", tip, head, stiffness_of(mount.joint, *club.shaft, face_to_grip(club.geometry).transpose())));
   }
   auto owned = std::make_unique<fem::Beam>(
-      system.dof_map, line, mounted_sections(club, mount.grip_point, mount.shear),
+      system.dof_map, line, fem::shaft_sections(*club.shaft, mount.shear, mount.grip_point),
       fem::BeamOptions{.gravity = R * shaft.gravity, .damping_time = club.shaft->damping_time, .last = tip});
   const fem::Beam& beam = *owned;
   system.terms.push_back(std::move(owned));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "fem/beam.hpp"
 #include "fem/supports.hpp"
@@ -34,9 +33,8 @@ struct ShaftMount {
   std::optional<GripLoad> load = {};
 };
 
-/// The line of a mounted shaft in face axes, tip at the origin, and its sections.
+/// The line of a mounted shaft in face axes, tip at the origin.
 std::vector<mesh::LineNode> shaft_line(const Club& club, double grip_point, int elements, double growth);
-fem::SectionLaw mounted_sections(const Club& club, double grip_point, bool shear);
 
 /// Adds the shaft and its grip to the system. `head` is the node at the shaft's tip, its frame parallel
 /// to the face frame; the club's ClubGeometry::shaft_axis is in that frame. The pose and velocity that

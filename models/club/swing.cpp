@@ -78,10 +78,8 @@ Swing::Swing(const Club& club, const SwingOptions& options, GripDrive drive)
 
   const auto line = mesh::straight(mesh::graded(length_, options.elements, options.growth), Vec3::Zero(),
                                    mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-  const fem::SectionLaw sections = [law = fem::shaft_sections(shaft, options.shear),
-                                    from = options.grip_point](double s) { return law(s + from); };
   auto beam =
-      std::make_unique<fem::Beam>(system_.dof_map, line, sections,
+      std::make_unique<fem::Beam>(system_.dof_map, line, fem::shaft_sections(shaft, options.shear, options.grip_point),
                                   fem::BeamOptions{.gravity = options.gravity, .damping_time = shaft.damping_time});
   shaft_ = beam.get();
   system_.terms.push_back(std::move(beam));
@@ -312,9 +310,7 @@ fem::State Swing::by_ida(const fem::State& consistent, double end, const StateOb
   ledger_ = {};
   counts_ = {};
   solvers::integrate_ida(system_, consistent, times, {}, [&](const fem::State& s) {
-    fem::Vector inertia = fem::Vector::Zero(system_.dof_map.size()), force = inertia;
-    for (const auto& term : system_.terms) term->residual(s, inertia, force);
-    observer(sample(s, inertia + force), s);
+    observer(sample(s, fem::unbalanced(system_, s)), s);
     last = s;
     ++counts_.steps;
   });

@@ -37,10 +37,8 @@ void assemble(Assembly& a, const Shaft& shaft, const BenchOptions& o) {
   const double length = shaft.length() - o.clamped_length;
   const auto line =
       mesh::straight(mesh::graded(length, o.elements), Vec3::Zero(), mesh::frame_along(-Vec3::UnitZ(), Vec3::UnitX()));
-  const fem::SectionLaw law = [sections = fem::shaft_sections(shaft, o.shear), from = o.clamped_length](double s) {
-    return sections(s + from);
-  };
-  auto owned = std::make_unique<fem::Beam>(a.system.dof_map, line, law, fem::BeamOptions{});
+  auto owned = std::make_unique<fem::Beam>(a.system.dof_map, line,
+                                           fem::shaft_sections(shaft, o.shear, o.clamped_length), fem::BeamOptions{});
   a.beam = owned.get();
   a.system.terms.push_back(std::move(owned));
   a.system.prescribed.push_back(
