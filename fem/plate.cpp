@@ -33,8 +33,6 @@ double von_mises(const Eigen::Vector3d& s) {
   return std::sqrt(s[0] * s[0] - s[0] * s[1] + s[1] * s[1] + 3 * s[2] * s[2]);
 }
 
-bool stiff(double k) { return k >= 0; }
-
 }  // namespace
 
 /// Rows: membrane (yy, zz, 2 yz), bending likewise, shear (y, z).
@@ -53,7 +51,7 @@ std::vector<std::string> PlateMaterial::faults() const {
 }
 
 std::vector<std::string> RimSupport::faults() const {
-  if (stiff(deflection) && stiff(rotation) && stiff(stretch)) return {};
+  if (deflection >= 0 && rotation >= 0 && stretch >= 0) return {};
   return {"a rim's stiffness must not be negative"};
 }
 
@@ -79,38 +77,42 @@ Plate::Plate(DofMap& dof_map, mesh::PlateMesh mesh, const PlateMaterial& materia
     throw std::invalid_argument("plate: a thickness for every node is needed");
   for (double t : thickness_)
     if (!(t > 0)) throw std::invalid_argument("plate: a thickness must be positive");
-  const auto held = [&](double k) { return std::isinf(k); };
   std::vector<std::array<bool, 5>> free;
   Index count = 0;
   for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
     const bool rim_node = mesh_.on_rim[n] != 0;
-    const bool w = !rim_node || !held(rim.deflection), b = !rim_node || !held(rim.rotation),
-               u = curved_ && (!rim_node || !held(rim.stretch));
+    const bool w = !rim_node || !std::isinf(rim.deflection), b = !rim_node || !std::isinf(rim.rotation),
+               u = curved_ && (!rim_node || !std::isinf(rim.stretch));
     free.push_back({w, b, b, u, u});
     for (bool f : free.back()) count += f;
   }
   if (count == 0) throw std::invalid_argument("plate: every node is held");
   const DofMap::Block block = dof_map.add_vector(count);
   to_q_ = block.q - block.v;
-  Index next = block.v;
+  end_ = block.v;
   for (const auto& f : free) {
     auto& own = dofs_.emplace_back();
-    for (std::size_t i = 0; i < 5; ++i) own[i] = f[i] ? next++ : -1;
+    for (std::size_t i = 0; i < 5; ++i) own[i] = f[i] ? end_++ : -1;
   }
   for (const auto& nodes : mesh_.elements) {
-    Element e;
-    for (int k = 0; k < 9; ++k)
-      for (int i = 0; i < 5; ++i)
-        if (const Index d = dof(nodes[static_cast<std::size_t>(k)], static_cast<Unknown>(i)); d >= 0) {
-          e.dofs.push_back(d);
-          e.places.push_back(static_cast<int>(at(k, i)));
-        }
+    Element e = element(nodes);
     build(e, nodes);
     elements_.push_back(std::move(e));
   }
   add_rim();
   for (Element& e : elements_)
     for (Index d : e.dofs) e.entries.push_back(d + to_q_);
+}
+
+Plate::Element Plate::element(std::span<const int> nodes) const {
+  Element e;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (int i = 0; i < 5; ++i)
+      if (const Index d = dof(nodes[k], static_cast<Unknown>(i)); d >= 0) {
+        e.dofs.push_back(d);
+        e.places.push_back(static_cast<int>(at(static_cast<int>(k), i)));
+      }
+  return e;
 }
 
 Index Plate::dof(int node, Unknown unknown) const { return dofs_[static_cast<std::size_t>(node)][unknown]; }
@@ -218,13 +220,7 @@ void Plate::add_rim() {
       spring(rim_.stretch, {0, 0, 0, 1, 0});
       spring(rim_.stretch, {0, 0, 0, 0, 1});
     }
-    Element e;
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 5; ++i)
-        if (const Index d = dof(edge[static_cast<std::size_t>(k)], static_cast<Unknown>(i)); d >= 0) {
-          e.dofs.push_back(d);
-          e.places.push_back(static_cast<int>(at(k, i)));
-        }
+    Element e = element(edge);
     if (e.dofs.empty()) continue;
     e.stiffness = K(e.places, e.places);
     e.mass = Eigen::MatrixXd::Zero(e.stiffness.rows(), e.stiffness.rows());
@@ -295,35 +291,19 @@ double Plate::deflection(const Vector& values, const Vector2d& place) const {
 }
 
 Vector Plate::load(const std::function<double(const Vector2d&)>& pressure) const {
-  Index size = 0;
-  for (const auto& d : dofs_)
-    for (Index i : d) size = std::max(size, i + 1);
-  Vector out = Vector::Zero(size);
-  for (const Sample& s : samples()) {
-    const double f = s.area * pressure(s.place);
-    if (f == 0) continue;
-    for (int k = 0; k < 9; ++k)
-      if (const Index d =
-              dof(mesh_.elements[static_cast<std::size_t>(s.element)][static_cast<std::size_t>(k)], kDeflection);
-          d >= 0)
-        out[d] += f * s.shape[k];
-  }
+  Vector out = Vector::Zero(end_);
+  for (const Sample& s : samples())
+    if (const double f = s.area * pressure(s.place); f != 0)
+      deflections(s.element, [&](int k, Index d) { out[d] += f * s.shape[k]; });
   return out;
 }
 
 Vector Plate::point_load(const Vector2d& place) const {
-  Index size = 0;
-  for (const auto& d : dofs_)
-    for (Index i : d) size = std::max(size, i + 1);
-  Vector out = Vector::Zero(size);
+  Vector out = Vector::Zero(end_);
   const mesh::PlatePlace p = mesh::locate(mesh_, place);
   if (p.element < 0) return out;
   const Q9 q = Q9::at(p.xi, p.eta);
-  for (int k = 0; k < 9; ++k)
-    if (const Index d =
-            dof(mesh_.elements[static_cast<std::size_t>(p.element)][static_cast<std::size_t>(k)], kDeflection);
-        d >= 0)
-      out[d] += q.value[k];
+  deflections(p.element, [&](int k, Index d) { out[d] += q.value[k]; });
   return out;
 }
 

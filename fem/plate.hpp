@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,12 @@ class Plate final : public Term {
   enum Unknown { kDeflection, kRotationY, kRotationZ, kStretchY, kStretchZ };
   /// Equation of an unknown at a node; -1 where it is held or does not exist.
   Index dof(int node, Unknown unknown) const;
+  /// Calls visit(k, equation) for the deflections of an element's nine nodes that are free.
+  template <class Visit>
+  void deflections(int element, const Visit& visit) const {
+    for (int k = 0; k < 9; ++k)
+      if (const Index d = dof(mesh_.elements[std::size_t(element)][std::size_t(k)], kDeflection); d >= 0) visit(k, d);
+  }
   double value(const Vector& values, int node, Unknown unknown) const;  ///< 0 where held; `values`: one an equation
   double deflection(const Vector& values, const Eigen::Vector2d& place) const;  ///< 0 outside
   /// Consistent loads of a pressure in the direction of w.
@@ -98,6 +105,7 @@ class Plate final : public Term {
   struct Strains;  // at a point
   Strains strains(const std::array<int, 9>& nodes, double xi, double eta) const;
   Eigen::Matrix2d jacobian(const std::array<int, 9>& nodes, const mesh::Q9& q) const;
+  Element element(std::span<const int> nodes) const;  // its free unknowns alone
   void add_rim();
   void build(Element& element, const std::array<int, 9>& nodes) const;
 
@@ -108,6 +116,7 @@ class Plate final : public Term {
   Face curvature_;
   bool curved_;
   Index to_q_ = 0;  // from an equation to its entry in State::q
+  Index end_ = 0;   // after its last equation
   std::vector<std::array<Index, 5>> dofs_;
   std::vector<Element> elements_;  // of the mesh, then edges of the rim on springs
 };

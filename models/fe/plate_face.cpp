@@ -45,10 +45,8 @@ Sparse deflections(const fem::Plate& plate, Eigen::Index size, const mesh::Plate
       at = mesh::locate(plate.mesh(), (1 - back) * place);
     if (at.element < 0) continue;
     const mesh::Q9 q = mesh::Q9::at(at.xi, at.eta);
-    const auto& nodes = plate.mesh().elements[std::size_t(at.element)];
-    for (int k = 0; k < 9; ++k)
-      if (const auto dof = plate.dof(nodes[std::size_t(k)], Unknown::kDeflection); dof >= 0)
-        entries.emplace_back(Eigen::Index(i), dof, q.value[k]);
+    plate.deflections(at.element,
+                      [&](int k, Eigen::Index dof) { entries.emplace_back(Eigen::Index(i), dof, q.value[k]); });
   }
   Sparse out(Eigen::Index(places.size()), size);
   out.setFromTriplets(entries.begin(), entries.end());
@@ -134,10 +132,8 @@ PlateFace::PlateFace(PlateDesign design, const Face& curvature) : design_(std::m
     const auto& s = samples[i];
     sample_mass_[Eigen::Index(i)] = s.mass;
     sample_place_.col(Eigen::Index(i)) = curvature_.point(s.place.x(), s.place.y());
-    for (int k = 0; k < 9; ++k)
-      if (const auto dof = plate_->dof(mesh.elements[std::size_t(s.element)][std::size_t(k)], Unknown::kDeflection);
-          dof >= 0)
-        entries.emplace_back(Eigen::Index(i), dof, s.shape[k]);
+    plate_->deflections(s.element,
+                        [&](int k, Eigen::Index dof) { entries.emplace_back(Eigen::Index(i), dof, s.shape[k]); });
   }
   on_samples_.resize(sample_mass_.size(), stiffness_.rows());
   on_samples_.setFromTriplets(entries.begin(), entries.end());

@@ -1,6 +1,5 @@
 #include "models/fe/plate_strike.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -41,11 +40,7 @@ PlateStrike::PlateStrike(std::shared_ptr<const PlateFace> plate, const Head& hea
   K.bottomRightCorner(n, n) = omega.cwiseAbs2().asDiagonal();
   for (const auto& s : plate_->plate().samples()) {
     Eigen::VectorXd shape = Eigen::VectorXd::Zero(n);
-    for (int k = 0; k < 9; ++k)
-      if (const auto dof = plate_->plate().dof(plate_->plate().mesh().elements[std::size_t(s.element)][std::size_t(k)],
-                                               fem::Plate::kDeflection);
-          dof >= 0)
-        shape += s.shape[k] * modes.row(dof).transpose();
+    plate_->plate().deflections(s.element, [&](int k, Index dof) { shape += s.shape[k] * modes.row(dof).transpose(); });
     const Vec3 arm = plate_->curvature().point(s.place.x(), s.place.y()) - head.cg;
     M.block(0, 6, 1, n) -= s.mass * shape.transpose();
     M.block(3, 6, 3, n) -= s.mass * arm.cross(Vec3::UnitX()) * shape.transpose();
@@ -155,24 +150,16 @@ PlateStrike::Strike PlateStrike::strike(const Striker& striker, const Place& pla
 CharacteristicTime PlateStrike::characteristic_time(const Striker& sphere, const Vector2d& where,
                                                     std::span<const double> speeds) const {
   const Place place = at(where, pendulum_patch(*plate_, where));
-  CharacteristicTime out;
-  Eigen::MatrixX2d A(Index(speeds.size()), 2);
-  Eigen::VectorXd t(A.rows());
-  for (Index i = 0; i < A.rows(); ++i) {
-    A.row(i) << 1, std::pow(speeds[std::size_t(i)], -0.329);
-    const Strike tap = strike(sphere, place, speeds[std::size_t(i)]);
+  std::vector<double> times;
+  for (const double speed : speeds) {
+    const Strike tap = strike(sphere, place, speed);
     if (!(tap.first_share > kFirstTouch))
       throw solvers::NonConvergence("the pendulum bounces on the vibrating face: its first touch makes " +
                                     std::to_string(std::lround(100 * tap.first_share)) +
                                     " % of the change of speed; such a face has no characteristic time");
-    t[i] = tap.rise_time;
+    times.push_back(tap.rise_time);
   }
-  const Eigen::Vector2d line = (A.transpose() * A).inverse() * (A.transpose() * t);
-  out.time = line[0];
-  out.slope = line[1];
-  out.times.assign(t.begin(), t.end());
-  out.departure = (t - A * line).cwiseAbs().maxCoeff();
-  return out;
+  return characteristic_line(speeds, std::move(times));
 }
 
 double pendulum_patch(const PlateFace& plate, const Vector2d& place) {

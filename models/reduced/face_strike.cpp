@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "golf/units.hpp"
 #include "solvers/peak.hpp"
@@ -115,15 +116,11 @@ FaceStrike strike(const Striker& striker, double head_mass, const std::optional<
   y[Strike::kHeadVelocity] = speed;
   FaceStrike out;
   // A step of the fastest motion cannot be above a tenth of its period's inverse rate: error control sees to it.
-  solvers::Peak force, travel;
+  solvers::Peak force;
   out.contact_time = solver.run(y.data(),
                                 {.first_step = 1e-7, .latest = 0.05, .tolerance = 1e-6, .event_tolerance = 1e-12},
-                                [&](double t, const double* now) {
-                                  force.add(t, system.force(now));
-                                  travel.add(t, now[Strike::kTravel]);
-                                });
+                                [&](double t, const double* now) { force.add(t, system.force(now)); });
   out.peak_force = force.value;
-  out.travel = travel.value;
   // The head's momentum is what striker and start leave it; its face may still move.
   const double head = speed - striker.mass / head_mass * y[Strike::kStrikerVelocity];
   out.restitution = (y[Strike::kStrikerVelocity] - head) / speed;
@@ -143,19 +140,21 @@ double contact_on_face(double compliance) { return std::sqrt(1 + kBallStiffness 
 CharacteristicTime characteristic_time(const Striker& sphere, double head_mass,
                                        const std::optional<FaceCompliance>& face, double shape,
                                        std::span<const double> speeds) {
-  CharacteristicTime out;
   const double mass = 1 / (1 / sphere.mass + 1 / head_mass);
+  std::vector<double> times;
+  for (const double v : speeds) times.push_back(contact_time(sphere, mass, give(face, shape), v));
+  return characteristic_line(speeds, std::move(times));
+}
+
+CharacteristicTime characteristic_line(std::span<const double> speeds, std::vector<double> times) {
+  CharacteristicTime out;
   Eigen::MatrixX2d A(static_cast<Eigen::Index>(speeds.size()), 2);
-  Eigen::VectorXd t(A.rows());
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    const double v = speeds[static_cast<std::size_t>(i)];
-    A.row(i) << 1, std::pow(v, -0.329);
-    t[i] = contact_time(sphere, mass, give(face, shape), v);
-  }
+  for (Eigen::Index i = 0; i < A.rows(); ++i) A.row(i) << 1, std::pow(speeds[static_cast<std::size_t>(i)], -0.329);
+  const Eigen::VectorXd t = Eigen::Map<const Eigen::VectorXd>(times.data(), A.rows());
   const Eigen::Vector2d line = (A.transpose() * A).inverse() * (A.transpose() * t);
   out.time = line[0];
   out.slope = line[1];
-  out.times.assign(t.begin(), t.end());
+  out.times = std::move(times);
   out.departure = (t - A * line).cwiseAbs().maxCoeff();
   return out;
 }

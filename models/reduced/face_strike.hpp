@@ -35,7 +35,6 @@ struct FaceStrike {
   double restitution = 0;   ///< relative speed of striker and head's point after over before [-]
   double contact_time = 0;  ///< [s]
   double peak_force = 0;    ///< [N]
-  double travel = 0;        ///< largest, at the face centre [m]
   double energy = 0;        ///< left in the face [J]
 };
 /// `face`: none is rigid; `shape`: its at the point struck. Striker m, head M with the face's mass in it, travel w:
@@ -66,6 +65,8 @@ struct CharacteristicTime {
 CharacteristicTime characteristic_time(const Striker& sphere, double head_mass,
                                        const std::optional<FaceCompliance>& face, double shape,
                                        std::span<const double> speeds);
+/// The line through contact times [s] of any such test.
+CharacteristicTime characteristic_line(std::span<const double> speeds, std::vector<double> times);
 /// Restitution that the rules' line ties to a characteristic time [s].
 inline double rules_line(double characteristic_time) { return 0.718 + 436 * characteristic_time; }
 /// Speeds of the shipped test [m/s].
