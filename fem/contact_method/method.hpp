@@ -29,11 +29,11 @@ class ContactMethod {
   /// Whether points have multipliers. What follows is asked only then.
   virtual bool multipliers() const { return false; }
   /// The next multiplier [Pa], where a step was solved with this one: that of the next step, or of the same once more.
-  virtual double next(double gap, double multiplier) const;
+  virtual double next([[maybe_unused]] double gap, [[maybe_unused]] double multiplier) const { return 0; }
   /// Whether the step that led there has to be solved again with the next multiplier.
-  virtual bool repeats(double gap, double multiplier) const;
+  virtual bool repeats([[maybe_unused]] double gap, [[maybe_unused]] double multiplier) const { return false; }
   /// NormalState::offset of a point that is pressed `now` [J/m^2].
-  virtual double offset(const NormalState& before, const NormalState& now) const;
+  virtual double offset(const NormalState&, [[maybe_unused]] const NormalState& now) const { return 0; }
 
   /// Sentences naming what cannot be; empty if all is well.
   virtual std::vector<std::string> faults() const = 0;

@@ -1,6 +1,8 @@
 /// Contact by a penalty: a layer of springs on the surface.
 #pragma once
 
+#include <cmath>
+
 #include "fem/contact_method/method.hpp"
 
 namespace hosel::fem {
@@ -11,7 +13,10 @@ class Penalty final : public ContactMethod {
   /// `stiffness` per reference area [N/m^3].
   explicit Penalty(double stiffness) : stiffness_(stiffness) {}
   NormalSpring at(double gap, double) const override { return {stiffness_, -gap}; }
-  std::vector<std::string> faults() const override;
+  std::vector<std::string> faults() const override {
+    if (stiffness_ > 0 && std::isfinite(stiffness_)) return {};
+    return {"contact: state a positive normal stiffness"};
+  }
 
  private:
   double stiffness_;
