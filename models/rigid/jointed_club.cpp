@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "golf/dense.hpp"
+#include "models/rigid/stick_slip.hpp"
 
 namespace hosel::models {
 namespace {
@@ -61,7 +62,16 @@ Jointed jointed(const Blow& blow, bool hinged) {
   return {B, mass};
 }
 
+Launch jointed_launch(const Blow& blow, bool hinged) {
+  const ImpulseProblem p = impulse_problem(blow, jointed_mobility(blow, hinged));
+  return launch_after(blow, p, stick_slip_path(blow, p).impulse);
+}
+
 }  // namespace
+
+Launch PendulumClub::launch(const Blow& blow) const { return jointed_launch(blow, false); }
+
+Launch HingedHead::launch(const Blow& blow) const { return jointed_launch(blow, true); }
 
 Mat6 jointed_mobility(const Blow& blow, bool hinged) {
   const auto [B, mass] = jointed(blow, hinged);

@@ -4,8 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "golf/units.hpp"
-#include "models/rigid/hinged_head.hpp"
-#include "models/rigid/pendulum_club.hpp"
+#include "models/rigid/jointed_club.hpp"
 #include "models/rigid/stick_slip.hpp"
 
 namespace hosel::models {
@@ -44,7 +43,8 @@ Vec3 butt(const Blow& b) {  // global, from the head's cg
 
 TEST(HistoricalClubs, ConstraintsOnlyTakeMobilityAway) {
   const Blow b = blow();
-  const Mat6 free = free_head_mobility(b, first_contact(b)), hinged = hinged_mobility(b), rigid = pendulum_mobility(b);
+  const Mat6 free = free_head_mobility(b, first_contact(b)), hinged = jointed_mobility(b, true),
+             rigid = jointed_mobility(b, false);
   const auto least = [](const Mat6& m) { return Eigen::SelfAdjointEigenSolver<Mat6>(m).eigenvalues().minCoeff(); };
   EXPECT_GT(least(free - hinged), -1e-9 * free.norm());
   EXPECT_GT(least(hinged - rigid), -1e-9 * free.norm());
@@ -71,7 +71,7 @@ TEST(HistoricalClubs, PendulumKeepsItsAngularMomentumAboutTheButt) {
 
 TEST(HistoricalClubs, EnergyBalance) {
   const Blow b = blow();
-  for (const Mat6& mobility : {pendulum_mobility(b), hinged_mobility(b)}) {
+  for (const Mat6& mobility : {jointed_mobility(b, false), jointed_mobility(b, true)}) {
     const ImpulseProblem p = impulse_problem(b, mobility);
     const StickSlipPath path = stick_slip_path(b, p);
     // Work of the impulse on both bodies: J . mean relative velocity.
