@@ -1,7 +1,6 @@
 /// Pressure and traction over the contact patch as fields: what the forces at the stations of the contact stand for.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "fem/contact.hpp"
@@ -14,8 +13,7 @@ namespace hosel::fem {
 /// contact that has the moments of the stations over the patch.
 ///
 /// - Pressure: p0 sqrt(1 - r^2) on an ellipse, r = 1 at its rim (Hertz). The six moments of degree 0 to 2 give p0,
-/// centre
-///   and axes.
+///   centre and axes.
 /// - Friction: two such ellipses, the patch and one of the same shape within it where points stick, each with a vector
 ///   [@cattaneo-mindlin], and the pressure times a linear ratio. Friction over pressure is cut where it exceeds the
 ///   largest ratio of a station. The inner ellipse is the largest with which the rim does not exceed it. Moments of

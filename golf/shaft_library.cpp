@@ -49,6 +49,22 @@ ShaftStation thin_tube(const CompositeStation& c) {
 
 double between(double a, double b, double w) { return (1 - w) * a + w * b; }
 
+/// kStations stations, each by section(arc length from the first of `given`, the given ones on either side, the share
+/// of the second).
+template <class Station, class Section>
+Shaft resampled(const std::vector<Station>& given, const Section& section) {
+  Shaft shaft;
+  const double start = given.front().arc_length, length = given.back().arc_length - start;
+  std::size_t at = 0;
+  for (int i = 0; i < kStations; ++i) {
+    const double s = start + length * i / (kStations - 1);
+    while (at + 2 < given.size() && s > given[at + 1].arc_length) ++at;
+    const Station &a = given[at], &b = given[at + 1];
+    shaft.stations.push_back(section(s - start, a, b, (s - a.arc_length) / (b.arc_length - a.arc_length)));
+  }
+  return shaft;
+}
+
 Shaft composite_driver() {
   // Source of EI, mass and GJ/EI: published range of composite driver shafts (reference values of the
   // project, "Shafts"); the radii are those of common blanks.
@@ -91,18 +107,10 @@ Shaft tube_shaft(const std::vector<TubeStation>& tube, const std::vector<ShaftLa
     if (!(tube[i].wall > 0 && tube[i].wall <= tube[i].outer_radius))
       throw std::invalid_argument("the wall of a tube lies between zero and its radius");
   }
-  Shaft shaft;
-  const double start = tube.front().arc_length, length = tube.back().arc_length - start;
-  std::size_t at = 0;
-  for (int i = 0; i < kStations; ++i) {
-    const double s = start + length * i / (kStations - 1);
-    while (at + 2 < tube.size() && s > tube[at + 1].arc_length) ++at;
-    const TubeStation &a = tube[at], &b = tube[at + 1];
-    const double w = (s - a.arc_length) / (b.arc_length - a.arc_length);
-    shaft.stations.push_back(tube_section(
-        {s - start, between(a.outer_radius, b.outer_radius, w), between(a.wall, b.wall, w)}, layers, shear_factor));
-  }
-  return shaft;
+  return resampled(tube, [&](double s, const TubeStation& a, const TubeStation& b, double w) {
+    return tube_section({s, between(a.outer_radius, b.outer_radius, w), between(a.wall, b.wall, w)}, layers,
+                        shear_factor);
+  });
 }
 
 Shaft composite_shaft(const std::vector<CompositeStation>& stations) {
@@ -110,20 +118,11 @@ Shaft composite_shaft(const std::vector<CompositeStation>& stations) {
   for (std::size_t i = 1; i < stations.size(); ++i)
     if (!(stations[i].arc_length > stations[i - 1].arc_length))
       throw std::invalid_argument("the stations of a shaft must run from butt to tip with increasing arc length");
-  Shaft shaft;
-  const double start = stations.front().arc_length, length = stations.back().arc_length - start;
-  std::size_t at = 0;
-  for (int i = 0; i < kStations; ++i) {
-    const double s = start + length * i / (kStations - 1);
-    while (at + 2 < stations.size() && s > stations[at + 1].arc_length) ++at;
-    const CompositeStation &a = stations[at], &b = stations[at + 1];
-    const double w = (s - a.arc_length) / (b.arc_length - a.arc_length);
-    shaft.stations.push_back(
-        thin_tube({s - start, between(a.bending_stiffness, b.bending_stiffness, w),
-                   between(a.torsional_stiffness, b.torsional_stiffness, w),
-                   between(a.mass_per_length, b.mass_per_length, w), between(a.mean_radius, b.mean_radius, w)}));
-  }
-  return shaft;
+  return resampled(stations, [](double s, const CompositeStation& a, const CompositeStation& b, double w) {
+    return thin_tube({s, between(a.bending_stiffness, b.bending_stiffness, w),
+                      between(a.torsional_stiffness, b.torsional_stiffness, w),
+                      between(a.mass_per_length, b.mass_per_length, w), between(a.mean_radius, b.mean_radius, w)});
+  });
 }
 
 Shaft polynomial_shaft(const CompositePolynomials& p) {

@@ -1,17 +1,16 @@
 #include "mesh/meridian.hpp"
 
 #include <cmath>
-#include <functional>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "golf/units.hpp"
 
 namespace hosel::mesh {
 namespace {
 
 using Point = Eigen::Vector2d;
-constexpr double kPi = std::numbers::pi;
 
 /// Adds structured blocks of elements; nodes that coincide with earlier ones are shared.
 class Builder {

@@ -7,11 +7,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "golf/units.hpp"
+
 namespace hosel::mesh {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kPi = 3.14159265358979323846;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -339,8 +340,7 @@ PlatePlace locate(const PlateMesh& m, const Vector2d& place) {
         off -= q.value[static_cast<Eigen::Index>(k)] * m.nodes[static_cast<std::size_t>(e[k])];
       const Vector2d step = jacobian(m, e, q).inverse() * off;
       at += step;
-      if (!(at.cwiseAbs().maxCoeff() < 3)) break;
-      if (step.norm() < 1e-12) break;
+      if (!(at.cwiseAbs().maxCoeff() < 3) || step.norm() < 1e-12) break;
     }
     if (at.cwiseAbs().maxCoeff() <= 1 + kSlack)
       return {static_cast<int>(i), std::clamp(at.x(), -1.0, 1.0), std::clamp(at.y(), -1.0, 1.0)};

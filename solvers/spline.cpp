@@ -21,6 +21,19 @@ void check(const std::vector<double>& times, const Eigen::MatrixXd& values, std:
     }
 }
 
+/// Values at the times of the functions that basis(time) tells.
+template <class Basis>
+Eigen::SparseMatrix<double> sampled(const std::vector<double>& times, Eigen::Index functions, const Basis& basis) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto b = basis(times[i]);
+    for (int j = 0; j < 6; ++j) entries.emplace_back(static_cast<int>(i), b.first + j, b.n(0, j));
+  }
+  Eigen::SparseMatrix<double> A(static_cast<Eigen::Index>(times.size()), functions);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
 }  // namespace
 
 /// De Boor's recursion with derivatives: L. Piegl, W. Tiller, The NURBS Book (1997), algorithm A2.3.
@@ -81,19 +94,12 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> Spline::at(double t) const {
 
 Spline Spline::through(const std::vector<double>& times, const Eigen::MatrixXd& values) {
   check(times, values, 6);
-  const std::size_t n = times.size();
   Spline s;
   s.knots_.assign(6, times.front());
   s.knots_.insert(s.knots_.end(), times.begin() + 3, times.end() - 3);
   s.knots_.insert(s.knots_.end(), 6, times.back());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Basis b = s.basis(times[i]);
-    for (int j = 0; j < 6; ++j) entries.emplace_back(static_cast<int>(i), b.first + j, b.n(0, j));
-  }
-  Eigen::SparseMatrix<double> A(values.rows(), values.rows());
-  A.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(A);
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(
+      sampled(times, values.rows(), [&](double t) { return s.basis(t); }));
   s.coefficients_ = lu.solve(values);
   return s;
 }
@@ -114,14 +120,7 @@ Spline Spline::near(const std::vector<double>& times, const Eigen::MatrixXd& val
   s.knots_.assign(6, times.front());
   for (int i = 1; i < pieces; ++i) s.knots_.push_back(times.front() + span * i / pieces);
   s.knots_.insert(s.knots_.end(), 6, times.back());
-  const int n = pieces + 5;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const Basis b = s.basis(times[i]);
-    for (int j = 0; j < 6; ++j) entries.emplace_back(static_cast<int>(i), b.first + j, b.n(0, j));
-  }
-  Eigen::SparseMatrix<double> A(values.rows(), n);
-  A.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> A = sampled(times, pieces + 5, [&](double t) { return s.basis(t); });
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(Eigen::SparseMatrix<double>(A.transpose() * A));
   if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-12) too_close();
   s.coefficients_ = ldlt.solve(Eigen::MatrixXd(A.transpose() * values));
