@@ -1,8 +1,6 @@
 /// The one gate between a model's answer and whoever believes it.
 #pragma once
 
-#include <string_view>
-
 #include "models/impact_model.hpp"
 
 namespace hosel::models {

@@ -7,9 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "golf/ball.hpp"

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "golf/units.hpp"
 
 namespace hosel::models {

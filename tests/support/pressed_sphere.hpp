@@ -4,7 +4,6 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "fem/contact_method/penalty.hpp"
