@@ -14,38 +14,30 @@
 namespace hosel::models {
 namespace {
 
-template <class Model>
-std::unique_ptr<ImpactModel> plain(const Options&) {
-  return std::make_unique<Model>();
+/// A model, of the options that it reads.
+template <class Model, auto... read>
+std::unique_ptr<ImpactModel> made([[maybe_unused]] const Options& o) {
+  return std::make_unique<Model>(o.*read...);
 }
-
-std::unique_ptr<ImpactModel> volumetric(const Options& o) {
-  return std::make_unique<Volumetric>(o.volumetric, o.volumetric_solution);
-}
-
-std::unique_ptr<ImpactModel> hertz_maw(const Options& o) {
-  return std::make_unique<HertzMaw>(o.hertz_maw, o.hertz_maw_solution);
-}
-
-std::unique_ptr<ImpactModel> shaft_coupled(const Options& o) {
-  return std::make_unique<ShaftCoupled>(o.volumetric, o.volumetric_solution, o.shaft_beam, o.shaft_mount);
-}
-std::unique_ptr<ImpactModel> fe_free_body(const Options& o) { return std::make_unique<Impact>(o.fe); }
-std::unique_ptr<ImpactModel> fe_full_club(const Options& o) { return std::make_unique<Impact>(o.fe, o.shaft_mount); }
 
 constexpr std::array kModels = {
-    ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", plain<RigidPlanar>},
-    ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", plain<RigidEccentric>},
+    ModelEntry{"rigid-planar", "rolling rigid bodies in the plane of the loft", made<RigidPlanar>},
+    ModelEntry{"rigid-eccentric", "rolling rigid ball on a free rigid head in 3-D", made<RigidEccentric>},
     ModelEntry{"volumetric", "free head, force by volume of overlap, smooth friction, ball of core and cover",
-               volumetric},
+               made<Volumetric, &Options::volumetric, &Options::volumetric_solution>},
     ModelEntry{"stick-slip", "sliding then rolling along the impulse's path, with tangential restitution",
-               plain<StickSlip>},
-    ModelEntry{"hertz-maw", "elastic ball whose contact patch sticks and slips piecewise", hertz_maw},
-    ModelEntry{"shaft-coupled", "volumetric ball, head with the shaft as a condensed beam at the hosel", shaft_coupled},
-    ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", plain<PendulumClub>},
-    ModelEntry{"hinged-head", "the pendulum with a hinge at the hosel", plain<HingedHead>},
-    ModelEntry{"fe-free-body", "finite-element viscoelastic ball, frictional patch, free rigid head", fe_free_body},
-    ModelEntry{"fe-full-club", "the same with the flexible shaft and its grip in one system", fe_full_club},
+               made<StickSlip>},
+    ModelEntry{"hertz-maw", "elastic ball whose contact patch sticks and slips piecewise",
+               made<HertzMaw, &Options::hertz_maw, &Options::hertz_maw_solution>},
+    ModelEntry{"shaft-coupled", "volumetric ball, head with the shaft as a condensed beam at the hosel",
+               made<ShaftCoupled, &Options::volumetric, &Options::volumetric_solution, &Options::shaft_beam,
+                    &Options::shaft_mount>},
+    ModelEntry{"pendulum-club", "head on a rigid rod that turns about its butt", made<PendulumClub>},
+    ModelEntry{"hinged-head", "the pendulum with a hinge at the hosel", made<HingedHead>},
+    ModelEntry{"fe-free-body", "finite-element viscoelastic ball, frictional patch, free rigid head",
+               made<Impact, &Options::fe>},
+    ModelEntry{"fe-full-club", "the same with the flexible shaft and its grip in one system",
+               made<Impact, &Options::fe, &Options::shaft_mount>},
 };
 
 }  // namespace
