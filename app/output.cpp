@@ -145,6 +145,7 @@ struct Output::State {
   std::unique_ptr<DirectoryLock> lock;
   std::unique_ptr<post::WrittenFiles> written;
   std::vector<std::string> doubts, lacks;
+  bool units_matter = false;  // something was shown in those that were asked for
   std::map<std::string, std::string, std::less<>> file_names;  // by what they are made of
   std::string resolved, fingerprint;
   RunPage page;
@@ -214,15 +215,18 @@ const std::string& Output::resolved_case() const { return state_->resolved; }
 const std::string& Output::fingerprint() const { return state_->fingerprint; }
 
 bool Output::quiet() const { return state_->options.quiet; }
-std::optional<post::Units> Output::asked_units() const { return state_->options.units; }
-post::Units Output::units() const { return state_->options.units.value_or(post::Units::metric); }
+std::optional<post::Units> Output::asked_units() const {
+  state_->units_matter = true;
+  return state_->options.units;
+}
+post::Units Output::units() const { return asked_units().value_or(post::Units::metric); }
 post::Units Output::page_units() const {
   const bool golf = resolved_case().find("_mph") != std::string::npos;
-  return state_->options.units.value_or(golf ? post::Units::golf : post::Units::metric);
+  return asked_units().value_or(golf ? post::Units::golf : post::Units::metric);
 }
 bool Output::force() const { return state_->options.force; }
 
-void Output::tell(std::string_view line) {
+void Output::tell(std::string_view line) const {
   if (!quiet()) std::fputs((printable(line) + '\n').c_str(), stdout);
   std::fflush(stdout);
   log(line);
@@ -264,14 +268,14 @@ void Output::warn(std::string_view doubt) {
   log(fmt::format("warning: {}", doubt));
 }
 
-void Output::lack(std::string_view sentence) {
+void Output::lack(std::string_view sentence) const {
   state_->lacks.emplace_back(sentence);
   state_->page.print(sentence);
   std::fputs(("warning: " + one_line(sentence) + '\n').c_str(), stderr);
   log(fmt::format("warning: {}", sentence));
 }
 
-void Output::log(std::string_view line) { state_->logger->info("{}", printable(line)); }
+void Output::log(std::string_view line) const { state_->logger->info("{}", printable(line)); }
 
 Progress Output::progress(std::string what) const { return Progress(std::move(what), quiet()); }
 
@@ -319,6 +323,8 @@ void Output::write_summary(const nlohmann::json& summary) const {
   if (const std::string name = not_finite(summary, ""); !name.empty())
     throw solvers::NonConvergence(fmt::format("'{}' of the result is not finite: no summary.json is written", name));
   state_->inputs->verify();
+  if (state_->options.units && !state_->units_matter)
+    lack("--units changes nothing here: this kind of case shows every number in the unit of its name");
   nlohmann::json all = summary;
   if (!state_->doubts.empty()) all["doubts"] = state_->doubts;
   if (!state_->lacks.empty()) all["lacks"] = state_->lacks;

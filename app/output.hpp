@@ -67,7 +67,7 @@ class Output {
   bool force() const;              ///< what an unfinished run left is to be discarded
 
   /// A line for the person and the log: how the run goes, not what it found.
-  void tell(std::string_view line);
+  void tell(std::string_view line) const;
   /// A line of the answer: for the person, the log and the page.
   void say(std::string_view line);
   /// A table likewise: on the page under this heading, without one among the answers.
@@ -81,9 +81,9 @@ class Output {
   void warn(std::string_view doubt);
   /// What the run could not do and its numbers do not suffer from: for the person, even a quiet one's, the page, the
   /// log and `summary.json`.
-  void lack(std::string_view sentence);
+  void lack(std::string_view sentence) const;
   /// A line for the log alone.
-  void log(std::string_view line);
+  void log(std::string_view line) const;
   Progress progress(std::string what) const;
   /// See post::write_file: a killed run or a full disk never leaves half a file. A table (NAME.csv) must be one: as
   /// many cells in every row as in its head, none of whose names stands twice; else std::logic_error.

@@ -82,11 +82,8 @@ std::vector<const Parametrisation*> steady(const Study& study, const Fit& f) {
     const Parametrisation* form = f.model.forms[k];
     const auto count = Eigen::Index(form->parameters.size());
     bool inside = true;
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const Parameter& q = form->parameters[std::size_t(j)];
-      const double margin = 1e-3 * (q.max - q.min), x = f.p[first + j];
-      inside = inside && q.max - x > margin && (q.min == 0 || x - q.min > margin);
-    }
+    for (Eigen::Index j = 0; j < count; ++j)
+      inside = inside && !form->parameters[std::size_t(j)].at_edge(f.p[first + j]);
     if (k >= study.base.size() && inside) {
       std::vector<Size> looks = {train.size(first, count, all), holdout.size(first, count, all)};
       for (const std::vector<bool>& in : subsets)

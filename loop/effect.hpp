@@ -43,6 +43,12 @@ struct Parameter {
   /// finds (improbability), does not draw its fits; infinite: nothing is known of that.
   double usual = std::numeric_limits<double>::infinity();
 
+  /// Whether it stands at an end of its range that is not zero.
+  bool at_edge(double x) const {
+    const double margin = 1e-3 * (max - min);
+    return (max > 0 && max - x < margin) || (min < 0 && x - min < margin);
+  }
+
   Parameter within(double usual_size) const {
     Parameter out = *this;
     out.usual = usual_size;

@@ -61,14 +61,9 @@ solvers::LeastSquares least_squares(const Problem& problem, Part part, const Mod
   return out;
 }
 
-/// Whether a parameter stands at the edge of its plausible range, zero excepted.
 bool at_bound(const Model& model, const Eigen::VectorXd& p) {
   Eigen::Index k = 0;
-  for (const Parameter* q : model.parameters()) {
-    const double x = p[k++], margin = 1e-3 * (q->max - q->min);
-    if ((q->max - x < margin && q->max > 0) || (x - q->min < margin && q->min < 0)) return true;
-  }
-  return false;
+  return std::ranges::any_of(model.parameters(), [&](const Parameter* q) { return q->at_edge(p[k++]); });
 }
 
 }  // namespace

@@ -59,6 +59,13 @@ std::string gloss(const char* text) { return fmt::format("<p><small>{}</small></
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "–"; }
 
+/// To the second digit of its standard deviation.
+std::string with_deviation(double x, double sd) {
+  if (!(sd > 1e-6) || !std::isfinite(x + sd)) return number(x) + " ± " + number(sd);
+  const int decimals = std::max(0, 1 - int(std::floor(std::log10(sd))));
+  return fmt::format("{:.{}f} ± {:.{}f}", x, decimals, sd, decimals);
+}
+
 /// 95 % interval of a root mean square from n independent normal values; the value itself of fewer than three.
 std::pair<double, double> interval(double x, int n) {
   if (n < 3) return {x, x};
@@ -269,9 +276,10 @@ std::string page(const LoopResult& r, const Shots& table) {
     std::string parameters;
     const auto list = c.candidate.fit.model.parameters();
     for (std::size_t k = 0; k < list.size(); ++k)
-      parameters += fmt::format("{}{} = {} ± {} {}", k ? "; " : "", post::spoken(list[k]->name),
-                                number(c.candidate.fit.p[std::ptrdiff_t(k)] / list[k]->si),
-                                number(c.sd[k] / list[k]->si), list[k]->unit == "1" ? "" : post::symbol(list[k]->unit));
+      parameters +=
+          fmt::format("{}{} = {} {}", k ? "; " : "", post::spoken(list[k]->name),
+                      with_deviation(c.candidate.fit.p[std::ptrdiff_t(k)] / list[k]->si, c.sd[k] / list[k]->si),
+                      list[k]->unit == "1" ? "" : post::symbol(list[k]->unit));
     const bool chosen = !r.adopted.empty() && c.candidate.effects == r.adopted;
     s += fmt::format("<tr{}><td>{}<td class='l'>{}<td>{}<td>{}</tr>", chosen ? " class='chosen'" : "",
                      escape_html(fmt::format("{}", fmt::join(c.candidate.effects, " + "))), escape_html(parameters),

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "golf/dense.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::solvers {
 namespace {
@@ -113,6 +114,9 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
   }
 
   const Regression found(x, trend, y, correlation_);
+  if (!found.factor.positive())
+    throw NonConvergence(
+        "no Gaussian process goes through these points: their correlation matrix is not positive definite");
   points_ = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
   square_ = points_.colwise().squaredNorm().transpose();
   inverse_ = found.factor.lower_inverse();

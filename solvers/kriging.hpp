@@ -30,7 +30,8 @@ class Kriging {
   static Search noisy() { return {.plane = false, .gain = 1, .together = true}; }
 
   Kriging() = default;  ///< says nothing, of no output
-  /// `x`: points x inputs, some two units wide; `y`: points x outputs.
+  /// `x`: points x inputs, some two units wide; `y`: points x outputs. Throws NonConvergence where no correlation of
+  /// the search is positive definite.
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y);
   /// `from`: where the search begins, e.g. that of fewer points.
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from);

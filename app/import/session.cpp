@@ -103,11 +103,13 @@ std::string copied(const std::string& header) { return lower(trimmed(header)); }
 bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
   if (!face || !path || !face->filled || !path->filled) return false;
   std::size_t same = 0, seen = 0;
+  const double of_face = split_unit(face->name).unit->si / si_of("deg"),
+               of_path = split_unit(path->name).unit->si / si_of("deg");
   for (std::size_t i = 0; i < u.cells.size(); ++i) {
     const auto a = plain_number(u.cells[i]), f = plain_number(face->cells[i]), p = plain_number(path->cells[i]);
     if (!a || !f || !p) continue;
     ++seen;
-    same += std::abs(*a - (*f - *p)) < 0.15;
+    same += std::abs(*a - (of_face * *f - of_path * *p)) < 0.15;
   }
   return seen > 2 && 10 * same >= 9 * seen;
 }

@@ -195,13 +195,7 @@ class Audit {
     return use;
   }
 
-  /// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
-  int rank(int k) const {
-    const Column& c = *sources_[std::size_t(k)].column;
-    if (c.role == Role::other) return 0;
-    if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
-    return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
-  }
+  int rank(int k) const { return rank_if_computed(*sources_[std::size_t(k)].column); }
 
   /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
   bool divides(int k) const {
@@ -505,6 +499,12 @@ class Audit {
 };
 
 }  // namespace
+
+int rank_if_computed(const Column& c) {
+  if (c.role == Role::other) return 0;
+  if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
+  return c.stem == "spin_rate" || c.stem == "spin_axis" ? 3 : 4;
+}
 
 DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std::string formula, double residual) {
   return {.column = y.name,

@@ -22,6 +22,9 @@ struct DerivedColumn {
 /// On all rows; `residual` [SI].
 DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std::string formula, double residual);
 
+/// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
+int rank_if_computed(const Column& c);
+
 /// Formulas that hold on all rows, then what is `partly_derived`, then what is `predictable`. `noise`: declared of
 /// inputs and outputs, by header, in the header's unit.
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise = {});

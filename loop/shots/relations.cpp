@@ -147,7 +147,7 @@ class Relations {
     }
     std::ranges::stable_sort(found_, std::ranges::greater{}, [&](const Relation& r) {
       const double most = best.at(r.columns());
-      return std::tuple(most, r.score() > 0.8 * most, -rank(r.target), r.score());
+      return std::tuple(most, r.score() > 0.8 * most, -rank_if_computed(column(r.target)), r.score());
     });
     return found_;
   }
@@ -163,13 +163,6 @@ class Relations {
   double x(int k, std::size_t row) const { return sources_[std::size_t(k)].x[row]; }
   std::size_t rows() const { return sources_.empty() ? 0 : sources_[0].x.size(); }
 
-  /// What an instrument is likely to compute first.
-  int rank(int k) const {
-    const Column& c = column(k);
-    if (c.role == Role::other) return 0;
-    if (c.role == Role::input) return c.stem == "dynamic_loft" ? 1 : 2;
-    return c.stem == "spin_axis" ? 3 : 4;
-  }
   bool same_dimension(int a, int b) const {
     const auto p = split_unit(header(a)).unit, q = split_unit(header(b)).unit;
     return p && q && p->dimension == q->dimension;

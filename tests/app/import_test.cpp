@@ -301,6 +301,13 @@ INSTANTIATE_TEST_SUITE_P(
                "",
                {{"club_path_deg", {2, 1, 0.4}}},
                {"holds face angle minus path"}},
+        Layout{"FaceToPathBesideAnglesInRadians",
+               "Club,Ball Speed (mph),Club Speed (mph),VLA,HLA,Total Spin,Loft,Path (rad),Face to Target (rad),"
+               "HorizontalFaceImpact\n7i,115,82,16,1.5,6400,22,0.0349,-0.0175,-3.0\n"
+               "7i,116,82,16,1.5,6400,22,0.0175,0.0087,-0.5\n7i,117,82,16,1.5,6400,22,0.0070,0.0157,0.5\n",
+               "",
+               {{"ball_speed_mph", {115, 116, 117}}},
+               {"holds face angle minus path"}},
         Layout{
             "EventInSI",
             R"({"eventType":"Live.Completed","data":{"Model":{"Measurement":{"PlayerDexterity":"Right","ImpactOffset":-0.0059,

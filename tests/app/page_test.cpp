@@ -75,6 +75,9 @@ TEST(RunPage, SpeaksTheUnitsThatWereAskedFor) {
   EXPECT_TRUE(holds(golf, fmt::format("<b>{:.1f} mph</b>", speed / 0.44704)));
   EXPECT_TRUE(holds(metric, fmt::format("<b>{:.2f} m/s</b>", speed)));
   EXPECT_EQ(command("run " + dir.string() + " --units furlongs").status, 2);
+  const Outcome modes = command("run shaft-modes --quiet --units golf --out " + (dir / "modes").string());
+  EXPECT_EQ(modes.status, 0);
+  EXPECT_TRUE(holds(modes.text, "--units changes nothing here")) << modes.text;
 }
 
 TEST(RunPage, ShowsTheLargestForceAndTheLedger) {

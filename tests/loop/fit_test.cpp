@@ -83,4 +83,10 @@ TEST(Fit, AnOptimumInRangeGoesBeforeASlightlyLowerBound) {
 }
 
 }  // namespace
+TEST(Parameter, ZeroIsNoEdgeOfARange) {
+  const Parameter gain{"gain", "1", 1, 0, 2, 0.1}, loss{"loss", "1", 1, -2, 0, 0.1};
+  for (const double x : {0.0, 1.0}) EXPECT_FALSE(gain.at_edge(x) || loss.at_edge(-x)) << x;
+  EXPECT_TRUE(gain.at_edge(2) && loss.at_edge(-2));
+}
+
 }  // namespace hosel::loop

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "solvers/errors.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::solvers {
@@ -43,6 +44,17 @@ TEST(Kriging, AnswersWhereItWasAskedAndTellsItsErrorElsewhere) {
     EXPECT_GT(c, 0.1);  // sines are smoother than the process takes them for: told up to three times too large
     EXPECT_LT(c, 3);
   }
+}
+
+TEST(Kriging, PointsWithoutAPositiveCorrelationAreRefused) {
+  std::mt19937_64 random(5);
+  Eigen::MatrixXd x = anywhere(20, 2, random);
+  const Eigen::MatrixXd y = bumps(x);
+  EXPECT_NO_THROW(Kriging(x, y));
+  // A negative nugget, and two points at one place.
+  x.row(3) = x.row(2);
+  const Kriging::Correlation from{.length = Eigen::Vector2d::Constant(3), .nugget = -1e-3};
+  EXPECT_THROW(Kriging(x, y, from, {.sweeps = 0}), NonConvergence);
 }
 
 TEST(Kriging, AnInputThatMovesNothingHasALongLength) {
