@@ -145,7 +145,7 @@ struct Output::State {
   std::unique_ptr<DirectoryLock> lock;
   std::unique_ptr<post::WrittenFiles> written;
   std::vector<std::string> doubts, lacks;
-  bool units_matter = false;  // something was shown in those that were asked for
+  bool units_matter = false;                                   // something was shown in those that were asked for
   std::map<std::string, std::string, std::less<>> file_names;  // by what they are made of
   std::string resolved, fingerprint;
   RunPage page;
