@@ -158,6 +158,13 @@ class Builds(Test):
         self.assertEqual(status, 1)
         self.assertEqual(said.count("more.csv: written by one build alone"), 2, said)
 
+    def test_an_entry_may_name_another_build_and_nothing_else(self):
+        entry = 'mkdir -p "$4"/entries; printf "inputs = 1%s\\nE = %d\\n" >"$4"/entries/ball.toml'
+        self.assertEqual(self.compare(entry % ("a", 1), entry % ("b", 1), "rollback")[0], 0)
+        status, said = self.compare(entry % ("a", 1), entry % ("b", 2), "rollback")
+        self.assertEqual(status, 1)
+        self.assertIn("E = 1 | E = 2", said)
+
     def test_a_kept_run_keeps_its_status_and_what_it_said(self):
         words = ["--keep", self.at / "kept", "rollback"]
         for says in ("echo warning: of both >&2", "echo error: of both >&2; exit 3"):
