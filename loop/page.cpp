@@ -173,10 +173,12 @@ std::string page(const LoopResult& r, const Shots& table) {
   const bool records = time && table.find("record");
   const char* thing = records ? "samples" : "shots";
   const Selection& sel = r.selection;
-  std::string s = fmt::format(
-      "<p class='lead'>Base model <b>{}</b>. {} {} read, {} used: {} to learn from, {} held out (seed {}). {} "
-      "flagged.</p>",
-      escape_html(r.base), r.read, thing, r.used, r.train, r.holdout, r.seed, r.flagged.size());
+  const bool folds = r.train + r.holdout > r.used;
+  std::string s =
+      fmt::format("<p class='lead'>Base model <b>{}</b>. {} {} read, {} used, {} (seed {}). {} flagged.</p>",
+                  escape_html(r.base), r.read, thing, r.used,
+                  folds ? "each held out once" : fmt::format("{} to learn from and {} held out", r.train, r.holdout),
+                  r.seed, r.flagged.size());
   s += fmt::format("<p class='verdict {}'><b>{}</b><span>{}</span></p>", mood(r.verdict), name(r.verdict),
                    escape_html(sentence(r)));
 
@@ -275,11 +277,12 @@ std::string page(const LoopResult& r, const Shots& table) {
     const ScoredCandidate& c = r.candidates[i];
     std::string parameters;
     const auto list = c.candidate.fit.model.parameters();
-    for (std::size_t k = 0; k < list.size(); ++k)
-      parameters +=
-          fmt::format("{}{} = {} {}", k ? "; " : "", post::spoken(list[k]->name),
-                      with_deviation(c.candidate.fit.p[std::ptrdiff_t(k)] / list[k]->si, c.sd[k] / list[k]->si),
-                      list[k]->unit == "1" ? "" : post::symbol(list[k]->unit));
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const double at = c.candidate.fit.p[std::ptrdiff_t(k)], si = list[k]->si;
+      parameters += fmt::format(
+          "{}{} = {} {}{}", k ? "; " : "", post::spoken(list[k]->name), with_deviation(at / si, c.sd[k] / si),
+          list[k]->unit == "1" ? "" : post::symbol(list[k]->unit), list[k]->at_edge(at) ? " (at its bound)" : "");
+    }
     const bool chosen = !r.adopted.empty() && c.candidate.effects == r.adopted;
     s += fmt::format("<tr{}><td>{}<td class='l'>{}<td>{}<td>{}</tr>", chosen ? " class='chosen'" : "",
                      escape_html(fmt::format("{}", fmt::join(c.candidate.effects, " + "))), escape_html(parameters),

@@ -45,18 +45,26 @@ SpokenKey spoken_key(std::string_view key) {
   std::string_view words = split.stem;
   if (!words.ends_with("_per")) return {spoken(words), unit};
   words.remove_suffix(4);
-  return {spoken(words), "1/" + unit};
+  // "slope_deg_per_mm": a unit in another.
+  const SplitName over = split_unit(words);
+  return {spoken(over.stem), (over.unit ? symbol(over.unit->suffix) : "1") + "/" + unit};
 }
 
 std::string label(std::string_view key) {
-  std::string which;
+  std::string which, which_of;
   // One number of a list: "ball_speed_mps.4" in a summary, "cg_mm[2]" in a case.
   if (const auto dot = key.rfind('.');
       dot != key.npos && dot > 0 && dot + 1 < key.size() && key.find_first_not_of("0123456789", dot + 1) == key.npos) {
     which = " " + std::string(key.substr(dot + 1));
     key = key.substr(0, dot);
   }
-  if (const auto dot = key.rfind('.'); dot != key.npos) key.remove_prefix(dot + 1);
+  if (const auto dot = key.rfind('.'); dot != key.npos) {
+    // Whose speed, what is towards: the name alone does not say.
+    const std::string_view own = key.substr(dot + 1), table = key.substr(0, dot);
+    if (own.starts_with("speed") || own.starts_with("towards"))
+      which_of = std::string(table.substr(table.rfind('.') + 1)) + " ";
+    key = own;
+  }
   if (const auto open = key.find('['); open != key.npos && key.ends_with(']')) {
     which = " " + std::string(key.substr(open + 1, key.size() - open - 2));
     if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");
@@ -64,7 +72,7 @@ std::string label(std::string_view key) {
   }
   if (key.ends_with("_N_s")) return spoken(key.substr(0, key.size() - 4)) + which + " [N s]";  // no unit of a key
   const SpokenKey said = spoken_key(key);
-  return said.words + which + (said.unit.empty() ? "" : " [" + said.unit + "]");
+  return which_of + said.words + which + (said.unit.empty() ? "" : " [" + said.unit + "]");
 }
 
 }  // namespace hosel::post

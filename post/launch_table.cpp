@@ -80,7 +80,8 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
   for (const LaunchColumn& c : columns) table.rows[0].push_back(c.title);
   if (beside) table.rows[0].emplace_back("measured");
   const bool judged = std::ranges::any_of(measured, [](const MeasuredValue& m) { return m.uncertainty > 0; });
-  if (judged) table.rows[0].emplace_back("off by [sd]");
+  if (judged)
+    table.rows[0].push_back(columns.size() > 1 ? fmt::format("{} off by [sd]", columns.back().title) : "off by [sd]");
   for (Channel channel : kChannels) {
     const Channel* const measured_as = find_channel(channel.name);
     if (channel.unit == "mps" && units == Units::golf) channel.unit = "mph", channel.si = kMpsPerMph;

@@ -111,7 +111,7 @@ class CalibrateFaceJob final : public Job {
     for (const bool toe : {true, false}) {
       using Tap = models::FaceTarget::Tap;
       double Tap::*along = toe ? &Tap::toe : &Tap::high, Tap::*across = toe ? &Tap::high : &Tap::toe;
-      post::Series taps{.label = "measured, one standard error"}, line{.label = "the fitted face"};
+      post::Series taps{.label = "the taps of the case, one standard error"}, line{.label = "the fitted face"};
       double reach = 0;
       for (const Tap& tap : target_.taps) {
         if (tap.*across != 0) continue;

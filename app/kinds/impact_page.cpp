@@ -102,7 +102,7 @@ post::TextTable ledger(const std::vector<FeRun>& runs) {
   row("of motion, after", &solvers::Ledger::kinetic);
   auto& strain = t.rows.emplace_back(1, "of strain, after");
   for (const FeRun& r : runs) strain.push_back(fmt::format("{:.4f}", r.result.ledger.strain_total()));
-  row("turned into heat in the ball", &solvers::Ledger::viscous);
+  row("turned into heat: ball, face, shaft, grip", &solvers::Ledger::viscous);
   row("lost in friction", &solvers::Ledger::friction);
   row("in the contact's penalty", &solvers::Ledger::contact);
   row("lost by the time scheme", &solvers::Ledger::numerical);

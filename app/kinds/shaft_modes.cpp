@@ -81,7 +81,7 @@ class ShaftModesJob final : public Job {
       summary["damping_ratio"].push_back(zeta);
       if (post::Series s = deflection(beam, modes.shapes.col(Eigen::Index(i)));
           !s.x.empty() && shapes.series.size() < 8) {
-        s.label = fmt::format("{}: {:.1f} Hz", number, f);
+        s.label = fmt::format("{}: {:.2f} Hz", number, f);
         shapes.series.push_back(std::move(s));
       }
       if (vtk_) write_shape(out, beam, modes.shapes.col(static_cast<Eigen::Index>(i)), number);

@@ -123,17 +123,28 @@ post::Series measured_at(const StudyTable& table, std::size_t output, F x) {
   return s;
 }
 
+/// With which column an output goes most, over all models: a panel has one horizontal axis.
+std::optional<std::size_t> strongest(const StudyTable& table, std::size_t output, const StudyEffects& effects) {
+  std::vector<double> share(effects.columns.size(), 0);
+  for (std::size_t m = 0; m < table.models.size(); ++m)
+    if (const auto& of = effects.of[m * table.outputs.size() + output]; of && !still(table.at(m, output)))
+      for (std::size_t f = 0; f < share.size(); ++f) share[f] += of->factors[f].share;
+  const auto most = std::ranges::max_element(share);
+  if (most == share.end() || !(*most > 0)) return {};
+  return effects.columns[std::size_t(most - share.begin())];
+}
+
 post::Figure lines(const StudyTable& table, const StudyView& view, const std::string& title, const StudyFigure& wanted,
                    const std::vector<std::size_t>& outputs, const StudyEffects& effects, bool sampled) {
   post::Figure figure{.title = title, .columns = 2};
   const auto across = wanted.x.empty() ? view.longest() : view.column(wanted.x);
   for (const std::size_t o : outputs) {
     post::Panel panel;
+    std::optional<std::size_t> x = across;
+    if (sampled && wanted.x.empty())
+      if (const auto most = strongest(table, o, effects)) x = most;
     for (std::size_t m = 0; m < table.models.size(); ++m) {
       const StudySeries& s = table.at(m, o);
-      const std::size_t number = m * table.outputs.size() + o;
-      std::optional<std::size_t> x = across;
-      if (sampled && wanted.x.empty() && effects.of[number]) x = effects.columns[effects.of[number]->order.front()];
       if (!x || view.numbers(*x).empty() || (sampled && still(s))) continue;
       std::set<std::size_t> told, free = {*x};  // in a line's name; as they come
       std::size_t many = table.models.size();

@@ -19,6 +19,9 @@ TEST(Labels, UnitsAreRaisedOnce) {
   EXPECT_EQ(symbol("1/m^2"), "1/m²");
   EXPECT_EQ(label("contact.restitution_falloff_per_m2"), "restitution falloff [1/m²]");
   EXPECT_EQ(label("weather.temperature_degC"), "temperature [°C]");
+  EXPECT_EQ(label("launch_angle_slope_deg_per_mm"), "launch angle slope [deg/mm]");
+  EXPECT_EQ(label("flight.wind.speed_mps"), "wind speed [m/s]");
+  EXPECT_EQ(label("flight.wind.towards_deg"), "wind towards [deg]");
   EXPECT_EQ(label("ball_speed_mps.4"), "ball speed 4 [m/s]");  // of a list in a summary
   EXPECT_EQ(symbol("kg m^2"), "kg m²");
   EXPECT_EQ(symbol("N_s_per_m"), "N s/m");
