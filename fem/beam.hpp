@@ -3,13 +3,13 @@
 /// Strains of E. Reissner and J. C. Simo, Comput. Methods Appl. Mech. Eng. 49 (1985) 55-70. With R the
 /// rotation from the reference placement, in reference axes:
 ///   gamma = R^T x' - X',   kappa = axial vector of R^T R'
-/// (initial curvature drops out). Between nodes rotations follow the vector relative to the middle node,
-/// M. A. Crisfield, G. Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147: R = R_2 exp(sum N_i log(R_2^T R_i)),
-/// which is objective and depends on no path. Strain energy is integrated at two Gauss points, where the
-/// section's properties are evaluated; the residual is its exact derivative.
-/// Centres off the line: axial strain is taken at the elastic centre, shear at the shear centre, gamma + kappa x r.
-/// Mass is consistent for translations; rotary inertia and the mass centre's offset sit at the nodes (Lobatto weights),
-/// each node a small rigid body, so that momenta are those of a system of bodies.
+/// (the initial curvature cancels). Between nodes the rotation vector relative to the middle node is interpolated:
+/// R = R_2 exp(sum N_i log(R_2^T R_i)), which is objective and path-independent. Source: M. A. Crisfield, G. Jelenic,
+/// Proc. R. Soc. A 455 (1999) 1125-1147. Strain energy is integrated at two Gauss points, where the section's
+/// properties are evaluated. The residual is its exact derivative.
+/// Where centres are off the line of nodes, axial strain is taken at the elastic centre and shear at the shear centre,
+/// gamma + kappa x r. Mass is consistent for translations. Rotary inertia and the mass centre's offset are lumped at
+/// the nodes (Lobatto weights): each node is a small rigid body, and momenta are those of a system of such bodies.
 #pragma once
 
 #include <array>

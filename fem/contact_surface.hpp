@@ -1,4 +1,4 @@
-/// A surface that a solid may touch: a shape in axes of its own, carried by a rigid node or standing still.
+/// A surface that a solid may touch: a shape in its own axes, which move with a rigid node or are fixed.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-/// What a yielding face weighs and what holds it in the head.
+/// Inertia, stiffness and damping of a yielding face relative to the head.
 #pragma once
 
 #include "fem/contact_surface.hpp"

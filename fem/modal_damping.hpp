@@ -1,4 +1,4 @@
-/// Damping of a club mode by mode, whatever its motion as a whole.
+/// Damping of a club mode by mode, independent of its rigid motion.
 #pragma once
 
 #include <string>

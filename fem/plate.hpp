@@ -6,8 +6,8 @@
 ///   bending   k = -sym grad b
 ///   shear     g = grad w - b, its covariant components from six points of each element
 ///   energy    1/2 int t e:C:e + t^3/12 k:C:k + 5/6 G t g.g
-/// Shear strains taken at each point as they come would lock a thin plate; tied at the points of [@mitc9] they vanish
-/// with the thickness, the element passes the patch tests, has no mode without energy, and needs no numerical factor.
+/// Shear strains evaluated at each Gauss point would lock a thin plate. Tied at the points of [@mitc9] they vanish with
+/// the thickness. The element passes the patch tests, has no zero-energy modes, and needs no numerical factor.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
-/// A face that yields, as a few unknowns: what they weigh, what holds them, and how they move the face.
+/// A yielding face with a few unknowns: their inertia, their stiffness and damping, and the shapes by which they move
+/// the face.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// A rigid body hung on a node (position and rotation), its centre of gravity off the node.
+/// A rigid body attached to a node (position and rotation), with its centre of gravity off the node.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// Maps of rotation vectors that beams are made of, with their derivatives.
+/// Maps of rotation vectors that beam elements use, with their derivatives.
 #pragma once
 
 #include "golf/vector.hpp"

@@ -1,4 +1,4 @@
-/// Degrees of freedom of the whole system on their manifold: vectors and rotations side by side.
+/// Degrees of freedom of the whole system on their manifold: vectors and rotations.
 #pragma once
 
 #include <Eigen/Core>

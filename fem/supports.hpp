@@ -1,4 +1,4 @@
-/// What holds or loads a single node: clamps, imposed motions, wrenches, springs and dampers.
+/// Supports and loads of a single node: clamps, imposed motions, wrenches, springs and dampers.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-/// Pressure and traction over the contact patch as fields: what the forces at the stations of the contact stand for.
+/// Pressure and traction over the contact patch as smooth fields with the moments of the contact forces.
 #pragma once
 
 #include <vector>

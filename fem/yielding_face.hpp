@@ -1,4 +1,4 @@
-/// The club face that yields as a contact surface: the curved face, moved inwards by one unknown times a shape.
+/// A yielding club face as a contact surface: the curved face, moved inwards by one unknown times a shape.
 #pragma once
 
 #include <algorithm>

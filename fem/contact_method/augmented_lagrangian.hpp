@@ -1,4 +1,4 @@
-/// Contact by an augmented Lagrangian: a penalty beside a multiplier, which takes the pressure over.
+/// Contact by an augmented Lagrangian: a penalty and a multiplier, which converges to the pressure.
 #pragma once
 
 #include "fem/contact_method/method.hpp"

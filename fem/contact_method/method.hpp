@@ -1,4 +1,4 @@
-/// How a contact keeps its points apart from a surface, as pure functions of one point's gap and multiplier.
+/// Contact methods: normal pressure as a pure function of one point's gap and multiplier.
 #pragma once
 
 #include <string>

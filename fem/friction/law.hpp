@@ -1,4 +1,4 @@
-/// Friction at one point of a contact patch, as pure functions: what opposes a slip under a pressure.
+/// Friction at one point of a contact patch: traction as a pure function of slip and pressure.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// Friction that is higher until a point has slid some way.
+/// Friction with a static coefficient that falls to the sliding one over a slip distance.
 #pragma once
 
 #include "fem/friction/coulomb.hpp"

@@ -1,4 +1,4 @@
-/// What an elastic law is: the concepts, and any law as a value.
+/// Elastic laws: the concepts that a law must satisfy, and `Elastic`, which holds any law as a value.
 #pragma once
 
 #include <concepts>

@@ -1,4 +1,4 @@
-/// Gent's elastic law: chains of limited length, so that a rubber locks.
+/// Gent's elastic law: rubber with a limiting chain stretch.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// Linear elasticity of small strain in a turning body.
+/// Linear elasticity of small strain in a corotated frame.
 #pragma once
 
 #include "fem/materials/elastic_law.hpp"

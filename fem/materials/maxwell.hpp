@@ -1,4 +1,4 @@
-/// Finite-strain viscoelasticity: Maxwell branches beside an elastic law (a Prony series in shear).
+/// Finite-strain viscoelasticity: Maxwell branches in parallel with an elastic law (a Prony series in shear).
 #pragma once
 
 #include <cmath>

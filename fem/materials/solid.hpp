@@ -1,4 +1,4 @@
-/// A solid material: an elastic law, Maxwell branches beside it, a density.
+/// A solid material: an elastic law, Maxwell branches in parallel with it, a density.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// Linear elasticity of Green's strain.
+/// St. Venant-Kirchhoff: stress linear in Green's strain.
 #pragma once
 
 #include "fem/materials/elastic_law.hpp"

@@ -1,4 +1,4 @@
-/// A rubber that is warmer or colder than where its constants were measured.
+/// Time-temperature shift: a rubber at another temperature than that of its measured constants.
 #pragma once
 
 #include "fem/materials/solid.hpp"
