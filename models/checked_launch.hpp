@@ -1,4 +1,4 @@
-/// The one gate between a model's answer and whoever believes it.
+/// Checks a model's launch before any other code uses it.
 #pragma once
 
 #include "models/impact_model.hpp"

@@ -1,4 +1,4 @@
-/// The one concept that ties the house together: (delivery, club, ball) -> launch.
+/// The interface of every impact model: (delivery, club, ball) -> launch.
 #pragma once
 
 #include <exception>

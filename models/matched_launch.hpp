@@ -1,4 +1,4 @@
-/// A blow whose loft is not known, at the launch angle that was measured.
+/// Finds the unknown loft of a blow from its measured launch angle.
 #pragma once
 
 #include "models/impact_model.hpp"

@@ -1,4 +1,4 @@
-/// What is said of an oblique blow: tangential restitution, launch ratio, and the bounce off a plate.
+/// Quantities of an oblique blow: tangential restitution, launch ratio, and the bounce off a plate.
 #pragma once
 
 #include <optional>

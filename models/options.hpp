@@ -1,5 +1,5 @@
-/// How a model is solved, and what its ball and contact are made of where the blow's contact law does
-/// not say it: one struct for all, each model reads its own.
+/// Numerical options of the models, and parameters of ball and contact that the blow's contact law does not contain:
+/// one struct for all models. Each model reads its own members.
 #pragma once
 
 #include "models/club/mounted_shaft.hpp"

@@ -1,5 +1,4 @@
-/// Parameters of the models by name: what a person can tune, sweep and compare. Adding one: one line in
-/// parameters.cpp.
+/// Parameters of the models by name, for tuning, sweeps and comparisons. A new parameter is one line in parameters.cpp.
 #pragma once
 
 #include <span>

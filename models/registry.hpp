@@ -1,4 +1,4 @@
-/// Every impact model by its name. Adding one: its file, and one line in registry.cpp.
+/// Every impact model by its name. A new model is its file and one line in registry.cpp.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// A face that yields from what laboratories measure of it.
+/// Calibration of a yielding face to laboratory measurements.
 #pragma once
 
 #include "models/reduced/face_strike.hpp"

@@ -1,4 +1,4 @@
-/// What the models without a deformable ball need of a ball, from what its finite-element model does.
+/// Calibration of the models without a deformable ball to blows of the finite-element ball.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// A swing with what may differ from the declared club and its supports.
+/// A swing with changes of the declared club and its supports.
 #pragma once
 
 #include "models/club/grip_motion.hpp"

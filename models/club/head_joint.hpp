@@ -1,4 +1,4 @@
-/// How the head hangs on the shaft: what stands between the shaft's tip and the head's node of one fem::System.
+/// The joint between the shaft's tip and the head's node in one fem::System.
 #pragma once
 
 #include "fem/supports.hpp"

@@ -1,4 +1,4 @@
-/// What the ends of the shaft transmit during a blow: to the head at the hosel, from the hands at the grip.
+/// Forces and moments at the ends of the shaft during a blow: on the head at the hosel, from the hands at the grip.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// A shaft at first contact that is bent, moves and is held: loaded by the swing.
+/// A shaft at first contact with the deflection, velocity and supports of the swing.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// A swing seen by markers: three on a body clamped to the shaft, three on the head.
+/// A swing measured by markers: three on a body clamped to the shaft, three on the head.
 #pragma once
 
 #include <array>

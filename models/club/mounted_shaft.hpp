@@ -1,4 +1,4 @@
-/// A shaft behind a head, both in one fem::System: what the full club adds to the free body.
+/// A shaft mounted on a head in one fem::System: the difference between full club and free body.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// The end of a swing, where the blow begins: how the head arrives, and the shaft behind it.
+/// The end of a swing, where the blow begins: motion of the head and state of the shaft.
 #pragma once
 
 #include <optional>

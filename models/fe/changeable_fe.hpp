@@ -1,4 +1,4 @@
-/// The finite-element impact, asked about blows and about changes of what is declared of ball and shaft.
+/// The finite-element impact as a function of the blow and of changes of the declared ball and shaft.
 #pragma once
 
 #include "models/club/mounted_shaft.hpp"

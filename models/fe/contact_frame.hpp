@@ -1,4 +1,4 @@
-/// First contact as the finite-element impact sees it: axes, approach, and what of the blow is symmetric.
+/// First contact in the finite-element impact: axes, approach, and the symmetries of the blow.
 #pragma once
 
 #include "golf/first_contact.hpp"

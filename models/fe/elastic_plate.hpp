@@ -1,4 +1,4 @@
-/// A sphere thrown at an elastic plate, by a finite-element sphere on a rigid one.
+/// Impact of a sphere on an elastic plate, from a finite-element sphere on a rigid plate.
 #pragma once
 
 #include "models/fe/impact.hpp"

@@ -1,4 +1,4 @@
-/// What may be changed of a finite-element impact beside the blow itself.
+/// Changes of a finite-element impact other than changes of the blow.
 #pragma once
 
 namespace hosel::models {

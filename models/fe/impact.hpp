@@ -1,5 +1,5 @@
-/// The finite-element impact: a deformable ball, the head with its face, the contact between them, and the shaft where
-/// the head hangs on one.
+/// The finite-element impact: a deformable ball, the head with its face, the contact between them, and the shaft of a
+/// full club.
 #pragma once
 
 #include <array>

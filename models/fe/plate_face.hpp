@@ -1,4 +1,4 @@
-/// A face with a thickness: a plate held by the head at its rim, its natural modes, and what of it a blow needs.
+/// A face with a thickness: a plate on the head at its rim, its natural modes, and its condensation for a blow.
 #pragma once
 
 #include <Eigen/SparseCore>

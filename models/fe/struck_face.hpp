@@ -1,4 +1,4 @@
-/// The face that a ball meets in a finite-element impact: a surface, and what of it moves in the head.
+/// The face in a finite-element impact: a contact surface, and its degrees of freedom relative to the head.
 #pragma once
 
 #include <functional>

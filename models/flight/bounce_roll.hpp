@@ -1,5 +1,4 @@
-/// What the ball does after it lands on turf, level or sloped along the target line: hops, each a rigid bounce, then
-/// rolling.
+/// Motion of the ball after it lands on turf, level or sloped along the target line: rigid bounces, then rolling.
 ///
 /// Each bounce happens on a plane that the turf's crater tilts against the motion by
 ///   theta = 15.4 deg (v / 18.6 m/s) (phi / 44.4 deg), phi the path's angle from the vertical,

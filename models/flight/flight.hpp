@@ -1,8 +1,7 @@
 /// The ball after the blow: from its launch to the ground, in three dimensions.
 ///
-/// State: position x from where it left the tee, velocity v, and how much of the launch's spin is left (its axis keeps
-/// its direction in space). With u the velocity through the air, q = rho A u^2 / 2 and the law's C_D(Re, S), C_L(Re,
-/// S):
+/// State: position x from the tee, velocity v, and the spin as a share of the launch's spin (the spin axis keeps its
+/// direction in space). With u the velocity through the air, q = rho A u^2 / 2 and the law's C_D(Re, S), C_L(Re, S):
 ///   m v' = -q C_D u / |u| + q C_L (spin x u) / (|spin| |u|) - m g ez.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// How far a flight can be trusted: the integration, the laws, and the launch.
+/// Error budget of a flight: integration, laws, and launch.
 #pragma once
 
 #include <optional>

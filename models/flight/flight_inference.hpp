@@ -1,12 +1,12 @@
-/// A law of drag, lift and decay of spin from measured paths, jointly with what every shot and every group of shots has
-/// of its own.
+/// A law of drag, lift and decay of spin from measured paths, jointly with the unknowns of every shot and of every
+/// group of shots.
 ///
 /// Minimised is the sum over the shots of n_i s atan(m_i / s), and over winds and coefficients of (x / sd)^2. m_i is
 /// the shot's misfit: its |r_i|^2 and the (u / sd)^2 of its own unknowns over the number n_i of its readings. r are the
 /// distances of the computed from the measured positions over their noise, s the scale of the misfits. Unknowns of a
 /// shot: ShotUnknown; of a group (the shots of a hole in a round): the wind; of all: the law's coefficients. A whole
-/// shot, its own unknowns included, has the weight 1 / (1 + (m_i / s)^2), so that a path that no unknown explains does
-/// not bend the law. Gauss-Newton; each shot's unknowns are eliminated (Schur complement).
+/// shot, its own unknowns included, has the weight 1 / (1 + (m_i / s)^2), so that a path that no unknown explains has
+/// little influence on the law. Gauss-Newton; each shot's unknowns are eliminated (Schur complement).
 #pragma once
 
 #include <Eigen/Core>

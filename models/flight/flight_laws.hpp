@@ -1,4 +1,4 @@
-/// Drag, lift and loss of spin of a ball in flight, as data: what a paper printed, where it holds, who printed it.
+/// Drag, lift and loss of spin of a ball in flight, as data: published formula, range and source.
 ///
 /// With the air's speed v past the ball, F_D = 1/2 rho A C_D v^2 against it and F_L = 1/2 rho A C_L v^2 along
 /// spin x v (with its sine: spin along the path lifts nothing). Re = rho v d / mu; S = spin r / v of the whole spin.

@@ -1,4 +1,4 @@
-/// A shaft clamped on the bench, with or without its head: small vibrations, fast enough to be fitted.
+/// Small vibrations of a shaft clamped on the bench, with or without its head; fast enough for fits.
 ///
 /// Axes are the grip's: ZG along the shaft from tip to butt, XG the lead direction, YG the droop direction. A
 /// cantilever is statically determinate, so its flexibility F is a sum of compliances (bending, torsion, the

@@ -1,5 +1,5 @@
-/// What the sensors of a club on the bench read: released, struck, driven, or found in motion. Every mode is stepped
-/// exactly between samples.
+/// Sensor readings of a club on the bench: released, struck, driven, or with unknown initial motion. Every mode is
+/// stepped exactly between samples.
 #pragma once
 
 #include "models/modal/bench.hpp"

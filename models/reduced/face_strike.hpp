@@ -1,4 +1,4 @@
-/// A normal blow on a lumped face: striker, face and head in series along the normal, in microseconds.
+/// A normal blow on a lumped face: striker, face and head in series along the normal. A solution takes microseconds.
 #pragma once
 
 #include <optional>

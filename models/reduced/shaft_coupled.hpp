@@ -1,4 +1,4 @@
-/// The volumetric ball against a head that carries the shaft.
+/// The volumetric ball against a head with a shaft.
 #pragma once
 
 #include "models/club/mounted_shaft.hpp"

@@ -1,4 +1,4 @@
-/// The shaft behind the head, as the head feels it: a linear beam condensed to its tip.
+/// The shaft as a linear beam condensed to its tip, where it acts on the head.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// Sliding, then rolling: the impulse followed along its path, in closed form.
+/// Sliding, then rolling, in closed form along the normal impulse.
 #pragma once
 
 #include "models/impact_model.hpp"
