@@ -1,4 +1,4 @@
-/// What may be adopted although structure remains that no candidate explains.
+/// Effects that are adopted although structure remains that no candidate explains.
 #pragma once
 
 #include "loop/study.hpp"

@@ -1,4 +1,4 @@
-/// What every loop is told, whatever its data are.
+/// The input that every loop has, for all kinds of data.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// Ranges, and middles and standard deviations that a few bad values do not move.
+/// Ranges, medians and robust standard deviations.
 #pragma once
 
 #include <algorithm>

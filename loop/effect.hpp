@@ -1,6 +1,7 @@
-/// Candidate effects: named, parameterised changes of what a model declares. Zero parameters give the base model back
-/// bit for bit. A new effect is one file in loop/effects, its declaration there in all.hpp and one line in
-/// loop/effects.cpp; or it stands outside the library and comes with the case (examples/own_effect.cpp).
+/// Candidate effects: named changes of a model's input or output, with parameters. With zero parameters the result is
+/// that of the base model, bit for bit. A new effect is one file in loop/effects, its declaration in
+/// loop/effects/all.hpp and one line in loop/effects.cpp. An effect outside the library is part of the case
+/// (examples/own_effect.cpp).
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-/// How the effects look alike to the data: what is absorbed by what was fitted, and which sums of effects nothing
-/// shows.
+/// Similarity of effects in the data: the share of an effect that the fitted ones absorb, and the combinations of
+/// effects that no channel shows.
 #pragma once
 
 #include "loop/fit.hpp"

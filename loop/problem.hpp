@@ -1,6 +1,6 @@
-/// Measured data beside a base model, as a fit, a search and a verdict see them. Two implementations: shots
-/// (shots/problem) and time histories (history/problem); what differs truly stands behind this interface, everything
-/// else is done once, for both.
+/// The interface between measured data with a base model, and the fit, the search and the verdict. Implementations:
+/// shots (shots/problem), time histories (history/problem) and flights (flights/problem). Only parts that depend on the
+/// kind of data are behind this interface.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// The loop's findings as files: report.json (the contract), residuals.csv, report.html.
+/// The loop's results as files: report.json (the stable interface), residuals.csv, report.html.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-/// What the loop found, as its reports tell it.
+/// The result of a loop, as its reports contain it.
 #pragma once
 
 #include <map>

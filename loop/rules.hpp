@@ -1,4 +1,4 @@
-/// The rules of the loop and their figures; the README of this folder says why.
+/// The thresholds of the loop. The README of this folder gives their reasons.
 #pragma once
 
 #include <cmath>

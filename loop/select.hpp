@@ -1,4 +1,4 @@
-/// The rule for adopting: how many effects the data ask for, which, and what ties with them.
+/// The rule for adopting: how many effects the data require, which, and their ties.
 #pragma once
 
 #include "loop/search.hpp"

@@ -1,4 +1,5 @@
-/// What a test for structure finds in a residual. The tests themselves differ: shots/structure, history/noise.
+/// The result of a test for structure in a residual. The tests depend on the kind of data: shots/structure,
+/// history/noise.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// What a loop is doing while it works.
+/// Progress messages of a running loop.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,5 @@
-/// What is said of a selection: verdict, places, the holdout read once, errors on both sets, what to measure next.
+/// The report on a selection: verdict, places, the holdout read once, errors on training and held-out rows, the next
+/// experiment.
 #pragma once
 
 #include "loop/result.hpp"

@@ -4,7 +4,7 @@
 
 namespace hosel::loop::forms {
 
-/// For bases that do not know the difference between two blows: what the closed-form eccentric impact makes of it.
+/// For bases that do not compute the difference between two blows: the difference by the closed-form eccentric impact.
 inline void add_difference(const Blow& with, const Blow& without, double amount, Launch& launch) {
   static const models::RigidEccentric model;
   const Launch a = model.launch(with), b = model.launch(without);

@@ -6,8 +6,8 @@
 
 namespace hosel::loop::forms {
 
-/// What a sensor does to its channel: one form per channel, and one of all alike. Where the start is unknown, it takes
-/// up what all channels do, and what the only one does.
+/// Effects of a sensor on its channel: one form per channel, and one form with the same change in all channels. With an
+/// unknown initial state, this state absorbs a change of all channels, or of the only one.
 inline std::vector<Parametrisation> per_channel(const HistorySetting& setting, const Parametrisation& one,
                                                 std::vector<double> TestSetup::*changed) {
   std::vector<Parametrisation> forms;

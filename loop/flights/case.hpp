@@ -1,5 +1,5 @@
-/// A loop on flights: launches that were seen, what was measured of the flight after each, and what every shot and
-/// every group of shots has of its own. No club, no impact.
+/// The input of a loop on flights: recorded launches, the measurements of the flight after each, and the unknowns of
+/// every shot and of every group of shots. No club, no impact.
 #pragma once
 
 #include <map>

@@ -1,7 +1,8 @@
-/// Measured flights as the engine sees them. What is unknown of a shot and of its group is Gaussian about zero and
-/// taken out of the likelihood: with the slopes J of the readings by the unknowns u about their most likely values u0,
+/// Measured flights as a Problem of the engine. The unknowns of a shot and of its group are Gaussian about zero and
+/// integrated out of the likelihood: with the slopes J of the readings by the unknowns u about their most likely values
+/// u0,
 ///   z = L^-1 (f(u0) - J u0 - y),  L L^T = N + J D J^T
-/// over all readings of a group, N the noise, D the variances of the unknowns. u0 is found anew in every pass.
+/// over all readings of a group, N the noise, D the variances of the unknowns. u0 is computed again in every pass.
 #pragma once
 
 #include <map>

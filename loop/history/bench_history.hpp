@@ -1,4 +1,4 @@
-/// Records of a clamped shaft: what its channels read.
+/// Records of a clamped shaft: predictions of their channels.
 #pragma once
 
 #include <memory>

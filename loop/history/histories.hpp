@@ -1,4 +1,4 @@
-/// The loop on time histories: from records of a club test and a beam model to a verdict, in the words of the contract.
+/// The loop on time histories: from records of a club test and a beam model to a verdict.
 #pragma once
 
 #include "loop/history/problem.hpp"

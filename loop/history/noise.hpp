@@ -1,5 +1,4 @@
-/// What the residual of a record is made of: the level and colour of its noise, and what is left in it, by time and
-/// by frequency.
+/// The residual of a record: level and colour of its noise, and tests for structure in time and in frequency.
 #pragma once
 
 #include "loop/history/problem.hpp"

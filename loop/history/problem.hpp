@@ -1,5 +1,5 @@
-/// Records of a club test as the engine sees them: readings whitened by noise with its colour, unknown states at the
-/// start eliminated, stretches of time held out, fits that look at a few periods first.
+/// Records of a club test as a Problem of the engine: readings whitened by coloured noise, unknown initial states
+/// eliminated, intervals of time held out, fits that begin with a few periods.
 #pragma once
 
 #include "loop/case.hpp"

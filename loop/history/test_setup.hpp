@@ -1,4 +1,4 @@
-/// A club test as recorded: what stands on the bench or in the hands, and what is read. Effects change it.
+/// A club test as recorded: the club, its clamp or grip motion, and its sensors. Effects change it.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// Is it a measurement at all? Columns that are, to within their recording, functions of other columns.
+/// Derived columns: columns that are functions of other columns to within their recording step.
 #pragma once
 
 #include <map>

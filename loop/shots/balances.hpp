@@ -1,7 +1,7 @@
-/// What needs no contact law. Whatever happens between ball and face, one impulse J acts at the point of contact: the
-/// ball leaves with velocity J / m and spin -(r n) x J / I. A residual that some J mends is a matter of the contact;
-/// what no J mends contradicts the kinematics (where the face pointed, what the instrument calls speed and spin) or
-/// the inertia of the ball.
+/// Tests that need no contact law. For every contact law, one impulse J acts at the point of contact: the ball leaves
+/// with velocity J / m and spin -(r n) x J / I. If some J removes a residual, its cause is the contact. If no J removes
+/// it, it contradicts the kinematics (face direction, the instrument's definitions of speed and spin) or the inertia of
+/// the ball.
 #pragma once
 
 #include "loop/shots/model.hpp"

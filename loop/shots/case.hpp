@@ -1,4 +1,4 @@
-/// A loop on shots: the measured ones, the base model, what is known of club, ball and noise.
+/// The input of a loop on shots: measured shots, base model, declared club, ball and noise.
 #pragma once
 
 #include <map>

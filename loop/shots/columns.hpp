@@ -1,5 +1,4 @@
-/// Do whole columns hold what their headers say? Units, signs, columns swapped or moved by a row, offsets, scales,
-/// level shifts: told, never repaired.
+/// Wrong columns: unit, sign, swapped, moved by a row, offset, scale, level shift. They are reported, never repaired.
 #pragma once
 
 #include <Eigen/Core>

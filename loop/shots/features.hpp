@@ -1,4 +1,4 @@
-/// What a slow base is asked about, as coordinates: the blow as the ball meets it, and what effects change.
+/// Coordinates of the surrogate of a slow base: the blow in the face frame, and the quantities that effects change.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-/// What the models are told: trials from the rows, noisy inputs replaced by their expectation.
+/// Input of the models: trials from the rows, noisy inputs replaced by their expectation.
 #pragma once
 
 #include <Eigen/Core>

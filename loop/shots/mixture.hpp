@@ -1,4 +1,4 @@
-/// Two populations in one set (two balls, two players, two settings) that no column tells apart.
+/// Two populations in one set (two balls, two players, two settings) that no column separates.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// A base model with effects, asked about recorded blows: readings of the channels, their derivatives, and the
+/// A base model with effects on recorded blows: predicted readings of the channels, their derivatives, and the
 /// whitening by the covariance of every shot.
 #pragma once
 

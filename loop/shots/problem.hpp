@@ -1,4 +1,4 @@
-/// Measured shots as the engine sees them: rows to trials, split, noise, screening, tests for structure, design.
+/// Measured shots as a Problem of the engine: rows to trials, split, noise, screening, tests for structure, design.
 #pragma once
 
 #include <memory>

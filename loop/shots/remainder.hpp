@@ -1,5 +1,4 @@
-/// A discrepancy without a name: per channel a Gaussian process of the residual over the inputs, the session and the
-/// columns that no model knows.
+/// The remainder: per channel a Gaussian process of the residual over the inputs, the session and the unknown columns.
 #pragma once
 
 #include "loop/shots/structure.hpp"

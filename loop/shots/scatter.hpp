@@ -1,4 +1,4 @@
-/// What a channel scatters: a first idea of its noise, and its ratio to the noise at hand.
+/// Scatter of a channel: a first estimate of its noise, and the ratio of scatter to the present noise.
 #pragma once
 
 #include "loop/shots/model.hpp"

@@ -1,4 +1,4 @@
-/// Rows that no model of the family can explain: found at the fitted model, with the slip that would explain them.
+/// Rows that no fit explains, found at the fitted model, with the recording error that would explain each.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-/// The loop on a base that takes seconds to answer: audit and a first look by the closed form, a surrogate over blows
-/// and effects, more answers where the decision hangs on them, and the corrected base itself on the held-out shots.
+/// The loop on a base that takes seconds per blow: audit and a first loop with the closed form, a surrogate over blows
+/// and effects, further blows where a decision depends on them, and the corrected base itself on the held-out shots.
 #pragma once
 
 #include <memory>

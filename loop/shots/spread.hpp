@@ -1,4 +1,5 @@
-/// Where a slow base is asked: blows that fill the range of recorded ones, with effects at several sizes.
+/// Sample points for the surrogate of a slow base: blows that fill the range of the recorded ones, with effects at
+/// several sizes.
 #pragma once
 
 #include <vector>

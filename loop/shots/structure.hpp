@@ -1,5 +1,5 @@
-/// Is anything left in the residual of the shots? The largest statistic over channel x regressor, calibrated by
-/// flipping the signs of whole shots: a gate, and a locator.
+/// The test for structure in the residual of shots: the largest statistic over channel x regressor, calibrated by
+/// flipping the signs of whole shots. It decides whether effects are tried, and names channel and regressor.
 #pragma once
 
 #include <functional>

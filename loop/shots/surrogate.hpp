@@ -1,5 +1,5 @@
-/// A slow base made quick: what it says beyond a quicker answer, over blows and effects together, as a Gaussian
-/// process, with its error.
+/// The surrogate of a slow base: its difference from a fast model as a Gaussian process over blows and effects
+/// together, with the predicted error.
 #pragma once
 
 #include <functional>
