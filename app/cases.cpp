@@ -133,18 +133,21 @@ std::vector<ListSection> everything() {
     std::ranges::copy_if(loop::effects(), std::back_inserter(out), [&](const auto& e) { return e.*on != nullptr; });
     return out;
   };
-  return {{"kinds", entries(kinds())},
-          {"models", entries(models::registry())},
-          {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
-          {"balls (ball.model)", shelved(Shelf::balls)},
-          {"heads (head.name)", shelved(Shelf::heads)},
-          {"flight laws (flight.law)", entries(models::flight_laws())},
-          {"faces that yield (face.name)", shelved(Shelf::faces)},
-          {"contacts (contact.name)", shelved(Shelf::contacts)},
-          {"shafts (shaft.name)", entries(shaft_library())},
-          {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
-          {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},
-          {"cases", shipped_cases()}};
+  std::vector<ListSection> all = {
+      {"kinds", entries(kinds())},
+      {"models", entries(models::registry())},
+      {"materials (law), each with branch_moduli_MPa and branch_times_ms", entries(solid_laws())},
+      {"balls (ball.model)", shelved(Shelf::balls)},
+      {"heads (head.name)", shelved(Shelf::heads)},
+      {"flight laws (flight.law)", entries(models::flight_laws())},
+      {"faces that deflect (face.name)", shelved(Shelf::faces)},
+      {"contacts (contact.name)", shelved(Shelf::contacts)},
+      {"shafts (shaft.name)", entries(shaft_library())},
+      {"effects on shots", entries(acting(&loop::EffectEntry::on_shots))},
+      {"effects on histories", entries(acting(&loop::EffectEntry::on_tests))},
+      {"cases", shipped_cases()}};
+  std::erase_if(all, [](const ListSection& s) { return s.entries.empty(); });
+  return all;
 }
 
 }  // namespace hosel::app
