@@ -10,7 +10,7 @@
 
 namespace hosel::loop {
 
-/// Least and largest of what `of` says of each, values that are none left out; infinite, the least above, of none.
+/// Least and largest of what `of` gives of each, NaN left out; infinite, the least above the largest, of none.
 template <class Of>
 std::pair<double, double> range_of(const auto& all, const Of& of) {
   double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -8,6 +8,7 @@
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
 #include "loop/structure.hpp"
+
 namespace hosel::loop {
 namespace {
 

@@ -29,7 +29,8 @@ void write_csv(const fs::path& file, const std::vector<const Understood*>& colum
     text += '\n';
   };
   line([](const Understood& u) { return u.name.empty() ? u.header : u.name; });
-  for (std::size_t r = 0; r < columns.front()->cells.size(); ++r) line([&](const Understood& u) { return u.cells[r]; });
+  for (std::size_t r = 0; !columns.empty() && r < columns.front()->cells.size(); ++r)
+    line([&](const Understood& u) { return u.cells[r]; });
   post::write_file(file, text);
 }
 

@@ -192,10 +192,11 @@ TEST(SwingCase, MissingDataAreSkippedWithTheReason) {
   const auto dir = fresh_directory("swing_skipped");
   for (const std::string name : {"club-6dof", "swing-markers", "loop-swing-markers"}) {
     const Outcome o = command("run " + std::string(HOSEL_SOURCE_DIR) + "/cases/" + name + " --set " +
-                              (name == "club-6dof" ? "motion" : "markers") + ".file=not_there/data.csv --out " +
-                              (dir / name).string());
+                              (name == "club-6dof" ? "motion" : "markers") +
+                              ".file=not_there/data.csv --units golf --out " + (dir / name).string());
     EXPECT_EQ(o.status, 0) << o.text;
     EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
+    EXPECT_EQ(o.text.find("--units"), std::string::npos) << "of what is not shown nothing is said: " << o.text;
   }
 }
 

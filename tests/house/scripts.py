@@ -165,6 +165,11 @@ class Builds(Test):
         self.assertEqual(status, 1)
         self.assertIn("E = 1 | E = 2", said)
 
+    def test_the_end_of_a_line_is_a_byte_too(self):
+        for end in ("", "\\r\\n"):
+            status, said = self.compare('printf "1\\n" >"$4"/a.csv', f'printf "1{end}" >"$4"/a.csv', "rollback")
+            self.assertEqual(status, 1, said)
+
     def test_a_kept_run_keeps_its_status_and_what_it_said(self):
         words = ["--keep", self.at / "kept", "rollback"]
         for says in ("echo warning: of both >&2", "echo error: of both >&2; exit 3"):
