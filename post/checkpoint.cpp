@@ -34,6 +34,14 @@ void numbers(const json& j, Dense& x) {
   std::copy(values.begin(), values.end(), x.data());
 }
 
+/// Of whole numbers, or lists of them: another number may be none that an integer holds. Throws std::length_error.
+const json& whole(const json& j) {
+  if (j.is_structured())
+    for (const json& each : j) whole(each);
+  else if (!j.is_number_integer()) throw std::length_error("checkpoint");
+  return j;
+}
+
 json to_json(const fem::State& s) {
   return {{"time", s.time}, {"q", numbers(s.q)}, {"v", numbers(s.v)}, {"a", numbers(s.a)}};
 }
@@ -48,7 +56,7 @@ void from_json(const json& j, fem::State& s) {
 json to_json(const solvers::Peak& p) { return {p.value, p.time, p.times, p.values, p.steps}; }
 
 void from_json(const json& j, solvers::Peak& p) {
-  p = {j.at(0), j.at(1), j.at(2).get<std::array<double, 3>>(), j.at(3).get<std::array<double, 3>>(), j.at(4)};
+  p = {j.at(0), j.at(1), j.at(2).get<std::array<double, 3>>(), j.at(3).get<std::array<double, 3>>(), whole(j.at(4))};
 }
 
 json to_json(const solvers::Ledger& l) {
@@ -94,8 +102,8 @@ void from_json(const json& j, BallSection& s) {
   s.force = j.at("force");
   s.points = points(j.at("points"));
   s.von_mises = j.at("von_mises").get<std::vector<double>>();
-  s.cells = j.at("cells").get<std::vector<std::array<int, 4>>>();
-  s.seams = j.at("seams").get<std::vector<std::array<int, 3>>>();
+  s.cells = whole(j.at("cells")).get<std::vector<std::array<int, 4>>>();
+  s.seams = whole(j.at("seams")).get<std::vector<std::array<int, 3>>>();
   s.face = points(j.at("face"));
   const auto known = [&](int i) { return i >= 0 && std::size_t(i) < s.points.size(); };
   const auto all_known = [&](const auto& corners) { return std::ranges::all_of(corners, known); };
@@ -134,12 +142,12 @@ json to_json(const MovingBlow& m) {
 }
 
 void from_json(const json& j, MovingBlow& m) {
-  m.stride = j.at("stride");
+  m.stride = whole(j.at("stride"));
   m.radius = j.at("radius");
   numbers(j.at("face_axes"), m.face_axes);
   for (const json& b : j.at("bodies"))
-    m.bodies.push_back({b.at(0), b.at(1), b.at(2).get<std::array<int, 2>>(), b.at(3).get<std::vector<int>>(),
-                        b.at(4).get<std::vector<double>>()});
+    m.bodies.push_back({b.at(0), b.at(1), whole(b.at(2)).get<std::array<int, 2>>(),
+                        whole(b.at(3)).get<std::vector<int>>(), b.at(4).get<std::vector<double>>()});
   for (const json& f : j.at("frames")) {
     MovingBlow::Frame& frame = m.frames.emplace_back();
     frame.time = f.at(0);
@@ -165,7 +173,7 @@ SavedImpact saved_impact(const json& j) {
   i.solver.history = s.at("history").get<std::vector<double>>();
   i.so_far.penetration = r.at("penetration");
   i.so_far.creep = r.at("creep");
-  const auto counts = r.at("counts").get<std::array<long, 5>>();
+  const auto counts = whole(r.at("counts")).get<std::array<long, 5>>();
   i.so_far.counts = {counts[0], counts[1], counts[2], counts[3], counts[4], r.at("worst_residual")};
   from_json(j.at("force"), i.force);
   from_json(j.at("compression"), i.compression);
@@ -176,13 +184,13 @@ SavedImpact saved_impact(const json& j) {
   i.last_nearest = j.at("last_nearest");
   i.release.time = j.at("release_time");
   i.release.force = j.at("release_force");
-  i.release.known = j.at("release_known");
+  i.release.known = whole(j.at("release_known"));
   if (i.release.known > models::Release::kSteps) throw std::length_error("checkpoint");
   i.release.apart = j.at("release_apart");
   i.last_gap = j.at("last_gap");
   numbers(j.at("face_centre"), out.face_centre);
   numbers(j.at("face_axes"), out.face_axes);
-  out.history = {j.at("history").at(0), j.at("history").at(1)};
+  out.history = {whole(j.at("history").at(0)), j.at("history").at(1)};
   from_json(j.at("moving"), out.moving);
   if (j.contains("section")) from_json(j.at("section"), out.section.emplace());
   if (j.contains("series"))

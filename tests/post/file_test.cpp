@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <thread>
@@ -221,6 +222,16 @@ TEST(Checkpoint, OnesMadeByHandAreNotGoneOnFrom) {
   EXPECT_FALSE(made(std::string(1'000'000, '\x81'))) << "lists of one list";
   EXPECT_FALSE(made(std::string("\xa1\x63run\x63run"))) << "{run: run}";
   EXPECT_FALSE(made("\x80")) << "a list";
+  for (const auto& [where, what] : {std::pair{"/so_far/counts/0", "steps"},
+                                    {"/force/4", "steps of a peak"},
+                                    {"/release_known", "a count"},
+                                    {"/history/0", "rows"}}) {
+    nlohmann::json huge = nlohmann::json::from_cbor(body);
+    huge.at(nlohmann::json::json_pointer(where)) = 1e25;
+    std::string bytes;
+    nlohmann::json::to_cbor(huge, bytes);
+    EXPECT_FALSE(made(bytes)) << what << " that no integer holds";
+  }
   body.replace(body.find("closure"), 7, "closing");
   EXPECT_FALSE(made(body)) << "a key is missing";
 }
