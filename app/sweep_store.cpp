@@ -100,6 +100,7 @@ PointStore::PointStore(const fs::path& directory, const std::string& fingerprint
     if (whole.empty()) whole = sealed({{"fingerprint", fingerprint}, {"version", program_version()}}).dump() + '\n';
     file_ = std::make_unique<post::GrowingFile>(file, whole, true);
     if (::flock(file_->descriptor(), LOCK_EX | LOCK_NB) != 0) held(file);
+    post::remove_unfinished(directory);
   } catch (...) {
     if (old >= 0) ::close(old);
     throw;

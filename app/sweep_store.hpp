@@ -29,7 +29,8 @@ std::map<std::size_t, nlohmann::json> read_points(const std::filesystem::path& d
 class PointStore {
  public:
   /// DIRECTORY/points.jsonl with the whole lines of what stood there, in a new file: another name of the old one keeps
-  /// what it had. Throws InputError where another process holds it.
+  /// what it had. What a killed process left unfinished beside it is removed. Throws InputError where another process
+  /// holds it.
   PointStore(const std::filesystem::path& directory, const std::string& fingerprint);
   PointStore(const PointStore&) = delete;
   PointStore& operator=(const PointStore&) = delete;
