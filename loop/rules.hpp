@@ -1,14 +1,14 @@
 /// The thresholds of the loop. The README of this folder gives their reasons.
 #pragma once
 
-#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace hosel::loop {
 
 /// What may come by chance: one in a thousand, and the logarithm of the evidence that is beyond it.
 inline constexpr double kByChance = 1e-3;
-inline const double kBeyondChance = -std::log(kByChance);
+inline constexpr double kBeyondChance = 3 * std::numbers::ln10;
 /// Fewer rows have no form.
 inline constexpr int kFewestRows = 12;
 /// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.

@@ -54,7 +54,7 @@ std::string term_name(const Term& f, const std::vector<Source>& s) {
   return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
 }
 
-const double kOutsideEdge = 2 * kBeyondChance;  // price of a row outside, as a deviance
+constexpr double kOutsideEdge = 2 * kBeyondChance;  // price of a row outside, as a deviance
 
 struct Formula {
   std::string text;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
@@ -10,8 +11,8 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kMechanismRows = 150;
-constexpr double kPrice = 8;  // of the choice among some hundred functions and mechanisms [units of deviance]
+constexpr std::size_t kKnots = 150;  // rows whose covariance makes a basis
+constexpr double kPrice = 8;         // of the choice among some hundred functions and mechanisms [units of deviance]
 
 /// One way in which a shot's channels move together.
 struct Way {
@@ -47,14 +48,14 @@ std::vector<Way> ways(const ShotModel& model, const Shots& shots) {
   return all;
 }
 
-/// Functions of one quantity: each an orthonormal basis over the rows with the variance of its coefficients, a level
-/// apart.
+/// Functions of one quantity: each a basis over the rows with the variance of its coefficients, a level apart. The
+/// basis is orthonormal over the knots.
 struct Field {
   std::string along;
   bool place = false, step = false;  ///< over the place of impact; one step in the session
   struct Basis {
     Eigen::MatrixXd phi;       // rows x terms
-    Eigen::VectorXd variance;  // mean variance over the rows is one
+    Eigen::VectorXd variance;  // mean variance over the knots is one
   };
   std::vector<Basis> smoothness;
 };
@@ -64,20 +65,22 @@ double matern(double r) {
   return (1 + a + a * a / 3) * std::exp(-a);
 }
 
-/// The leading terms of a covariance over the rows, its level taken out.
-Field::Basis basis(const Eigen::MatrixXd& covariance) {
+/// The leading terms of a covariance between rows and knots, which are some of the rows, its level taken out. Over the
+/// other rows its eigenfunctions are continued by the covariance [@gp-ml].
+Field::Basis basis(const Eigen::MatrixXd& covariance, const std::vector<int>& knots) {
   constexpr Eigen::Index most = 12;
-  const Eigen::Index n = covariance.rows();
-  const Eigen::VectorXd mean = covariance.colwise().mean().transpose();
+  const Eigen::RowVectorXd mean = covariance(knots, Eigen::all).colwise().mean();
   Eigen::MatrixXd centred = covariance;
-  centred.rowwise() -= mean.transpose();
-  centred.colwise() -= mean;
+  centred.rowwise() -= mean;
+  centred.colwise() -= covariance.rowwise().mean();
   centred.array() += mean.mean();
-  const dense::Eigenpairs all = dense::eigenpairs(centred);
+  const dense::Eigenpairs all = dense::eigenpairs(centred(knots, Eigen::all));
   const Eigen::Index terms =
       std::clamp<Eigen::Index>((all.values.array() > 1e-6 * all.values.maxCoeff()).count(), 1, most);
-  Field::Basis b{all.vectors.rightCols(terms), all.values.tail(terms).cwiseMax(0)};
-  const double whole = b.variance.sum() / double(n);
+  const Eigen::VectorXd values = all.values.tail(terms).cwiseMax(0);
+  Field::Basis b{centred * all.vectors.rightCols(terms), values};
+  for (Eigen::Index k = 0; k < terms; ++k) b.phi.col(k) /= std::max(values[k], 1e-300);
+  const double whole = b.variance.sum() / double(knots.size());
   if (whole > 0) b.variance /= whole;
   return b;
 }
@@ -95,20 +98,27 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     const double sd = std::sqrt(out.squaredNorm() / double(n));
     return Eigen::VectorXd(sd > 1e-9 * (1 + std::abs(sum / count)) ? out / (2 * sd) : Eigen::VectorXd());
   };
+  std::vector<int> every(rows.size());
+  std::iota(every.begin(), every.end(), 0);
+  const std::vector<int> knots = evenly(every, kKnots);
   std::vector<Field> all;
-  const auto covariance = [n](const std::vector<Eigen::VectorXd>& x, double length) {
-    Eigen::MatrixXd K(n, n);
+  /// Between each row and each knot.
+  const auto covariance = [&](auto&& value) {
+    Eigen::MatrixXd K(n, Eigen::Index(knots.size()));
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) {
-        double square = 0;
-        for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
-        K(i, j) = matern(std::sqrt(square));
-      }
+      for (Eigen::Index j = 0; j < K.cols(); ++j) K(i, j) = value(i, Eigen::Index(knots[std::size_t(j)]));
     return K;
+  };
+  const auto smooth_covariance = [&](const std::vector<Eigen::VectorXd>& x, double length) {
+    return covariance([&](Eigen::Index i, Eigen::Index j) {
+      double square = 0;
+      for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
+      return matern(std::sqrt(square));
+    });
   };
   const auto smooth = [&](std::string along, const std::vector<Eigen::VectorXd>& x, bool place) {
     Field f{.along = std::move(along), .place = place};
-    for (const double length : {0.5, 1.0, 2.0, 4.0}) f.smoothness.push_back(basis(covariance(x, length)));
+    for (const double length : {0.5, 1.0, 2.0, 4.0}) f.smoothness.push_back(basis(smooth_covariance(x, length), knots));
     all.push_back(std::move(f));
   };
   Eigen::VectorXd toe, high;
@@ -122,12 +132,12 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     }
     smooth(line.name, {x}, false);
     if (line.name != "shot") continue;
-    all.push_back({.along = line.name, .smoothness = {basis(x * x.transpose())}});  // a steady drift
+    const auto product = [&](auto i, auto j) { return x[i] * x[j]; };
+    all.push_back({.along = line.name, .smoothness = {basis(covariance(product), knots)}});  // a steady drift
     // A walk: steps and slow wander.
-    Eigen::MatrixXd K(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) K(i, j) = std::min(x[i], x[j]) - x.minCoeff();
-    (all.end() - 2)->smoothness.push_back(basis(K));
+    const double first = x.minCoeff();
+    const auto walk = [&](auto i, auto j) { return std::min(x[i], x[j]) - first; };
+    (all.end() - 2)->smoothness.push_back(basis(covariance(walk), knots));
     // One step, wherever it is: no drift.
     Field step{.along = line.name, .step = true};
     std::vector<double> sorted(x.begin(), x.end());
@@ -135,9 +145,8 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     constexpr Eigen::Index places = 15;
     for (Eigen::Index k = 1; k <= places; ++k) {
       const double from = sorted[std::size_t(k * n / (places + 1))];
-      const Eigen::VectorXd after = (x.array() >= from).cast<double>();
-      steps.emplace_back(after * after.transpose());
-      step.smoothness.push_back(basis(steps.back()));
+      steps.push_back(covariance([&](auto i, auto j) { return double(x[i] >= from && x[j] >= from); }));
+      step.smoothness.push_back(basis(steps.back(), knots));
     }
     all.push_back(std::move(step));
   }
@@ -145,22 +154,17 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     smooth(shots.find_stem(stem(Input::impact_toe))->name, {toe, high}, true);
     // A step that differs over the place of impact: a crack, a weight come loose.
     Field damage{.along = "shot", .step = true};
-    const Eigen::MatrixXd even = covariance({toe, high}, 1).array() + 1;
-    for (const Eigen::MatrixXd& step : steps) damage.smoothness.push_back(basis(step.cwiseProduct(even)));
+    const Eigen::MatrixXd even = smooth_covariance({toe, high}, 1).array() + 1;
+    for (const Eigen::MatrixXd& step : steps) damage.smoothness.push_back(basis(step.cwiseProduct(even), knots));
     if (!steps.empty()) all.push_back(std::move(damage));
   }
   for (const Column& c : shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
     if (g.name.size() < 2 || g.name.size() > 12) continue;
-    Eigen::MatrixXd K(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j)
-        K(i, j) = g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(i)])])] ==
-                  g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(j)])])];
-    Field f{.along = c.name};
-    f.smoothness.push_back(basis(K));
-    all.push_back(std::move(f));
+    const auto group = [&](auto i) { return g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(i)])])]; };
+    const auto same = [&](auto i, auto j) { return double(group(i) == group(j)); };
+    all.push_back({.along = c.name, .smoothness = {basis(covariance(same), knots)}});
   }
   return all;
 }
@@ -254,9 +258,8 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
 }  // namespace
 
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                                  const std::vector<int>& all, bool session, const Fit& base, const Fit& chosen,
+                                  const std::vector<int>& rows, bool session, const Fit& base, const Fit& chosen,
                                   double tie) {
-  const std::vector<int> rows = evenly(all, kMechanismRows);
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   if (n < kFewestRows) return {};
   const solvers::Loss loss = loss_of_shot(model.width());
@@ -294,8 +297,6 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   if (trials.size() > 12) trials.resize(12);
 
   // The deviance as fits count it: each with the weights of its own residual.
-  // Against none the scatter of some rows is no evidence of the others.
-  const double scale = chosen.model.forms.empty() ? 1 : double(all.size()) / double(rows.size());
   std::vector<Mechanism> out;
   for (Trial& t : trials) {
     const Eigen::MatrixXd& j = columns[t.way];
@@ -319,8 +320,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
     m.channel = int(most);
-    // Of long sets on some rows: there the difference from the chosen effects counts, not the scatter of both.
-    m.criterion = chosen.deviance + scale * (deviance - of_chosen) + t.found.price + kPrice;
+    m.criterion = chosen.deviance + deviance - of_chosen + t.found.price + kPrice;
     m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
     out.push_back(std::move(m));
   }

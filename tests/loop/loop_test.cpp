@@ -111,11 +111,11 @@ std::string csv(const World& w) {
     if (w.second != 0 && gauss(random) > 0) speed += w.second;
     const double back = std::round(rpm(l.backspin()) + 60 * noise()),
                  side = std::round(rpm(l.sidespin()) + 60 * noise());
+    const double right = degrees(l.azimuth()) + 0.25 * noise(), up = degrees(l.launch_angle()) + 0.2 * noise();
     char line[512];
     std::snprintf(line, sizeof line, "%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.0f,%.0f", i + 1,
                   d.club_speed + w.misread * late, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle),
-                  recorded_loft, 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed,
-                  degrees(l.launch_angle()) + 0.2 * noise(), degrees(l.azimuth()) + 0.25 * noise(), back, side);
+                  recorded_loft, 1e3 * d.impact_toe, 1e3 * d.impact_high, humidity, speed, up, right, back, side);
     text += line;
     if (w.rate) text += "," + std::to_string(std::lround(std::hypot(back, side)));
     text += "\n";
@@ -627,10 +627,13 @@ TEST(Groups, NumbersOfManyDigitsAreApart) {
 }
 
 TEST_F(Loop, LongSetsKeepTheirName) {
-  // Some of 450 rows are looked at for a rival function; the name was fitted to all.
-  const LoopResult r = run(case_of(csv({.shots = 600, .tangential = 0.05})));
-  EXPECT_EQ(name(r.verdict), "explained") << sentence(r);
-  EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"});
+  // A rival function is made of some of the 450 rows and fitted to all, as the name is: fitted to some, it follows
+  // their scatter.
+  for (const unsigned seed : {1U, 4U, 7U}) {
+    const LoopResult r = run(case_of(csv({.shots = 600, .tangential = 0.05, .seed = seed})));
+    EXPECT_EQ(name(r.verdict), "explained") << seed << ": " << sentence(r);
+    EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"}) << seed;
+  }
 }
 
 TEST_F(Loop, AStepOfThePhysicsAccusesNoColumn) {
@@ -955,9 +958,9 @@ TEST_F(Loop, AColumnMayBeComputedBeforeTheOthersAreRounded) {
         "azimuth_deg,backspin_rpm\n";
     for (int i = 0; i < 90; ++i) {
       const double path = 3 * gauss(random), azimuth = 2 * gauss(random), club = 45 + 3 * gauss(random);
+      const double loft = 14 + 2 * gauss(random), ball = 1.4 * club + gauss(random), launch = 11 + gauss(random);
       text += fmt::format("{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.0f}\n", club, path,
-                          1.14 * azimuth - 0.14 * path, 14 + 2 * gauss(random), 1.4 * club + gauss(random),
-                          11 + gauss(random), azimuth, 2500 + 150 * gauss(random));
+                          1.14 * azimuth - 0.14 * path, loft, ball, launch, azimuth, 2500 + 150 * gauss(random));
     }
     const std::vector<DerivedColumn> found = audit(shots(text), {});
     ASSERT_EQ(found.size(), 1U) << seed;
