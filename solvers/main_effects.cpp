@@ -72,6 +72,16 @@ VectorXd shares(const std::vector<Block>& blocks, const MatrixXd& all, const Vec
   return out;
 }
 
+/// What the curve is where it turns within its range: slope * P1(t) + curvature * P2(t), t from -1 to 1.
+std::optional<double> turn(const MainEffect& e, double slope, double curvature) {
+  if (!(std::abs(slope) < 3 * std::abs(curvature))) return {};
+  const double t = -slope / (3 * curvature);
+  const double there = e.at_high + slope * (t - 1) + curvature * 1.5 * (t * t - 1);
+  const double beyond = curvature > 0 ? std::min(e.at_low, e.at_high) - there : there - std::max(e.at_low, e.at_high);
+  constexpr double least = 0.25;  // a quadratic through what saturates turns too
+  return beyond > least * std::abs(e.at_high - e.at_low) ? std::optional(there) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors, const std::vector<double>& response) {
@@ -114,11 +124,15 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
     const Eigen::Index columns = blocks[f].columns.cols();
     const VectorXd ends = (blocks[f].ends * coefficients.segment(at, columns)).array() + y.mean();
     const bool ordered = factors[f].ordered;
-    out.factors.push_back({.share = whole[Eigen::Index(f)],
-                           .at_low = ordered ? ends[0] : ends.minCoeff(),
-                           .at_high = ordered ? ends[1] : ends.maxCoeff()});
+    MainEffect& e = out.factors.emplace_back(MainEffect{.share = whole[Eigen::Index(f)],
+                                                        .at_low = ordered ? ends[0] : ends.minCoeff(),
+                                                        .at_high = ordered ? ends[1] : ends.maxCoeff()});
+    if (ordered && columns == 2) e.between = turn(e, coefficients[at], coefficients[at + 1]);
     at += columns;
   }
+  constexpr double slack = 0.2;  // a space-filling design of few points has chance correlations
+  const double explained = 1 - variance(y - all * coefficients) / variance(y);
+  out.separable = std::abs(whole.sum() - explained) < slack && whole.maxCoeff() < 1 + 1e-9;
   out.order.resize(factors.size());
   std::iota(out.order.begin(), out.order.end(), std::size_t(0));
   std::ranges::stable_sort(out.order, std::greater(), [&](std::size_t f) { return out.factors[f].share; });

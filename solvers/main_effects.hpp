@@ -18,11 +18,15 @@ struct MainEffect {
   double low = 0, high = 0;        ///< 95 % interval of the share
   double at_low = 0, at_high = 0;  ///< response at the factor's lowest and highest value (ordered), else lowest and
                                    ///< highest response over its levels; the other factors at their means
+  std::optional<double> between;   ///< response where the fitted curve turns, where that is beyond both ends by a
+                                   ///< quarter of their difference
 };
 
 struct MainEffects {
   std::vector<MainEffect> factors;  ///< as they were given
   std::vector<std::size_t> order;   ///< from the largest share to the smallest
+  bool separable = true;            ///< the shares add up to what all factors explain, within a fifth of the variance,
+                                    ///< and none is beyond one: those of factors that vary together do not
   bool first_is_certain = false;    ///< the 95 % interval of the first share minus the second lies above zero
   double predicted = 0;             ///< share of the variance that the effects predict at points left out
 };

@@ -37,6 +37,7 @@ std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const 
   }
   std::ranges::stable_sort(effects.order, std::greater(), [&](std::size_t f) { return effects.factors[f].share; });
   effects.first_is_certain = effects.factors[effects.order[0]].low > effects.factors[effects.order[1]].high;
+  effects.separable = true;  // an emulator is asked where each parameter varies alone
   return shares.together;
 }
 
@@ -100,9 +101,14 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
     return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(f.share), percent(f.low),
                        percent(f.high));
   };
+  if (!e->separable)
+    return fmt::format("What moves {} most cannot be told: {} and others vary together over these points.",
+                       table.series[series].spoken, name(0));
   const solvers::MainEffect& first = e->factors[e->order[0]];
-  std::string text = fmt::format("{} goes most with {}: {}, from {:.4g} to {:.4g} over its range.",
-                                 capital(table.series[series].spoken), name(0), share(0), first.at_low, first.at_high);
+  const std::string turning = first.between ? fmt::format(" through {:.4g}", *first.between) : "";
+  std::string text = fmt::format("{} goes most with {}: {}, from {:.4g}{} to {:.4g} over its range.",
+                                 capital(table.series[series].spoken), name(0), share(0), first.at_low, turning,
+                                 first.at_high);
   text += e->first_is_certain
               ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[e->order[1]].share))
               : fmt::format(" Whether {} with {} moves it as much, these points do not decide.", name(1), share(1));
@@ -157,6 +163,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       auto& entry = summary["main_effects"][series.name][column];
       entry = {
           {"share", own.share}, {"low", own.low}, {"high", own.high}, {"at_low", own.at_low}, {"at_high", own.at_high}};
+      if (own.between) entry["between"] = *own.between;
       sensitivity.add(series.name, column, own.share, own.low, own.high);
       if (effects.together[s].empty()) {
         sensitivity.more(std::nullopt, std::nullopt, std::nullopt);
@@ -166,10 +173,13 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       entry["together"] = {{"share", all.value}, {"low", all.low}, {"high", all.high}};
       sensitivity.more(all.value, all.low, all.high);
     }
+    if (!e.separable) summary["vary_together"].push_back(series.name);
     const solvers::MainEffect& first = e.factors[e.order[0]];
-    row.insert(row.end(),
-               {spoken_column(columns[effects.columns[e.order[0]]]),
-                fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
+    if (e.separable)
+      row.insert(row.end(),
+                 {spoken_column(columns[effects.columns[e.order[0]]]),
+                  fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
+    else row.insert(row.end(), {"-", "they vary together"});
     if (emulated) row.push_back(off);
     const std::string said = sentence(table, effects, s);
     constexpr std::size_t most = 8;  // a page begins with what somebody reads
