@@ -84,13 +84,17 @@ void open_in_paraview(const fs::path& out) {
   if (program.empty()) throw InputError("ParaView is not installed (Debian: apt-get install paraview)");
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) {
     // Each kind of run has a script that draws without a screen, by the series that it is about.
-    for (const auto& [series, maker] : {std::pair{"ball", "impact"}, {"face", "face"}, {"shaft", "swing"}}) {
-      const auto found = std::ranges::find_if(
-          folders, [&](const auto& f) { return fs::exists(fs::path(f) / (std::string(series) + ".pvd")); });
+    struct Script {
+      const char *series, *name;
+    };
+    constexpr Script scripts[] = {{"ball.pvd", "impact"}, {"face.pvd", "face"}, {"shaft.pvd", "swing"}};
+    for (const Script& script : scripts) {
+      const auto found =
+          std::ranges::find_if(folders, [&](const auto& f) { return fs::exists(fs::path(f) / script.series); });
       if (found != folders.end())
         throw InputError(
-            fmt::format("there is no screen here; without one: scripts/pvbatch post/paraview/{0}.py {1} {0}.png", maker,
-                        shell_word(*found)));
+            fmt::format("there is no screen here; without one: scripts/pvbatch post/paraview/{0}.py {1} {0}.png",
+                        script.name, shell_word(*found)));
     }
     throw InputError("there is no screen here; the figures beside report.html need none");
   }

@@ -28,26 +28,32 @@ struct Site {
   std::vector<Launched> shots;
 };
 
+struct RobustMean {
+  double value = 0, error = 0;
+  std::vector<double> weight = {};  ///< of each
+};
+
 /// Huber's mean and its standard error, the scale by the median deviation.
-std::pair<double, double> robust_mean(const std::vector<double>& x) {
-  double mean = loop::median(x);
+RobustMean robust_mean(const std::vector<double>& x) {
+  RobustMean m{.value = loop::median(x), .weight = std::vector<double>(x.size(), 1.0)};
   std::vector<double> size;
-  for (const double v : x) size.push_back(std::abs(v - mean));
+  for (const double v : x) size.push_back(std::abs(v - m.value));
   const double knee = 1.5 * 1.4826 * loop::median(size);
-  double square = 0, weights = 0, inside = 0;
+  double square = 0, inside = 0;
   for (int pass = 0; pass < 30; ++pass) {
-    double sum = 0;
-    weights = square = inside = 0;
-    for (const double v : x) {
-      const double w = std::abs(v - mean) > knee ? knee / std::abs(v - mean) : 1;
-      sum += w * v;
-      square += std::pow(w * (v - mean), 2);
+    double sum = 0, weights = 0;
+    square = inside = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double off = std::abs(x[i] - m.value), w = m.weight[i] = off > knee ? knee / off : 1;
+      sum += w * x[i];
+      square += std::pow(w * off, 2);
       weights += w;
       inside += w == 1;
     }
-    mean = sum / weights;
+    m.value = sum / weights;
   }
-  return {mean, std::sqrt(square) / inside};  // the slope of Huber's psi is 1 inside the knee, 0 beyond it
+  m.error = std::sqrt(square) / inside;  // the slope of Huber's psi is 1 inside the knee, 0 beyond it
+  return m;
 }
 
 class LandingTimesJob final : public Job {
@@ -115,40 +121,46 @@ class LandingTimesJob final : public Job {
                                     "law: own air less that one [s]", "measured less law in own air [s]"}},
                           .first_width = 14};
     nlohmann::json summary;
-    struct Mean {
-      double value, error;
+    struct Means {
+      double measured, carried;  // at equal launch, and what the site's air makes of it [s]
+      RobustMean left;
     };
-    std::vector<Mean> measured, left;
-    std::vector<double> carried;
+    std::vector<Means> means;
     for (const Site& s : sites_) {
-      std::vector<double> in_one, by_air, in_own;
-      for (const Launched& l : s.shots) {
-        in_one.push_back(l.time - l.same);
-        by_air.push_back(l.own - l.same);
-        in_own.push_back(l.time - l.own);
+      std::vector<double> in_own;
+      for (const Launched& l : s.shots) in_own.push_back(l.time - l.own);
+      Means& m = means.emplace_back(Means{0, 0, robust_mean(in_own)});
+      // By the same weights, so that the parts add up.
+      double weights = 0;
+      for (std::size_t i = 0; i < s.shots.size(); ++i) {
+        m.carried += m.left.weight[i] * (s.shots[i].own - s.shots[i].same);
+        weights += m.left.weight[i];
       }
-      const auto [m, me] = robust_mean(in_one);
-      const auto [o, oe] = robust_mean(in_own);
-      measured.push_back({m, me});
-      left.push_back({o, oe});
-      double mean = 0;
-      for (const double d : by_air) mean += d / double(by_air.size());
-      carried.push_back(mean);
+      m.carried /= weights;
+      m.measured = m.left.value + m.carried;
       table.rows.push_back({s.name, fmt::format("{}", s.shots.size()), fmt::format("{:.3f}", s.air.density),
-                            fmt::format("{:+.3f} +- {:.3f}", m, me), fmt::format("{:+.3f}", mean),
-                            fmt::format("{:+.3f} +- {:.3f}", o, oe)});
-      summary["sites"][s.name] = {{"shots", s.shots.size()}, {"measured_less_law_s", o}, {"error_s", oe}};
+                            fmt::format("{:+.3f} +- {:.3f}", m.measured, m.left.error),
+                            fmt::format("{:+.3f}", m.carried),
+                            fmt::format("{:+.3f} +- {:.3f}", m.left.value, m.left.error)});
+      summary["sites"][s.name] = {
+          {"shots", s.shots.size()}, {"measured_less_law_s", m.left.value}, {"error_s", m.left.error}};
+    }
+    for (std::size_t k = 1; k < sites_.size(); ++k) {
+      const double difference = means[k].measured - means[0].measured, density = means[k].carried - means[0].carried,
+                   remains = means[k].left.value - means[0].left.value,
+                   error = std::hypot(means[k].left.error, means[0].left.error);
+      const std::string said = fmt::format(
+          "At equal launch the balls at {} land {:.3f} s {} than at {}. The density of the air makes {:+.3f} s of it, "
+          "by "
+          "the law {}; {:+.3f} s are left, with a standard error of {:.3f} s: {} than chance makes of it (95 %).",
+          sites_[k].name, std::abs(difference), difference < 0 ? "earlier" : "later", sites_[0].name, density,
+          conditions_.law.name, remains, error, std::abs(remains) < 1.96 * error ? "no more" : "more");
+      out.say(said);
+      out.page().sentence(said);
+      summary["differences"][sites_[k].name] = {
+          {"measured_s", difference}, {"density_s", density}, {"left_s", remains}, {"error_s", error}};
     }
     out.show(table);
-    for (std::size_t k = 1; k < sites_.size(); ++k) {
-      const double difference = measured[k].value - measured[0].value, remains = left[k].value - left[0].value,
-                   error = std::hypot(left[k].error, left[0].error);
-      out.say(
-          fmt::format("{} less {}, at equal launch: measured {:+.3f} s, by density {:+.3f} s, left {:+.3f} +- {:.3f} s",
-                      sites_[k].name, sites_[0].name, difference, carried[k] - carried[0], remains, error));
-      summary["differences"][sites_[k].name] = {
-          {"measured_s", difference}, {"density_s", carried[k] - carried[0]}, {"left_s", remains}, {"error_s", error}};
-    }
     out.write_summary(summary);
   }
 

@@ -131,8 +131,11 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       json["differences"].push_back(std::move(j));
     }
     if (shown.rows.size() < 2) continue;
-    const std::string title = fmt::format("{} minus {}{}{}", table.models[m].empty() ? "difference" : table.models[m],
-                                          reference.name, group.empty() ? "" : ", ", group);
+    const std::string& model = table.models[m];
+    const std::string what = reference.variant ? (model.empty() ? "" : model + ": ") + "each variant"
+                             : model.empty()   ? "difference"
+                                               : model;
+    const std::string title = fmt::format("{} minus {}{}{}", what, reference.name, group.empty() ? "" : ", ", group);
     out.tell(title);
     out.show(shown, title);
   }
