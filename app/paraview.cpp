@@ -112,6 +112,8 @@ fs::path film(const fs::path& out, const fs::path& file) {
   const bool gif = to.extension() == ".gif";
   if (!gif && to.extension() != ".mp4") throw InputError(fmt::format("{}: a film is an .mp4 or a .gif", to.string()));
   if (fs::exists(fs::symlink_status(to))) throw InputError(fmt::format("{}: exists; name another film", to.string()));
+  const fs::path place = to.parent_path().empty() ? fs::path(".") : to.parent_path();
+  if (!fs::is_directory(place)) throw InputError(fmt::format("{}: no such directory", place.string()));
   std::vector<fs::path> folders;
   for (const auto& entry : fs::recursive_directory_iterator(out))
     if (entry.path().filename() == "ball.pvd") folders.push_back(entry.path().parent_path());
@@ -123,7 +125,6 @@ fs::path film(const fs::path& out, const fs::path& file) {
   needed("xvfb-run", "xvfb xauth", out);
   const fs::path ffmpeg = needed("ffmpeg", "ffmpeg", out);
 
-  const fs::path place = to.parent_path().empty() ? fs::path(".") : to.parent_path();
   const post::WorkFolder work(place);
   run_program(shipped("scripts/pvbatch", "scripts/pvbatch"),
               {shipped("post/paraview/film.py", "paraview/film.py").string(), fs::absolute(filmed).string(), "."},

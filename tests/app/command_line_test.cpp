@@ -286,6 +286,8 @@ TEST(CommandLine, FilmSaysWhatIsMissing) {
       bash("PATH='" + bin.string() + "' " + film).find("ffmpeg is not installed (Debian: apt-get install ffmpeg)"),
       std::string::npos);
   EXPECT_NE(bash(film + " --to film.avi").find("a film is an .mp4 or a .gif"), std::string::npos);
+  const Outcome nowhere = command("film '" + home.string() + "' --to '" + (home / "none" / "film.mp4").string() + "'");
+  expect_refused(nowhere, "none: no such directory");
   write(home / "film.mp4", "mine");
   EXPECT_NE(bash(film).find("exists"), std::string::npos);
   EXPECT_EQ(content(home / "film.mp4"), "mine");
