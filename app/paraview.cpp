@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/command_help.hpp"
@@ -16,6 +19,7 @@
 #include "app/reader.hpp"
 #include "app/resolved.hpp"
 #include "app/shipped.hpp"
+#include "app/stop.hpp"
 #include "post/file.hpp"
 
 namespace hosel::app {
@@ -24,8 +28,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs a program in a folder to its end; what it prints goes to a file there.
-void run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder) {
+/// Runs a program in a folder to its end, or until this one is asked to stop; what it prints goes to a file there.
+void run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder,
+                 const StopSignals& stop) {
   const fs::path printed = folder / "printed";
   words.insert(words.begin(), program.string());
   std::vector<char*> argv;
@@ -37,11 +42,26 @@ void run_program(const fs::path& program, std::vector<std::string> words, const 
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "printed", O_WRONLY | O_CREAT | O_APPEND, 0644);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int refused = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  // It and what it begins are a group of processes, which can be asked to stop as one.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  pid_t child = 0, ended = 0;
+  const int refused = posix_spawn(&child, program.c_str(), &actions, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   int status = 0;
-  if (!refused && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  while (!refused && (ended = waitpid(child, &status, WNOHANG)) == 0) {
+    try {
+      stop.check();
+    } catch (const Stopped& s) {
+      kill(-child, SIGTERM);
+      waitpid(child, &status, 0);
+      throw Stopped(s.signal(), "no film was made");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  if (!refused && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   std::string said = fs::exists(printed) ? post::read_file(printed) : "";
   while (said.ends_with('\n')) said.pop_back();
   throw std::runtime_error(fmt::format("the film could not be made: {} ended with an error: {}", program.string(),
@@ -125,10 +145,11 @@ fs::path film(const fs::path& out, const fs::path& file) {
   needed("xvfb-run", "xvfb xauth", out);
   const fs::path ffmpeg = needed("ffmpeg", "ffmpeg", out);
 
+  const StopSignals stop;
   const post::WorkFolder work(place);
   run_program(shipped("scripts/pvbatch", "scripts/pvbatch"),
               {shipped("post/paraview/film.py", "paraview/film.py").string(), fs::absolute(filmed).string(), "."},
-              work.path());
+              work.path(), stop);
   const std::string made = gif ? "film.gif" : "film.mp4";
   std::vector<std::string> words = {"-nostdin",        "-loglevel", "error",   "-framerate",
                                     gif ? "12" : "15", "-i",        "%04d.png"};
@@ -137,7 +158,7 @@ fs::path film(const fs::path& out, const fs::path& file) {
           : std::vector<std::string>{"-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
   words.insert(words.end(), form.begin(), form.end());
   words.push_back(made);
-  run_program(ffmpeg, words, work.path());
+  run_program(ffmpeg, words, work.path(), stop);
   post::move_file(work.path() / made, to);
   return to;
 }

@@ -19,9 +19,9 @@ extern "C" void note(int number) { delivered = number; }
 
 }  // namespace
 
-Stopped::Stopped(int number)
-    : std::runtime_error(std::string("stopped by ") + (number == SIGINT ? "SIGINT" : "SIGTERM") +
-                         "; the same command goes on from where it was"),
+Stopped::Stopped(int number, std::string_view then)
+    : std::runtime_error(std::string("stopped by ") + (number == SIGINT ? "SIGINT; " : "SIGTERM; ") +
+                         std::string(then)),
       signal_(number) {}
 
 StopSignals::StopSignals() {

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <stdexcept>
+#include <string_view>
 
 namespace hosel::app {
 
 /// Thrown where a run stops because it was asked to; the program ends with 128 + signal.
 class Stopped : public std::runtime_error {
  public:
-  explicit Stopped(int number);
+  explicit Stopped(int number, std::string_view then = "the same command goes on from where it was");
   int signal() const { return signal_; }
 
  private:

@@ -270,6 +270,29 @@ TEST(CommandLine, FilmIsOfTheModelThatAnswers) {
   EXPECT_EQ(said.find((home / "fe-full-club").string()), std::string::npos) << said;
 }
 
+/// What makes the pictures is ended with it, and nothing is left beside the series.
+TEST(CommandLine, AFilmThatIsStoppedLeavesNothing) {
+  const fs::path home = fresh_directory("film_stopped"), bin = fresh_directory("film_stopped_bin");
+  write(home / "vtk" / "ball.pvd", "");
+  fs::create_directories(bin / "cache/hosel/paraview-python/usr");
+  const std::string begun = (bin / "begun").string();
+  for (const char* name : {"pvbatch", "xvfb-run", "ffmpeg"}) {
+    write(bin / name, "#!/bin/sh\necho $$ > '" + begun + "'\nsleep 30\n");
+    fs::permissions(bin / name, fs::perms::owner_all);
+  }
+  const std::string said = bash("export XDG_CACHE_HOME='" + (bin / "cache").string() + "' PATH='" + bin.string() +
+                                ":/usr/bin:/bin'; " HOSEL_COMMAND " film '" + home.string() +
+                                "' & film=$!; for i in $(seq 300); do [ -s '" + begun +
+                                "' ] && break; sleep 0.1; done; at_work=$(cat '" + begun +
+                                "'); kill -0 $at_work && echo at work; kill -TERM $film; wait $film; echo status $?; "
+                                "kill -0 $at_work || echo ended");
+  EXPECT_NE(said.find("at work"), std::string::npos) << said;
+  EXPECT_NE(said.find("stopped by SIGTERM; no film was made"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 143"), std::string::npos) << said;
+  EXPECT_NE(said.find("ended"), std::string::npos) << said;
+  EXPECT_EQ(std::distance(fs::directory_iterator(home), fs::directory_iterator()), 1) << "the series alone";
+}
+
 TEST(CommandLine, FilmSaysWhatIsMissing) {
   const fs::path home = fresh_directory("film");
   EXPECT_NE(command("film '" + home.string() + "'").text.find("no series of a blow"), std::string::npos);
