@@ -150,11 +150,10 @@ class LandingTimesJob final : public Job {
                    remains = means[k].left.value - means[0].left.value,
                    error = std::hypot(means[k].left.error, means[0].left.error);
       const std::string said = fmt::format(
-          "At equal launch the balls at {} land {:.3f} s {} than at {}. The density of the air makes {:+.3f} s of it, "
-          "by "
-          "the law {}; {:+.3f} s are left, with a standard error of {:.3f} s: {} than chance makes of it (95 %).",
-          sites_[k].name, std::abs(difference), difference < 0 ? "earlier" : "later", sites_[0].name, density,
-          conditions_.law.name, remains, error, std::abs(remains) < 1.96 * error ? "no more" : "more");
+          "At equal launch the balls at {} land {:.3f} s {} than at {}. By the law {} the density of the air makes "
+          "{:+.3f} s of it; {:+.3f} s are left, with a standard error of {:.3f} s: {} than chance makes of it (95 %).",
+          sites_[k].name, std::abs(difference), difference < 0 ? "earlier" : "later", sites_[0].name,
+          conditions_.law.name, density, remains, error, std::abs(remains) < 1.96 * error ? "no more" : "more");
       out.say(said);
       out.page().sentence(said);
       summary["differences"][sites_[k].name] = {

@@ -343,6 +343,8 @@ TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
   EXPECT_NEAR(d.at("density_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(d.at("left_s").get<double>(), added, 1e-6);
   EXPECT_NEAR(d.at("error_s").get<double>(), std::sqrt(2.0) * 0.02 / std::sqrt(40), 1e-6);
+  EXPECT_NE(content(dir / "out" / "report.html").find("the balls at high land 0.250 s later than at low"),
+            std::string::npos);
   // Four shots of `high` are off by 1 s: each counts as the knee, and 36 tell the mean. About the upper of the two
   // middle shots half of them lie at 0 and half at 0.04 s.
   for (const char* off : {"1", "-1"}) {
