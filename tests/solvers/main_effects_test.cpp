@@ -27,7 +27,7 @@ std::vector<double> response(const std::vector<EffectFactor>& f, auto&& of) {
 
 TEST(MainEffects, ACurveThatTurnsHasAValueBetweenItsEnds) {
   const std::vector<EffectFactor> f = grid(7);
-  // Largest at u = 1/4, where it is 5 + 1/16 - the mean of v's part is zero.
+  // Largest at u = 1/4; the mean of v's part is zero.
   const auto turning = main_effects(f, response(f, [](double u, double v) { return 5 + 0.5 * u - u * u + 0.1 * v; }));
   ASSERT_TRUE(turning);
   ASSERT_EQ(turning->order.front(), 0U);
@@ -43,8 +43,8 @@ TEST(MainEffects, ACurveThatTurnsHasAValueBetweenItsEnds) {
   ASSERT_TRUE(valley && valley->factors[0].between);
   EXPECT_NEAR(*valley->factors[0].between, -1.0 / 16, 1e-9);
 
-  // It turns at u = 0.65, by 9 % of what its ends differ by: what saturates is fitted so.
-  const auto bent = main_effects(f, response(f, [](double u, double) { return 1.3 * u - u * u; }));
+  // It turns at u = 1/2, by an eighth of what its ends differ by: what saturates is fitted so.
+  const auto bent = main_effects(f, response(f, [](double u, double) { return u - u * u; }));
   ASSERT_TRUE(bent);
   EXPECT_FALSE(bent->factors[0].between);
 }
