@@ -55,6 +55,16 @@ std::vector<std::string> Inputs::told() const {
   return told_;
 }
 
+void Inputs::doubt(std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  if (!std::ranges::count(doubts_, text)) doubts_.emplace_back(text);
+}
+
+std::vector<std::string> Inputs::doubts() const {
+  const std::lock_guard lock(mutex_);
+  return doubts_;
+}
+
 std::string Inputs::fingerprint() const {
   const std::lock_guard lock(mutex_);
   if (fingerprint_.empty()) {

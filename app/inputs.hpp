@@ -27,6 +27,9 @@ class Inputs {
   /// What a table that was read comes to, in words: for `hosel check`. The same text counts once.
   void tell(std::string_view text);
   std::vector<std::string> told() const;
+  /// What of it can be meant and is likely not: a run begins with it. The same text counts once.
+  void doubt(std::string_view text);
+  std::vector<std::string> doubts() const;
 
   /// Digest of the program, of every case and of every file: what was computed under another one is of another run.
   std::string fingerprint() const;
@@ -42,7 +45,7 @@ class Inputs {
   std::set<std::string> read_;                            // names and digests
   std::vector<std::filesystem::path> cases_;
   std::map<std::filesystem::path, std::filesystem::path> copies_;
-  std::vector<std::string> told_;
+  std::vector<std::string> told_, doubts_;
   std::string all_;
   mutable std::string fingerprint_;  // once asked for
 };

@@ -38,6 +38,18 @@ std::vector<Sample> samples() {
       {"driver-toe",
        {"shaft={tube={arc_length_mm=[0,1000], outer_radius_mm=[7,4], wall_mm=[1,1], shear_factor=0.5, "
         "layer=[{E_GPa=100, G_GPa=20, density_kg_per_m3=1600}]}}"}},
+      // Other lengths than those of the shipped cases: any is allowed.
+      {"driver-toe",
+       {"shaft={table={arc_length_mm=[0,500,1000], bending_stiffness_N_m2=[3,2,1], torsional_stiffness_N_m2=[3,2,1], "
+        "mass_per_length_g_per_m=[60,60,60], mean_radius_mm=[6,5,4]}}"}},
+      {"driver-toe",
+       {"shaft={tube={arc_length_mm=[0,500,1000], outer_radius_mm=[7,6,4], wall_mm=[1,1,1], "
+        "layer=[{E_GPa=100, G_GPa=20, density_kg_per_m3=1600}]}}"}},
+      {"driver-toe", {"contact.face_static_friction=0.5", "contact.face_slip_distance_um=1"}},
+      {"ball-modes", {"ball={layers=[{law='mooney-rivlin', c10_MPa=1, c01_MPa=1, bulk_MPa=100}]}"}},
+      {"ball-modes", {"ball={layers=[{law='yeoh', c10_MPa=1, c20_MPa=1, bulk_MPa=100}]}"}},
+      {"ball-modes", {"ball={layers=[{law='ogden', bulk_MPa=100, moduli_MPa=[1,2], exponents=[2,3]}]}"}},
+      {"ball-modes", {"ball={layers=[{law='gent', shear_MPa=1, limit=5, bulk_MPa=100}]}"}},
       {"material-point", {"material={law='mooney-rivlin', c10_MPa=1, c01_MPa=1, bulk_MPa=100}", "path.kind=uniaxial"}},
       {"material-point", {"material={law='yeoh', c10_MPa=1, c20_MPa=1, bulk_MPa=100}"}},
       {"material-point", {"material={law='ogden', bulk_MPa=100, moduli_MPa=[1], exponents=[2]}"}},

@@ -22,6 +22,7 @@
 #include "app/keys.hpp"
 #include "app/offer.hpp"
 #include "app/paraview.hpp"
+#include "app/reader.hpp"
 #include "app/stop.hpp"
 #include "app/sweep.hpp"
 #include "app/terminal.hpp"
@@ -59,6 +60,7 @@ void run(const Arguments& a) {
                                                    : std::optional(post::Units::metric),
                       .strict = a.strict},
                      file);
+  for (const std::string& doubt : file.inputs()->doubts()) output.warn(doubt);
   job->run(output);
 }
 
@@ -71,6 +73,7 @@ void check(const Arguments& a) {
     std::istringstream lines(told);
     for (std::string line; std::getline(lines, line);) fmt::print("# {}\n", line);
   }
+  for (const std::string& doubt : file.inputs()->doubts()) fmt::print("# in doubt: {}\n", doubt);
 }
 
 void keys(const Arguments& a) {
@@ -134,7 +137,7 @@ int main(int argc, char** argv) {
   run_command->add_flag("--force", a.force, "overwrite a finished run");
   run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
   run_command->add_flag("--strict", a.strict, "fail, instead of warning, where the numbers are in doubt");
-  run_command->add_option("--units", a.units, "units of tables and pages: metric (m/s, m) or golf (mph, yards)")
+  run_command->add_option("--units", a.units, "units of tables, of pages and of flown distances: metric (m/s, m) or golf (mph, yards)")
       ->check(CLI::IsMember({"metric", "golf"}));
   run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
   run_command->callback([&] { run(a); });
@@ -220,6 +223,13 @@ int main(int argc, char** argv) {
     fmt::print("{}", app::man_page(cli));
   });
 
+  const auto no_command = [&](const std::string& typed) -> std::string {
+    std::vector<std::string> known;
+    for (const CLI::App* command : cli.get_subcommands([](CLI::App*) { return true; }))
+      known.push_back(command->get_name());
+    return std::ranges::count(known, typed) ? ""
+                                            : fmt::format("no command '{}'{}", typed, app::or_nearest(typed, known));
+  };
   // `hosel help` and `hosel help COMMAND` are what people type first.
   CLI::App* help = cli.add_subcommand("help", "print this text, or that of a command");
   help->add_option("COMMAND", a.from, "a command");
@@ -227,7 +237,7 @@ int main(int argc, char** argv) {
     CLI::App* of = a.from.empty() ? &cli : nullptr;
     for (CLI::App* command : cli.get_subcommands([](CLI::App*) { return true; }))
       if (command->get_name() == a.from) of = command;
-    if (!of) throw app::InputError(fmt::format("help: no command '{}'", a.from));
+    if (!of) throw app::InputError("help: " + no_command(a.from));
     // Of itself: App::help() speaks of the command that was parsed, which is this one.
     fmt::print(
         "{}", of->get_formatter()->make_help(of, of == &cli ? "hosel" : "hosel " + a.from, CLI::AppFormatMode::Normal));
@@ -242,7 +252,8 @@ int main(int argc, char** argv) {
       cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
       // Help and version are printed; of a mistake the sentence is ours: it may hold what was typed.
-      if (e.get_exit_code() != 0) return ends(2, std::string(e.what()) + " (hosel help)");
+      const std::string first = argc > 1 ? argv[1] : "-", strange = first.starts_with('-') ? "" : no_command(first);
+      if (e.get_exit_code() != 0) return ends(2, (strange.empty() ? std::string(e.what()) : strange) + " (hosel help)");
       cli.exit(e);
     }
     app::flush_output();

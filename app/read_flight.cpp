@@ -267,12 +267,17 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
   out.say(fmt::format("\n{}:", how));
   out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;
-  if (flight.outside > 0)
-    out.say(
-        fmt::format("{}: {:.0f} % of the flight is outside the range of {} (Re {:.0f} to {:.0f}, spin ratio {:.3f} "
-                    "to {:.3f})",
-                    name, 100 * flight.outside, setup.conditions.law.name, flight.reynolds.low, flight.reynolds.high,
-                    flight.spin.low, flight.spin.high));
+  if (flight.outside > 0) {
+    const auto region = [](const models::FlightLaw::Range& re, const models::FlightLaw::Range& spin) {
+      return fmt::format("Re {:.0f} to {:.0f}, spin ratio {:.3f} to {:.3f}", re.low, re.high, spin.low, spin.high);
+    };
+    const models::FlightLaw& law = setup.conditions.law;
+    const std::string text = fmt::format(
+        "{}: {:.0f} % of the flight is outside the range of {} ({}); the flight has {}", name, 100 * flight.outside,
+        law.name, region(law.reynolds, law.spin), region(flight.reynolds, flight.spin));
+    out.say(text);
+    out.page().doubt(text);
+  }
   const std::string file = out.file_name(name);
   if (draw) out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "app/check_memory.hpp"
 #include "app/library.hpp"
@@ -30,6 +29,17 @@ void check_inertia(Table& ball, const Ball& body, const models::FeBall& layers) 
                         body.inertia_factor, meshed));
 }
 
+/// The mesh has the ball's mass: the densities of the layers are all multiplied by one factor.
+void doubt_densities(Table& ball, const Ball& body, const models::FeBall& layers) {
+  constexpr double slip = 0.05;  // balls of one construction differ by less
+  const double mass = layers.mass(body.radius);
+  if (std::abs(mass / body.mass - 1) > slip)
+    ball.doubt(
+        fmt::format("its layers have {:.3g} g by their densities and radius, and the ball {:.3g} g: every density "
+                    "is multiplied by {:.3g}",
+                    1e3 * mass, 1e3 * body.mass, body.mass / mass));
+}
+
 /// `asked`: a finite-element model is among those of the case.
 models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchFriction& friction,
                                 std::shared_ptr<const models::PlateOnDemand>& made) {
@@ -44,7 +54,10 @@ models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchF
   }
   if (auto ball = root.optional_table("ball")) {
     o.ball = read_fe_ball(*ball, o.ball);
-    if (asked && !root.has("plate")) check_inertia(*ball, body, o.ball);  // the stand-in of a plate takes the factor
+    if (asked && !root.has("plate")) {  // the stand-in of a plate takes the factor
+      check_inertia(*ball, body, o.ball);
+      doubt_densities(*ball, body, o.ball);
+    }
   }
   if (root.has("accuracy")) {
     o.resolve(accuracy_named(
@@ -108,9 +121,9 @@ models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchF
       {"rho_inf", "spectral radius of generalized-alpha at infinite frequency: 1 keeps energy, 0 damps most"},
       Range::fraction(), o.rho_inf);
   read_steps(time, o);
-  std::vector<std::string> faults = o.faults();
-  std::ranges::copy(friction.faults(), std::back_inserter(faults));
+  const std::vector<std::string> faults = o.faults();
   if (!faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+  if (const auto wrong = friction.faults(); !wrong.empty()) root.fail("contact", wrong.front());
   check_memory(root, o);
   return o;
 }

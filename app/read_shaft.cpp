@@ -137,6 +137,23 @@ std::string figures(const Shaft& shaft) {
                            tip.torsional_stiffness);
 }
 
+/// Where a unit or a decimal point has slipped: far outside what clubs have, and yet a beam.
+void doubt_slips(Table& table, const Shaft& shaft) {
+  const auto within = [&](std::string_view what, double x, double least, double most, std::string_view unit) {
+    if (least <= x && x <= most) return;
+    table.doubt(
+        fmt::format("{} is {:.4g} {}; golf shafts have {:g} to {:g}: is a unit wrong?", what, x, unit, least, most));
+  };
+  within("the length", shaft.length(), 0.5, 1.4, "m");
+  within("the mass", 1e3 * mass(shaft), 25, 250, "g");
+  double least = INFINITY, most = 0;
+  for (const ShaftStation& s : shaft.stations)
+    for (const double EI : {s.bending_stiffness_y, s.bending_stiffness_z})
+      least = std::min(least, EI), most = std::max(most, EI);
+  within("the smallest EI", least, 2, 500, "N m^2");
+  within("the largest EI", most, 2, 500, "N m^2");
+}
+
 }  // namespace
 
 Shaft read_shaft(Table table) {
@@ -152,6 +169,7 @@ Shaft read_shaft(Table table) {
     else if (auto tube = table.optional_table("tube")) shaft = by_tube(*tube);
     else table.fail("name", "say which shaft: `name`, or a table `table`, `polynomial` or `tube`");
   } catch (const std::invalid_argument& e) { table.fail("", e.what()); }
+  if (!table.has("name")) doubt_slips(table, shaft);
   const double bending_scale = table.number({"bending_scale", "factor on EI everywhere"}, Range::positive(), 1.0);
   const double torsion_scale = table.number({"torsion_scale", "factor on GJ everywhere"}, Range::positive(), 1.0);
   shaft = scaled(std::move(shaft), bending_scale, torsion_scale);

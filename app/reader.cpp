@@ -704,6 +704,8 @@ void Table::tell(std::string_view text) {
   document_->inputs->tell(lines);
 }
 
+void Table::doubt(std::string_view text) { document_->inputs->doubt(fmt::format("[{}] {}", path_, text)); }
+
 void Table::note_file(const fs::path& file) { document_->inputs->file(file, file.filename().string()); }
 
 std::vector<Table> Table::tables(std::string_view key) {

@@ -156,6 +156,8 @@ class Table {
 
   /// What `hosel check` says of this table beside its keys, a line or several.
   void tell(std::string_view text);
+  /// What can be meant and is likely a slip: a warning of every run, a comment of `hosel check`.
+  void doubt(std::string_view text);
 
   /// An error at this key (or at the table where the key is empty or absent).
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "loop/report.hpp"
+#include "post/digits.hpp"
 #include "post/html.hpp"
 #include "post/labels.hpp"
 #include "post/svg.hpp"
@@ -58,13 +59,6 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
 std::string gloss(const char* text) { return fmt::format("<p><small>{}</small></p>", text); }
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "–"; }
-
-/// To the second digit of its standard deviation.
-std::string with_deviation(double x, double sd) {
-  if (!(sd > 1e-6) || !std::isfinite(x + sd)) return number(x) + " ± " + number(sd);
-  const int decimals = std::max(0, 1 - int(std::floor(std::log10(sd))));
-  return fmt::format("{:.{}f} ± {:.{}f}", x, decimals, sd, decimals);
-}
 
 /// 95 % interval of a root mean square from n independent normal values; the value itself of fewer than three.
 std::pair<double, double> interval(double x, int n) {
@@ -123,14 +117,17 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   return svg(plot);
 }
 
-/// Held-out root mean square over the noise, before and after, with 95 % intervals; the noise itself is the line at 1.
+/// Held-out root mean square over the noise of readings and inputs, before and after, with 95 % intervals; the noise
+/// itself is the line at 1.
 std::string bars(const std::vector<ChannelResult>& channels) {
-  post::SvgBars picture{"errors before and after", "the noise", "held-out RMS in units of the noise", {}};
+  post::SvgBars picture{
+      "errors before and after", "the noise", "held-out RMS in units of the noise of readings and inputs", {}};
   for (const ChannelResult& c : channels) {
     picture.rows.push_back({post::label(c.name), {}});
+    const double noise = c.expected > 0 ? c.expected : c.noise;
     for (const auto& [e, style] : {std::pair{&c.before, "before"}, {&c.after, "after"}})
-      if (std::isfinite(e->holdout_rmse) && c.noise > 0) {
-        const double ratio = e->holdout_rmse / c.noise;
+      if (std::isfinite(e->holdout_rmse) && noise > 0) {
+        const double ratio = e->holdout_rmse / noise;
         const auto [low, high] = interval(ratio, e->holdout);
         picture.rows.back().bars.push_back({style, ratio, low, high, fmt::format("{:.4g}", e->holdout_rmse)});
       }
@@ -280,7 +277,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const double at = c.candidate.fit.p[std::ptrdiff_t(k)], si = list[k]->si;
       parameters += fmt::format(
-          "{}{} = {} {}{}", k ? "; " : "", post::spoken(list[k]->name), with_deviation(at / si, c.sd[k] / si),
+          "{}{} = {} {}{}", k ? "; " : "", post::spoken(list[k]->name), post::with_deviation(at / si, c.sd[k] / si),
           list[k]->unit == "1" ? "" : post::symbol(list[k]->unit), list[k]->at_edge(at) ? " (at its bound)" : "");
     }
     const bool chosen = !r.adopted.empty() && c.candidate.effects == r.adopted;

@@ -243,20 +243,36 @@ std::string beside_noise(const LoopResult& r) {
 
 }  // namespace
 
+std::vector<AdoptedSize> adopted_sizes(const LoopResult& r) {
+  std::vector<AdoptedSize> out;
+  Eigen::Index k = 0;
+  for (const Parametrisation* form : r.selection.chosen.model.forms)
+    for (const Parameter& p : form->parameters) {
+      if (std::ranges::count(r.adopted, form->effect))
+        out.push_back(
+            {form->effect, p.name, p.unit, r.selection.chosen.p[k] / p.si, std::sqrt(r.covariance(k, k)) / p.si});
+      ++k;
+    }
+  return out;
+}
+
 std::string sentence(const LoopResult& r) {
   const auto list = [](const std::vector<std::string>& v) { return fmt::format("{}", fmt::join(v, ", ")); };
   std::vector<std::string> alternatives;
   for (const auto& tie : r.ties) alternatives.push_back(fmt::format("{}", fmt::join(tie, " or ")));
   const std::string ties = fmt::format("{}", fmt::join(alternatives, "; and "));
   const std::string tied =
-      r.ties.empty() ? "" : fmt::format(" It lacked one of these, which the data cannot separate: {}.", ties);
+      r.ties.empty() ? ""
+                     : fmt::format(" It {}lacked one of {}these, which the data cannot separate: {}.",
+                                   r.adopted.empty() ? "" : "also ", r.ties.size() > 1 ? "each of " : "", ties);
   switch (r.verdict) {
     case Verdict::no_residual:
       return "No structure beyond the noise: the base model explains these shots." + beside_noise(r);
     case Verdict::explained: return fmt::format("The model lacked: {}.{}", list(r.adopted), beside_noise(r));
     case Verdict::ambiguous:
-      return fmt::format("{}The data cannot separate {}.",
-                         r.adopted.empty() ? "" : fmt::format("The model lacked: {}. ", list(r.adopted)), ties);
+      if (!r.adopted.empty()) return fmt::format("The model lacked: {}.{}{}", list(r.adopted), tied, beside_noise(r));
+      return fmt::format("The model lacked one of {}these, which the data cannot separate: {}.{}",
+                         r.ties.size() > 1 ? "each of " : "", ties, beside_noise(r));
     case Verdict::unexplained: {
       if (!r.columns.empty())
         return fmt::format("A whole column contradicts its header: {}. Mend the file or its header, then run again.",
@@ -265,8 +281,10 @@ std::string sentence(const LoopResult& r) {
       if (!r.unexplained.empty()) {
         const auto& first = r.unexplained.front();
         s = first.regressor.empty() ? fmt::format("Something remains that no candidate explains: {}.", first.detail)
-                                    : fmt::format("Structure remains that no candidate explains: {} against {}.",
-                                                  first.channel, first.regressor);
+            : first.regressor == "constant"
+                ? fmt::format("Structure remains that no candidate explains: {} is off in the mean.", first.channel)
+                : fmt::format("Structure remains that no candidate explains: {} against {}.", first.channel,
+                              first.regressor);
       }
       if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
       return s + tied;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "loop/result.hpp"
 
@@ -12,6 +13,13 @@ nlohmann::json to_json(const LoopResult& result);
 /// One row per used row of the table (shots, or samples of records): for every channel the measured value and what the
 /// model said before and after.
 std::string residuals_csv(const LoopResult& result, const Shots& table);
+/// One parameter of an adopted effect, in the unit that it is printed in.
+struct AdoptedSize {
+  std::string effect, parameter, unit;  ///< unit "1": a plain number
+  double value = 0, sd = 0;             ///< sd: infinite where the data do not show it
+};
+/// By the fit to all training rows; empty where nothing is adopted.
+std::vector<AdoptedSize> adopted_sizes(const LoopResult& result);
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);
 /// The body of a page with the figures inline.

@@ -145,7 +145,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     // A field that is constant to round-off is shown as one colour, not as noise.
     const double size = std::max(std::abs(low), std::abs(high));
     if (p.map_symmetric) {
-      high = size > 1e-9 && std::isfinite(size) ? size : 1;
+      high = std::max(size > 1e-9 && std::isfinite(size) ? size : p.map_reach > 0 ? 0 : 1, p.map_reach);
       low = -high;
     } else if (!(high - low > 1e-9 * size)) {
       low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;
@@ -173,8 +173,9 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     if (alone)
       s += fmt::format(
           "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\nset tmargin at screen {:.6f}\nset bmargin at "
-          "screen {:.6f}\n",
-          alone->left, alone->right, 1 - alone->top, 1 - alone->bottom);
+          "screen {:.6f}\nset colorbox user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen {:.6f}\n",
+          alone->left, alone->right, 1 - alone->top, 1 - alone->bottom, alone->right + 12.0 / alone->width,
+          1 - alone->bottom, 14.0 / alone->width, alone->bottom - alone->top);
     else s += "set lmargin 12\nset rmargin 13\n";
     s += fmt::format("set pm3d map interpolate {},{}\nsplot ${} with pm3d nocontour notitle", parts(p.map_x.size()),
                      parts(p.map_y.size()), name);
@@ -201,9 +202,9 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     if (!plot.empty()) plot += ", \\\n     ";
     plot += "$" + name + (c.error.empty() ? " using 1:2 with " + c.style : std::string(" using 1:2:3 with yerrorbars"));
     plot += fmt::format(" lt {} lw 1.8 ", c.colour > 0 ? std::size_t(c.colour) : i + 1);
-    // The colours come round: the next eight curves are dashed.
+    // The colours come round: the next eight curves are dashed, the next eight marks have another form.
     if (i >= 8 && c.colour == 0 && c.error.empty()) plot += fmt::format("dt {} ", 1 + i / 8);
-    if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + static_cast<int>(i) % 8);
+    if (points) plot += fmt::format("pt {} ps 0.8 ", 6 + (i + i / 8) % 8);
     plot += c.label.empty() ? "notitle" : "title " + shown(c.label);
   }
   for (std::size_t i = 0; told && i < p.series.size(); ++i)

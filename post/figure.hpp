@@ -35,6 +35,7 @@ struct Panel {
   std::vector<double> map = {};                ///< value at (map_x[i], map_y[j]) in [j * map_x.size() + i]
   std::string map_label = {};                  ///< of the colour bar, with unit
   bool map_symmetric = false;                  ///< colours diverge from zero, as far to either side: for differences
+  double map_reach = 0;                        ///< of those: at least so far, to compare with another map
   bool map_equal_axes = false;                 ///< one unit is as long in x as in y
   bool map_contours = true;                    ///< lines with their values: for smooth fields
 

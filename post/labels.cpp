@@ -70,7 +70,8 @@ std::string label(std::string_view key) {
     if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");
     key = key.substr(0, open);
   }
-  if (key.ends_with("_N_s")) return spoken(key.substr(0, key.size() - 4)) + which + " [N s]";  // no unit of a key
+  for (const auto& [end, unit] : {std::pair{"_N_m_s", " [N m s]"}, {"_N_s", " [N s]"}})  // no units of a key
+    if (key.ends_with(end)) return spoken(key.substr(0, key.size() - std::string_view(end).size())) + which + unit;
   const SpokenKey said = spoken_key(key);
   return which_of + said.words + which + (said.unit.empty() ? "" : " [" + said.unit + "]");
 }

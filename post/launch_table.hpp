@@ -52,8 +52,9 @@ struct LaunchColumn {
   Launch launch;
   Oblique oblique = {};
   std::optional<ShotFlight> flight = {};
-  std::optional<double> loft_deg = {};  ///< at which it stands, where that was looked for
-  std::optional<Launch> coarser = {};   ///< the same on coarser numerics: shown as the error of each quantity
+  std::optional<double> loft_deg = {};            ///< at which it stands, where that was looked for
+  std::optional<Launch> coarser = {};             ///< the same on coarser numerics: shown as the error of each quantity
+  std::optional<ShotFlight> coarser_flight = {};  ///< from there
 };
 /// Ranges that others measured on such blows: lowest and highest.
 using Range = std::optional<std::pair<double, double>>;

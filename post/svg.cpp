@@ -39,7 +39,10 @@ std::string svg(const SvgPlot& p) {
                      X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
   const auto round = [](double x, double step) { return std::abs(x) < 1e-9 * step ? 0.0 : x; };
   // Numbers beside each other need more room than above each other.
-  const double dy = round_step(p.y1 - p.y0, 4), dx = round_step((p.x1 - p.x0) / std::max(1.0, p.width / 480), 4);
+  double dy = round_step(p.y1 - p.y0, 4);
+  const double dx = round_step((p.x1 - p.x0) / std::max(1.0, p.width / 480), 4);
+  // One number is no scale: a range about zero that ends short of the first step.
+  if (std::floor(p.y1 / dy) - std::ceil(p.y0 / dy) < 2) dy /= 2;
   for (double y = std::ceil(p.y0 / dy) * dy; y <= p.y1; y += dy)
     s += fmt::format(
         "<line class='grid' x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}'/><text x='{}' y='{:.1f}' "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <set>
@@ -82,6 +83,30 @@ std::optional<double> turn(const MainEffect& e, double slope, double curvature) 
   return beyond > least * std::abs(e.at_high - e.at_low) ? std::optional(there) : std::nullopt;
 }
 
+/// Mean response where a factor has its lowest or its highest value.
+double mean_at(const EffectFactor& f, const VectorXd& y, bool lowest) {
+  const double end = lowest ? std::ranges::min(f.x) : std::ranges::max(f.x);
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < f.x.size(); ++i)
+    if (f.x[i] == end) sum += y[Eigen::Index(i)], ++n;
+  return sum / n;
+}
+
+/// Whether every combination of the factors' values stands there equally often.
+bool full_factorial(const std::vector<EffectFactor>& factors) {
+  std::map<std::vector<double>, std::size_t> times;
+  const std::size_t n = factors.front().x.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> at;
+    for (const EffectFactor& f : factors) at.push_back(f.x[i]);
+    ++times[at];
+  }
+  std::size_t combinations = 1;
+  for (const EffectFactor& f : factors) combinations *= std::set<double>(f.x.begin(), f.x.end()).size();
+  return times.size() == combinations &&
+         std::ranges::all_of(times, [&](const auto& t) { return t.second * combinations == n; });
+}
+
 }  // namespace
 
 std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors, const std::vector<double>& response) {
@@ -90,7 +115,9 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
   const VectorXd y = Eigen::Map<const VectorXd>(response.data(), n);
   if (!(y.maxCoeff() - y.minCoeff() > 1e-12 * y.cwiseAbs().maxCoeff())) return {};
 
-  // Columns of all factors; straight lines alone where the points are few.
+  MainEffects out;
+  out.full_factorial = full_factorial(factors);
+  // Columns of all factors; straight lines alone where points that leave gaps are few.
   bool quadratic = true;
   const auto unknowns = [&] {
     Eigen::Index width = 1;
@@ -100,7 +127,7 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
     }
     return width;
   };
-  if (n < 3 * unknowns()) quadratic = false;
+  if (n < (out.full_factorial ? unknowns() + 2 : 3 * unknowns())) quadratic = false;
   const Eigen::Index width = unknowns();
   if (n < width + 2) return {};
   std::vector<Block> blocks;
@@ -118,7 +145,6 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
   VectorXd coefficients;
   const VectorXd whole = shares(blocks, all, y, every, coefficients);
 
-  MainEffects out;
   at = 1;
   for (std::size_t f = 0; f < blocks.size(); ++f) {
     const Eigen::Index columns = blocks[f].columns.cols();
@@ -127,6 +153,8 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
     MainEffect& e = out.factors.emplace_back(MainEffect{.share = whole[Eigen::Index(f)],
                                                         .at_low = ordered ? ends[0] : ends.minCoeff(),
                                                         .at_high = ordered ? ends[1] : ends.maxCoeff()});
+    if (ordered && out.full_factorial)
+      e.at_low = mean_at(factors[f], y, true), e.at_high = mean_at(factors[f], y, false);
     if (ordered && columns == 2) e.between = turn(e, coefficients[at], coefficients[at + 1]);
     at += columns;
   }

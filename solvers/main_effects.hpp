@@ -28,11 +28,12 @@ struct MainEffects {
   bool separable = true;            ///< the shares add up to what all factors explain, within a fifth of the variance,
                                     ///< and none is beyond one: those of factors that vary together do not
   bool first_is_certain = false;    ///< the 95 % interval of the first share minus the second lies above zero
+  bool full_factorial = false;      ///< every combination of values equally often: no factor stands for another
   double predicted = 0;             ///< share of the variance that the effects predict at points left out
 };
 
 /// Least squares of the response on a constant and, for each factor, Legendre polynomials of first and second degree
-/// (first alone where it has two values or points are few), or one level against the others. A share is the variance of
+/// (first alone where it has two values, or where fewer than three points an unknown do not fill a grid), or one level against the others. A share is the variance of
 /// the factor's fitted part over the design's points, over that of the response: of independent factors, its
 /// first-order Sobol index (Sudret 2008). Intervals: jackknife over groups of points left out (Efron and Stein 1981).
 /// Nothing where the response is the same everywhere or where fewer points than unknowns plus two are there.

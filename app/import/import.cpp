@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <ranges>
@@ -146,6 +147,33 @@ Session join(std::vector<Session>& sessions, const Dictionary& d) {
   return out;
 }
 
+/// Inputs that no column has: zero in every shot, each with the standard deviation of a golfer's shots, as lines of
+/// `[data.input_noise]`. `turns`: the head does, and the model asks for its direction and the place of impact.
+std::string add_unrecorded(Session& all, bool turns) {
+  struct Unrecorded {
+    const char *stem, *unit;
+    double sd;
+    bool of_turning_head;
+  };
+  constexpr std::array<Unrecorded, 5> inputs = {{{"attack_angle", "deg", 4, false},
+                                                 {"club_path", "deg", 4, true},
+                                                 {"face_angle", "deg", 4, true},
+                                                 {"impact_toe", "mm", 10, true},
+                                                 {"impact_high", "mm", 8, true}}};
+  std::string lines;
+  for (const Unrecorded& u : inputs) {
+    if ((u.of_turning_head && !turns) || all.find(u.stem)) continue;
+    Understood column{.header = "(nominal)"};
+    column.name = fmt::format("{}_{}", u.stem, u.unit);
+    column.cells.assign(all.shots, "0");
+    column.filled = all.shots;
+    column.note = fmt::format("not recorded: zero, +- {:g} {}", u.sd, u.unit);
+    lines += fmt::format("{} = {:.1f}  # not recorded: zero, unknown by so much\n", column.name, u.sd);
+    all.columns.push_back(std::move(column));
+  }
+  return lines;
+}
+
 /// Mean and standard deviation of what is measured, a line for each club.
 void show_clubs(Session& all) {
   struct Shown {
@@ -250,6 +278,7 @@ void import_shots(const ImportOptions& o) {
     for (const char* q : {"azimuth", "spin_axis", "sidespin"})
       if (Understood* u = find(q)) sideways = true, u->name.clear(), u->note = "the planar model has no direction";
 
+  std::string unknown = add_unrecorded(all, turns);
   if (several) show_clubs(all);
   else show(all);
   if (sideways)
@@ -292,7 +321,8 @@ void import_shots(const ImportOptions& o) {
       sideways ? "launches.csv" : "shots.csv");
   if (all.left_handed > 0 && all.left_handed == all.shots) toml += "mirrored = true  # the player is left-handed\n";
   if (all.nominal_loft)
-    toml += "[data.input_noise]\ndynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";
+    unknown += "dynamic_loft_deg = 4.0  # not recorded: the club's nominal loft, unknown by so much\n";
+  if (!unknown.empty()) toml += "[data.input_noise]\n" + unknown;
   if (different.size() > 2) toml += "\n[split]  # whole clubs are held out\nby = \"club\"\n";
   post::write_file(o.out / "case.toml", toml);
   fmt::print("\nwritten: {0}/case.toml, shots.csv{1}{2}\nnext:    hosel run {0}\n", o.out.string(),

@@ -11,6 +11,7 @@
 #include "app/reader.hpp"
 #include "loop/deviation.hpp"
 #include "models/flight/flight.hpp"
+#include "post/labels.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::app {
@@ -256,9 +257,11 @@ class Reading {
         q = d_.quantity_of(header);
       }
       // A second column of one quantity is kept aside, and one that is empty.
-      if (q && (is_empty(c) || !quantities.insert(q->name).second)) q = nullptr;
-      if (!q) {
+      const bool second = q && !is_empty(c) && !quantities.insert(q->name).second;
+      if (!q || second || is_empty(c)) {
         keep(c);
+        if (second && out_.columns.back().name.empty())
+          out_.columns.back().remark("a second column of " + post::spoken(q->name));
         continue;
       }
       if (unit.empty()) unit = unit_of_column(*q, c);

@@ -291,12 +291,27 @@ bool counts(const std::vector<Row>& rows, std::size_t column) {
   return numbers > 2 && numbers == steps && 2 * numbers > rows.size();
 }
 
+bool has_digit(const std::string& cell) {
+  return std::ranges::any_of(cell, [](unsigned char c) { return std::isdigit(c); });
+}
+
+/// Whether most cells of a column hold a number, as dates do.
+bool dated(const std::vector<Row>& rows, std::size_t column) {
+  std::size_t cells = 0, digits = 0;
+  for (const Row& row : rows)
+    if (column < row.size() && !row[column].empty()) ++cells, digits += has_digit(row[column]);
+  return 2 * digits > cells;
+}
+
 /// The rows below the header as shots: units, repeated headers, summaries and lines that name a club are taken out.
 void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
   const std::size_t width = sheet.names.size();
   std::string club;
   for (const Row& row : sheet.before)
     if (const std::string named = club_heading(row, d); d.club(named)) club = named;
+  std::vector<bool> dates;
+  for (std::size_t c = 0; c < width; ++c)
+    dates.push_back(d.bookkeeping_of(sheet.names[c]) == "session" && dated(sheet.rows, c));
   std::vector<Row> shots;
   Row clubs;
   for (Row& row : sheet.rows) {
@@ -319,14 +334,15 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
       club = named;
       continue;
     }
-    // Summaries stand where the club's, the player's or the shot's name would.
+    // Summaries stand where the club's, the player's, the session's or the shot's name would.
     bool summary = false;
     for (std::size_t c = 0; c < width && !summary; ++c) {
       const std::string role = d.bookkeeping_of(sheet.names[c]);
       if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
-      const bool named = role == "player" || role == "session";  // may hold such a word
+      const bool no_date = dates[c] && !has_digit(row[c]);
+      const bool named = role == "player" || (role == "session" && !no_date);  // may hold such a word
       summary = (named ? d.says("summary", row[c]) : d.begins_or_ends("summary", row[c])) ||
-                (role == "shot" && d.says("extreme", row[c]));
+                ((role == "shot" || no_date) && d.says("extreme", row[c]));
     }
     if (summary) {
       ++sheet.summaries;

@@ -16,6 +16,7 @@
 #include "app/read_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
 #include "models/calibration/ball_calibration.hpp"
+#include "post/digits.hpp"
 #include "post/figure.hpp"
 #include "post/table.hpp"
 
@@ -75,9 +76,11 @@ class CalibrateBallJob final : public Job {
       // A name ends with its unit: moduli are read in MPa.
       const std::string name = fit.names[p].substr(0, fit.names[p].find(" ["));
       const bool modulus = fit.names[p].ends_with("[Pa]");
-      out.page().answer(name, fmt::format("{:.4g}{}", (modulus ? 1e-6 : 1) * fit.values[p], modulus ? " MPa" : ""),
+      const double shown = (modulus ? 1e-6 : 1) * fit.values[p];
+      const post::Digits digits = post::digits(shown, fit.at_bound[p] ? 0 : additive(p) ? sd : sd * std::abs(shown));
+      out.page().answer(name, digits.value + (modulus ? " MPa" : ""),
                         fit.at_bound[p] ? "at its bound"
-                        : additive(p)   ? fmt::format("± {:.2g}", sd)
+                        : additive(p)   ? "± " + digits.deviation
                                         : fmt::format("± {:.1f} %", 100 * sd));
     }
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {

@@ -10,6 +10,7 @@
 #include "app/offer.hpp"
 #include "app/read_blow.hpp"
 #include "models/calibration/face_calibration.hpp"
+#include "post/digits.hpp"
 #include "post/figure.hpp"
 #include "post/labels.hpp"
 
@@ -68,15 +69,29 @@ class CalibrateFaceJob final : public Job {
       const auto& [name, value, unit] = rows[i];
       const SplitName split = split_unit(name);
       const std::string symbol = post::symbol(split.unit->suffix);
-      out.page().answer(post::spoken(split.stem), fmt::format("{:.4g} {}", unit * value, symbol),
-                        fit.at_bound[i] ? "at its bound" : fmt::format("± {:.2g}", unit * fit.sd[i]));
+      const post::Digits digits = post::digits(unit * value, fit.at_bound[i] ? 0 : unit * fit.sd[i]);
+      out.page().answer(post::spoken(split.stem), fmt::format("{} {}", digits.value, symbol),
+                        fit.at_bound[i] ? "at its bound" : "± " + digits.deviation);
       out.say(fmt::format("{:<20} {:12.5g} +- {:.2g}{}", name, unit * value, unit * fit.sd[i],
                           fit.at_bound[i] ? "  at its bound" : ""));
       toml += fmt::format("{} = {:.5g}\n", name, unit * value);
       summary["parameters"].push_back(
           {{"name", name}, {"value", unit * value}, {"sd", unit * fit.sd[i]}, {"at_bound", bool(fit.at_bound[i])}});
     }
-    out.say(fmt::format("half the sum of squares: {:.3g} over {} data", fit.cost, target_.taps.size() + 2));
+    const std::size_t data = target_.taps.size() + 2;
+    constexpr double rounding = 1e-9;  // of a miss, in standard deviations
+    const double missed = std::sqrt(2 * fit.cost / double(data));
+    out.say(missed < rounding ? fmt::format("the face meets all {} data", data)
+                              : fmt::format("the face misses the {} data by {:.3g} of their standard deviations, root "
+                                            "mean square",
+                                            data, missed));
+    constexpr double far = 2;  // beyond it the face has not the form of the fit, or an error is stated too small
+    if (missed > far)
+      out.page().doubt(
+          fmt::format("the face misses the data by {:.1f} of their standard deviations (root mean square): "
+                      "the deviations of its parameters say nothing of that",
+                      missed));
+    out.show(taps(f), "Characteristic times");
     out.draw(figure(f), "times");
     out.write("face.toml", toml);
     withdraw_offers(out);
@@ -103,10 +118,25 @@ class CalibrateFaceJob final : public Job {
     return o;
   }
 
+  double time_of(const FaceCompliance& face, double toe, double high) const {
+    return models::characteristic_time(models::steel_sphere(radius_), models::mass_at(head_, -toe, high), face,
+                                       face.shape(-toe, high).value, models::pendulum_speeds())
+        .time;
+  }
+
+  post::TextTable taps(const FaceCompliance& face) const {
+    post::TextTable t{.rows = {{"tap, toe and up [mm]", "measured [µs]", "fitted [µs]", "off by [sd]"}}};
+    for (const models::FaceTarget::Tap& tap : target_.taps) {
+      const double fitted = time_of(face, tap.toe, tap.high);
+      t.rows.push_back({fmt::format("{:g}, {:g}", 1e3 * tap.toe, 1e3 * tap.high), fmt::format("{:.1f}", 1e6 * tap.time),
+                        fmt::format("{:.1f}", 1e6 * fitted),
+                        fmt::format("{:+.1f}", (fitted - tap.time) / target_.tap_sigma + 0.0)});
+    }
+    return t;
+  }
+
   /// Characteristic times along the face's two middle lines beside the taps on them.
   post::Figure figure(const FaceCompliance& face) const {
-    const models::Striker sphere = models::steel_sphere(radius_);
-    const std::vector<double> speeds = models::pendulum_speeds();
     post::Figure out{.columns = 2};
     for (const bool toe : {true, false}) {
       using Tap = models::FaceTarget::Tap;
@@ -123,9 +153,7 @@ class CalibrateFaceJob final : public Job {
       for (int i = -12; i <= 12; ++i) {
         Tap at;
         at.*along = 1.2 * reach * i / 12;
-        line.add(1e3 * at.*along, 1e6 * models::characteristic_time(sphere, models::mass_at(head_, -at.toe, at.high),
-                                                                    face, face.shape(-at.toe, at.high).value, speeds)
-                                            .time);
+        line.add(1e3 * at.*along, 1e6 * time_of(face, at.toe, at.high));
       }
       out.panels.push_back({.x_label = toe ? "towards the toe [mm]" : "up the face [mm]",
                             .y_label = "characteristic time [µs]",

@@ -54,6 +54,7 @@ class CalibrateReducedJob final : public Job {
             "set,model,ball_speed_rms_mps,ball_speed_max_mps,launch_angle_rms_deg,launch_angle_max_deg,azimuth_rms_deg,"
             "azimuth_max_deg,spin_rms_rpm,spin_max_rpm\n";
     post::TextTable page{{{"set", "model", "ball speed [m/s]", "launch angle [deg]", "azimuth [deg]", "spin [rpm]"}}};
+    post::TextTable fitted{.rows = {}, .first_width = 38};
     out.say("set        model            ball speed [m/s]  launch [deg]  azimuth [deg]      spin [rpm]   (rms, max)");
     Progress progress = out.progress("sets");
     for (std::size_t i = 0; i < sets_.size(); ++i) {
@@ -79,12 +80,17 @@ class CalibrateReducedJob final : public Job {
                                               {"spin_rms_rpm", spin_rms}};
       }
       for (const std::string& parameter : fit.at_bound)
-        out.say(fmt::format("{}: {} is at an end of what the search allows", set.name, parameter));
+        out.warn(fmt::format("{}: {} is at an end of what the search allows", set.name, parameter));
       summary["at_bound"][set.name] = fit.at_bound;
+      add(set, fit, fitted);
       toml += entry(set, fit);
     }
     progress.finish();
     out.page().answer(page);
+    out.page().sentence(
+        "How far each reduced model is from the finite elements that it was fitted to: root mean square "
+        "over the blows of a set.");
+    out.show(fitted, "The fitted parameters");
     out.write("bands.csv", csv);
     out.write("reduced.toml", toml);
     out.write_summary(summary);
@@ -130,6 +136,32 @@ class CalibrateReducedJob final : public Job {
     }
     if (set.blows.size() < 4) t.fail("lofts", "fewer than four blows tell nothing");
     return set;
+  }
+
+  /// A column of the set's parameters; the first set names the rows.
+  static void add(const Set& set, const models::ReducedCalibration& fit, post::TextTable& table) {
+    const models::VolumetricLaw& v = fit.volume;
+    const std::vector<std::pair<std::string, double>> rows = {
+        {"restitution", fit.law.restitution},
+        {"restitution slope [s/m]", fit.law.restitution_slope},
+        {"tangential restitution", fit.law.tangential_restitution},
+        {"friction", fit.law.friction},
+        {"volumetric: stiffness [N/m³]", v.stiffness},
+        {"volumetric: damping [s/m]", v.damping},
+        {"volumetric: transition speed [m/s]", v.transition_speed},
+        {"volumetric: joint stiffness [N m]", v.joint_stiffness},
+        {"volumetric: joint damping [N m s]", v.joint_damping},
+        {"volumetric: cover thickness [mm]", 1e3 * v.cover_thickness},
+        {"volumetric: exponent", v.volume_exponent},
+        {"Hertz and Maw: modulus [MPa]", 1e-6 * fit.hertz.modulus},
+        {"Hertz and Maw: Poisson's ratio", fit.hertz.poisson},
+        {"Hertz and Maw: damping [s/m]", fit.hertz.damping}};
+    if (table.rows.empty()) {
+      table.rows = {{"parameter"}};
+      for (const auto& [name, value] : rows) table.rows.push_back({name});
+    }
+    table.rows.front().push_back(set.name);
+    for (std::size_t k = 0; k < rows.size(); ++k) table.rows[k + 1].push_back(fmt::format("{:.4g}", rows[k].second));
   }
 
   /// As a ball's entry of the library has it.

@@ -119,24 +119,29 @@ class FlightLawJob final : public Job {
     }
     out.say(fmt::format("\nthe law, after {} steps; positions are met to {:.2f} m rms (weighted, each axis)",
                         fit.iterations, fit.rms));
-    out.show(table.shown(), "The law");
+    post::TextTable shown = table.shown();
+    for (auto& row : shown.rows) row[0] = post::spoken(row[0]);  // `_s` is of the spin ratio here, no second
+    out.show(shown, "The law");
     out.write("law.csv", table.csv());
     draw_law(out, law);
   }
 
   void draw_law(Output& out, const FlightLaw& law) const {
-    post::Figure figure{
-        .title = "drag and lift over the spin ratio: inferred (lines) and published at Re = 140000 (points)",
-        .columns = 2};
+    post::Figure figure{.title =
+                            "drag and lift over the spin ratio, each where its source has it: inferred (lines), "
+                            "published at Re = 140000 (points)",
+                        .columns = 2};
     post::Panel drag{.x_label = "spin ratio [-]", .y_label = "drag coefficient [-]"},
         lift{.x_label = "spin ratio [-]", .y_label = "lift coefficient [-]"};
     const auto add = [&](const FlightLaw& l, double re, const std::string& label, const char* style) {
       post::Series d{.label = label, .style = style}, c = d;
       for (double s = 0.03; s < 0.3005; s += 0.005) {
+        if (!l.holds(re, s)) continue;  // beyond it the curve is another law's, or a straight line
         const auto k = l.at(re, s);
         d.add(s, k.drag);
         c.add(s, k.lift);
       }
+      if (d.x.empty()) return;
       drag.series.push_back(d);
       lift.series.push_back(c);
     };

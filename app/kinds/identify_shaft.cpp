@@ -103,6 +103,12 @@ class IdentifyJob final : public Job {
     if (r.held_out)
       page.answer("deflection, held out", fmt::format("{:.2f} mm", 1e3 * r.held_out->after),
                   fmt::format("RMS; {:.2f} before", 1e3 * r.held_out->before));
+    constexpr double far = 3;  // times; the interval is that of the fitted part
+    if (r.held_out && r.held_out->after > far * r.train_after)
+      page.doubt(
+          fmt::format("held out, the deflection is off by {:.2f} mm, fitted by {:.2f} mm: the interval holds for "
+                      "the fitted part of the swing",
+                      1e3 * r.held_out->after, 1e3 * r.train_after));
     page.answer("deflection, fitted", fmt::format("{:.2f} mm", 1e3 * r.train_after),
                 fmt::format("RMS; {:.2f} before", 1e3 * r.train_before));
     if (r.shortened_steps > 0)

@@ -111,6 +111,7 @@ class ImpactJob final : public Job {
       columns[c].flight = landed(*own_.flight, columns[c].launch, own_.blow.ball);
       if (!columns[c].flight)
         out.warn(fmt::format("{}: the ball does not rise to the ground of [flight]", columns[c].title));
+      if (columns[c].coarser) columns[c].coarser_flight = landed(*own_.flight, *columns[c].coarser, own_.blow.ball);
     }
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
@@ -121,6 +122,7 @@ class ImpactJob final : public Job {
     for (const post::LaunchColumn& c : columns) {
       if (!c.flight) continue;
       nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
+      if (c.coarser_flight) said["numerical_error"] = numerical_error(*c.flight, *c.coarser_flight);
       // Where the errors of the answer's carry come from; the other columns have theirs in the summary.
       if (&c == &columns.back()) try {
           said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
@@ -346,6 +348,14 @@ class ImpactJob final : public Job {
     if (column.oblique.launch_ratio) said["launch_ratio"] = *column.oblique.launch_ratio;
   }
 
+  static nlohmann::json numerical_error(const post::ShotFlight& flight, const post::ShotFlight& coarser) {
+    nlohmann::json j;
+    for (const post::FlightChannel& c : post::flight_channels(flight.unit)) {
+      const auto x = c.value(flight), y = c.value(coarser);
+      if (x && y) j[fmt::format("{}_{}", c.name, c.unit)] = std::abs(*x - *y) / c.si;
+    }
+    return j;
+  }
   /// By how much the launch moves against the coarser companion: a bound of what is left where both converge.
   static nlohmann::json numerical_error(const Launch& launch, const Launch& coarser) {
     nlohmann::json j;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/command_help.hpp"
+#include "golf/first_contact.hpp"
 #include "golf/units.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "post/html.hpp"
@@ -20,27 +21,49 @@ const post::LaunchColumn* find(const ImpactStory& s, std::string_view title) {
   return it == s.columns.end() ? nullptr : &*it;
 }
 
+/// Which side of the target a signed quantity says; what prints as zero says none.
+const char* side(double x, double rounding) {
+  return x < -rounding ? "left of the target" : x > rounding ? "right of the target" : "at the target";
+}
+
+/// Of a ball against a wall, in whose frame people know it: the wall of the case moves and the ball rests.
+void answer_bounce(RunPage& page, const Blow& blow, const Launch& l) {
+  const FirstContact g = first_contact(blow);
+  const Vec3 after = l.velocity - g.approach, before = -g.approach;
+  const auto along = [&](const Vec3& v) { return std::abs(v.dot(g.normal)); };
+  const auto angle = [&](const Vec3& v) {
+    return degrees(std::atan2((v - v.dot(g.normal) * g.normal).norm(), along(v)));
+  };
+  page.answer("restitution", fmt::format("{:.4f}", along(after) / along(before)),
+              fmt::format("along the normal, at {:.2f} m/s", along(before)));
+  page.answer("rebound speed", fmt::format("{:.2f} m/s", after.norm()),
+              fmt::format("in the wall's frame, where it struck with {:.2f} m/s", before.norm()));
+  page.answer("rebound angle", fmt::format("{:.2f}°", angle(after)),
+              fmt::format("from the normal; it struck at {:.2f}°", angle(before)));
+  page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())));
+}
+
 /// The launch in large type, in the unit of speed that the case speaks, the other beneath.
 void answer(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   const post::LaunchColumn& c = s.columns.back();
   const Launch& l = c.launch;
+  if (std::isinf(s.blow.club.head.mass)) return answer_bounce(page, s.blow, l);
   const bool mph = out.page_units() == post::Units::golf;
+  const auto numerics = [&](const post::Channel* of, double si, int decimals) {
+    if (!c.coarser) return std::string();
+    const double apart = post::difference(*of, (l.*of->value)() / of->si, ((*c.coarser).*of->value)() / of->si);
+    return fmt::format("± {:.{}f} by the numerics", std::abs(apart) * of->si / si, decimals);
+  };
   const auto note = [&](std::string_view channel, double si, int decimals, std::string_view unit) {
     const post::Channel* of = post::find_channel(channel);
-    std::string text;
-    if (c.coarser)
-      text =
-          fmt::format("± {:.{}f} by the numerics",
-                      std::abs(post::difference(*of, (l.*of->value)() / of->si, ((*c.coarser).*of->value)() / of->si)) *
-                          of->si / si,
-                      decimals);
+    std::string text = numerics(of, si, decimals);
     if (const post::MeasuredValue* seen = post::find(s.measured, of))
-      text += fmt::format("{}measured {:.{}f} {}", text.empty() ? "" : "; ", seen->value / si, decimals, unit);
+      text += fmt::format("{}measured {:.{}f}{}", text.empty() ? "" : "; ", seen->value / si, decimals, unit);
     return text;
   };
   const double v = l.ball_speed(), in_mph = v / kMpsPerMph;
-  std::string more = mph ? note("ball_speed", kMpsPerMph, 1, "mph") : note("ball_speed", 1, 2, "m/s");
+  std::string more = mph ? note("ball_speed", kMpsPerMph, 1, " mph") : note("ball_speed", 1, 2, " m/s");
   if (!more.empty()) more = "; " + more;
   page.answer("ball speed", mph ? fmt::format("{:.1f} mph", in_mph) : fmt::format("{:.2f} m/s", v),
               (mph ? fmt::format("{:.2f} m/s", v) : fmt::format("{:.1f} mph", in_mph)) + more);
@@ -53,13 +76,16 @@ void answer(Output& out, const ImpactStory& s) {
   const auto beside = [](const char* word, const std::string& rest) {
     return rest.empty() ? word : word + ("; " + rest);
   };
-  const double aside = degrees(l.azimuth());
-  page.answer("direction", fmt::format("{:.2f}°", std::abs(aside)),
-              beside(aside < -0.005  ? "left of the target"
-                     : aside > 0.005 ? "right of the target"
-                                     : "at the target",
-                     note("azimuth", kRadPerDeg, 2, "°")));
-  page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, "rpm"));
+  // Both without a sign: words say the side.
+  const auto direction = [&](double radians, const char* before) {
+    return fmt::format("{}{:.2f}°", before, std::abs(degrees(radians)));
+  };
+  const post::Channel* azimuth = post::find_channel("azimuth");
+  std::string told = beside(side(degrees(l.azimuth()), 0.005), numerics(azimuth, kRadPerDeg, 2));
+  if (const post::MeasuredValue* seen = post::find(s.measured, azimuth))
+    told += direction(seen->value, "; measured ") + " " + side(degrees(seen->value), 0.005);
+  page.answer("direction", direction(l.azimuth(), ""), told);
+  page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, " rpm"));
   const double axis = degrees(l.spin_axis());
   if (rpm(l.spin_rate()) > 0.5)
     page.answer("spin axis", fmt::format("{:.1f}°", axis),
@@ -69,8 +95,12 @@ void answer(Output& out, const ImpactStory& s) {
                        note("spin_axis", kRadPerDeg, 1, "°")));
   if (!c.flight) return;
   for (const post::FlightChannel& f : post::flight_channels(c.flight->unit))
-    if (const auto x = f.value(*c.flight); x && (f.name == "carry" || f.name == "total" || f.name == "side"))
-      page.answer(std::string(f.name), fmt::format("{:.1f} {}", *x / f.si, f.unit));
+    if (const auto x = f.value(*c.flight); x && (f.name == "carry" || f.name == "total" || f.name == "side")) {
+      const auto coarser = c.coarser_flight ? f.value(*c.coarser_flight) : std::nullopt;
+      const std::string off = coarser ? fmt::format("± {:.1f} by the numerics", std::abs(*x - *coarser) / f.si) : "",
+                        size = fmt::format("{:.1f} {}", (f.name == "side" ? std::abs(*x) : *x) / f.si, f.unit);
+      page.answer(std::string(f.name), size, f.name == "side" ? beside(side(*x / f.si, 0.05), off) : off);
+    }
 }
 
 post::TextTable solution(const std::vector<FeRun>& runs) {
@@ -133,16 +163,31 @@ void suggest(Output& out, const ImpactStory& s) {
 std::string shaft_sentence(const ImpactStory& s) {
   const post::LaunchColumn *club = find(s, "fe-full-club"), *head = find(s, "fe-free-body");
   if (!club || !head) return {};
-  const Launch &a = club->launch, &b = head->launch;
-  std::vector<std::string> parts{fmt::format("{:+.2f} m/s of ball speed", a.ball_speed() - b.ball_speed())};
-  if (!s.matched)
-    parts.push_back(fmt::format("{:+.2f} deg of launch angle", degrees(a.launch_angle() - b.launch_angle())));
-  parts.push_back(fmt::format("{:+.0f} rpm of backspin", rpm(a.backspin() - b.backspin())));
-  parts.push_back(fmt::format("{:+.0f} rpm of sidespin", rpm(a.sidespin() - b.sidespin())));
+  std::vector<std::string> parts;
+  // The error of a difference is how far it moves with the numerics of both: they have most of theirs in common.
+  const auto add = [&](double change, std::optional<double> coarser, int decimals, std::string_view what) {
+    const std::string error = coarser ? fmt::format(" ± {:.{}f}", std::abs(change - *coarser), decimals) : "";
+    parts.push_back(fmt::format("{:+.{}f}{} {}", change, decimals, error, what));
+  };
+  const auto of_launch = [&](double (Launch::*of)() const, double si, int decimals, std::string_view what) {
+    const auto change = [&](const Launch& a, const Launch& b) { return ((a.*of)() - (b.*of)()) / si; };
+    add(change(club->launch, head->launch),
+        club->coarser && head->coarser ? std::optional(change(*club->coarser, *head->coarser)) : std::nullopt, decimals,
+        what);
+  };
+  of_launch(&Launch::ball_speed, 1, 2, "m/s of ball speed");
+  if (!s.matched) of_launch(&Launch::launch_angle, kRadPerDeg, 2, "deg of launch angle");
+  of_launch(&Launch::backspin, kRadPerSecPerRpm, 0, "rpm of backspin");
+  of_launch(&Launch::sidespin, kRadPerSecPerRpm, 0, "rpm of sidespin");
   if (club->flight && head->flight)
     for (const post::FlightChannel& f : post::flight_channels(club->flight->unit)) {
-      const auto x = f.value(*club->flight), y = f.value(*head->flight);
-      if (f.name == "carry" && x && y) parts.push_back(fmt::format("{:+.1f} {} of carry", (*x - *y) / f.si, f.unit));
+      if (f.name != "carry") continue;
+      const auto change = [&](const auto& a, const auto& b) {
+        const auto x = a ? f.value(*a) : std::nullopt, y = b ? f.value(*b) : std::nullopt;
+        return x && y ? std::optional((*x - *y) / f.si) : std::nullopt;
+      };
+      if (const auto carried = change(club->flight, head->flight))
+        add(*carried, change(club->coarser_flight, head->coarser_flight), 1, fmt::format("{} of carry", f.unit));
     }
   return fmt::format("The shaft changes this blow by {}{}.", fmt::join(parts, ", "),
                      s.matched ? " at the same launch angle" : "");
@@ -157,9 +202,12 @@ void show_shaft(Output& out, const ImpactStory& s) {
 void show_impact(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   answer(out, s);
-  page.section("The launch", fmt::format("<p class='soft'>The numbers above are those of {}.</p>",
-                                         post::escape_html(s.columns.back().title)) +
-                                 s.table.html());
+  const bool wall = std::isinf(s.blow.club.head.mass);
+  page.section(
+      "The launch",
+      fmt::format("<p class='soft'>The numbers above are those of {}.{}</p>", post::escape_html(s.columns.back().title),
+                  wall ? " In the table the ball rests before the blow and the wall moves." : "") +
+          s.table.html());
   if (!s.runs.empty()) {
     page.section("While the ball touches the face", "");
     const FeRun& r = s.runs.back();

@@ -7,6 +7,9 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "post/digits.hpp"
+#include "post/labels.hpp"
+
 namespace hosel::app {
 
 loop::Told progress_of(const Output& out) {
@@ -72,16 +75,31 @@ void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots&
   out.write("residuals.csv", loop::residuals_csv(result, table));
   out.page().section("", loop::page(result, table));
   if (beside) beside();
-  out.write_json("report.json", loop::to_json(result));
+  const nlohmann::json report = loop::to_json(result);
+  out.write_json("report.json", report);
   out.say(loop::sentence(result));
-  for (const auto& c : result.channels)
+  for (const loop::AdoptedSize& s : loop::adopted_sizes(result)) {
+    const std::string unit = s.unit == "1" ? "" : " " + post::symbol(s.unit);
+    const post::Digits digits = post::digits(s.value, s.sd);
+    out.page().answer(fmt::format("{}: {}", s.effect, post::spoken(s.parameter)), digits.value + unit,
+                      "± " + digits.deviation);
     out.say(
-        fmt::format("  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({})",
-                    c.name, c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias,
-                    c.noise, c.noise_source));
-  if (!result.flagged.empty()) out.say(fmt::format("  {} {} flagged", result.flagged.size(), rows));
-  out.write_summary(
-      {{"verdict", std::string(name(result.verdict))}, {"adopted", result.adopted}, {"ties", result.ties}});
+        fmt::format("  {}: {} {} ± {}{}", s.effect, post::spoken(s.parameter), digits.value, digits.deviation, unit));
+  }
+  for (const auto& c : result.channels) {
+    constexpr double seen = 1.01;  // less is no other number to a reader
+    out.say(fmt::format(
+        "  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({}){}", c.name,
+        c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise,
+        c.noise_source,
+        c.expected > seen * c.noise ? fmt::format(", {:.4g} with that of the inputs", c.expected) : ""));
+  }
+  if (const std::size_t n = result.flagged.size(); n > 0)
+    out.say(fmt::format("  {} {} flagged", n, n == 1 ? rows.substr(0, rows.size() - 1) : rows));
+  nlohmann::json summary;
+  for (const char* key : {"verdict", "sentence", "adopted", "ties", "chosen", "channels"})
+    if (report.contains(key)) summary[key] = report[key];
+  out.write_summary(summary);
 }
 
 }  // namespace hosel::app

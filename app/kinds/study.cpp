@@ -231,7 +231,9 @@ class StudyJob final : public PointJob {
         }
       if (missing > 0 && missing < answered)
         out.warn(fmt::format("{}: {} of {} points have none", s.name, missing, answered));
-      else if (missing > 0) out.say(fmt::format("{}: no point has it", s.name));
+      else if (missing > 0)
+        out.say(fmt::format("{}: no point has it{}", s.name,
+                            s.name.starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
     }
   }
 

@@ -1,6 +1,7 @@
 #include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,7 @@
 #include "models/club/loaded_shaft.hpp"
 #include "models/parameters.hpp"
 #include "models/registry.hpp"
+#include "post/digits.hpp"
 #include "post/figure.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
@@ -217,7 +219,8 @@ class TuneJob final : public Job {
     for (std::size_t row = 0; row < shots.rows(); ++row) {
       std::string why;
       for (const Kept& k : keep)
-        if (!k.keeps(row)) why = fmt::format("{} outside what the case keeps", k.column->name);
+        if (why.empty() && !k.keeps(row))
+          why = k.is_empty(row) ? "no " + k.column->name : k.column->name + " outside what the case keeps";
       Blow blow = blow_;
       for (const auto& [input, c] : inputs) {
         if (why.empty() && !std::isfinite(c->value[row])) why = fmt::format("no {}", c->name);
@@ -256,6 +259,9 @@ class TuneJob final : public Job {
     const loop::Column* column;
     std::vector<std::string> cells;  ///< of each row, where the text counts
 
+    bool is_empty(std::size_t row) const {
+      return column->numeric ? !std::isfinite(column->native(row)) : cells[row].empty();
+    }
     bool keeps(std::size_t row) const {
       if (!cells.empty() && cells[row] != by.equals) return false;
       return !column->numeric || (column->native(row) >= by.min && column->native(row) <= by.max);
@@ -374,6 +380,7 @@ class TuneJob final : public Job {
                        {}},
                       {.first_width = 28, .least_width = 14, .even = false}};
     const auto finite = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); };
+    std::vector<std::string> at_bound;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Free& f = free_[std::size_t(i)];
       const double si = f.si(), value = fit.parameters[i] / si, sd = known.sd[i] / si;
@@ -381,12 +388,14 @@ class TuneJob final : public Job {
       found.add(f.column(), f.parameter->name, f.parameter->unit, start[i] / si, value, post::if_finite(sd),
                 post::if_finite(sd * std::max(1.0, scatter)), f.bounds.low / si, f.bounds.high / si,
                 edge ? "at its bound" : "");
+      if (edge) at_bound.emplace_back(f.parameter->name);
       const SplitName split = split_unit(f.column());
+      const post::Digits digits = post::digits(value, edge ? 0 : sd * std::max(1.0, scatter));
       out.page().answer(post::spoken(split.stem),
-                        fmt::format("{:.4g}{}", value, split.unit ? " " + post::symbol(split.unit->suffix) : ""),
+                        digits.value + (split.unit ? " " + post::symbol(split.unit->suffix) : ""),
                         edge                 ? "at its bound"
                         : !std::isfinite(sd) ? "the data do not show it"
-                                             : fmt::format("± {:.2g} by the scatter", sd * std::max(1.0, scatter)));
+                                             : fmt::format("± {} by the scatter", digits.deviation));
       summary["parameters"].push_back({{"name", f.column()},
                                        {"start", start[i] / si},
                                        {"value", value},
@@ -417,6 +426,14 @@ class TuneJob final : public Job {
     out.say(fmt::format(
         "\ncondition number of the whitened, column-scaled Jacobian {:.3g}; scatter {:.2f} times the declared noise",
         known.condition, scatter));
+    constexpr double told = 1.5;  // below it the noise may be declared too small
+    if (scatter > told)
+      out.page().doubt(
+          fmt::format("the tuned model misses the shots by {:.1f} times their declared noise: ± is the "
+                      "scatter about it, and contains no error of the model",
+                      scatter));
+    if (!at_bound.empty())
+      out.page().doubt(fmt::format("at a bound, the shots ask for more: {}", fmt::join(at_bound, ", ")));
     for (const std::string& t : tied) {
       out.say("the data cannot separate " + t);
       out.page().doubt("the data cannot separate " + t);
@@ -430,7 +447,8 @@ class TuneJob final : public Job {
       summary["blind"].push_back(text);
     }
     if (tied.empty() && known.blind.empty())
-      out.say("every parameter is separable (no correlation above 0.95, none left free)");
+      out.say(fmt::format("no two parameters have a correlation above 0.95, and the data leave none free{}",
+                          at_bound.empty() ? "" : fmt::format("; at a bound: {}", fmt::join(at_bound, ", "))));
 
     // Errors before and after, on both sets.
     post::Figure figure{.title = fmt::format("{} tuned: model minus measured", model_), .columns = 3};

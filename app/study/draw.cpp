@@ -175,7 +175,10 @@ post::Figure lines(const StudyTable& table, const StudyView& view, const std::st
       }
       if (m + 1 < table.models.size() || wanted.difference) continue;
       const auto measured = measured_at(table, o, [&](std::size_t d) { return view.numbers(*x)[d]; });
-      if (!measured.x.empty()) panel.series.push_back(measured);
+      if (measured.x.empty()) continue;
+      for (post::Series& one : panel.series)
+        if (one.label.empty()) one.label = "computed";
+      panel.series.push_back(measured);
     }
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
@@ -248,7 +251,7 @@ post::Figure bars(const StudyTable& table, const std::string& title, const std::
   for (const std::size_t o : outputs) {
     post::Panel panel{.x_label = post::label(table.outputs[o]), .y_names = names};
     for (std::size_t m = 0; m < table.models.size(); ++m) {
-      post::Series s{.label = table.one_model(m) ? table.models[m] : "answer", .style = "points"};
+      post::Series s{.label = table.one_model(m) ? table.models[m] : "computed", .style = "points"};
       for (std::size_t d = 0; d < names.size(); ++d)
         if (const double y = table.at(m, o).y[d]; std::isfinite(y)) s.add(y, -double(d));
       panel.series.push_back(std::move(s));

@@ -1,6 +1,7 @@
 #include "app/study/effects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -39,6 +40,41 @@ std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const 
   effects.first_is_certain = effects.factors[effects.order[0]].low > effects.factors[effects.order[1]].high;
   effects.separable = true;  // an emulator is asked where each parameter varies alone
   return shares.together;
+}
+
+/// What can be said of the parameter that moves an answer most.
+enum class Leader { alone, together, combinations, correlated, unknown };
+
+Leader leader(const StudyEffects& effects, std::size_t series) {
+  constexpr double most = 0.5;  // of the variance: what is left could make any parameter the first
+  const solvers::MainEffects& e = *effects.of[series];
+  if (!e.separable) return Leader::correlated;
+  double alone = 0;
+  for (const solvers::MainEffect& f : e.factors) alone += f.share;
+  if (!effects.together[series].empty()) return alone < most ? Leader::together : Leader::alone;
+  if (e.full_factorial) return alone < most ? Leader::combinations : Leader::alone;
+  return e.predicted < most ? Leader::unknown : Leader::alone;
+}
+
+/// From the parameter that takes part in most of the variance to the one that takes part in least.
+std::vector<std::size_t> by_total(const StudyEffects& effects, std::size_t series) {
+  std::vector<std::size_t> order = effects.of[series]->order;
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t f) { return effects.together[series][effects.columns[f]].value; });
+  return order;
+}
+
+/// Parameters that change no answer at all, where every combination says so: no model reads them, or the outputs do not
+/// show them.
+std::string without_effect(const StudyEffects& effects, const std::vector<std::string>& columns) {
+  constexpr double rounding = 1e-20;  // of a share, which is a square
+  std::vector<std::string> idle;
+  for (std::size_t f = 0; f < effects.columns.size(); ++f) {
+    const auto still = [&](const auto& e) { return !e || (e->full_factorial && e->factors[f].share < rounding); };
+    const bool any = std::ranges::any_of(effects.of, [](const auto& e) { return e.has_value(); });
+    if (any && std::ranges::all_of(effects.of, still)) idle.push_back(spoken_column(columns[effects.columns[f]]));
+  }
+  return fmt::format("{}", fmt::join(idle, " or "));
 }
 
 bool names_a_row(const Design& design, std::size_t column) {
@@ -95,31 +131,65 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   const auto& e = effects.of[series];
   if (!e) return {};
   const auto columns = table.design.columns();
-  const auto name = [&](std::size_t rank) { return spoken_column(columns[effects.columns[e->order[rank]]]); };
-  const auto share = [&](std::size_t rank) {
-    const solvers::MainEffect& f = e->factors[e->order[rank]];
-    return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(f.share), percent(f.low),
-                       percent(f.high));
+  const Leader told = leader(effects, series);
+  const std::vector<std::size_t> order = told == Leader::together ? by_total(effects, series) : e->order;
+  const auto name = [&](std::size_t rank) { return spoken_column(columns[effects.columns[order[rank]]]); };
+  const auto of_variance = [](const auto& share, double value) {
+    return fmt::format("{} % of its variance (95 % interval {} to {} %)", percent(value), percent(share.low),
+                       percent(share.high));
   };
-  if (!e->separable)
-    return fmt::format("What moves {} most cannot be told: {} and others vary together over these points.",
-                       table.series[series].spoken, name(0));
-  const solvers::MainEffect& first = e->factors[e->order[0]];
+  const auto share = [&](std::size_t rank) {
+    const solvers::MainEffect& f = e->factors[order[rank]];
+    return of_variance(f, f.share);
+  };
+  const std::string& answer = table.series[series].spoken;
+  const StudySeries::Spread spread = table.series[series].spread();
+  if (const std::string low = fmt::format("{:.4g}", spread.low); low == fmt::format("{:.4g}", spread.high))
+    return fmt::format("{} is {} at every point.", capital(answer), low);
+  switch (told) {
+    case Leader::alone: break;
+    case Leader::correlated:
+      return fmt::format("What moves {} most cannot be told: {} and others vary together over these points.", answer,
+                         name(0));
+    case Leader::unknown:
+      return fmt::format(
+          "What moves {} most these points do not tell: one parameter at a time predicts {} % of its variance at "
+          "points "
+          "left out.",
+          answer, percent(std::max(0.0, e->predicted)));
+    case Leader::combinations:
+      return fmt::format("{} goes with combinations of parameters: alone, {} has most with {}.", capital(answer),
+                         name(0), share(0));
+    case Leader::together: {
+      const auto& all = effects.together[series];
+      const StudyEmulator::Share &first = all[effects.columns[order[0]]], &second = all[effects.columns[order[1]]];
+      return fmt::format(
+          "{} goes with combinations of parameters: {} takes part in {}, alone it has {} %. Second is {} with {} %.",
+          capital(answer), name(0), of_variance(first, first.value), percent(e->factors[order[0]].share), name(1),
+          percent(second.value));
+    }
+  }
+  const solvers::MainEffect& first = e->factors[order[0]];
   const std::string turning = first.between ? fmt::format(" through {:.4g}", *first.between) : "";
-  std::string text = fmt::format("{} goes most with {}: {}, from {:.4g}{} to {:.4g} over its range.",
-                                 capital(table.series[series].spoken), name(0), share(0), first.at_low, turning,
-                                 first.at_high);
+  const bool ordered = !table.design.numbers(effects.columns[order[0]]).empty();
+  // The ends of a fitted curve that no answer comes near are no answers.
+  const auto seen = [&](double x) { return x >= spread.low && x <= spread.high; };
+  std::string text = fmt::format("{} goes most with {}: {}", capital(answer), name(0), share(0));
+  if (!ordered) text += fmt::format(", means from {:.4g} to {:.4g}", first.at_low, first.at_high);
+  else if (seen(first.at_low) && seen(first.at_high))
+    text += fmt::format(", from {:.4g}{} to {:.4g} over its range", first.at_low, turning, first.at_high);
+  text += '.';
   text += e->first_is_certain
-              ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[e->order[1]].share))
+              ? fmt::format(" Second is {} with {} %.", name(1), percent(e->factors[order[1]].share))
               : fmt::format(" Whether {} with {} moves it as much, these points do not decide.", name(1), share(1));
   if (const auto& together = effects.together[series]; !together.empty()) {
-    const StudyEmulator::Share& all = together[effects.columns[e->order[0]]];
+    const StudyEmulator::Share& all = together[effects.columns[order[0]]];
     if (all.value > first.share + 0.02)
       text += fmt::format(" With its interactions the first takes part in {} % ({} to {} %).", percent(all.value),
                           percent(all.low), percent(all.high));
   } else if (e->predicted < 0.8)
     text += fmt::format(
-        " One parameter at a time explains {} % of it at points left out: the rest are interactions and "
+        " One parameter at a time predicts {} % of it at points left out: the rest are interactions and "
         "curvature.",
         percent(std::max(0.0, e->predicted)));
   return text;
@@ -174,12 +244,24 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       sensitivity.more(all.value, all.low, all.high);
     }
     if (!e.separable) summary["vary_together"].push_back(series.name);
-    const solvers::MainEffect& first = e.factors[e.order[0]];
-    if (e.separable)
+    const auto led = [&](std::size_t factor, const auto& share, double value, const char* how) {
       row.insert(row.end(),
-                 {spoken_column(columns[effects.columns[e.order[0]]]),
-                  fmt::format("{} ({} to {})", percent(first.share), percent(first.low), percent(first.high))});
-    else row.insert(row.end(), {"-", "they vary together"});
+                 {spoken_column(columns[effects.columns[factor]]),
+                  fmt::format("{}{} ({} to {})", how, percent(value), percent(share.low), percent(share.high))});
+    };
+    const solvers::MainEffect& first = e.factors[e.order[0]];
+    switch (leader(effects, s)) {
+      case Leader::alone: led(e.order[0], first, first.share, ""); break;
+      case Leader::together: {
+        const std::size_t factor = by_total(effects, s)[0];
+        const StudyEmulator::Share& all = effects.together[s][effects.columns[factor]];
+        led(factor, all, all.value, "in combinations ");
+        break;
+      }
+      case Leader::combinations: row.insert(row.end(), {"-", "combinations"}); break;
+      case Leader::correlated: row.insert(row.end(), {"-", "they vary together"}); break;
+      case Leader::unknown: row.insert(row.end(), {"-", "too few points"}); break;
+    }
     if (emulated) row.push_back(off);
     const std::string said = sentence(table, effects, s);
     constexpr std::size_t most = 8;  // a page begins with what somebody reads
@@ -190,6 +272,8 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
+  if (const std::string idle = without_effect(effects, columns); several && !idle.empty())
+    out.say(fmt::format("No answer depends on {}.", idle));
   if (!sensitivity.rows.empty()) out.write("sensitivity.csv", sensitivity.csv());
 }
 

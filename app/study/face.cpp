@@ -115,10 +115,16 @@ class FaceReport {
       j[q.name + "_share"] = product / square;
       out_.say(fmt::format("  {:<48} {:>12.3f}", q.name, product / square));
       if (std::ranges::find(kShown, q.name) == kShown.end()) continue;
-      const std::string left = fmt::format("{:.0f} % are left", 100 * product / square);
-      figure.panels.push_back(post::face_panel(grid_, before, fmt::format("{} [{}]", post::spoken(q.name), unit),
-                                               fmt::format("[{}]", unit), true));
-      figure.panels.push_back(post::face_panel(grid_, now, left, fmt::format("[{}]", unit), true));
+      const std::string share = fmt::format("{}: {:.0f} % of it", post::spoken(q.name), 100 * product / square);
+      double reach = 0;  // one range of colours for both, or the smaller one would look as large
+      for (const auto* map_of : {&before, &now})
+        for (const double x : *map_of)
+          if (std::isfinite(x)) reach = std::max(reach, std::abs(x));
+      for (const auto& [values, text] :
+           {std::pair{&before, fmt::format("{} [{}]", post::spoken(q.name), unit)}, {&now, share}}) {
+        figure.panels.push_back(post::face_panel(grid_, *values, text, fmt::format("[{}]", unit), true));
+        figure.panels.back().map_reach = reach;
+      }
     }
     picture(figure, "figures/kept-" + out_.file_name(map.title), true);
     return j;

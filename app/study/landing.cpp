@@ -104,8 +104,11 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
         held += std::abs(from_side * (*of_side)(of_side->at_shares(u))) <= fairway / 2;
       }
       entry["fairway_share_emulated"] = double(held) / double(landing.draws);
+      const double share = double(held) / double(landing.draws);
       said += fmt::format(" Of {} deliveries drawn through the emulator {:.1f} % do; it is off by {:.2g} {} in side.",
-                          landing.draws, 100 * double(held) / double(landing.draws), from_side * of_side->error(), m);
+                          landing.draws, 100 * share, from_side * of_side->error(), m);
+      if (share < low || share > high)
+        said += " The two disagree: these balls are few, or the emulator is off; more points of the sample decide.";
     }
     out.say(said);
     out.page().sentence(said);

@@ -1,6 +1,7 @@
 #include "app/study/parts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -110,12 +111,16 @@ class PartsReport {
       }
       if (places_.size() > 1) row.push_back(where);
     };
+    std::vector<std::string> equal;  // outputs that are the same in both, at every place
     for (std::size_t o = 0; o < table_.outputs.size(); ++o) {
+      const std::size_t rows = shown.rows.size();
+      bool differs = false;
       StudySeries mean;
       mean.y.resize(places_.front().points.size());
       std::vector<std::size_t> known(mean.y.size());
       for (std::size_t k = 0; k < places_.size(); ++k) {
         const StudySeries there = difference(part, model, o, places_[k]);
+        differs = differs || std::ranges::any_of(there.y, [](double y) { return y != 0; });
         for (std::size_t i = 0; i < mean.y.size(); ++i)
           if (std::isfinite(there.y[i])) mean.y[i] += there.y[i], ++known[i];
         if (places_.size() > few || places_.size() == 1) continue;
@@ -127,12 +132,16 @@ class PartsReport {
       for (std::size_t i = 0; i < mean.y.size(); ++i) mean.y[i] /= double(known[i]);  // NaN of nothing
       const std::size_t least = std::ranges::min(known);
       add(o, mean, least == places_.size() ? "mean" : fmt::format("mean of {} places", least), said["mean"]);
+      if (differs) continue;
+      shown.rows.resize(rows);
+      equal.push_back(post::spoken_key(table_.outputs[o]).words);
     }
     const std::string title = fmt::format("{}{}: {} minus {}",
                                           table_.models.size() > 1 ? table_.models[model] + ", " : "", part.name,
                                           variant(part.of), variant(part.minus));
     out_.tell(title);
-    out_.show(shown, title);
+    if (shown.rows.size() > 1) out_.show(shown, title);
+    if (!equal.empty()) out_.say(fmt::format("{}: no difference in {}", part.name, fmt::join(equal, ", ")));
   }
 
   std::string variant(std::size_t level) const { return table_.design.factors().front().levels[level].cells.front(); }

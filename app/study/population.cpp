@@ -11,6 +11,7 @@
 #include "app/read_sheet.hpp"
 #include "app/study/compare.hpp"
 #include "app/study/formula.hpp"
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 #include "solvers/robust_regression.hpp"
 
@@ -182,8 +183,8 @@ nlohmann::json report_populations(Output& out, const StudyTable& table, const st
         for (const double share : kShares) row.push_back(fmt::format("{:.4g}", quantile(side.ordered(), share)));
         quantiles.rows.push_back(std::move(row));
         lines.rows.push_back({fmt::format("{}, {}", spoken, who), fmt::format("{:.4g}", line.at),
-                              fmt::format("{:.3g} +- {:.1g}", line.slope, line.slope_error),
-                              fmt::format("{:.3g}", line.scatter), fmt::format("{:.0f} %", 100 * line.explained)});
+                              post::with_deviation(line.slope, line.slope_error), fmt::format("{:.3g}", line.scatter),
+                              fmt::format("{:.0f} %", 100 * line.explained)});
         functions.series.push_back(distribution(side, who));
         over.series.push_back(cloud(side, who));
         json[p.name][output][key] = to_json(side, line);

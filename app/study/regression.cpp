@@ -10,6 +10,7 @@
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "loop/shots/shots.hpp"
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
 #include "post/table.hpp"
@@ -22,8 +23,9 @@ std::optional<StudyRegression> read_regression(Table root) {
   if (!t) return {};
   StudyRegression r;
   r.file = t->data_file({"shots", "CSV of the measured shots"});
-  const long first = t->integer({"first_shot", "number of the first shot that is used"}, 0, 1L << 53, 0L);
-  const long last = t->integer({"last_shot", "number of the last"}, first, 1L << 53, 1L << 53);
+  constexpr long kMost = 1'000'000'000;  // a number of nine digits
+  const long first = t->integer({"first_shot", "number of the first shot that is used"}, 0, kMost, 0L);
+  const long last = t->integer({"last_shot", "number of the last"}, first, kMost, kMost);
   r.of = t->texts({"of", "measured quantities of the launch, each with its unit"});
   r.on = t->texts({"on", "inputs of the blow that they are regressed on, all at once, each with its unit"});
   const auto unit = [&](const char* key, const std::string& name, std::optional<Dimension> dimension) {
@@ -96,7 +98,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
       const auto at = Eigen::Index(k) + 1;
       const double slope = fit.coefficients[at], half = 1.96 * std::sqrt(fit.covariance(at, at));
       j[r.on[k]] = {{"slope", slope}, {"half_width_95", half}};
-      row.push_back(fmt::format("{:.3g} ± {:.2g}", slope, half));
+      row.push_back(post::with_deviation(slope, half));
       slopes.add(r.of[q], r.on[k], slope, half);
     }
     j["scatter"] = fit.scale;

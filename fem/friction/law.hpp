@@ -31,7 +31,7 @@ struct Friction {
   Mat3 by_velocity = Mat3::Zero();  ///< [N s/m^3]
 };
 
-/// A new law is a class beside coulomb.hpp.
+/// A new law is a class beside coulomb.hpp and a line of laws.cpp.
 class FrictionLaw {
  public:
   virtual ~FrictionLaw() = default;

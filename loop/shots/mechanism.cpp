@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
@@ -58,6 +59,7 @@ struct Field {
     Eigen::VectorXd variance;  // mean variance over the knots is one
   };
   std::vector<Basis> smoothness;
+  std::optional<Basis> straight = {};  ///< a straight line over that quantity, where it is one column
 };
 
 double matern(double r) {
@@ -131,8 +133,9 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
       if (c->stem == stem(Input::impact_high)) high = x;
     }
     smooth(line.name, {x}, false);
-    if (line.name != "shot") continue;
     const auto product = [&](auto i, auto j) { return x[i] * x[j]; };
+    all.back().straight = basis(covariance(product), knots);
+    if (line.name != "shot") continue;
     all.push_back({.along = line.name, .smoothness = {basis(covariance(product), knots)}});  // a steady drift
     // A walk: steps and slow wander.
     const double first = x.minCoeff();
@@ -258,8 +261,8 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
 }  // namespace
 
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                                  const std::vector<int>& rows, bool session, const Fit& base, const Fit& chosen,
-                                  double tie) {
+                                  const std::vector<int>& rows, bool session, const std::set<std::string>& noisy,
+                                  const Fit& base, const Fit& chosen, double tie) {
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   if (n < kFewestRows) return {};
   const solvers::Loss loss = loss_of_shot(model.width());
@@ -297,30 +300,45 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   if (trials.size() > 12) trials.resize(12);
 
   // The deviance as fits count it: each with the weights of its own residual.
-  std::vector<Mechanism> out;
-  for (Trial& t : trials) {
-    const Eigen::MatrixXd& j = columns[t.way];
+  const auto criterion = [&](const Eigen::MatrixXd& j, const Field& field, Found& found) {
     double deviance = 0;
     for (int pass = 0; pass < 3; ++pass) {
       Eigen::VectorXd w(n);
       deviance = 0;
       Eigen::MatrixXd left = z;
       for (Eigen::Index i = 0; i < n; ++i) {
-        left.col(i) += j.col(i) * t.found.g[i];
+        left.col(i) += j.col(i) * found.g[i];
         w[i] = loss.weight(left.col(i).squaredNorm());
         deviance += loss(left.col(i).squaredNorm());
       }
       if (pass == 2) break;
-      Found again = likeliest(z, j, w, functions[t.field]);
+      Found again = likeliest(z, j, w, field);
       if (!again.g.size()) break;
-      t.found = std::move(again);
+      found = std::move(again);
     }
+    return chosen.deviance + deviance - of_chosen + found.price + kPrice;
+  };
+  // Noise of an input that none is declared of is an error in proportion to what is recorded.
+  const auto as_noise = [&](const Trial& t) {
+    const Way& way = every[t.way];
+    const Field& field = functions[t.field];
+    if (way.kind != Way::Kind::input || way.column != field.along || !field.straight || noisy.contains(way.column))
+      return std::numeric_limits<double>::infinity();
+    const Field line{.along = field.along, .smoothness = {*field.straight}};
+    Found found = likeliest(z, columns[t.way], weight, line);
+    return found.g.size() ? criterion(columns[t.way], line, found) : std::numeric_limits<double>::infinity();
+  };
+  std::vector<Mechanism> out;
+  for (Trial& t : trials) {
+    const Eigen::MatrixXd& j = columns[t.way];
+    const double of_trial = criterion(j, functions[t.field], t.found);
+    if (as_noise(t) < of_trial + tie) continue;
     Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along, .step = functions[t.field].step};
     const Eigen::VectorXd moved = (j * t.found.g.asDiagonal()).rowwise().squaredNorm();
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
     m.channel = int(most);
-    m.criterion = chosen.deviance + deviance - of_chosen + t.found.price + kPrice;
+    m.criterion = of_trial;
     m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
     out.push_back(std::move(m));
   }

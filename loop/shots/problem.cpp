@@ -428,7 +428,10 @@ std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& 
   // Where nothing is chosen, nothing was fitted: what was held out may ask as well.
   std::vector<int> rows = s.level == 0 ? rows_.all() : select_;
   std::ranges::sort(rows);
-  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, session, s.base, s.chosen, rules.tie);
+  std::set<std::string> noisy;
+  for (const auto& [column, sd] : case_.input_noise)
+    if (sd > 0) noisy.insert(column);
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, session, noisy, s.base, s.chosen, rules.tie);
 }
 
 std::vector<Location> ShotProblem::places(const Selection& s) const {

@@ -7,6 +7,7 @@
 
 #include "fem/harmonic_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
+#include "golf/units.hpp"
 
 namespace hosel::models {
 
@@ -33,15 +34,23 @@ double FeBall::instant_young() const {
   return sum;
 }
 
-double FeBall::inertia_factor() const {
-  double mass = 0, moment = 0, inner = 0;
+namespace {
+
+/// Sum of density times the difference of that power of a layer's radii, relative to the ball's [kg/m^3].
+double of_density(const std::vector<BallLayer>& layers, int power) {
+  double sum = 0, inner = 0;
   for (const auto& layer : layers) {
-    mass += layer.material.density * (std::pow(layer.radius, 3) - std::pow(inner, 3));
-    moment += layer.material.density * (std::pow(layer.radius, 5) - std::pow(inner, 5));
+    sum += layer.material.density * (std::pow(layer.radius, power) - std::pow(inner, power));
     inner = layer.radius;
   }
-  return 0.4 * (moment / mass);
+  return sum;
 }
+
+}  // namespace
+
+double FeBall::inertia_factor() const { return 0.4 * (of_density(layers, 5) / of_density(layers, 3)); }
+
+double FeBall::mass(double radius) const { return 4.0 / 3.0 * kPi * std::pow(radius, 3) * of_density(layers, 3); }
 
 MeshedBall meshed(const FeBall& ball, const Ball& body, const mesh::MeridianOptions& options) {
   std::vector<double> radii;

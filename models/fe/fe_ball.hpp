@@ -26,6 +26,8 @@ struct FeBall {
   double instant_young() const;
   /// I / (m r^2) of the layers.
   double inertia_factor() const;
+  /// By the densities of its layers [kg]; `radius` [m].
+  double mass(double radius) const;
 };
 
 /// The layers on a mesh that weighs what the ball weighs.

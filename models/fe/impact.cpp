@@ -9,23 +9,12 @@
 #include <utility>
 
 #include "fem/contact_method/methods.hpp"
-#include "fem/friction/coulomb.hpp"
-#include "fem/friction/regularised.hpp"
-#include "fem/friction/slip_weakening.hpp"
+#include "fem/friction/laws.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {
-
-/// None where nothing holds, not even a point at rest.
-std::unique_ptr<const fem::FrictionLaw> friction_law(const PatchFriction& friction, double sticking) {
-  if (!(friction.coefficient > 0 || (friction.at_rest && friction.at_rest->coefficient > 0))) return nullptr;
-  if (friction.transition_speed)
-    return std::make_unique<fem::RegularisedFriction>(friction.coefficient, *friction.transition_speed);
-  if (friction.at_rest) return std::make_unique<fem::SlipWeakening>(friction.coefficient, *friction.at_rest, sticking);
-  return std::make_unique<fem::Coulomb>(friction.coefficient, sticking);
-}
 
 /// Ball, face and contact, behind a head or wall that carries the face. `free`: the carrier may leave the blow's plane
 /// of symmetry.
@@ -54,7 +43,7 @@ void add_contact(ImpactBodies& out, const Blow& blow, const FeImpactOptions& o, 
       std::move(meshed_ball.materials), fem::Placement{Vec3::Zero(), out.mesh_axes});
   const double radius = blow.ball.radius, stiffness = o.penalty * young / radius;
   fem::ContactLaws laws{fem::contact_method(o.method)->make(stiffness, o.penetration * radius), nullptr};
-  if (!axial) laws.friction = friction_law(blow.contact.patch, o.tangential_penalty * stiffness);
+  if (!axial) laws.friction = fem::friction_law(blow.contact.patch, o.tangential_penalty * stiffness);
   FaceInSystem struck = face->add(out.system, {blow, carrier, axial, planar ? mirror : Mirror::none});
   const fem::Symmetry symmetry = axial ? fem::Symmetry::axis : planar ? fem::Symmetry::plane : fem::Symmetry::none;
   auto contact = std::make_unique<fem::Contact>(*ball, std::move(struck.surface), carrier, std::move(laws), rule(patch),

@@ -36,6 +36,14 @@ TEST(CommandLine, CompletesCommandsOptionsAndCases) {
   EXPECT_EQ(completed("hosel keys landing-t", 2), "landing-times\n");
 }
 
+TEST(CommandLine, AMistypedCommandIsNamed) {
+  for (const char* typed : {"runn iron7-trackman", "help runn"}) {
+    const Outcome o = command(typed);
+    EXPECT_EQ(o.status, 2);
+    EXPECT_NE(o.text.find("no command 'runn'; did you mean 'run'?"), std::string::npos) << o.text;
+  }
+}
+
 TEST(CommandLine, ManPageNamesEveryCommand) {
   const std::string page = command("man").text;
   EXPECT_TRUE(page.starts_with(".TH HOSEL 1")) << page.substr(0, 200);

@@ -386,6 +386,32 @@ INSTANTIATE_TEST_SUITE_P(
                "",
                {{"ball_speed_mph", {115, 116, 117}}},
                {"2 summary rows"}},
+        Layout{"SummariesUnderDates",
+               "Date,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "2024-05-12 10:01,7i,115,82,16,6400,22\n2024-05-12 10:02,7i,116,82,16,6500,22\n"
+               "Average,7i,115.5,82,16,6450,22\nStd. Dev.,7i,0.7,0,0,71,0\nSession average,7i,115.5,82,16,6450,22\n"
+               "Max,7i,116,82,16,6500,22\n",
+               "",
+               {{"ball_speed_mph", {115, 116}}},
+               {"4 summary rows"}},
+        Layout{"SessionsByNameMayBeCalledSo",
+               "Session,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "Max effort,7i,115,82,16,6400,22\nAverage swing,7i,116,82,16,6500,22\nwarm up,7i,114,82,16,6500,22\n",
+               "",
+               {{"ball_speed_mph", {115, 116, 114}}},
+               {}},
+        Layout{"InputsThatAreNotRecordedAreUnknown",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Side Angle,Total Spin,Spin Axis\n"
+               "7i,115,82,16,0.5,6400,1\n7i,116,82,16,-0.5,6500,2\n",
+               "",
+               {{"attack_angle_deg", {0, 0}}, {"face_angle_deg", {0, 0}}, {"impact_toe_mm", {0, 0}}},
+               {"not recorded: zero, +- 4 deg", "not recorded: zero, +- 10 mm"}},
+        Layout{"TwoColumnsOfOneQuantity",
+               "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Spin Rate,Dynamic Loft\n"
+               "7i,115,82,16,6400,6600,22\n7i,116,82,16,6500,6700,22\n",
+               "",
+               {{"spin_rate_rpm", {6400, 6500}}},
+               {"in kept.csv only: Spin Rate (a second column of spin rate)"}},
         Layout{"LeftHandedInThePlayersOwnWords",
                "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Side Angle,Total Spin,Spin Axis,Club "
                "Path,Face to "

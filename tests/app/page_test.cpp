@@ -57,6 +57,52 @@ TEST(RunPage, SaysWhatABlowAndItsFlightCameTo) {
   EXPECT_TRUE(holds(page, "class='curves'")) << "side and top view of the flight";
 }
 
+/// Computed, measured and flown: the side is a word, and no number beside it has a sign.
+TEST(RunPage, SaysTheSideInWords) {
+  const fs::path dir = fresh_directory("page_side");
+  write(dir / "case.toml", kEccentricBlow + "[flight]\nlaw = \"ferguson-2022\"\n[measured]\nazimuth_deg = -1.25\n");
+  const Outcome o =
+      command("run " + dir.string() + " --quiet --set delivery.face_angle_deg=3 --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const json summary = json::parse(content(dir / "out/summary.json"));
+  const double azimuth = summary["models"]["rigid-eccentric"]["azimuth_deg"],
+               side = summary["flights"]["rigid-eccentric"]["side_yd"];
+  ASSERT_GT(std::abs(azimuth), 0.1);
+  ASSERT_GT(std::abs(side), 1);
+  const auto word = [](double x) { return x < 0 ? "left of the target" : "right of the target"; };
+  const std::string page = content(dir / "out/report.html");
+  EXPECT_TRUE(holds(
+      page,
+      fmt::format("direction</span><b>{:.2f}°</b><small style='display:block'>{}; measured 1.25° left of the target",
+                  std::abs(azimuth), word(azimuth))));
+  EXPECT_TRUE(holds(
+      page, fmt::format("side</span><b>{:.1f} yd</b><small style='display:block'>{}", std::abs(side), word(side))));
+}
+
+/// A ball against a wall: what it is thrown for, in the frame in which the wall rests.
+TEST(RunPage, AnswersABounceInTheWallsFrame) {
+  const fs::path dir = fresh_directory("page_wall");
+  write(dir / "case.toml", R"(kind = "impact"
+models = ["rigid-planar"]
+[delivery]
+club_speed_mps = 40.0
+[head]
+mass_kg = inf
+[contact]
+restitution = 0.8
+restitution_slope_s_per_m = 0.0
+)");
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string page = content(dir / "out/report.html");
+  ASSERT_NEAR(json::parse(content(dir / "out/summary.json"))["models"]["rigid-planar"]["ball_speed_mps"].get<double>(),
+              72, 1e-6);
+  EXPECT_TRUE(holds(page, "restitution</span><b>0.8000</b>"));
+  EXPECT_TRUE(holds(page, "rebound speed</span><b>32.00 m/s</b>"));
+  EXPECT_TRUE(holds(page, "the ball rests before the blow and the wall moves"));
+  EXPECT_FALSE(holds(page, "direction</span>"));
+}
+
 TEST(RunPage, SpeaksTheUnitsThatWereAskedFor) {
   const fs::path dir = fresh_directory("page_units");
   write(dir / "case.toml", kEccentricBlow + "[flight]\nlaw = \"ferguson-2022\"\n");

@@ -68,6 +68,40 @@ TEST(Plausible, MissingTableIsNamedWithoutColons) {
   expect_refused(o, "case.toml:1: table '[head]' is missing");
 }
 
+/// What can be meant and is likely a slip of a unit: a warning of the run, and a failure where it is to be strict.
+TEST(Plausible, ASlipOfAUnitIsInDoubt) {
+  const fs::path dir = fresh_directory("slips");
+  const auto shaft = [&](const std::string& tip, const std::string& mass) {
+    write(dir / "profile.csv", "arc_length_mm,bending_stiffness_N_m2,torsional_stiffness_N_m2," + mass +
+                                   ",mean_radius_mm\n0,60,30,70,7\n" + tip + ",25,12,50,4.5\n");
+    write(dir / "case.toml",
+          "kind = \"modes\"\nsupport = \"clamped\"\ncount = 2\n[shaft]\ntable = {file = \"profile.csv\"}\n");
+    return command("check " + dir.string()).text;
+  };
+  EXPECT_EQ(shaft("1100", "mass_per_length_g_per_m").find("in doubt"), std::string::npos);
+  const std::string metres = shaft("1.1", "mass_per_length_g_per_m"),
+                    kilograms = shaft("1100", "mass_per_length_kg_per_m");
+  EXPECT_NE(metres.find("# in doubt: [shaft] the length is 0.0011 m"), std::string::npos) << metres;
+  EXPECT_NE(kilograms.find("# in doubt: [shaft] the mass is 6.6e+04 g"), std::string::npos) << kilograms;
+  const std::string run = "run " + dir.string() + " --out " + (dir / "out").string();
+  const Outcome o = command(run);
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto doubts = nlohmann::json::parse(content(dir / "out" / "summary.json"))["doubts"];
+  ASSERT_FALSE(doubts.empty()) << o.text;
+  EXPECT_NE(doubts[0].get<std::string>().find("is a unit wrong?"), std::string::npos);
+  EXPECT_EQ(command(run + " --force --strict").status, 3);
+
+  // The mesh has the ball's mass, whatever the densities of its layers.
+  const auto layers = [](const std::string& density) {
+    return command(
+        "check iron7-trackman --set 'ball={layers=[{law=\"neo-hooke\", young_MPa=60, poisson=0.45, "
+        "density_kg_per_m3=" +
+        density + "}]}'");
+  };
+  EXPECT_EQ(layers("1130").text.find("in doubt"), std::string::npos) << layers("1130").text;
+  EXPECT_NE(layers("1.13").text.find("every density is multiplied by"), std::string::npos) << layers("1.13").text;
+}
+
 /// No model has constants by default: which ball's they are is said in the case.
 TEST(Plausible, NobodysConstantsAreADefault) {
   const fs::path dir = fresh_directory("default_table");

@@ -199,7 +199,7 @@ set = ["flight.units='metres'"]
 TEST(StudyAnswers, PartsGoTheShorterWayRound) {
   const fs::path dir = fresh_directory("study_circle");
   const Outcome o = run(dir, R"(kind = "study"
-outputs = ["spin_axis_deg", "spin_axis_rad"]
+outputs = ["spin_axis_deg", "ball_speed_mps", "spin_axis_rad"]
 figures = false
 [[variant]]
 name = "a"
@@ -223,10 +223,78 @@ spin_rate_rpm = 2500
   const CsvFile parts(dir / "out" / "parts.csv"), differences(dir / "out" / "differences.csv");
   EXPECT_NEAR(parts.number("spin_axis_deg", 0), 2, 1e-9);
   EXPECT_NEAR(parts.number("spin_axis_rad", 0), 0.0349066, 1e-7);
+  // What is the same in both is said once, not shown as zeros.
+  EXPECT_EQ(parts.number("ball_speed_mps", 0), 0);
+  EXPECT_NE(o.text.find("p: no difference in ball speed\n"), std::string::npos) << o.text;
+  EXPECT_EQ(o.text.find("ball speed [m/s]  +0"), std::string::npos) << o.text;
   for (std::size_t i = 0; i < differences.rows(); ++i)
     if (differences.text("output", i) == "spin_axis_rad" && differences.number("largest", i) != 0) {
       EXPECT_NEAR(differences.number("largest", i), 0.0349066, 1e-7);
     }
+}
+
+/// A curve that turns is told by its turning point too, a straight one by its ends.
+TEST(StudyAnswers, SaysWhereACurveTurns) {
+  const fs::path dir = fresh_directory("study_turns");
+  const std::string masses = "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.199, 0.2, 0.201]\n";
+  const auto said = [&](const std::string& toes) {
+    const Outcome o =
+        run(dir, study("", masses + "[[axis]]\nkey = \"delivery.impact_toe_mm\"\nvalues = " + toes + "\n"));
+    EXPECT_EQ(o.status, 0) << o.text;
+    return o.text;
+  };
+  const std::regex sentence(
+      "Ball speed \\[m/s\\] goes most with impact toe \\[mm\\]: .*, from ([0-9.]+) (through "
+      "([0-9.]+) )?to ([0-9.]+) over its range\\.");
+  std::smatch found;
+  // The ball is fastest from the centre.
+  const std::string both_sides = said("[-20, -10, 0, 10, 20]"), one_side = said("[0, 5, 10, 15, 20]");
+  ASSERT_TRUE(std::regex_search(both_sides, found, sentence)) << both_sides;
+  ASSERT_TRUE(found[2].matched) << found.str();
+  EXPECT_GT(std::stod(found[3]), std::max(std::stod(found[1]), std::stod(found[4])));
+  ASSERT_TRUE(std::regex_search(one_side, found, sentence)) << one_side;
+  EXPECT_FALSE(found[2].matched) << found.str();
+  EXPECT_GT(std::stod(found[1]), std::stod(found[4]));
+}
+
+/// Two parameters that rise together: neither is named as the one that moves the answer.
+TEST(StudyAnswers, NamesNoParameterThatVariesWithAnother) {
+  const fs::path dir = fresh_directory("study_together");
+  const auto said = [&](const std::string& lofts) {
+    std::string rows = "delivery.club_speed_mps,delivery.dynamic_loft_deg\n";
+    for (int i = 0; i < 6; ++i) rows += std::to_string(40 + i) + "," + lofts[std::size_t(i)] + "\n";
+    write(dir / "rows.csv", rows);
+    const Outcome o = run(dir, study("", "[rows]\nfile = \"rows.csv\"\n"));
+    EXPECT_EQ(o.status, 0) << o.text;
+    return o.text;
+  };
+  EXPECT_NE(said("345678").find("What moves ball speed [m/s] most cannot be told:"), std::string::npos);
+  EXPECT_NE(said("583647").find("Ball speed [m/s] goes most with club speed [m/s]:"), std::string::npos);
+}
+
+/// A key that no model of the study reads: said, where the design's combinations are all there.
+TEST(StudyAnswers, SaysWhatChangesNoAnswer) {
+  const fs::path dir = fresh_directory("study_idle");
+  const auto said = [&](const std::string& key) {
+    const Outcome o =
+        run(dir, study("", "[[axis]]\nkey = \"delivery.impact_toe_mm\"\nvalues = [-10, 0, 5]\n[[axis]]\nkey = \"" +
+                               key + "\"\nvalues = [0.2, 0.25, 0.3]\n"));
+    EXPECT_EQ(o.status, 0) << o.text;
+    return o.text;
+  };
+  EXPECT_NE(said("contact.face_friction").find("No answer depends on face friction.\n"), std::string::npos);
+  EXPECT_EQ(said("head.mass_kg").find("No answer depends on"), std::string::npos);
+}
+
+/// Each variant is compared with one of them, and the title says with which.
+TEST(StudyAnswers, AComparisonOfVariantsNamesTheOne) {
+  const fs::path dir = fresh_directory("study_title");
+  const Outcome o = run(dir, study("",
+                                   "[[variant]]\nname = \"today\"\n[[variant]]\nname = \"heavier\"\nset = "
+                                   "[\"head.mass_kg=0.21\"]\n[compare]\nwith = \"variant\"\nvariant = \"today\"\n"));
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("each variant minus today\n"), std::string::npos) << o.text;
+  EXPECT_NE(content(dir / "out" / "report.html").find("each variant minus today"), std::string::npos);
 }
 
 /// A variant may answer by another model: its histories bear that one's name.

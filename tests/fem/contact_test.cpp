@@ -9,6 +9,7 @@
 #include "fem/contact_method/methods.hpp"
 #include "fem/face_surface.hpp"
 #include "fem/friction/coulomb.hpp"
+#include "fem/friction/laws.hpp"
 #include "fem/friction/regularised.hpp"
 #include "fem/friction/slip_weakening.hpp"
 #include "fem/materials/hyperelastic.hpp"
@@ -146,6 +147,31 @@ TEST(Contact, FrictionFallsWithThePathThatAPointHasSlid) {
   }
   EXPECT_FALSE(SlipWeakening(0.1, {0.05, 2e-6}, 1e12).faults().empty());
   EXPECT_FALSE(SlipWeakening(0.1, {0.4, 0}, 1e12).faults().empty());
+}
+
+/// A patch is given the law that its friction states: the same traction as that law's own object.
+TEST(Contact, FrictionLawIsTheStatedOne) {
+  constexpr double kSpring = 1e12;
+  const Slip slip{.pressure = 1e6,
+                  .stretch = Vec3(0, 3e-6, 0),
+                  .step = Vec3(0, 3e-6, 0),
+                  .velocity = Vec3(0, 0.2, 0),
+                  .tangent = Vec3(0, 1, 1).asDiagonal(),
+                  .path = 1e-6};
+  const auto traction = [&](const PatchFriction& stated) {
+    return friction_law(stated, kSpring)->at(slip, false).traction;
+  };
+  const Vec3 coulomb = Coulomb(0.3, kSpring).at(slip, false).traction,
+             creeping = RegularisedFriction(0.3, 1.5).at(slip, false).traction,
+             weakening = SlipWeakening(0.3, {0.5, 2e-6}, kSpring).at(slip, false).traction;
+  ASSERT_GT((coulomb - creeping).norm(), 1e4);  // else the law that is chosen cannot be seen
+  ASSERT_GT((coulomb - weakening).norm(), 1e4);
+  EXPECT_EQ(traction({.coefficient = 0.3}), coulomb);
+  EXPECT_EQ(traction({.coefficient = 0.3, .transition_speed = 1.5}), creeping);
+  EXPECT_EQ(traction({.coefficient = 0.3, .at_rest = StaticFriction{0.5, 2e-6}}), weakening);
+  EXPECT_EQ(friction_law({.coefficient = 0}, kSpring), nullptr);
+  // Held at rest, and free once it slides.
+  EXPECT_NE(friction_law({.coefficient = 0, .at_rest = StaticFriction{0.5, 2e-6}}, kSpring), nullptr);
 }
 
 /// One point under Coulomb's and the regularised law: the traction by hand, and its derivatives by differences, where

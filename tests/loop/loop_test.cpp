@@ -420,6 +420,32 @@ TEST_F(Loop, AFunctionIsFoundByHowTheChannelsMoveTogether) {
   for (const Mechanism& m : one_function(nothing, base)) EXPECT_GT(m.criterion, base - Rules{}.tie);
 }
 
+/// Noise of a recorded input shrinks what follows it, as an error in proportion to the record would.
+TEST_F(Loop, NoiseOfAnInputThatDeclaresNoneIsNoFunctionOfIt) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> gauss;
+  const auto recorded = [&](const std::function<double(double)>& error) {
+    return case_of(changed(csv({.shots = 300}), "", [&](int, std::vector<std::string>& cells) {
+      std::string& toe = cells[kToeOffset];
+      toe = fmt::format("{:.1f}", std::stod(toe) + error(std::stod(toe)));
+    }));
+  };
+  const auto likeliest = [](ShotCase& c) {
+    double base = 0;
+    const std::vector<Mechanism> found = one_function(c, base);
+    const bool one = !found.empty() && found.front().criterion + Rules{}.tie < base;
+    return one ? found.front().acts + " along " + found.front().along : "";
+  };
+  ShotCase noisy = recorded([&](double) { return 3 * gauss(random); });
+  ShotCase exact = noisy;
+  exact.input_noise["impact_toe_mm"] = 1e-3;
+  ASSERT_EQ(likeliest(exact), "an error of impact_toe_mm along impact_toe_mm") << "declared as exact it is a function";
+  EXPECT_EQ(likeliest(noisy), "");
+  // An error of another form is one.
+  ShotCase bent = recorded([](double toe) { return 5 * std::sin(toe / 4); });
+  EXPECT_EQ(likeliest(bent), "an error of impact_toe_mm along impact_toe_mm");
+}
+
 TEST_F(Loop, AStepThatDiffersOverTheFaceIsNoDrift) {
   for (const unsigned seed : {1U, 5U, 6U}) {
     ShotCase c = case_of(csv({.shots = 60, .cracked = -0.006, .crack = 0.01, .seed = seed}));

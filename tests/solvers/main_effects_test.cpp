@@ -49,6 +49,26 @@ TEST(MainEffects, ACurveThatTurnsHasAValueBetweenItsEnds) {
   EXPECT_FALSE(bent->factors[0].between);
 }
 
+/// Three by three points hold the squares of both factors: a valley is no reason to name the slight slope across it.
+TEST(MainEffects, AFullFactorialOfFewPointsKeepsItsSquares) {
+  const std::vector<EffectFactor> f = grid(3);
+  const auto valley = main_effects(f, response(f, [](double u, double v) { return 3 * u * u + 0.3 * v; }));
+  ASSERT_TRUE(valley);
+  EXPECT_TRUE(valley->full_factorial);
+  // Variances over -1, 0, 1: of u^2 2/9, of v 2/3.
+  const double curved = 9 * 2.0 / 9, straight = 0.09 * 2.0 / 3;
+  EXPECT_EQ(valley->order.front(), 0U);
+  EXPECT_NEAR(valley->factors[0].share, curved / (curved + straight), 1e-9);
+  EXPECT_NEAR(valley->factors[1].share, straight / (curved + straight), 1e-9);
+
+  std::vector<EffectFactor> gap = f;  // a point of it is missing
+  for (EffectFactor& factor : gap) factor.x.pop_back();
+  const auto lines = main_effects(gap, response(gap, [](double u, double v) { return 3 * u * u + 0.3 * v; }));
+  ASSERT_TRUE(lines);
+  EXPECT_FALSE(lines->full_factorial);
+  EXPECT_LT(lines->predicted, 0.2) << "lines predict no valley, and say so";
+}
+
 TEST(MainEffects, FactorsThatVaryTogetherHaveNoSharesOfTheirOwn) {
   std::mt19937 random(5);
   std::normal_distribution<double> gauss;

@@ -1,0 +1,17 @@
+/// Digits of a number beside its standard deviation.
+#pragma once
+
+#include <string>
+
+namespace hosel::post {
+
+/// Both end at the same decimal place: the second digit of the deviation.
+struct Digits {
+  std::string value, deviation;
+};
+/// `sd` not positive or not finite: four digits of the value, and "–".
+Digits digits(double value, double sd);
+/// "1.234 ± 0.056"
+std::string with_deviation(double value, double sd);
+
+}  // namespace hosel::post

@@ -1,0 +1,28 @@
+#include "post/digits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace hosel::post {
+namespace {
+
+TEST(Digits, EndAtTheSecondDigitOfTheDeviation) {
+  const auto said = [](double x, double sd) { return with_deviation(x, sd); };
+  EXPECT_EQ(said(1.23456, 0.0561), "1.235 ± 0.056");
+  EXPECT_EQ(said(-2738.4, 35.2), "-2738 ± 35");
+  EXPECT_EQ(said(0.86, 0.25), "0.86 ± 0.25");
+  EXPECT_EQ(said(12.3, 3.4), "12.3 ± 3.4");
+  EXPECT_EQ(said(0, 0.0012), "0.0000 ± 0.0012");
+  EXPECT_EQ(said(3.2156e7, 2.1e5), "3.22e+07 ± 2.1e+05");
+  EXPECT_EQ(said(2.15e-9, 3e-11), "2.150e-09 ± 3.0e-11");
+}
+
+TEST(Digits, FourDigitsWithoutADeviation) {
+  for (const double sd : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(with_deviation(1.23456, sd), "1.235 ± –");
+  EXPECT_EQ(with_deviation(std::numeric_limits<double>::quiet_NaN(), 1), "– ± –");
+}
+
+}  // namespace
+}  // namespace hosel::post
