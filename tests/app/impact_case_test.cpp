@@ -1,6 +1,7 @@
 // What `hosel run` on an impact leaves on disk, opened as a person would.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkFieldData.h>
@@ -17,6 +18,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "build_info.hpp"
 #include "child.hpp"
@@ -70,6 +72,28 @@ vtkSmartPointer<vtkDataSet> read(const fs::path& file) {
   reader->Update();
   EXPECT_EQ(reader->GetErrorCode(), 0u) << file;
   return reader->GetOutput();
+}
+
+/// Names that docs/outputs.md does not have.
+std::set<std::string> not_in_manual(const std::vector<std::string>& names) {
+  const std::string page = content(fs::path(HOSEL_SOURCE_DIR) / "docs" / "outputs.md");
+  std::set<std::string> out;
+  for (const std::string& name : names)
+    if (page.find("`" + name + "`") == std::string::npos) out.insert(name);
+  return out;
+}
+
+/// Of the point, cell and field arrays of the first frame of every series.
+std::vector<std::string> array_names(const fs::path& vtk) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::directory_iterator(vtk)) {
+    if (entry.path().extension() != ".pvd") continue;
+    const auto data = read(frames(entry.path()).at(0).file);
+    for (vtkFieldData* arrays : {static_cast<vtkFieldData*>(data->GetPointData()),
+                                 static_cast<vtkFieldData*>(data->GetCellData()), data->GetFieldData()})
+      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) out.emplace_back(arrays->GetArrayName(i));
+  }
+  return out;
 }
 
 struct Array {
@@ -165,6 +189,22 @@ TEST(ImpactCase, EverySeriesReadsBackWithNamesComponentsUnitsAndTimes) {
   double bounds[6];
   face->GetBounds(bounds);
   EXPECT_GT(bounds[1] - bounds[0], 2e-3);
+
+  // The manual has every name: columns, arrays, members of the summary.
+  const std::set<std::string> none;
+  const std::vector<std::string> columns = post::read_csv(out / "history.csv").names, arrays = array_names(out / "vtk");
+  ASSERT_GT(columns.size(), 20u);
+  ASSERT_GT(arrays.size(), 30u);
+  EXPECT_EQ(not_in_manual(columns), none);
+  EXPECT_EQ(not_in_manual(arrays), none);
+  const auto summary = nlohmann::json::parse(content(out / "summary.json"));
+  const nlohmann::json &launch = summary.at("models").at("fe-full-club"), &solution = launch.at("solution");
+  std::vector<std::string> members;
+  for (const nlohmann::json* table :
+       {&launch, &solution, &solution.at("energy_J"), &summary.at("flights").at("fe-full-club")})
+    for (const auto& [name, value] : table->items()) members.push_back(name);
+  ASSERT_GT(members.size(), 40u);
+  EXPECT_EQ(not_in_manual(members), none);
 }
 
 /// The picture of the ball at the largest force, in the page of a finished run; empty where it has none.
