@@ -1,13 +1,16 @@
 #include "post/figure.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <stdexcept>
 
 #include "post/file.hpp"
@@ -435,15 +438,23 @@ std::string draw(const Figure& figure, const fs::path& stem, bool panels, const 
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addchdir_np(&actions, work.path().c_str());
+  // Its warnings are of the script, not of the run.
+  constexpr const char* said = "gnuplot.log";
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, said, O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t child = 0;
   const int refused = posix_spawn(&child, word.c_str(), &actions, nullptr, argv, environ);
   posix_spawn_file_actions_destroy(&actions);
+  const auto failed = [&] {
+    std::string last;
+    std::ifstream log(work.path() / said);
+    for (std::string line; std::getline(log, line);)
+      if (!line.empty()) last = ": " + line;
+    return "no picture: gnuplot could not draw " + gp.string() + last;
+  };
   int status = 0;
-  if (refused || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return "no picture: gnuplot could not draw " + gp.string();
+  if (refused || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) return failed();
   for (const std::string& file : made) {
-    if (!fs::is_regular_file(fs::symlink_status(work.path() / file)))
-      return "no picture: gnuplot could not draw " + gp.string();
+    if (!fs::is_regular_file(fs::symlink_status(work.path() / file))) return failed();
     // gnuplot ends with 0 on a disk that is full.
     if (!has_its_end(work.path() / file))
       throw std::runtime_error(

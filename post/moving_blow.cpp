@@ -165,11 +165,15 @@ std::string json_for_viewer(const MovingBlow& blow) {
     out["face_axes"].push_back({blow.face_axes(0, k), blow.face_axes(1, k), blow.face_axes(2, k)});
 
   using Values = std::vector<float> MovingBlow::Instant::*;
-  const auto most = [&](Values of) {  // one scale for all bodies
+  // One scale for all bodies; at first touch few points carry what there is, and their pressure is no peak of the blow.
+  constexpr double first_touch = 0.1;  // of the largest force
+  const auto most = [&](Values of) {
     float x = 0;
-    for (const MovingBlow::Frame* f : frames)
+    for (const MovingBlow::Frame* f : frames) {
+      if (f->force < first_touch * largest) continue;
       for (const MovingBlow::Instant& i : f->bodies)
         for (const float v : i.*of) x = std::max(x, v);
+    }
     return x > 0 ? double(x) : 1.0;
   };
   const double stress = most(&MovingBlow::Instant::stress), pressure = most(&MovingBlow::Instant::pressure);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
@@ -59,7 +58,6 @@ struct Field {
     Eigen::VectorXd variance;  // mean variance over the knots is one
   };
   std::vector<Basis> smoothness;
-  std::optional<Basis> straight = {};  ///< a straight line over that quantity, where it is one column
 };
 
 double matern(double r) {
@@ -133,9 +131,8 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
       if (c->stem == stem(Input::impact_high)) high = x;
     }
     smooth(line.name, {x}, false);
-    const auto product = [&](auto i, auto j) { return x[i] * x[j]; };
-    all.back().straight = basis(covariance(product), knots);
     if (line.name != "shot") continue;
+    const auto product = [&](auto i, auto j) { return x[i] * x[j]; };
     all.push_back({.along = line.name, .smoothness = {basis(covariance(product), knots)}});  // a steady drift
     // A walk: steps and slow wander.
     const double first = x.minCoeff();
@@ -222,6 +219,45 @@ Found likeliest(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen:
   return best;
 }
 
+/// From each record to the mean over these rows [SI]; a missing one is at it.
+Eigen::VectorXd towards_mean(const Column& column, const std::vector<int>& row_of, const std::vector<int>& rows) {
+  Eigen::VectorXd x(Eigen::Index(rows.size()));
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    x[Eigen::Index(i)] = column.value[std::size_t(row_of[std::size_t(rows[i])])];
+    if (std::isfinite(x[Eigen::Index(i)])) sum += x[Eigen::Index(i)], ++count;
+  }
+  for (double& v : x) v = std::isfinite(v) ? sum / count - v : 0;
+  return x;
+}
+
+/// What noise of inputs does to whitened residuals (width x rows), by its shares in their variances of largest
+/// posterior density, none below zero. `by`: of each input, by a share of one; `w` as above.
+Eigen::MatrixXd by_noise(const Eigen::MatrixXd& z, const std::vector<Eigen::MatrixXd>& by, const Eigen::VectorXd& w) {
+  constexpr double usual = 0.05;  // an error of a quarter of the spread
+  const Eigen::VectorXd root = w.cwiseSqrt(), seen = (z * root.asDiagonal()).reshaped();
+  Eigen::MatrixXd columns(z.size(), Eigen::Index(by.size()));
+  for (std::size_t k = 0; k < by.size(); ++k)
+    columns.col(Eigen::Index(k)) = usual * (by[k] * root.asDiagonal()).reshaped();
+  std::vector<Eigen::Index> used(by.size());
+  std::iota(used.begin(), used.end(), Eigen::Index(0));
+  Eigen::VectorXd share;
+  for (bool again = true; again && !used.empty();) {
+    const Eigen::MatrixXd C = columns(Eigen::all, used);
+    const auto n = Eigen::Index(used.size());
+    const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n) + C.transpose() * C;
+    share = dense::Cholesky(A).solve(Eigen::VectorXd(-C.transpose() * seen));
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (share[k] > 0) kept.push_back(used[std::size_t(k)]);
+    again = kept.size() < used.size();
+    used = std::move(kept);
+  }
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(z.rows(), z.cols());
+  for (std::size_t k = 0; k < used.size(); ++k) out += usual * share[Eigen::Index(k)] * by[std::size_t(used[k])];
+  return out;
+}
+
 bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
   std::vector<std::size_t> by(order.size());
   for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;
@@ -268,12 +304,19 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   const solvers::Loss loss = loss_of_shot(model.width());
   const Eigen::MatrixXd z = model.whitened(rows, base.model, base.p).reshaped(width, n),
                         after = model.whitened(rows, chosen.model, chosen.p).reshaped(width, n);
-  Eigen::VectorXd weight(n);
-  double of_chosen = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    weight[i] = loss.weight(after.col(i).squaredNorm());
-    of_chosen += loss(after.col(i).squaredNorm());
-  }
+  // The deviance of residuals as fits count it, and the weights by it.
+  const auto weighed = [&](const Eigen::MatrixXd& of, Eigen::VectorXd& w) {
+    double deviance = 0;
+    w.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double square = of.col(i).squaredNorm();
+      w[i] = loss.weight(square);
+      deviance += loss(square);
+    }
+    return deviance;
+  };
+  Eigen::VectorXd weight, w;
+  const double of_chosen = weighed(after, weight);
   const std::vector<Way> every = ways(model, shots);
   const std::vector<Field> functions = fields(model, shots, row_of, rows, session);
   std::vector<double> order;
@@ -283,14 +326,30 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
     std::size_t way, field;
     Found found;
   };
-  std::vector<std::vector<Trial>> of_way(every.size());
   std::vector<Eigen::MatrixXd> columns(every.size());
   for_all(std::size_t(0), every.size(), [&](std::size_t k) {
     const Fit with = beside(base, &every[k].form);
     columns[k] = model.jacobian(rows, with.model, with.p).rightCols(1).reshaped(width, n);
+  });
+  // Inputs that declare no noise have some: a record is in the mean too far from the mean of all, by the share of noise
+  // in their variance. What that takes up is no function.
+  std::vector<Eigen::MatrixXd> shrinks;
+  for (std::size_t k = 0; k < every.size(); ++k)
+    if (every[k].kind == Way::Kind::input && !noisy.contains(every[k].column) && columns[k].norm() > 1e-9)
+      shrinks.emplace_back(columns[k] * towards_mean(*shots.find(every[k].column), row_of, rows).asDiagonal() /
+                           every[k].form.parameters.front().scale);
+  Eigen::MatrixXd left = z;
+  for (int pass = 0; pass < 3 && !shrinks.empty(); ++pass) {
+    weighed(left, w);
+    left = z + by_noise(z, shrinks, w);
+  }
+  const double bare = weighed(z, w) - weighed(left, w);
+
+  std::vector<std::vector<Trial>> of_way(every.size());
+  for_all(std::size_t(0), every.size(), [&](std::size_t k) {
     if (!(columns[k].norm() > 1e-9)) return;
     for (std::size_t f = 0; f < functions.size(); ++f)
-      of_way[k].push_back({k, f, likeliest(z, columns[k], weight, functions[f])});
+      of_way[k].push_back({k, f, likeliest(left, columns[k], weight, functions[f])});
   });
   std::vector<Trial> trials;
   for (auto& t : of_way)
@@ -299,46 +358,22 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
   if (trials.size() > 12) trials.resize(12);
 
-  // The deviance as fits count it: each with the weights of its own residual.
-  const auto criterion = [&](const Eigen::MatrixXd& j, const Field& field, Found& found) {
-    double deviance = 0;
-    for (int pass = 0; pass < 3; ++pass) {
-      Eigen::VectorXd w(n);
-      deviance = 0;
-      Eigen::MatrixXd left = z;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        left.col(i) += j.col(i) * found.g[i];
-        w[i] = loss.weight(left.col(i).squaredNorm());
-        deviance += loss(left.col(i).squaredNorm());
-      }
-      if (pass == 2) break;
-      Found again = likeliest(z, j, w, field);
-      if (!again.g.size()) break;
-      found = std::move(again);
-    }
-    return chosen.deviance + deviance - of_chosen + found.price + kPrice;
-  };
-  // Noise of an input that none is declared of is an error in proportion to what is recorded.
-  const auto as_noise = [&](const Trial& t) {
-    const Way& way = every[t.way];
-    const Field& field = functions[t.field];
-    if (way.kind != Way::Kind::input || way.column != field.along || !field.straight || noisy.contains(way.column))
-      return std::numeric_limits<double>::infinity();
-    const Field line{.along = field.along, .smoothness = {*field.straight}};
-    Found found = likeliest(z, columns[t.way], weight, line);
-    return found.g.size() ? criterion(columns[t.way], line, found) : std::numeric_limits<double>::infinity();
-  };
   std::vector<Mechanism> out;
   for (Trial& t : trials) {
     const Eigen::MatrixXd& j = columns[t.way];
-    const double of_trial = criterion(j, functions[t.field], t.found);
-    if (as_noise(t) < of_trial + tie) continue;
+    double deviance = weighed(left + j * t.found.g.asDiagonal(), w);
+    for (int pass = 0; pass < 2; ++pass) {
+      Found again = likeliest(left, j, w, functions[t.field]);
+      if (!again.g.size()) break;
+      t.found = std::move(again);
+      deviance = weighed(left + j * t.found.g.asDiagonal(), w);
+    }
     Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along, .step = functions[t.field].step};
     const Eigen::VectorXd moved = (j * t.found.g.asDiagonal()).rowwise().squaredNorm();
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
     m.channel = int(most);
-    m.criterion = of_trial;
+    m.criterion = chosen.deviance + deviance + bare - of_chosen + t.found.price + kPrice;
     m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
     out.push_back(std::move(m));
   }

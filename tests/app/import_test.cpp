@@ -389,10 +389,12 @@ INSTANTIATE_TEST_SUITE_P(
         Layout{"SummariesUnderDates",
                "Date,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
                "2024-05-12 10:01,7i,115,82,16,6400,22\n2024-05-12 10:02,7i,116,82,16,6500,22\n"
+               "2024-05-12 10:03,7i,115,81,16,6400,21\n2024-05-12 10:04,7i,116,83,16,6600,22\n"
+               "2024-05-12 10:05,7i,117,83,16,6500,22\n"
                "Average,7i,115.5,82,16,6450,22\nStd. Dev.,7i,0.7,0,0,71,0\nSession average,7i,115.5,82,16,6450,22\n"
                "Max,7i,116,82,16,6500,22\n",
                "",
-               {{"ball_speed_mph", {115, 116}}},
+               {{"ball_speed_mph", {115, 116, 115, 116, 117}}},
                {"4 summary rows"}},
         Layout{"SessionsByNameMayBeCalledSo",
                "Session,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
