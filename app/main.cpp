@@ -137,7 +137,9 @@ int main(int argc, char** argv) {
   run_command->add_flag("--force", a.force, "overwrite a finished run");
   run_command->add_flag("--quiet", a.quiet, "no progress, no tables");
   run_command->add_flag("--strict", a.strict, "fail, instead of warning, where the numbers are in doubt");
-  run_command->add_option("--units", a.units, "units of tables, of pages and of flown distances: metric (m/s, m) or golf (mph, yards)")
+  run_command
+      ->add_option("--units", a.units,
+                   "units of tables, of pages and of flown distances: metric (m/s, m) or golf (mph, yards)")
       ->check(CLI::IsMember({"metric", "golf"}));
   run_command->add_option("--log", a.log, "a second log file besides OUT/log.txt");
   run_command->callback([&] { run(a); });

@@ -168,17 +168,15 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
-/// A mean that is off beside another regressor of its channel is a part of what follows that: it is told after it.
-void means_last(std::vector<Location>& places) {
-  const auto mean_of_more = [&](const Location& mean) {
-    return mean.regressor == "constant" && std::ranges::any_of(places, [&](const Location& l) {
-             return l.channel == mean.channel && !l.regressor.empty() && l.regressor != mean.regressor;
-           });
-  };
-  std::vector<Location> first, last;
-  for (const Location& l : places) (mean_of_more(l) ? last : first).push_back(l);
-  first.insert(first.end(), last.begin(), last.end());
-  places = std::move(first);
+/// A mean that is off beside another regressor of its channel is a part of what follows that: it is told behind it.
+void means_behind(std::vector<Location>& places) {
+  for (auto mean = places.begin(); mean != places.end();) {
+    const auto follows = std::find_if(mean + 1, places.end(), [&](const Location& l) {
+      return l.channel == mean->channel && !l.regressor.empty() && l.regressor != mean->regressor;
+    });
+    if (mean->regressor == "constant" && follows != places.end()) std::rotate(mean, mean + 1, follows + 1);
+    else ++mean;
+  }
 }
 
 /// Before and after, per row and per channel.
@@ -357,7 +355,7 @@ void conclude(const Study& study, LoopResult& result) {
     result.notes.push_back(fmt::format("{}: has no influence on these channels", e));
   result.minimum_detectable = minimum_detectable(problem, s.base, study.candidates, study.rules);
   result.likeness = likeness(problem, after, study.candidates);
-  means_last(result.unexplained);
+  means_behind(result.unexplained);
   result.next = problem.next_experiment(result);
   result.selection.chosen = some_kept ? kept.fit : chosen;
   result.covariance = covariance(problem, Part::train, result.selection.chosen);

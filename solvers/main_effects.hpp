@@ -33,10 +33,11 @@ struct MainEffects {
 };
 
 /// Least squares of the response on a constant and, for each factor, Legendre polynomials of first and second degree
-/// (first alone where it has two values, or where fewer than three points an unknown do not fill a grid), or one level against the others. A share is the variance of
-/// the factor's fitted part over the design's points, over that of the response: of independent factors, its
-/// first-order Sobol index (Sudret 2008). Intervals: jackknife over groups of points left out (Efron and Stein 1981).
-/// Nothing where the response is the same everywhere or where fewer points than unknowns plus two are there.
+/// (first alone where it has two values, or where fewer than three points an unknown do not fill a grid), or one level
+/// against the others. A share is the variance of the factor's fitted part over the design's points, over that of the
+/// response: of independent factors, its first-order Sobol index (Sudret 2008). Intervals: jackknife over groups of
+/// points left out (Efron and Stein 1981). Nothing where the response is the same everywhere or where fewer points than
+/// unknowns plus two are there.
 std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors, const std::vector<double>& response);
 
 }  // namespace hosel::solvers

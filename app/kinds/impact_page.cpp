@@ -21,6 +21,12 @@ const post::LaunchColumn* find(const ImpactStory& s, std::string_view title) {
   return it == s.columns.end() ? nullptr : &*it;
 }
 
+/// "± 0.02": a bound, so that its last digit is rounded up, and none is zero.
+std::string bound(double error, int decimals) {
+  const double digit = std::pow(10, -decimals);
+  return fmt::format("± {:.{}f}", std::max(std::ceil(error / digit), 1.0) * digit, decimals);
+}
+
 /// Which side of the target a signed quantity says; what prints as zero says none.
 const char* side(double x, double rounding) {
   return x < -rounding ? "left of the target" : x > rounding ? "right of the target" : "at the target";
@@ -53,7 +59,7 @@ void answer(Output& out, const ImpactStory& s) {
   const auto numerics = [&](const post::Channel* of, double si, int decimals) {
     if (!c.coarser) return std::string();
     const double apart = post::difference(*of, (l.*of->value)() / of->si, ((*c.coarser).*of->value)() / of->si);
-    return fmt::format("± {:.{}f} by the numerics", std::abs(apart) * of->si / si, decimals);
+    return bound(std::abs(apart) * of->si / si, decimals) + " by the numerics";
   };
   const auto note = [&](std::string_view channel, double si, int decimals, std::string_view unit) {
     const post::Channel* of = post::find_channel(channel);
@@ -97,7 +103,7 @@ void answer(Output& out, const ImpactStory& s) {
   for (const post::FlightChannel& f : post::flight_channels(c.flight->unit))
     if (const auto x = f.value(*c.flight); x && (f.name == "carry" || f.name == "total" || f.name == "side")) {
       const auto coarser = c.coarser_flight ? f.value(*c.coarser_flight) : std::nullopt;
-      const std::string off = coarser ? fmt::format("± {:.1f} by the numerics", std::abs(*x - *coarser) / f.si) : "",
+      const std::string off = coarser ? bound(std::abs(*x - *coarser) / f.si, 1) + " by the numerics" : "",
                         size = fmt::format("{:.1f} {}", (f.name == "side" ? std::abs(*x) : *x) / f.si, f.unit);
       page.answer(std::string(f.name), size, f.name == "side" ? beside(side(*x / f.si, 0.05), off) : off);
     }
@@ -166,7 +172,7 @@ std::string shaft_sentence(const ImpactStory& s) {
   std::vector<std::string> parts;
   // The error of a difference is how far it moves with the numerics of both: they have most of theirs in common.
   const auto add = [&](double change, std::optional<double> coarser, int decimals, std::string_view what) {
-    const std::string error = coarser ? fmt::format(" ± {:.{}f}", std::abs(change - *coarser), decimals) : "";
+    const std::string error = coarser ? " " + bound(std::abs(change - *coarser), decimals) : "";
     parts.push_back(fmt::format("{:+.{}f}{} {}", change, decimals, error, what));
   };
   const auto of_launch = [&](double (Launch::*of)() const, double si, int decimals, std::string_view what) {

@@ -332,9 +332,10 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
     columns[k] = model.jacobian(rows, with.model, with.p).rightCols(1).reshaped(width, n);
   });
   // Inputs that declare no noise have some: a record is in the mean too far from the mean of all, by the share of noise
-  // in their variance. What that takes up is no function.
+  // in their variance. What that takes up is no function. Names had no such help: beside them there is none.
+  const bool alone = chosen.size() == base.size();
   std::vector<Eigen::MatrixXd> shrinks;
-  for (std::size_t k = 0; k < every.size(); ++k)
+  for (std::size_t k = 0; alone && k < every.size(); ++k)
     if (every[k].kind == Way::Kind::input && !noisy.contains(every[k].column) && columns[k].norm() > 1e-9)
       shrinks.emplace_back(columns[k] * towards_mean(*shots.find(every[k].column), row_of, rows).asDiagonal() /
                            every[k].form.parameters.front().scale);
