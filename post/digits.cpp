@@ -25,4 +25,10 @@ std::string with_deviation(double value, double sd) {
   return d.value + " ± " + d.deviation;
 }
 
+std::string beside(double value, double scale, bool sign) {
+  constexpr double round_off = 1e-9, of_zero = 1e-12;
+  if (std::abs(value) <= std::max(round_off * std::abs(scale), of_zero)) return "0";
+  return sign ? fmt::format("{:+.4g}", value) : fmt::format("{:.4g}", value);
+}
+
 }  // namespace hosel::post

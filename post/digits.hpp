@@ -14,4 +14,7 @@ Digits digits(double value, double sd);
 /// "1.234 ± 0.056"
 std::string with_deviation(double value, double sd);
 
+/// Four digits, with the sign where `sign`; zero where it is round-off of numbers of that `scale`, or of zeros.
+std::string beside(double value, double scale, bool sign = false);
+
 }  // namespace hosel::post

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -89,12 +90,13 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
     if (any_cause) shown.rows[0].push_back("differs most there");
     for (std::size_t o = 0; o < table.outputs.size(); ++o) {
       const StudySeries &mine = table.at(m, o), &theirs = against[m * table.outputs.size() + o];
-      double mean = 0, square = 0, largest = 0;
+      double mean = 0, square = 0, largest = 0, scale = 0;
       std::size_t where = 0, count = 0;
       for (std::size_t d = 0; d < mine.y.size(); ++d) {
         const double difference = table.difference(o, mine.y[d], theirs.y[d]);
         if (!std::isfinite(difference) || (reference.by && table.design.cells(d)[*reference.by] != group)) continue;
         if (count++ == 0 || std::abs(difference) > std::abs(largest)) largest = difference, where = d;
+        scale = std::max({scale, std::abs(mine.y[d]), std::abs(theirs.y[d])});
         mean += difference;
         square += difference * difference;
       }
@@ -119,8 +121,8 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
         cause = fmt::format("{} {:+.1f} % ({:.3g} against {:.3g})", post::label(table.outputs[q]), share, a, b);
       }
       auto& row = shown.rows.emplace_back();
-      row = {post::label(table.outputs[o]), fmt::format("{:+.4g}", mean), fmt::format("{:.4g}", rms),
-             fmt::format("{:+.4g}", largest), table.design.said(where)};
+      row = {post::label(table.outputs[o]), post::beside(mean, scale, true), post::beside(rms, scale),
+             post::beside(largest, scale, true), table.design.said(where)};
       if (any_cause) row.push_back(cause);
       nlohmann::json j = {
           {"output", table.outputs[o]},       {"points", count}, {"mean", mean}, {"rms", rms}, {"largest", largest},

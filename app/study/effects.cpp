@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -216,7 +217,8 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     summary["range"][series.name] = {low, high};
     summary["mean"][series.name] = mean;
     auto& row = shown.rows.emplace_back();
-    row = {series.spoken, fmt::format("{:.4g}", low), fmt::format("{:.4g}", mean), fmt::format("{:.4g}", high)};
+    const double scale = std::max(std::abs(low), std::abs(high));
+    row = {series.spoken, post::beside(low, scale), post::beside(mean, scale), post::beside(high, scale)};
     const std::string off = effects.emulators[s] ? fmt::format("{:.2g}", effects.emulators[s]->error()) : "-";
     if (const auto& e = effects.emulators[s])
       summary["emulator"][series.name] = {

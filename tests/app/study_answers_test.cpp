@@ -286,6 +286,20 @@ TEST(StudyAnswers, SaysWhatChangesNoAnswer) {
   EXPECT_EQ(said("head.mass_kg").find("No answer depends on"), std::string::npos);
 }
 
+/// A few scattered points over a valley: lines predict none of it, and no parameter is named.
+TEST(StudyAnswers, NamesNoParameterThatPredictsNothing) {
+  const fs::path dir = fresh_directory("study_scattered");
+  write(dir / "rows.csv",
+        "delivery.impact_toe_mm,head.mass_kg\n-20,0.2\n-14,0.201\n-8,0.199\n-3,0.201\n4,0.199\n9,0.2\n15,0.199\n20,"
+        "0.201\n");
+  const Outcome o = run(dir, study("", "[rows]\nfile = \"rows.csv\"\n"));
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("What moves ball speed [m/s] most these points do not tell: one parameter at a time predicts "),
+            std::string::npos)
+      << o.text;
+  EXPECT_EQ(o.text.find("goes most with impact"), std::string::npos) << o.text;
+}
+
 /// Each variant is compared with one of them, and the title says with which.
 TEST(StudyAnswers, AComparisonOfVariantsNamesTheOne) {
   const fs::path dir = fresh_directory("study_title");

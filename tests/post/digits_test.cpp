@@ -24,5 +24,12 @@ TEST(Digits, FourDigitsWithoutADeviation) {
   EXPECT_EQ(with_deviation(std::numeric_limits<double>::quiet_NaN(), 1), "– ± –");
 }
 
+TEST(Digits, RoundOffIsZero) {
+  EXPECT_EQ(beside(1.761e-10, 60), "0");
+  EXPECT_EQ(beside(-2.8734e-14, 3e-14), "0");
+  EXPECT_EQ(beside(-2.87341e-8, 3e-8), "-2.873e-08") << "a compliance [m/N]";
+  EXPECT_EQ(beside(0.25, 60, true), "+0.25");
+}
+
 }  // namespace
 }  // namespace hosel::post
