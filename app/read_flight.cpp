@@ -275,8 +275,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
     const std::string text = fmt::format(
         "{}: {:.0f} % of the flight is outside the range of {} ({}); the flight has {}", name, 100 * flight.outside,
         law.name, region(law.reynolds, law.spin), region(flight.reynolds, flight.spin));
-    out.say(text);
-    out.page().doubt(text);
+    out.warn(text);
   }
   const std::string file = out.file_name(name);
   if (draw) out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);

@@ -10,6 +10,7 @@
 #include "golf/units.hpp"
 #include "loop/rules.hpp"
 #include "post/csv.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -235,10 +236,10 @@ std::string beside_noise(const LoopResult& r) {
       std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 0.975) / worst->after.holdout);
   if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return " The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
-  const std::string unit = name.unit ? " " + std::string(name.unit->suffix) : "";
+  const std::string unit = name.unit ? " " + post::symbol(name.unit->suffix) : "";
   return fmt::format(
       " Held out, {} is off by {:.3g}{} (RMS), the noise of readings and inputs makes {:.3g}{}: {:.1f} times.",
-      name.stem, worst->after.holdout_rmse, unit, worst->expected, unit, ratio(*worst));
+      post::spoken(name.stem), worst->after.holdout_rmse, unit, worst->expected, unit, ratio(*worst));
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ Digits digits(double value, double sd) {
   // As a plain number where it is short.
   if (first < 6 && last > -7) {
     const int decimals = std::max(0, -last);
-    return {fmt::format("{:.{}f}", value, decimals), fmt::format("{:.{}f}", sd, decimals)};
+    // What rounds to zero has no sign.
+    const double rounded = std::abs(value) < 0.5 * std::pow(10, -decimals) ? 0 : value;
+    return {fmt::format("{:.{}f}", rounded, decimals), fmt::format("{:.{}f}", sd, decimals)};
   }
   return {fmt::format("{:.{}e}", value, std::max(0, first - last)), fmt::format("{:.1e}", sd)};
 }

@@ -148,7 +148,8 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     // A field that is constant to round-off is shown as one colour, not as noise.
     const double size = std::max(std::abs(low), std::abs(high));
     if (p.map_symmetric) {
-      high = std::max(size > 1e-9 && std::isfinite(size) ? size : p.map_reach > 0 ? 0 : 1, p.map_reach);
+      const double reach = std::max(std::isfinite(size) ? size : 0, p.map_reach);
+      high = reach > 1e-9 ? reach : 1;
       low = -high;
     } else if (!(high - low > 1e-9 * size)) {
       low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;

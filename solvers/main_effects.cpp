@@ -83,13 +83,21 @@ std::optional<double> turn(const MainEffect& e, double slope, double curvature) 
   return beyond > least * std::abs(e.at_high - e.at_low) ? std::optional(there) : std::nullopt;
 }
 
-/// Mean response where a factor has its lowest or its highest value.
-double mean_at(const EffectFactor& f, const VectorXd& y, bool lowest) {
-  const double end = lowest ? std::ranges::min(f.x) : std::ranges::max(f.x);
-  double sum = 0, n = 0;
-  for (std::size_t i = 0; i < f.x.size(); ++i)
-    if (f.x[i] == end) sum += y[Eigen::Index(i)], ++n;
-  return sum / n;
+/// Mean response at each value of a factor, and how many points have it.
+std::map<double, std::pair<double, double>> means_of(const EffectFactor& f, const VectorXd& y) {
+  std::map<double, std::pair<double, double>> out;
+  for (std::size_t i = 0; i < f.x.size(); ++i) {
+    auto& [mean, n] = out[f.x[i]];
+    mean += (y[Eigen::Index(i)] - mean) / ++n;
+  }
+  return out;
+}
+
+/// Variance of those means over that of the response.
+double share_of(const std::map<double, std::pair<double, double>>& means, const VectorXd& y) {
+  double sum = 0;
+  for (const auto& [x, at] : means) sum += at.second * std::pow(at.first - y.mean(), 2);
+  return sum / double(y.size()) / variance(y);
 }
 
 /// Whether every combination of the factors' values stands there equally often.
@@ -143,7 +151,9 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
   std::vector<Eigen::Index> every(static_cast<std::size_t>(n));
   std::iota(every.begin(), every.end(), Eigen::Index(0));
   VectorXd coefficients;
-  const VectorXd whole = shares(blocks, all, y, every, coefficients);
+  VectorXd whole = shares(blocks, all, y, every, coefficients);
+  if (out.full_factorial)  // of any curve, not of a quadratic alone
+    for (std::size_t f = 0; f < factors.size(); ++f) whole[Eigen::Index(f)] = share_of(means_of(factors[f], y), y);
 
   at = 1;
   for (std::size_t f = 0; f < blocks.size(); ++f) {
@@ -153,14 +163,17 @@ std::optional<MainEffects> main_effects(const std::vector<EffectFactor>& factors
     MainEffect& e = out.factors.emplace_back(MainEffect{.share = whole[Eigen::Index(f)],
                                                         .at_low = ordered ? ends[0] : ends.minCoeff(),
                                                         .at_high = ordered ? ends[1] : ends.maxCoeff()});
-    if (ordered && out.full_factorial)
-      e.at_low = mean_at(factors[f], y, true), e.at_high = mean_at(factors[f], y, false);
     if (ordered && columns == 2) e.between = turn(e, coefficients[at], coefficients[at + 1]);
+    if (ordered && out.full_factorial) {
+      const auto means = means_of(factors[f], y);
+      e.at_low = means.begin()->second.first;
+      e.at_high = means.rbegin()->second.first;
+    }
     at += columns;
   }
   constexpr double slack = 0.2;  // a space-filling design of few points has chance correlations
   const double explained = 1 - variance(y - all * coefficients) / variance(y);
-  out.separable = std::abs(whole.sum() - explained) < slack && whole.maxCoeff() < 1 + 1e-9;
+  out.separable = out.full_factorial || (std::abs(whole.sum() - explained) < slack && whole.maxCoeff() < 1 + 1e-9);
   out.order.resize(factors.size());
   std::iota(out.order.begin(), out.order.end(), std::size_t(0));
   std::ranges::stable_sort(out.order, std::greater(), [&](std::size_t f) { return out.factors[f].share; });

@@ -28,7 +28,7 @@ struct MainEffects {
   bool separable = true;            ///< the shares add up to what all factors explain, within a fifth of the variance,
                                     ///< and none is beyond one: those of factors that vary together do not
   bool first_is_certain = false;    ///< the 95 % interval of the first share minus the second lies above zero
-  bool full_factorial = false;      ///< every combination of values equally often: no factor stands for another
+  bool full_factorial = false;      ///< every combination of values equally often: shares and ends by level means
   double predicted = 0;             ///< share of the variance that the effects predict at points left out
 };
 

@@ -281,6 +281,9 @@ void import_shots(const ImportOptions& o) {
   std::string unknown = add_unrecorded(all, turns);
   if (several) show_clubs(all);
   else show(all);
+  for (const Understood& u : all.columns)
+    if (several && u.header == "(nominal)" && u.note.find("zero") != std::string::npos)
+      fmt::print("  {}: {}\n", u.name, u.note);
   if (sideways)
     fmt::print(
         "  woods and irons in one file: the case judges speed, launch angle and spin rate; --club '{}' takes one "

@@ -295,12 +295,23 @@ bool has_digit(const std::string& cell) {
   return std::ranges::any_of(cell, [](unsigned char c) { return std::isdigit(c); });
 }
 
-/// Whether most cells of a column hold a number, as dates do.
+/// "2024-05-12 10:22", "12.05.24", "5/12/2024 8:15 AM", "May 12, 2024", "20240512": two numbers, or one of four digits.
+bool is_date(const std::string& cell) {
+  std::size_t numbers = 0, longest = 0, digits = 0;
+  for (const unsigned char c : cell) {
+    digits = std::isdigit(c) ? digits + 1 : 0;
+    numbers += digits == 1;
+    longest = std::max(longest, digits);
+  }
+  return numbers >= 2 || longest >= 4;
+}
+
+/// Whether most cells of a column are dates.
 bool dated(const std::vector<Row>& rows, std::size_t column) {
-  std::size_t cells = 0, digits = 0;
+  std::size_t cells = 0, dates = 0;
   for (const Row& row : rows)
-    if (column < row.size() && !row[column].empty()) ++cells, digits += has_digit(row[column]);
-  return 2 * digits > cells;
+    if (column < row.size() && !row[column].empty()) ++cells, dates += is_date(row[column]);
+  return 2 * dates > cells;
 }
 
 /// The rows below the header as shots: units, repeated headers, summaries and lines that name a club are taken out.

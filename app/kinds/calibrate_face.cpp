@@ -87,7 +87,7 @@ class CalibrateFaceJob final : public Job {
                                             data, missed));
     constexpr double far = 2;  // beyond it the face has not the form of the fit, or an error is stated too small
     if (missed > far)
-      out.page().doubt(
+      out.warn(
           fmt::format("the face misses the data by {:.1f} of their standard deviations (root mean square): "
                       "the deviations of its parameters say nothing of that",
                       missed));
@@ -130,7 +130,7 @@ class CalibrateFaceJob final : public Job {
       const double fitted = time_of(face, tap.toe, tap.high);
       t.rows.push_back({fmt::format("{:g}, {:g}", 1e3 * tap.toe, 1e3 * tap.high), fmt::format("{:.1f}", 1e6 * tap.time),
                         fmt::format("{:.1f}", 1e6 * fitted),
-                        fmt::format("{:+.1f}", (fitted - tap.time) / target_.tap_sigma + 0.0)});
+                        post::beside(std::round(10 * (fitted - tap.time) / target_.tap_sigma) / 10, 0)});
     }
     return t;
   }

@@ -105,7 +105,7 @@ class IdentifyJob final : public Job {
                   fmt::format("RMS; {:.2f} before", 1e3 * r.held_out->before));
     constexpr double far = 3;  // times; the interval is that of the fitted part
     if (r.held_out && r.held_out->after > far * r.train_after)
-      page.doubt(
+      out.warn(
           fmt::format("held out, the deflection is off by {:.2f} mm, fitted by {:.2f} mm: the interval holds for "
                       "the fitted part of the swing",
                       1e3 * r.held_out->after, 1e3 * r.train_after));

@@ -46,7 +46,6 @@ void answer_bounce(RunPage& page, const Blow& blow, const Launch& l) {
               fmt::format("in the wall's frame, where it struck with {:.2f} m/s", before.norm()));
   page.answer("rebound angle", fmt::format("{:.2f}°", angle(after)),
               fmt::format("from the normal; it struck at {:.2f}°", angle(before)));
-  page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())));
 }
 
 /// The launch in large type, in the unit of speed that the case speaks, the other beneath.
@@ -54,7 +53,8 @@ void answer(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   const post::LaunchColumn& c = s.columns.back();
   const Launch& l = c.launch;
-  if (std::isinf(s.blow.club.head.mass)) return answer_bounce(page, s.blow, l);
+  const bool wall = std::isinf(s.blow.club.head.mass);
+  if (wall) answer_bounce(page, s.blow, l);
   const bool mph = out.page_units() == post::Units::golf;
   const auto numerics = [&](const post::Channel* of, double si, int decimals) {
     if (!c.coarser) return std::string();
@@ -77,8 +77,9 @@ void answer(Output& out, const ImpactStory& s) {
   if (std::isfinite(s.blow.club.head.mass) && club > 0)
     page.answer("smash factor", fmt::format("{:.3f}", v / club),
                 mph ? fmt::format("club {:.1f} mph", club / kMpsPerMph) : fmt::format("club {:.2f} m/s", club));
-  page.answer("launch angle", fmt::format("{:.2f}°", degrees(l.launch_angle())),
-              note("launch_angle", kRadPerDeg, 2, "°"));
+  if (!wall)
+    page.answer("launch angle", fmt::format("{:.2f}°", degrees(l.launch_angle())),
+                note("launch_angle", kRadPerDeg, 2, "°"));
   const auto beside = [](const char* word, const std::string& rest) {
     return rest.empty() ? word : word + ("; " + rest);
   };
@@ -90,10 +91,10 @@ void answer(Output& out, const ImpactStory& s) {
   std::string told = beside(side(degrees(l.azimuth()), 0.005), numerics(azimuth, kRadPerDeg, 2));
   if (const post::MeasuredValue* seen = post::find(s.measured, azimuth))
     told += direction(seen->value, "; measured ") + " " + side(degrees(seen->value), 0.005);
-  page.answer("direction", direction(l.azimuth(), ""), told);
+  if (!wall) page.answer("direction", direction(l.azimuth(), ""), told);
   page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, " rpm"));
   const double axis = degrees(l.spin_axis());
-  if (rpm(l.spin_rate()) > 0.5)
+  if (!wall && rpm(l.spin_rate()) > 0.5)
     page.answer("spin axis", fmt::format("{:.1f}°", axis),
                 beside(axis < -0.05  ? "a draw"
                        : axis > 0.05 ? "a fade"

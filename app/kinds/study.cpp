@@ -232,8 +232,9 @@ class StudyJob final : public PointJob {
       if (missing > 0 && missing < answered)
         out.warn(fmt::format("{}: {} of {} points have none", s.name, missing, answered));
       else if (missing > 0)
-        out.say(fmt::format("{}: no point has it{}", s.name,
-                            s.name.starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
+        out.say(fmt::format(
+            "{}: no point has it{}", s.name,
+            table.outputs[s.output].starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
     }
   }
 

@@ -428,12 +428,12 @@ class TuneJob final : public Job {
         known.condition, scatter));
     constexpr double told = 1.5;  // below it the noise may be declared too small
     if (scatter > told)
-      out.page().doubt(
+      out.warn(
           fmt::format("the tuned model misses the shots by {:.1f} times their declared noise: ± is the "
                       "scatter about it, and contains no error of the model",
                       scatter));
     if (!at_bound.empty())
-      out.page().doubt(fmt::format("at a bound, the shots ask for more: {}", fmt::join(at_bound, ", ")));
+      out.warn(fmt::format("at a bound, beyond which the shots ask: {}", fmt::join(at_bound, ", ")));
     for (const std::string& t : tied) {
       out.say("the data cannot separate " + t);
       out.page().doubt("the data cannot separate " + t);

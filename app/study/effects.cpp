@@ -65,16 +65,28 @@ std::vector<std::size_t> by_total(const StudyEffects& effects, std::size_t serie
   return order;
 }
 
-/// Parameters that change no answer at all, where every combination says so: no model reads them, or the outputs do not
-/// show them.
-std::string without_effect(const StudyEffects& effects, const std::vector<std::string>& columns) {
-  constexpr double rounding = 1e-20;  // of a share, which is a square
-  std::vector<std::string> idle;
-  for (std::size_t f = 0; f < effects.columns.size(); ++f) {
-    const auto still = [&](const auto& e) { return !e || (e->full_factorial && e->factors[f].share < rounding); };
-    const bool any = std::ranges::any_of(effects.of, [](const auto& e) { return e.has_value(); });
-    if (any && std::ranges::all_of(effects.of, still)) idle.push_back(spoken_column(columns[effects.columns[f]]));
+/// Whether no answer changes between points that differ in one column alone, and every point has such another.
+bool changes_nothing(const StudyTable& table, std::size_t column) {
+  constexpr double round_off = 1e-12;  // relative
+  std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
+  for (std::size_t d = 0; d < table.design.size(); ++d) {
+    std::vector<std::string> others = table.design.cells(d);
+    others.erase(others.begin() + std::ptrdiff_t(column));
+    alike[others].push_back(d);
   }
+  for (const auto& [others, points] : alike)
+    for (const StudySeries& s : table.series)
+      for (const std::size_t d : points)
+        if (points.size() < 2 || !(std::abs(s.y[d] - s.y[points.front()]) <= round_off * std::abs(s.y[d])))
+          return false;
+  return true;
+}
+
+/// Parameters that no model reads, or that the outputs do not show.
+std::string without_effect(const StudyTable& table, const StudyEffects& effects) {
+  std::vector<std::string> idle;
+  for (const std::size_t c : effects.columns)
+    if (changes_nothing(table, c)) idle.push_back(spoken_column(table.design.columns()[c]));
   return fmt::format("{}", fmt::join(idle, " or "));
 }
 
@@ -150,11 +162,11 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   switch (told) {
     case Leader::alone: break;
     case Leader::correlated:
-      return fmt::format("What moves {} most cannot be told: {} and others vary together over these points.", answer,
+      return fmt::format("These points do not tell what moves {} most: {} and others vary together over them.", answer,
                          name(0));
     case Leader::unknown:
       return fmt::format(
-          "What moves {} most these points do not tell: one parameter at a time predicts {} % of its variance at "
+          "These points do not tell what moves {} most: one parameter at a time predicts {} % of its variance at "
           "points "
           "left out.",
           answer, percent(std::max(0.0, e->predicted)));
@@ -174,7 +186,8 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   const std::string turning = first.between ? fmt::format(" through {:.4g}", *first.between) : "";
   const bool ordered = !table.design.numbers(effects.columns[order[0]]).empty();
   // The ends of a fitted curve that no answer comes near are no answers.
-  const auto seen = [&](double x) { return x >= spread.low && x <= spread.high; };
+  const double margin = 0.05 * (spread.high - spread.low);
+  const auto seen = [&](double x) { return x >= spread.low - margin && x <= spread.high + margin; };
   std::string text = fmt::format("{} goes most with {}: {}", capital(answer), name(0), share(0));
   if (!ordered) text += fmt::format(", means from {:.4g} to {:.4g}", first.at_low, first.at_high);
   else if (seen(first.at_low) && seen(first.at_high))
@@ -262,7 +275,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
       }
       case Leader::combinations: row.insert(row.end(), {"-", "combinations"}); break;
       case Leader::correlated: row.insert(row.end(), {"-", "they vary together"}); break;
-      case Leader::unknown: row.insert(row.end(), {"-", "too few points"}); break;
+      case Leader::unknown: row.insert(row.end(), {"-", "these points do not tell"}); break;
     }
     if (emulated) row.push_back(off);
     const std::string said = sentence(table, effects, s);
@@ -274,7 +287,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
-  if (const std::string idle = without_effect(effects, columns); several && !idle.empty())
+  if (const std::string idle = without_effect(table, effects); several && !idle.empty())
     out.say(fmt::format("No answer depends on {}.", idle));
   if (!sensitivity.rows.empty()) out.write("sensitivity.csv", sensitivity.csv());
 }

@@ -23,7 +23,7 @@ std::optional<StudyRegression> read_regression(Table root) {
   if (!t) return {};
   StudyRegression r;
   r.file = t->data_file({"shots", "CSV of the measured shots"});
-  constexpr long kMost = 1'000'000'000;  // a number of nine digits
+  constexpr long kMost = 1L << 53;  // a time in microseconds too
   const long first = t->integer({"first_shot", "number of the first shot that is used"}, 0, kMost, 0L);
   const long last = t->integer({"last_shot", "number of the last"}, first, kMost, kMost);
   r.of = t->texts({"of", "measured quantities of the launch, each with its unit"});

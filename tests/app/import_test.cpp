@@ -398,9 +398,10 @@ INSTANTIATE_TEST_SUITE_P(
                {"4 summary rows"}},
         Layout{"SessionsByNameMayBeCalledSo",
                "Session,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
-               "Max effort,7i,115,82,16,6400,22\nAverage swing,7i,116,82,16,6500,22\nwarm up,7i,114,82,16,6500,22\n",
+               "Range 1,7i,115,82,16,6400,22\nAverage day,7i,116,82,16,6500,22\nRange 2,7i,114,82,16,6500,22\n"
+               "Best,7i,117,82,16,6400,21\n",
                "",
-               {{"ball_speed_mph", {115, 116, 114}}},
+               {{"ball_speed_mph", {115, 116, 114, 117}}},
                {}},
         Layout{"InputsThatAreNotRecordedAreUnknown",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Side Angle,Total Spin,Spin Axis\n"

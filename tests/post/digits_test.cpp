@@ -13,6 +13,7 @@ TEST(Digits, EndAtTheSecondDigitOfTheDeviation) {
   EXPECT_EQ(said(-2738.4, 35.2), "-2738 ± 35");
   EXPECT_EQ(said(0.86, 0.25), "0.86 ± 0.25");
   EXPECT_EQ(said(12.3, 3.4), "12.3 ± 3.4");
+  EXPECT_EQ(said(-0.001, 0.12), "0.00 ± 0.12");
   EXPECT_EQ(said(0, 0.0012), "0.0000 ± 0.0012");
   EXPECT_EQ(said(3.2156e7, 2.1e5), "3.216e+07 ± 2.1e+05");
   EXPECT_EQ(said(2.15e-9, 3e-11), "2.150e-09 ± 3.0e-11");

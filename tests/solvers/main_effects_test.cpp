@@ -61,6 +61,14 @@ TEST(MainEffects, AFullFactorialOfFewPointsKeepsItsSquares) {
   EXPECT_NEAR(valley->factors[0].share, curved / (curved + straight), 1e-9);
   EXPECT_NEAR(valley->factors[1].share, straight / (curved + straight), 1e-9);
 
+  // Of any curve, where every combination is there: a step is no quadratic.
+  const std::vector<EffectFactor> g = grid(6);
+  const auto step = main_effects(g, response(g, [](double u, double v) { return (u > 0.8 ? 5 : 0) + 0.1 * v; }));
+  ASSERT_TRUE(step);
+  EXPECT_GT(step->factors[0].share, 0.99);
+  EXPECT_NEAR(step->factors[0].at_low, 0, 1e-9);
+  EXPECT_NEAR(step->factors[0].at_high, 5, 1e-9);
+
   std::vector<EffectFactor> gap = f;  // a point of it is missing
   for (EffectFactor& factor : gap) factor.x.pop_back();
   const auto lines = main_effects(gap, response(gap, [](double u, double v) { return 3 * u * u + 0.3 * v; }));
