@@ -278,12 +278,12 @@ void import_shots(const ImportOptions& o) {
     for (const char* q : {"azimuth", "spin_axis", "sidespin"})
       if (Understood* u = find(q)) sideways = true, u->name.clear(), u->note = "the planar model has no direction";
 
+  const std::size_t recorded = columns.size();
   std::string unknown = add_unrecorded(all, turns);
   if (several) show_clubs(all);
   else show(all);
-  for (const Understood& u : all.columns)
-    if (several && u.header == "(nominal)" && u.note.find("zero") != std::string::npos)
-      fmt::print("  {}: {}\n", u.name, u.note);
+  for (std::size_t k = recorded; several && k < columns.size(); ++k)
+    fmt::print("  {}: {}\n", columns[k].name, columns[k].note);
   if (sideways)
     fmt::print(
         "  woods and irons in one file: the case judges speed, launch angle and spin rate; --club '{}' takes one "

@@ -167,8 +167,7 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
     case Leader::unknown:
       return fmt::format(
           "These points do not tell what moves {} most: one parameter at a time predicts {} % of its variance at "
-          "points "
-          "left out.",
+          "points left out.",
           answer, percent(std::max(0.0, e->predicted)));
     case Leader::combinations:
       return fmt::format("{} goes with combinations of parameters: alone, {} has most with {}.", capital(answer),
@@ -287,8 +286,9 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
-  if (const std::string idle = without_effect(table, effects); several && !idle.empty())
-    out.say(fmt::format("No answer depends on {}.", idle));
+  if (several)
+    if (const std::string idle = without_effect(table, effects); !idle.empty())
+      out.say(fmt::format("No answer depends on {}.", idle));
   if (!sensitivity.rows.empty()) out.write("sensitivity.csv", sensitivity.csv());
 }
 

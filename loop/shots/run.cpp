@@ -31,8 +31,7 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
   if (std::ranges::count(result.adopted, "cg-shift") && std::isinf(face.bulge) && std::isinf(face.roll))
     result.notes.emplace_back(
         "cg-shift: on a flat face a recorded place of impact that is off by as much is the same blow, and no shot "
-        "tells "
-        "them apart: check where the middle of the face was taken to be");
+        "tells them apart: check where the middle of the face was taken to be");
   if (!problem.too_few()) {
     const bool shown = !result.adopted.empty() || !result.ties.empty();
     const Fit &before = result.selection.base, &after = shown ? result.selection.chosen : before;
