@@ -31,5 +31,4 @@ HOSEL_DENSE class PartialPivLU<MatrixXd>;
 HOSEL_DENSE class LLT<MatrixXd>;
 HOSEL_DENSE class LDLT<MatrixXd>;
 HOSEL_DENSE class SelfAdjointEigenSolver<Matrix3d>;
-HOSEL_DENSE class SelfAdjointEigenSolver<Matrix<double, 6, 6>>;
 }  // namespace Eigen
