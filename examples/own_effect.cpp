@@ -14,8 +14,7 @@ using hosel::loop::Shot;
 
 /// The face gives back more the higher it is struck: one parameter, and what it changes of a declared blow.
 std::vector<Parametrisation> lively_above(const hosel::loop::Setting&) {
-  Parametrisation f{.effect = "lively-above",
-                    .what = "restitution in proportion to the height of the strike",
+  Parametrisation f{.what = "restitution in proportion to the height of the strike",
                     .parameters = {{"restitution_per_height", "1/m", 1, -10, 10, 0.5}}};
   f.before = [](std::span<const double> p, Shot& s) {
     s.blow.contact.restitution += p[0] * s.blow.delivery.impact_high;

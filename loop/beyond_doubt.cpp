@@ -120,8 +120,7 @@ std::optional<Candidate> keep(const Study& study, const Fit& start) {
       if (passes) model = model.with(&form);
       if (passes || std::ranges::count(study.base, &form)) p.insert(p.end(), own.begin(), own.end());
     });
-    out.fit = fit(problem, Part::train, model, {Eigen::Map<const Eigen::VectorXd>(p.data(), Eigen::Index(p.size()))}, 1,
-                  true);
+    out.fit = fit(problem, Part::train, model, {as_vector(p)}, 1, true);
   } while (true);
   const Fit& base = study.selection.base;
   if (!(deviance(problem, Part::holdout, out.fit) < deviance(problem, Part::holdout, base) - study.rules.gain))

@@ -21,7 +21,7 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
     const auto signal = [&](double x) {
       probe.p[base.size()] = x;
       Eigen::VectorXd d = whitened(problem, Part::select, probe.model, probe.p);
-      if (!d.size()) return std::nan("");
+      if (!d.size()) return kNaN;
       d -= z0;
       if (Q.cols()) d -= Q * (Q.transpose() * d);
       return d.norm();
@@ -29,7 +29,7 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
     double end = par.max >= -par.min ? par.max : par.min, most = signal(end);
     for (int k = 0; k < 20 && std::isnan(most); ++k) most = signal(end *= 0.5);  // not all that is plausible can happen
     if (!(most > 1e-3)) return {};
-    Detectable out{f->effect, par.name, par.unit, std::nan("")};
+    Detectable out{f->effect, par.name, par.unit, kNaN};
     if (most < wanted) return out;
     std::uintmax_t evaluations = 60;
     const auto [low, high] =

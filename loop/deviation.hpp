@@ -5,15 +5,18 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 namespace hosel::loop {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Least and largest of what `of` gives of each, NaN left out; infinite, the least above the largest, of none.
 template <class Of>
 std::pair<double, double> range_of(const auto& all, const Of& of) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  double low = kInfinity, high = -low;
   for (const auto& x : all) {
     const double value = of(x);
     low = std::min(low, value);
@@ -21,6 +24,17 @@ std::pair<double, double> range_of(const auto& all, const Of& of) {
   }
   return {low, high};
 }
+
+/// The value of a share of some that rise.
+inline double at_share(const std::vector<double>& rising, double share) {
+  return rising[std::size_t(share * double(rising.size() - 1))];
+}
+
+/// Whether so wide a range about a middle is more than round-off; false for infinite ones too.
+inline bool varies(double width, double middle) { return width > 1e-9 * (1 + std::abs(middle)); }
+
+/// Minus the logarithm of the standard normal density at zero.
+inline const double kLogRootTwoPi = 0.5 * std::log(2 * std::numbers::pi);
 
 /// The upper of the two middle values where their number is even; 0 of none.
 inline double median(std::vector<double> x) {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "golf/quantities.hpp"
+#include "loop/deviation.hpp"
 #include "models/fe/fe_change.hpp"
 
 namespace hosel::models {
@@ -39,10 +39,10 @@ struct Parameter {
   double min, max;   ///< plausible range [SI]; zero lies inside or on its edge
   double scale;      ///< a size that matters [SI]: step of finite differences, unit of the optimiser
   /// Standard deviation about zero by another measurement of what is declared [SI]; infinite: none is known.
-  double known = std::numeric_limits<double>::infinity();
+  double known = kInfinity;
   /// How far what is declared is usually off [SI]; its source stands where the effect declares it. Prices what a search
   /// finds (improbability), does not draw its fits; infinite: nothing is known of that.
-  double usual = std::numeric_limits<double>::infinity();
+  double usual = kInfinity;
 
   /// Whether it stands at an end of its range that is not zero.
   bool at_edge(double x) const {
@@ -59,7 +59,7 @@ struct Parameter {
 
 /// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.
 struct Parametrisation {
-  std::string effect;  ///< name of the contract
+  std::string effect;  ///< name of its entry, which gives it
   std::string what;    ///< what this form varies, in words
   std::vector<Parameter> parameters;
   /// How much better than the effect's usual forms an unusual one must fit [units of deviance].
@@ -116,6 +116,10 @@ struct EffectEntry {
   std::vector<Parametrisation> (*on_shots)(const Setting&) = nullptr;
   std::vector<Parametrisation> (*on_tests)(const HistorySetting&) = nullptr;
   OneFunction function = {};
+
+  /// The same with its name; none on data on which it has none.
+  std::vector<Parametrisation> forms(const Setting& setting) const;
+  std::vector<Parametrisation> forms(const HistorySetting& setting) const;
 };
 
 /// Every effect, in the order in which reports name them.

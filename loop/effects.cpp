@@ -10,33 +10,25 @@ namespace {
 using namespace forms;
 using Through = OneFunction::Through;
 using Of = OneFunction::Of;
+constexpr OneFunction kTangential{Through::tangential_restitution, Of::blow};
+constexpr OneFunction kNormal{Through::normal_restitution, Of::blow};
+constexpr OneFunction kNormalByPlace{Through::normal_restitution, Of::place};
+constexpr OneFunction kLoft{Through::recorded_loft, Of::blow};
 constexpr std::array kEffects = {
     EffectEntry{"ball-tangential-compliance",
                 "tangential energy stored in the ball and given back: more spin than rolling",
-                "slip at the end of contact (high-speed video of the ball's markings)",
-                ball_tangential_compliance,
-                nullptr,
-                {Through::tangential_restitution, Of::blow}},
+                "slip at the end of contact (high-speed video of the ball's markings)", ball_tangential_compliance,
+                nullptr, kTangential},
     EffectEntry{"friction-limit", "the ball slides throughout at high obliquity: spin below rolling",
                 "friction coefficient of face and cover", friction_limit},
-    EffectEntry{"restitution-law",
-                "level or speed dependence of the normal coefficient of restitution",
-                "head speed after impact",
-                restitution_law,
-                nullptr,
-                {Through::normal_restitution, Of::blow}},
-    EffectEntry{"restitution-falloff",
-                "restitution drops away from the face centre",
-                "normal restitution of the bare face at several points",
-                restitution_falloff,
-                nullptr,
-                {Through::normal_restitution, Of::place}},
+    EffectEntry{"restitution-law", "level or speed dependence of the normal coefficient of restitution",
+                "head speed after impact", restitution_law, nullptr, kNormal},
+    EffectEntry{"restitution-falloff", "restitution drops away from the face centre",
+                "normal restitution of the bare face at several points", restitution_falloff, nullptr, kNormalByPlace},
     EffectEntry{"face-compliance",
                 "the face yields under the ball: restitution above that of a rigid face, falling towards the edge",
-                "characteristic time of the face (pendulum test) at several points",
-                face_compliance,
-                nullptr,
-                {Through::normal_restitution, Of::place}},
+                "characteristic time of the face (pendulum test) at several points", face_compliance, nullptr,
+                kNormalByPlace},
     EffectEntry{"head-rotation", "a free head turns under an off-centre blow (gear effect)",
                 "angular velocity of the head after impact", head_rotation},
     EffectEntry{"head-mass", "effective head mass differs from the declared one", "head speed after impact", head_mass},
@@ -53,12 +45,8 @@ constexpr std::array kEffects = {
                 "moment of inertia of the ball (torsion pendulum)", ball_inertia},
     EffectEntry{"normal-force-offset", "the resultant normal force does not pass through the ball's centre",
                 "contact patch over time (pressure film, high-speed video)", normal_force_offset},
-    EffectEntry{"loft-bias",
-                "the recorded loft is not the loft that the ball met",
-                "loft by a second instrument (camera at impact)",
-                loft_bias,
-                nullptr,
-                {Through::recorded_loft, Of::blow}},
+    EffectEntry{"loft-bias", "the recorded loft is not the loft that the ball met",
+                "loft by a second instrument (camera at impact)", loft_bias, nullptr, kLoft},
     EffectEntry{"monitor-misalignment", "the launch monitor's axes are turned against the target frame",
                 "the monitor's axes against a surveyed line", monitor_misalignment},
     EffectEntry{"session-drift", "something drifts slowly and steadily with the shot number",
@@ -99,7 +87,20 @@ constexpr std::array kEffects = {
     EffectEntry{"sensor-offset", "a channel's zero is not zero", "a reading at rest", nullptr, sensor_offset},
 };
 
+template <class S>
+std::vector<Parametrisation> named(std::string_view name, std::vector<Parametrisation> (*on)(const S&), const S& at) {
+  std::vector<Parametrisation> all;
+  if (on) all = on(at);
+  for (Parametrisation& f : all) f.effect = name;
+  return all;
+}
+
 }  // namespace
+
+std::vector<Parametrisation> EffectEntry::forms(const Setting& setting) const { return named(name, on_shots, setting); }
+std::vector<Parametrisation> EffectEntry::forms(const HistorySetting& setting) const {
+  return named(name, on_tests, setting);
+}
 
 std::span<const EffectEntry> effects() { return kEffects; }
 

@@ -9,8 +9,6 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Eigen::VectorXd scales(const Model& model) {
   Eigen::VectorXd s(model.size());
   Eigen::Index k = 0;
@@ -33,11 +31,10 @@ Eigen::MatrixXd prior_of(const Model& model) {
 solvers::LeastSquares least_squares(const Problem& problem, Part part, const Model& model, const Stage& stage,
                                     const Eigen::VectorXd& scale, Eigen::Index residuals) {
   const Eigen::MatrixXd prior = prior_of(model);
-  solvers::LeastSquares out{.residuals = int(residuals + prior.rows()),
-                            .bounds = {},
-                            .value = {},
-                            .loss = stage.loss,
-                            .plain = int(prior.rows())};
+  solvers::LeastSquares out;
+  out.residuals = int(residuals + prior.rows());
+  out.loss = stage.loss;
+  out.plain = int(prior.rows());
   for (const Parameter* q : model.parameters()) out.bounds.push_back({q->min / q->scale, q->max / q->scale, 1});
   out.value = [&problem, &model, &scale, prior, part, window = stage.window](const Eigen::VectorXd& x,
                                                                              Eigen::VectorXd& z) {
@@ -107,7 +104,7 @@ std::vector<Eigen::VectorXd> starts(const Model& model) {
     for (const auto& s : f->starts)
       for (std::size_t i = 0; i < known && all.size() < 128; ++i) {
         Eigen::VectorXd p = all[i];
-        p.segment(at, n) = Eigen::Map<const Eigen::VectorXd>(s.data(), n);
+        p.segment(at, n) = as_vector(s);
         all.push_back(p);
       }
     at += n;

@@ -42,6 +42,10 @@ double criterion(const Fit& fit, const Rules& rules);
 /// is not known, by the scatter of the scores.
 Eigen::MatrixXd covariance(const Problem& problem, Part part, const Fit& fit);
 
+inline Eigen::VectorXd as_vector(const std::vector<double>& x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
+}
+
 /// Orthonormal basis of the column space.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 

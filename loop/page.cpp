@@ -19,7 +19,7 @@ using post::escape_html;
 /// Residual before (grey) and after (blue, holdout orange) against a column, the noise as a band.
 std::string scatter(const LoopResult& r, std::size_t channel, const Column& column) {
   post::SvgSeries before{"before", {}, {}, 2.6}, after{"after", {}, {}, 2.6}, holdout{"holdout", {}, {}, 2.6};
-  double x0 = std::numeric_limits<double>::infinity(), x1 = -x0;
+  double x0 = kInfinity, x1 = -x0;
   std::vector<double> sizes;
   for (const UsedRow& u : r.rows) {
     const double x = column.native(std::size_t(u.row));
@@ -35,24 +35,17 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
   }
   if (sizes.empty()) return "";
   std::ranges::sort(sizes);
-  const double noise = r.channels[channel].noise,
-               y1 = std::max(2.5 * noise, 1.08 * sizes[std::size_t(0.99 * double(sizes.size() - 1))]);
+  const double noise = r.channels[channel].noise, y1 = std::max(2.5 * noise, 1.08 * at_share(sizes, 0.99));
   if (!(x1 > x0)) x1 = x0 + 1;
   const double margin = 0.03 * (x1 - x0);
   x0 -= margin;
   x1 += margin;
   const std::string label = "model − measured " + post::label(r.channels[channel].name);
-  return svg(post::SvgPlot{460,
-                           270,
-                           x0,
-                           x1,
-                           -y1,
-                           y1,
-                           post::label(column.name),
-                           label,
-                           label + " against " + post::label(column.name),
-                           {{x0, x1, -noise, noise}},
-                           {before, after, holdout}});
+  post::SvgPlot plot{460, 270, x0, x1, -y1, y1, post::label(column.name), label};
+  plot.told = label + " against " + post::label(column.name);
+  plot.bands = {{x0, x1, -noise, noise}};
+  plot.series = {before, after, holdout};
+  return svg(plot);
 }
 
 /// What the words above it mean.
@@ -80,7 +73,7 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   const Column *time = table.find("time_s"), *record = table.find("record");
   post::SvgSeries measured{"measured", {}, {}, 1.7}, before{"line-before", {}, {}}, after{"line-after", {}, {}};
   std::vector<std::pair<double, double>> held;
-  double y0 = std::numeric_limits<double>::infinity(), y1 = -y0;
+  double y0 = kInfinity, y1 = -y0;
   bool open = false;
   for (const UsedRow& u : r.rows) {
     if (record->text[std::size_t(u.row)] != name) continue;
@@ -102,17 +95,8 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   y0 -= pad;
   y1 += pad;
   const std::string label = post::label(r.channels[channel].name);
-  post::SvgPlot plot{960,
-                     240,
-                     measured.x.front(),
-                     measured.x.back(),
-                     y0,
-                     y1,
-                     "time [s]",
-                     label,
-                     label + " over time",
-                     {},
-                     {before, measured, after}};
+  post::SvgPlot plot{960, 240, measured.x.front(), measured.x.back(), y0, y1, "time [s]", label, label + " over time"};
+  plot.series = {before, measured, after};
   for (const auto& [from, to] : held) plot.bands.push_back({from, to, y0, y1});
   return svg(plot);
 }
@@ -208,10 +192,11 @@ std::string page(const LoopResult& r, const Shots& table) {
         "declared and with the adopted effects in it:</p><div class='scroll'><table><tr><th>channel<th>RMS "
         "before<th>RMS after<th>shots with both answers</tr>",
         escape_html(r.base), rows.size());
-    for (std::size_t c = 0; c < r.channels.size(); ++c)
+    for (std::size_t c = 0; c < r.channels.size(); ++c) {
+      const Errors before = errors(rows, &UsedRow::before, c), after = errors(rows, &UsedRow::after, c);
       s += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>", escape_html(post::label(r.channels[c].name)),
-                       number(rms(rows, &Corrected::Row::before, c)), number(rms(rows, &Corrected::Row::after, c)),
-                       answered(rows, c));
+                       number(before.holdout_rmse), number(after.holdout_rmse), before.holdout);
+    }
     s += "</table></div><p><small>corrected/ beside this page is a case: those shots, the corrected model, what was "
          "measured.</small></p>";
   }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +33,8 @@ struct Channel {
   bool repeated = false;           ///< what stands as declared is the scatter of rows of which a reading is the mean
 
   bool trusted() const { return declared && !refuted; }
+  /// What no instrument is below: its last digit.
+  double least_noise() const { return std::max(rounding_deviation(resolution), 1e-9); }
   /// Of a channel whose noise is declared.
   void refute(bool by_scatter) {
     if (refuted && !by_scatter) noise = *declared;
@@ -63,7 +65,7 @@ enum class Part { select, train, holdout };
 
 /// What a fit looks at in turn: an early stage sees far and is rough, the last one counts.
 struct Stage {
-  static constexpr double kWhole = std::numeric_limits<double>::infinity();
+  static constexpr double kWhole = kInfinity;
   double window = kWhole;  ///< how much of every record from its start [s]
   solvers::Loss loss;
   int iterations = 40;
@@ -123,6 +125,10 @@ class Problem {
   // --- the data
   virtual int width() const = 0;  ///< number of channels
   virtual const Channel& channel(int c) const = 0;
+  /// Of every channel.
+  Eigen::ArrayXd noise() const {
+    return Eigen::ArrayXd::NullaryExpr(width(), [&](Eigen::Index c) { return channel(int(c)).noise; });
+  }
   virtual void refute(int channel, bool refuted) = 0;  ///< what was refuted by an early fit may hold after all
   struct Row {
     int index;       ///< row of measured() and residuals()

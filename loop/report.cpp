@@ -98,7 +98,7 @@ json to_json(const LoopResult& r) {
   int shown = 0;
   for (const Finding& f : s.before.findings) {
     if (shown >= 20 || f.channel < 0) continue;
-    if (f.p_adjusted > 0.05 && std::abs(f.signal) < 4.5) continue;
+    if (f.p_adjusted > kTold && std::abs(f.signal) < 4.5) continue;
     json e;
     e["channel"] = r.channel_names[std::size_t(f.channel)];
     e["regressor"] = f.regressor;
@@ -178,13 +178,15 @@ json to_json(const LoopResult& r) {
   }
   if (r.corrected) {
     json channels = json::array();
-    for (std::size_t k = 0; k < r.channels.size(); ++k)
+    for (std::size_t k = 0; k < r.channels.size(); ++k) {
+      const Errors before = errors(r.corrected->rows, &UsedRow::before, k);
       channels.push_back({{"name", r.channels[k].name},
-                          {"before_rmse", value(rms(r.corrected->rows, &Corrected::Row::before, k))},
-                          {"after_rmse", value(rms(r.corrected->rows, &Corrected::Row::after, k))},
-                          {"rows", answered(r.corrected->rows, k)}});
+                          {"before_rmse", value(before.holdout_rmse)},
+                          {"after_rmse", value(errors(r.corrected->rows, &UsedRow::after, k).holdout_rmse)},
+                          {"rows", before.holdout}});
+    }
     json by_shot = json::array();  // model minus measured
-    for (const Corrected::Row& row : r.corrected->rows) {
+    for (const UsedRow& row : r.corrected->rows) {
       json shot{{"shot", row.id}};
       for (std::size_t k = 0; k < r.channels.size(); ++k)
         shot[r.channels[k].name] = {{"before", value(row.before[k])}, {"after", value(row.after[k])}};

@@ -61,8 +61,8 @@ using DesignedShot = std::vector<std::pair<std::string, double>>;  ///< header, 
 
 struct NextExperiment {
   std::string text;
-  std::vector<DesignedShot> shots;
-  std::optional<std::string> sensor;
+  std::vector<DesignedShot> shots = {};
+  std::optional<std::string> sensor = {};
 };
 
 struct ScoredCandidate {
@@ -79,13 +79,12 @@ struct UsedRow {
   std::vector<double> with_remainder = {};      ///< after, less the remainder: of a training row as others foretell it
 };
 
+/// Of a channel on the two sets of rows, where there is a value; `of`: before or after.
+Errors errors(const std::vector<UsedRow>& rows, std::vector<double> UsedRow::*of, std::size_t channel);
+
 /// A slow base itself, without a surrogate, asked about shots that were held out.
 struct Corrected {
-  struct Row {
-    std::string id;
-    std::vector<double> before, after;  ///< as of a UsedRow; both NaN where one has no answer
-  };
-  std::vector<Row> rows;
+  std::vector<UsedRow> rows;  ///< with the id; before and after, both NaN where one has no answer
   /// Shots with the adopted effects in them, as the base is asked about them, and what was measured.
   struct Asked {
     std::string id;
@@ -95,11 +94,6 @@ struct Corrected {
   std::vector<Asked> shots;
   std::vector<std::string> instrument;  ///< adopted effects on what the instrument shows, which no blow holds
 };
-
-/// Root mean square over the rows that have an answer.
-double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Corrected::Row::*of, std::size_t channel);
-/// How many those are.
-int answered(const std::vector<Corrected::Row>& rows, std::size_t channel);
 
 struct LoopResult {
   LoopResult() = default;

@@ -1,8 +1,9 @@
 /// The thresholds of the loop. The README of this folder gives their reasons.
 #pragma once
 
-#include <limits>
 #include <numbers>
+
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 
@@ -13,6 +14,16 @@ inline constexpr double kBeyondChance = 3 * std::numbers::ln10;
 inline constexpr int kFewestRows = 12;
 /// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.
 inline constexpr int kFewestOfRows = 10;
+
+/// Level at which a finding is told beside the plainest, or where the declared noise is refuted.
+inline constexpr double kTold = 0.05;
+/// Squared reading, in units of its own sigma, beyond which it counts the same.
+inline constexpr double kMostSquare = 36;
+/// Share of the shots beyond which those far off are no exceptions; three at least.
+inline constexpr double kMany = 0.08;
+/// No fit explains data of which such a share is flagged or explained by nothing, or whose scatter is so many times
+/// what is declared.
+inline constexpr double kLost = 0.2, kWide = 1.75;
 
 struct Rules {
   double gate = 0.01;             ///< level of the test for structure at all
@@ -39,7 +50,7 @@ struct Rules {
   static Rules of_histories() {
     Rules r;
     r.gate = r.remaining = 1e-4;
-    r.remaining_signal = std::numeric_limits<double>::infinity();
+    r.remaining_signal = kInfinity;
     return r;
   }
 

@@ -32,10 +32,6 @@ Eigen::VectorXd joined(std::initializer_list<Eigen::VectorXd> parts) {
   return all;
 }
 
-Eigen::VectorXd as_vector(const std::vector<double>& x) {
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
-}
-
 }  // namespace
 
 std::size_t order_of(const std::string& effect) {
@@ -262,19 +258,18 @@ bool Search::acts(const Parametrisation* form) const {
   });
 }
 
+const Fit& Search::of(const Parametrisation* form) const {
+  return std::ranges::find(of_form_, form, [](const Candidate& c) { return c.fit.model.forms.back(); })->fit;
+}
+
 Eigen::VectorXd Search::optimum(const Parametrisation* form) const {
-  const auto n = Eigen::Index(form->parameters.size());
-  for (const Candidate& c : of_form_)
-    if (c.fit.model.forms.back() == form) return c.fit.p.tail(n);
-  return Eigen::VectorXd::Zero(n);
+  return of(form).p.tail(Eigen::Index(form->parameters.size()));
 }
 
 std::vector<Eigen::VectorXd> Search::other_optima(const Parametrisation* form) const {
   std::vector<Eigen::VectorXd> out;
   if (form->threshold) return out;  // its starts are all tried
-  for (const Candidate& c : of_form_)
-    if (c.fit.model.forms.back() == form)
-      for (const Eigen::VectorXd& p : c.fit.others) out.push_back(p.tail(Eigen::Index(form->parameters.size())));
+  for (const Eigen::VectorXd& p : of(form).others) out.push_back(p.tail(Eigen::Index(form->parameters.size())));
   return out;
 }
 

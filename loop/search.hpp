@@ -62,6 +62,7 @@ class Search {
   std::vector<Candidate> grown(const std::vector<Candidate>& sets, std::size_t few) const;
   Candidate candidate(Fit fit) const;
   std::vector<Candidate> refined(std::vector<Candidate> all) const;
+  const Fit& of(const Parametrisation* form) const;  ///< of one that acts, beside the base
   Eigen::VectorXd optimum(const Parametrisation* form) const;
   std::vector<Eigen::VectorXd> other_optima(const Parametrisation* form) const;
 

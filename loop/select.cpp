@@ -1,7 +1,6 @@
 #include "loop/select.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace hosel::loop {
 namespace {
@@ -91,7 +90,7 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     const auto likelihood = [&](const Candidate& c) {
       double value = c.criterion;
       for (const std::string& e : c.effects) {
-        double usual = std::numeric_limits<double>::infinity();
+        double usual = kInfinity;
         for (const Parametrisation* f : forms)
           if (f->effect == e) usual = std::min(usual, f->complexity);
         if (usual <= rules.parameter_cost) value -= usual;

@@ -17,7 +17,7 @@ namespace {
 double score(const Problem& problem, const Fit& f) {
   const auto [values, log_whitening] = problem.density(Part::holdout);
   if (!(values > 0)) return kNaN;
-  return (log_whitening - 0.5 * deviance(problem, Part::holdout, f)) / values - 0.5 * std::log(2 * kPi);
+  return (log_whitening - 0.5 * deviance(problem, Part::holdout, f)) / values - kLogRootTwoPi;
 }
 
 std::vector<Location> places(const Problem& problem, const Remainder& left) {
@@ -125,13 +125,6 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
-/// Whether there is a declaration that the data could contradict.
-bool declares_noise(const Problem& problem) {
-  for (int c = 0; c < problem.width(); ++c)
-    if (problem.channel(c).declared) return true;
-  return false;
-}
-
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -155,8 +148,12 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     return Verdict::unexplained;
   }
   if (s.structured && s.level == 0) return Verdict::insufficient;
-  for (int c = 0; c < problem.width(); ++c)
-    if (problem.channel(c).refuted) return Verdict::noise_contradicted;
+  bool declared = false, refuted = false;
+  for (int c = 0; c < problem.width(); ++c) {
+    declared = declared || problem.channel(c).declared;
+    refuted = refuted || problem.channel(c).refuted;
+  }
+  if (refuted) return Verdict::noise_contradicted;
   if (s.nameless) return Verdict::insufficient;
   if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
@@ -164,7 +161,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     unexplained.push_back(
         {"", "", fmt::format("{} only at the edge of what is plausible", fmt::join(s.adopted, " and "))});
   if (!unexplained.empty()) return Verdict::unexplained;
-  if (declares_noise(problem) && problem.heavy_tails(s)) return Verdict::noise_contradicted;
+  if (declared && problem.heavy_tails(s)) return Verdict::noise_contradicted;
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;
 }
 
@@ -251,17 +248,6 @@ Errors errors(const std::vector<UsedRow>& rows, std::vector<double> UsedRow::*of
   e.holdout_rmse = e.holdout ? std::sqrt(held / e.holdout) : kNaN;
   e.holdout_bias = e.holdout ? bias / e.holdout : kNaN;
   return e;
-}
-
-double rms(const std::vector<Corrected::Row>& rows, std::vector<double> Corrected::Row::*of, std::size_t channel) {
-  double square = 0, n = 0;
-  for (const Corrected::Row& r : rows)
-    if (const double x = (r.*of)[channel]; std::isfinite(x)) square += x * x, ++n;
-  return n > 0 ? std::sqrt(square / n) : kNaN;
-}
-
-int answered(const std::vector<Corrected::Row>& rows, std::size_t channel) {
-  return int(std::ranges::count_if(rows, [&](const auto& r) { return std::isfinite(r.before[channel]); }));
 }
 
 void conclude(const Study& study, LoopResult& result) {

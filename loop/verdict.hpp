@@ -10,7 +10,4 @@ namespace hosel::loop {
 /// Completes `result` (whose forms the study used).
 void conclude(const Study& study, LoopResult& result);
 
-/// Of a channel on the two sets of rows; `of`: before or after.
-Errors errors(const std::vector<UsedRow>& rows, std::vector<double> UsedRow::*of, std::size_t channel);
-
 }  // namespace hosel::loop

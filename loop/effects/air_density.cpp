@@ -6,8 +6,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> air_density(const Setting& setting) {
   if (!setting.flies) return {};
-  return {{.effect = "air-density",
-           .what = "factor on the density",
+  return {{.what = "factor on the density",
            .parameters = {{"relative_density", "1", 1, -0.35, 0.2, 0.02}},
            .flight = [](std::span<const double> p, models::FlightConditions& c) { c.air.density *= 1 + p[0]; }}};
 }

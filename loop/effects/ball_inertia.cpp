@@ -6,8 +6,7 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> ball_inertia(const Setting& setting) {
   if (setting.deformable) return {};  // follows from its layers
   // Usual: assumed, layers that differ in density by a tenth.
-  return {{.effect = "ball-inertia",
-           .what = "inertia factor I / (m r^2)",
+  return {{.what = "inertia factor I / (m r^2)",
            .parameters = {Parameter{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}.within(0.03)},
            .before = [](std::span<const double> p, Shot& t) { t.blow.ball.inertia_factor += p[0]; }}};
 }

@@ -6,8 +6,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> ball_relaxation(const Setting& setting) {
   if (!setting.deformable) return {};
-  return {{.effect = "ball-relaxation",
-           .what = "one factor on the branch times",
+  return {{.what = "one factor on the branch times",
            .parameters = {{"log_factor_of_branch_times", "1", 1, -1.5, 2.5, 0.3}},
            .complexity = 3,
            .starts = {{1.5}},

@@ -3,15 +3,17 @@
 #include "loop/history/test_setup.hpp"
 
 namespace hosel::loop::forms {
+namespace {
+constexpr const char* kShifts[] = {"shift_out", "shift_heel", "shift_up"};
+}
 
 std::vector<Parametrisation> cg_shift(const Setting& setting) {
   if (!setting.inertia_declared) return {};
   // Usual: assumed, what weights that move shift.
   const auto component = [](const char* name) { return Parameter{name, "mm", 1e-3, -0.02, 0.02, 2e-3}.within(4e-3); };
   const auto along = [&](const std::vector<int>& axes, const char* what) {
-    static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
-    Parametrisation f{.effect = "cg-shift", .what = what};
-    for (const int a : axes) f.parameters.push_back(component(names[a]));
+    Parametrisation f{.what = what};
+    for (const int a : axes) f.parameters.push_back(component(kShifts[a]));
     f.before = [axes](std::span<const double> p, Shot& t) {
       for (std::size_t k = 0; k < axes.size(); ++k) t.blow.club.head.cg[axes[k]] += p[k];
     };
@@ -27,9 +29,8 @@ std::vector<Parametrisation> cg_shift(const Setting& setting) {
 std::vector<Parametrisation> cg_shift(const HistorySetting& setting) {
   if (!setting.head) return {};
   const auto along = [](const std::vector<int>& axes, const char* what, double complexity) {
-    static constexpr const char* names[] = {"shift_out", "shift_heel", "shift_up"};
-    Parametrisation f{.effect = "cg-shift", .what = what, .complexity = complexity};
-    for (const int a : axes) f.parameters.push_back({names[a], "mm", 1e-3, -0.03, 0.03, 1e-3});
+    Parametrisation f{.what = what, .complexity = complexity};
+    for (const int a : axes) f.parameters.push_back({kShifts[a], "mm", 1e-3, -0.03, 0.03, 1e-3});
     f.setup = [axes](std::span<const double> p, TestSetup& r) {
       for (std::size_t k = 0; k < axes.size(); ++k) r.club.cg[axes[k]] += p[k];
     };

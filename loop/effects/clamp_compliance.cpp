@@ -7,8 +7,7 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> clamp_compliance(const HistorySetting& setting) {
   const double unit = setting.compliance;
   const auto form = [&](const char* what, double complexity, const Vec3& axes) {
-    Parametrisation f{.effect = "clamp-compliance",
-                      .what = what,
+    Parametrisation f{.what = what,
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
                       .complexity = complexity,
                       .starts = {{0.05 * unit}, {0.3 * unit}}};

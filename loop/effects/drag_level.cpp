@@ -6,8 +6,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> drag_level(const Setting& setting) {
   if (!setting.flies) return {};
-  return {{.effect = "drag-level",
-           .what = "factor on the drag coefficient",
+  return {{.what = "factor on the drag coefficient",
            .parameters = {{"relative_drag", "1", 1, -0.4, 0.4, 0.02}},
            .flight = [](std::span<const double> p, models::FlightConditions& c) { c.law.drag_scale *= 1 + p[0]; }}};
 }

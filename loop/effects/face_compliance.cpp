@@ -8,8 +8,7 @@ namespace hosel::loop::forms {
 std::vector<Parametrisation> face_compliance(const Setting& s) {
   if (!s.thin_face && !s.deformable) return {};
   // Up to faces a third softer than the rules' limit (186 nm/N), with the fall-off of that one.
-  Parametrisation f{.effect = "face-compliance",
-                    .what = "compliance at the face centre, falling to the edge like a clamped plate's",
+  Parametrisation f{.what = "compliance at the face centre, falling to the edge like a clamped plate's",
                     .parameters = {{"compliance", "nm/N", 1e-9, 0, 250e-9, 20e-9}}};
   if (s.deformable) {  // its face is a surface that moves: irons' as well
     f.before = [](std::span<const double> p, Shot& t) { t.change.face_compliance += p[0]; };

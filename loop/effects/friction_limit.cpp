@@ -8,8 +8,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> friction_limit(const Setting& setting) {
   if (setting.deformable) {  // declares a coefficient, under which its patch creeps and slips
-    return {{.effect = "friction-limit",
-             .what = "a factor on the declared coefficient",
+    return {{.what = "a factor on the declared coefficient",
              .parameters = {{"log_factor_of_friction", "1", 1, -1.6, 1.0, 0.1}},
              .starts = {{-0.8}},
              .before = [](std::span<const double> p, Shot& s) { s.blow.contact.friction *= std::exp(p[0]); }}};
@@ -19,8 +18,7 @@ std::vector<Parametrisation> friction_limit(const Setting& setting) {
   // The limit may reach one shot alone: then only starts a few per cent apart come near it.
   std::vector<std::vector<double>> starts;
   for (double x = 1.4; x < 11.5; x *= 1.025) starts.push_back({x});
-  return {{.effect = "friction-limit",
-           .what = "Coulomb limit of the impulse",
+  return {{.what = "Coulomb limit of the impulse",
            .parameters = {slipperiness},
            .starts = starts,
            .threshold = true,

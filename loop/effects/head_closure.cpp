@@ -22,7 +22,7 @@ std::vector<Parametrisation> head_closure(const Setting& setting) {
   const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}.within(35); };
   const auto about = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
-    Parametrisation f{.effect = "head-closure", .what = what};
+    Parametrisation f{.what = what};
     for (const int a : axes) f.parameters.push_back(rate(names[a]));
     const auto vector = [axes](std::span<const double> p) {
       Vec3 w = Vec3::Zero();
@@ -37,7 +37,7 @@ std::vector<Parametrisation> head_closure(const Setting& setting) {
       };
     return f;
   };
-  Parametrisation shaft{.effect = "head-closure", .what = "about the shaft", .parameters = {rate("rate_shaft")}};
+  Parametrisation shaft{.what = "about the shaft", .parameters = {rate("rate_shaft")}};
   const auto about_shaft = [](double w, const Blow& b) {
     return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis));
   };

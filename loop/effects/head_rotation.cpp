@@ -9,7 +9,7 @@ std::vector<Parametrisation> head_rotation(const Setting& setting) {
   if (setting.head_turns || !setting.inertia_declared) return {};
   // 1 is a head as free as the declared inertia says; a held head turns less.
   const Parameter freedom{"freedom", "1", 1, 0, 1.6, 0.2};
-  Parametrisation rotation{.effect = "head-rotation", .what = "the declared inertia turns", .parameters = {freedom}};
+  Parametrisation rotation{.what = "the declared inertia turns", .parameters = {freedom}};
   rotation.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     Blow turned = t.blow, fixed = t.blow;
@@ -18,8 +18,7 @@ std::vector<Parametrisation> head_rotation(const Setting& setting) {
     add_difference(turned, fixed, 1, launch);
   };
   // The whole eccentric blow in place of the planar one: face, path and curvature act too.
-  Parametrisation whole{.effect = "head-rotation",
-                        .what = "free head, with face, path and curvature in three dimensions",
+  Parametrisation whole{.what = "free head, with face, path and curvature in three dimensions",
                         .parameters = {freedom}};
   whole.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;

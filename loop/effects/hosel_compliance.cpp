@@ -8,8 +8,7 @@ std::vector<Parametrisation> hosel_compliance(const HistorySetting& setting) {
   if (!setting.head) return {};
   const double unit = setting.compliance;
   const auto form = [&](const char* what, double complexity, const Vec3& axes) {
-    Parametrisation f{.effect = "hosel-compliance",
-                      .what = what,
+    Parametrisation f{.what = what,
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
                       .complexity = complexity,
                       .starts = {{0.05 * unit}, {0.3 * unit}}};

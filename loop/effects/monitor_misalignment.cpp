@@ -14,7 +14,7 @@ std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
   // Positive yaw turns what the monitor shows to the right, positive pitch upwards, positive roll adds fade spin.
   const auto about = [&](const std::vector<int>& axes, const char* what) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};
-    Parametrisation f{.effect = "monitor-misalignment", .what = what};
+    Parametrisation f{.what = what};
     for (const int a : axes) f.parameters.push_back(angle(names[a], a == 2 ? 5 : 3));
     f.after = [axes](std::span<const double> p, const Shot&, Launch& launch) {
       Mat3 turn = Mat3::Identity();

@@ -9,23 +9,19 @@ std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   // Usual: assumed, a patch that wanders by 1 mm.
   const Parameter offset = Parameter{"offset", "1", 1, -0.2, 0.2, 0.01}.within(0.05);
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
-  Parametrisation couple{.effect = "normal-force-offset",
-                         .what = "offset over the ball's radius, its couple added to rolling",
-                         .parameters = {offset},
-                         .complexity = 3};
+  Parametrisation couple{
+      .what = "offset over the ball's radius, its couple added to rolling", .parameters = {offset}, .complexity = 3};
   couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     const FirstContact g = first_contact(t.blow);
-    const Vec3 slip = g.approach - g.approach.dot(g.normal) * g.normal;
+    const Vec3 slip = g.slip();
     if (!(slip.norm() > 0)) return;
     const double impulse = t.blow.ball.mass * launch.velocity.dot(g.normal);
     launch.spin += p[0] * t.blow.ball.radius * impulse / t.blow.ball.inertia() * slip.normalized().cross(g.normal);
   };
   // Friction closes the slip all the same: then the offset moves impulse from the tangent to the couple.
-  Parametrisation closed{.effect = "normal-force-offset",
-                         .what = "offset over the ball's radius, rolling kept",
-                         .parameters = {offset},
-                         .complexity = 3};
+  Parametrisation closed{
+      .what = "offset over the ball's radius, rolling kept", .parameters = {offset}, .complexity = 3};
   closed.before = [](std::span<const double> p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
   return {couple, closed};
 }

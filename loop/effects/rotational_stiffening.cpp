@@ -7,8 +7,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> rotational_stiffening(const HistorySetting& setting) {
   if (!setting.turning) return {};
-  return {{.effect = "rotational-stiffening",
-           .what = "share of the centrifugal stiffness",
+  return {{.what = "share of the centrifugal stiffness",
            .parameters = {{"share", "1", 1, 0, 2, 0.02}},
            .starts = {{0.5}, {1}},
            .setup = [](std::span<const double> p, TestSetup& r) { r.club.stiffening += p[0]; }}};

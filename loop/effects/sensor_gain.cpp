@@ -5,7 +5,7 @@
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> sensor_gain(const HistorySetting& setting) {
-  const Parametrisation one{.effect = "sensor-gain", .parameters = {{"gain_error", "1", 1, -0.6, 1.5, 0.01}}};
+  const Parametrisation one{.parameters = {{"gain_error", "1", 1, -0.6, 1.5, 0.01}}};
   return per_channel(setting, one, &TestSetup::gain);
 }
 

@@ -13,8 +13,7 @@ std::vector<Parametrisation> sensor_offset(const HistorySetting& setting) {
     const HistoryChannel& channel = setting.channels[c];
     // Plausible: a hundred noise units; the scale is the noise, since channels have their own units.
     const double unit = channel.noise * channel.si;
-    Parametrisation one{.effect = "sensor-offset",
-                        .what = fmt::format("of {}", channel.name),
+    Parametrisation one{.what = fmt::format("of {}", channel.name),
                         .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si,
                                         -100 * unit, 100 * unit, 0.1 * unit}}};
     one.setup = [c](std::span<const double> p, TestSetup& r) { r.offset[c] += p[0]; };

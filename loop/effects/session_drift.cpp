@@ -29,7 +29,7 @@ std::vector<Parametrisation> session_drift(const Setting& setting) {
   for (const double zero : {0.0, 0.5}) {
     const std::string from = zero == 0 ? ", from the first shot" : ", about the middle";
     const auto readings = [&](const std::vector<Output>& outputs, const std::string& what, double complexity) {
-      Parametrisation f{.effect = "session-drift", .what = what + from, .complexity = complexity, .of_order = true};
+      Parametrisation f{.what = what + from, .complexity = complexity, .of_order = true};
       for (const Output output : outputs) f.parameters.push_back(size_of(output));
       f.reading = [outputs, zero](std::span<const double> q, const Shot& t, Output o, double value) {
         for (std::size_t k = 0; k < outputs.size(); ++k)
@@ -47,11 +47,7 @@ std::vector<Parametrisation> session_drift(const Setting& setting) {
     if (all.size() > 2) readings(all, "of all readings", 4);
     // What drifts is the instrument before it is the club or the ball.
     const auto drift = [&](const char* what, Parameter p, double& (*of)(Shot&), bool relative) {
-      Parametrisation f{.effect = "session-drift",
-                        .what = what + from,
-                        .parameters = {std::move(p)},
-                        .complexity = 8,
-                        .of_order = true};
+      Parametrisation f{.what = what + from, .parameters = {std::move(p)}, .complexity = 8, .of_order = true};
       f.before = [of, relative, zero](std::span<const double> q, Shot& t) {
         double& x = of(t);
         x += q[0] * (t.order - zero) * (relative ? x : 1);

@@ -24,28 +24,23 @@ void attach(Blow& blow, double mass, double inertia) {
 std::vector<Parametrisation> shaft_coupling(const Setting& setting) {
   if (setting.full_club) return {};
   if (setting.shaft) {
-    Parametrisation hung{.effect = "shaft-coupling",
-                         .what = "share of the declared shaft",
-                         .parameters = {{"share", "1", 1, 0, 1.6, 0.1}},
-                         .starts = {{1.0}}};
+    Parametrisation hung{
+        .what = "share of the declared shaft", .parameters = {{"share", "1", 1, 0, 1.6, 0.1}}, .starts = {{1.0}}};
     hung.before = [](std::span<const double> p, Shot& s) { s.change.shaft += p[0]; };
     return {hung};
   }
   const Parameter mass{"added_mass_at_hosel", "g", 1e-3, 0, 0.04, 3e-3};
   const Parameter stiffening{"added_inertia", "kg m^2", 1, 0, 4e-4, 3e-5};
-  Parametrisation point{.effect = "shaft-coupling", .what = "added mass at the hosel", .parameters = {mass}};
+  Parametrisation point{.what = "added mass at the hosel", .parameters = {mass}};
   point.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0) attach(t.blow, p[0], 0);
   };
   if (!setting.head_turns) return {};
-  Parametrisation both{.effect = "shaft-coupling",
-                       .what = "added mass and rotational inertia at the hosel",
-                       .parameters = {mass, stiffening}};
+  Parametrisation both{.what = "added mass and rotational inertia at the hosel", .parameters = {mass, stiffening}};
   both.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
   };
-  Parametrisation stiff{
-      .effect = "shaft-coupling", .what = "added rotational inertia across the shaft", .parameters = {stiffening}};
+  Parametrisation stiff{.what = "added rotational inertia across the shaft", .parameters = {stiffening}};
   stiff.before = [](std::span<const double> p, Shot& t) {
     if (p[0] != 0) attach(t.blow, 0, p[0]);
   };

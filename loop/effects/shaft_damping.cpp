@@ -9,12 +9,8 @@ std::vector<Parametrisation> shaft_damping(const HistorySetting& setting) {
   // What is taken away cannot exceed what is declared.
   const Parameter ratio{"damping_ratio", "1", 1, -0.999 * setting.ratio, 0.3, 1e-3};
   const auto form = [&](const char* what, double complexity, auto&& apply) {
-    return Parametrisation{.effect = "shaft-damping",
-                           .what = what,
-                           .parameters = {ratio},
-                           .complexity = complexity,
-                           .starts = {{0.01}},
-                           .setup = apply};
+    return Parametrisation{
+        .what = what, .parameters = {ratio}, .complexity = complexity, .starts = {{0.01}}, .setup = apply};
   };
   std::vector<Parametrisation> forms = {
       form("in proportion to the stiffness", 0,

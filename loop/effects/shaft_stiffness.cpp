@@ -6,8 +6,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> shaft_stiffness(const Setting& setting) {
   if (!setting.full_club) return {};
-  return {{.effect = "shaft-stiffness",
-           .what = "one factor on bending and torsion",
+  return {{.what = "one factor on bending and torsion",
            .parameters = {{"log_factor", "1", 1, -1.2, 1.2, 0.1}},
            .before = [](std::span<const double> p, Shot& s) { s.change.shaft_stiffness += p[0]; }}};
 }
@@ -15,8 +14,7 @@ std::vector<Parametrisation> shaft_stiffness(const Setting& setting) {
 std::vector<Parametrisation> shaft_stiffness(const HistorySetting& setting) {
   // Logarithm of the factor: zero is the table, and no factor can turn negative.
   const auto form = [](const char* what, const char* name, auto&& apply) {
-    return Parametrisation{.effect = "shaft-stiffness",
-                           .what = what,
+    return Parametrisation{.what = what,
                            .parameters = {{name, "1", 1, -1.2, 1.2, 0.02}},
                            .starts = {{-0.4}, {-0.2}, {0.2}, {0.4}},
                            .setup = apply};

@@ -5,8 +5,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> spin_axis_bias(const Setting& setting) {
   if (!setting.no_blow) return {};
-  return {{.effect = "spin-axis-bias",
-           .what = "tilt of the spin beyond the recorded one, positive for a fade",
+  return {{.what = "tilt of the spin beyond the recorded one, positive for a fade",
            .parameters = {{"tilt", "deg", kRadPerDeg, radians(-30), radians(30), radians(1)}},
            .seen = [](std::span<const double> p, Launch& launch) {
              if (p[0] == 0) return;

@@ -8,8 +8,7 @@ namespace hosel::loop::forms {
 
 std::vector<Parametrisation> wind(const Setting& setting) {
   if (!setting.flies) return {};
-  return {{.effect = "wind",
-           .what = "towards the target and to the right of it, at the height of the declared wind",
+  return {{.what = "towards the target and to the right of it, at the height of the declared wind",
            .parameters = {{"wind_along", "m/s", 1, -15, 15, 0.5}, {"wind_to_the_right", "m/s", 1, -15, 15, 0.5}},
            .flight = [](std::span<const double> p, models::FlightConditions& c) {
              if (p[0] == 0 && p[1] == 0) return;

@@ -15,13 +15,12 @@
 #include "loop/deviation.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
+#include "loop/shots/split.hpp"
 #include "solvers/errors.hpp"
-#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {
 
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestFlights = 8;  // training flights that can test anything
 constexpr double kIntegrationStep = 0.05;  // [s]: differences of flights are taken, so that they are smooth
 
@@ -29,12 +28,6 @@ constexpr double kIntegrationStep = 0.05;  // [s]: differences of flights are ta
 /// integration's error and by little of what is unknown.
 constexpr std::array<double, models::kShotUnknowns> kOwnStep = {1e-2, 1e-2, 1e-2, 1e-2, 0.1, 1e-3, 1e-3, 0.1, 0.1};
 constexpr std::array<double, 3> kGroupStep = {0.1, 0.1, 1e-3};
-
-int flight_answer(Output o) {
-  static_assert(int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle &&
-                int(Output::flight_time) - kLaunchOutputs == models::kTime);
-  return int(o) - kLaunchOutputs;
-}
 
 /// A flight that the others of its group do not foretell.
 struct Stranger {
@@ -106,9 +99,8 @@ FlightProblem::FlightProblem(const FlightCase& c) : case_(c) {
 std::vector<Parametrisation> FlightProblem::forms() const {
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own))
-    if (e.on_shots)
-      for (Parametrisation& f : e.on_shots({.flies = true, .no_blow = true}))
-        if (!f.before && !f.after && !f.reading && (f.seen || f.flight)) all.push_back(std::move(f));
+    for (Parametrisation& f : e.forms(Setting{.flies = true, .no_blow = true}))
+      if (!f.before && !f.after && !f.reading && (f.seen || f.flight)) all.push_back(std::move(f));
   return all;
 }
 
@@ -135,9 +127,7 @@ void FlightProblem::read() {
 
   const auto noise_of = [&](Output o) {  // SI
     const Column* c = shots.find_stem(stem(o));
-    if (!c) return 0.0;
-    const auto it = case_.noise.find(c->name);
-    return it == case_.noise.end() ? 0.0 : it->second * c->si;
+    return c && case_.noise.contains(c->name) ? case_.noise.at(c->name) * c->si : 0.0;
   };
   const auto has = [&](Output o, std::size_t row) {
     const Column* c = shots.find_stem(stem(o));
@@ -171,9 +161,9 @@ void FlightProblem::read() {
       t.shot.launch = *seen;
     } else {
       const auto value = [&](Output o) { return has(o, row) ? shots.find_stem(stem(o))->value[row] : 0.0; };
-      const double up = value(Output::launch_angle), right = value(Output::azimuth), tilt = value(Output::spin_axis);
+      const double tilt = value(Output::spin_axis);
       t.shot.launch.velocity = value(Output::ball_speed) *
-                               Vec3(std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up));
+                               direction(value(Output::launch_angle), value(Output::azimuth));
       t.shot.launch.spin = case_.unknown.spin_rate * Vec3(0, -std::cos(tilt), -std::sin(tilt));
     }
     const double spin = t.shot.launch.spin_rate();
@@ -201,7 +191,7 @@ void FlightProblem::read() {
       const Reading& r = readings_[std::size_t(c)];
       if (r.answer >= 0) {
         const Column& column = *shots.find(channels_[std::size_t(c)].name);
-        y[c] = column.numeric ? column.native(row) : kNotMeasured;
+        y[c] = column.numeric ? column.native(row) : kNaN;
       } else {
         y[c] = case_.positions(Eigen::Index(row), c - Eigen::Index(channels_.size() - case_.points.size()));
       }
@@ -230,41 +220,21 @@ void FlightProblem::read() {
 }
 
 void FlightProblem::split() {
-  std::vector<int> usable;
-  for (int i = 0; i < int(trials_.size()); ++i)
-    if (!out_.contains(i)) usable.push_back(i);
-  std::vector<std::string> cluster;  // of each usable trial
-  if (!case_.split.by.empty()) {
-    const Column* by = case_.shots.find(case_.split.by);
-    if (!by) throw DataError(fmt::format("{}:1: no column '{}' to split by", case_.shots.file, case_.split.by));
-    const Groups g = groups(*by);
-    for (const int i : usable) {
-      const int k = g.of_row[std::size_t(trials_[std::size_t(i)].row)];
-      cluster.push_back(k < 0 ? fmt::format("row {}", i) : g.name[std::size_t(k)]);
-    }
-  } else {
-    for (const int i : usable) cluster.push_back(fmt::format("{}", trials_[std::size_t(i)].row));
+  const Column* by = case_.split.by.empty() ? nullptr : case_.shots.find(case_.split.by);
+  if (!by && !case_.split.by.empty())
+    throw DataError(fmt::format("{}:1: no column '{}' to split by", case_.shots.file, case_.split.by));
+  const Groups g = by ? groups(*by) : Groups{};
+  std::vector<std::vector<std::size_t>> clusters;  // in order of appearance; a trial without a name is its own
+  std::map<int, std::size_t> place;
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const int name = by ? g.of_row[std::size_t(trials_[i].row)] : -1;
+    const std::size_t k = name < 0 ? clusters.size() : place.try_emplace(name, clusters.size()).first->second;
+    if (k == clusters.size()) clusters.emplace_back();
+    clusters[k].push_back(i);
   }
-  std::vector<std::string> names;
-  for (const std::string& c : cluster)
-    if (std::ranges::find(names, c) == names.end()) names.push_back(c);
   std::mt19937_64 random(case_.split.seed);
-  std::set<std::string> held;
-  double have = 0;
-  const double wanted = case_.split.holdout_fraction * double(usable.size());
-  for (const std::size_t k : solvers::shuffled(names.size(), random)) {
-    const double more = double(std::ranges::count(cluster, names[k]));
-    if (have + more > wanted + 0.5 * more) continue;
-    held.insert(names[k]);
-    have += more;
-  }
-  train_.clear();
-  holdout_.clear();
-  for (std::size_t k = 0; k < usable.size(); ++k) (held.contains(cluster[k]) ? holdout_ : train_).push_back(usable[k]);
-}
-
-FlightProblem::GroupUnknowns FlightProblem::group_sd() const {
-  return {case_.unknown.wind, case_.unknown.wind, case_.unknown.slope};
+  const std::vector<char> held = hold_out(clusters, trials_.size(), case_.split.holdout_fraction, random);
+  for (std::size_t i = 0; i < trials_.size(); ++i) (held[i] ? holdout_ : train_).push_back(int(i));
 }
 
 Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const double* p,
@@ -279,7 +249,7 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
   launch = models::launched(launch, own);
   c = models::with_own(std::move(c), own, group.head<2>());
   c.ground.slope += group[2];
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(width(), kNotMeasured);
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(width(), kNaN);
   try {
     if (channels_.size() > case_.points.size()) {
       const models::FlightAnswers a = models::answers(models::fly_in_steps(launch, case_.ball, c, kIntegrationStep));
@@ -296,8 +266,8 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
         out[k] = r.point.axis == 0 ? x.x() : r.point.axis == 1 ? -x.y() : x.z();
       }
     }
-  } catch (const std::invalid_argument&) { out.setConstant(kNotMeasured); } catch (const solvers::NonConvergence&) {
-    out.setConstant(kNotMeasured);
+  } catch (const std::invalid_argument&) { out.setConstant(kNaN); } catch (const solvers::NonConvergence&) {
+    out.setConstant(kNaN);
   }
   return out;
 }
@@ -447,7 +417,7 @@ bool FlightProblem::errors(const std::vector<int>& trials, const Model& model, c
     // Nothing is measured: no matter what the model says. Else it must say something.
     for (int c = 0; c < width(); ++c)
       if (std::isnan(e(Eigen::Index(k), c)) && std::isfinite(measured_(trials[k], c)))
-        e(Eigen::Index(k), c) = std::numeric_limits<double>::infinity();
+        e(Eigen::Index(k), c) = kInfinity;
   });
   return (e.array().isNaN() || e.array().isFinite()).all();
 }
@@ -550,11 +520,9 @@ Problem::Density FlightProblem::density(Part part) const {
   return d;
 }
 
-std::vector<Stage> FlightProblem::stages() const { return stages_of_shots(width()); }
-
 /// Flights that no model of the family explains: beyond what the noise allows once in a hundred such sets.
 bool FlightProblem::screen(const Selection& selection) {
-  constexpr double one_in = 0.01, most = 0.08;
+  constexpr double one_in = 0.01;
   const Fit& at = selection.richest;
   std::set<int> now = out_;
   const double n = double(train_.size() + holdout_.size());
@@ -579,7 +547,7 @@ bool FlightProblem::screen(const Selection& selection) {
       }
     }
   }
-  if (double(now.size()) > std::max(2.0, most * double(trials_.size()))) return true;  // no exceptions: not the rows
+  if (double(now.size()) > std::max(2.0, kMany * double(trials_.size()))) return true;  // no exceptions: not the rows
   const bool same = now.size() == out_.size();
   out_ = std::move(now);
   flags_ = std::move(flags);
@@ -632,21 +600,18 @@ void FlightProblem::estimate_noise(const Fit* at) {
         sd = std::sqrt(std::max(sd * sd - known / double(train_.size()), 0.04 * sd * sd));
       }
     }
-    ch.noise = std::max({sd, rounding_deviation(ch.resolution), 1e-9});
+    ch.noise = std::max(sd, ch.least_noise());
   }
 }
 
 double FlightProblem::update_noise(const Fit& selected, const Fit&) {
-  std::vector<double> before;
-  for (const Channel& c : channels_) before.push_back(c.noise);
+  const Eigen::ArrayXd before = noise();
   estimate_noise(&selected);
   expand(selected.model, selected.p);
-  double change = 0;
-  for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
   // What is unknown weighs otherwise about an effect.
   const bool anew = !updated_ && !selected.model.forms.empty();
   updated_ = updated_ || anew;
-  return anew ? std::numeric_limits<double>::infinity() : change;
+  return anew ? kInfinity : (noise() / before - 1).abs().maxCoeff();
 }
 
 StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
@@ -663,11 +628,10 @@ StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eig
 
 /// The scatter is not what is declared of noise and unknowns, or too many flights are explained by nothing.
 std::vector<Location> FlightProblem::doubts(const Selection& s) const {
-  constexpr double lost_share = 0.2, wide = 1.75;
   std::vector<Location> told;
   const Eigen::MatrixXd r = residuals(s.chosen.model, s.chosen.p);
   for (int c = 0; c < width(); ++c)
-    if (const double ratio = scatter(c, r, s.chosen.size()).ratio; channel(c).trusted() && ratio > wide)
+    if (const double ratio = scatter(c, r, s.chosen.size()).ratio; channel(c).trusted() && ratio > kWide)
       told.push_back({channel(c).name, "",
                       fmt::format("scatters {:.1f} times as much as declared noise and unknowns allow", ratio)});
   const Eigen::VectorXd z = loop::whitened(*this, Part::train, s.chosen.model, s.chosen.p);
@@ -675,30 +639,28 @@ std::vector<Location> FlightProblem::doubts(const Selection& s) const {
   double lost = double(flags_.size());
   for (std::size_t k = 0; k < train_.size(); ++k)
     lost += z.segment(Eigen::Index(k) * width(), width()).squaredNorm() > loss.cap;
-  if (const double share = lost / double(flags_.size() + train_.size()); share >= lost_share)
+  if (const double share = lost / double(flags_.size() + train_.size()); share >= kLost)
     told.push_back({"", "", fmt::format("{:.0f} % of the flights are flagged or explained by nothing", 100 * share)});
   return told;
 }
 
 NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
-  NextExperiment next;
-  if (too_few()) {
-    next.text = "more flights";
-  } else if (so_far.verdict == Verdict::ambiguous) {
-    next.sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, case_.own), "; or "));
-    next.text = fmt::format("these flights cannot separate {}: measure {}",
-                            fmt::join(so_far.ties | std::views::join, ", "), *next.sensor);
-  } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
-    const Location& l = so_far.unexplained.front();
-    next.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",
-                            l.regressor.empty() ? "one quantity" : l.regressor,
-                            l.channel.empty() ? "a reading" : l.channel);
-  } else if (so_far.verdict == Verdict::insufficient) {
-    next.text = "more flights: the list of smallest effects says what these could have shown";
-  } else {
-    next.text = "nothing is tied; flights at other speeds and spins would narrow the parameters most";
+  if (too_few()) return {.text = "more flights"};
+  if (so_far.verdict == Verdict::ambiguous) {
+    const std::string sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, case_.own), "; or "));
+    return {.text = fmt::format("these flights cannot separate {}: measure {}",
+                                fmt::join(so_far.ties | std::views::join, ", "), sensor),
+            .sensor = sensor};
   }
-  return next;
+  if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
+    const Location& l = so_far.unexplained.front();
+    return {.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",
+                                l.regressor.empty() ? "one quantity" : l.regressor,
+                                l.channel.empty() ? "a reading" : l.channel)};
+  }
+  if (so_far.verdict == Verdict::insufficient)
+    return {.text = "more flights: the list of smallest effects says what these could have shown"};
+  return {.text = "nothing is tied; flights at other speeds and spins would narrow the parameters most"};
 }
 
 }  // namespace hosel::loop

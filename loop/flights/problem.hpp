@@ -40,7 +40,7 @@ class FlightProblem final : public Problem {
   Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override;
   Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override;
   Density density(Part part) const override;
-  std::vector<Stage> stages() const override;
+  std::vector<Stage> stages() const override { return stages_of_shots(width()); }
 
   bool screen(const Selection& selection) override;
   Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
@@ -95,7 +95,7 @@ class FlightProblem final : public Problem {
   const std::vector<Block>& blocks(Part part) const { return part == Part::holdout ? held_blocks_ : train_blocks_; }
   Eigen::VectorXd whiten(Part part, const Eigen::MatrixXd& e) const;
   void estimate_noise(const Fit* at);
-  GroupUnknowns group_sd() const;
+  GroupUnknowns group_sd() const { return {case_.unknown.wind, case_.unknown.wind, case_.unknown.slope}; }
 
   const FlightCase& case_;
   std::vector<Channel> channels_;

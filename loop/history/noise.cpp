@@ -14,6 +14,9 @@
 namespace hosel::loop {
 namespace {
 
+constexpr double kFewestInRow = 8;        // readings that make a periodogram, ordinates that make a band
+constexpr std::size_t kFewestOfAll = 16;  // of all records: fewer tell no level and no structure
+
 /// |sum x exp(-i w t)|^2 / n at the frequencies 1 ... of the padded length.
 std::vector<double> periodogram(std::vector<double> x, double n) {
   const std::size_t size = std::bit_ceil(x.size());
@@ -44,10 +47,10 @@ double level(const HistoryProblem& problem, const Eigen::VectorXd& z, int channe
       n += x[std::size_t(i)] != 0;
     }
     at += record.measured.size();
-    if (n < 8) continue;
+    if (n < kFewestInRow) continue;
     for (const double I : periodogram(x, n)) power.push_back(I);
   }
-  if (power.size() < 16) return 1;
+  if (power.size() < kFewestOfAll) return 1;
   std::ranges::sort(power);
   power.resize(power.size() * 4 / 5);
   double mean = 0;
@@ -67,7 +70,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     std::vector<double> run;
     const auto close = [&] {
       const double n = double(run.size());
-      if (run.size() >= 8) {
+      if (n >= kFewestInRow) {
         double mean = 0;
         for (const double x : run) mean += x / n;
         for (double& x : run) x -= mean;
@@ -100,9 +103,9 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     close();
     first += record.measured.rows();
   }
-  if (power.size() < 16) return {std::sqrt(square / std::max(1.0, count)), 0, count};
+  if (power.size() < kFewestOfAll) return {std::sqrt(square / std::max(1.0, count)), 0, count};
   Colour best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   std::vector<double> level(power.size());
   for (double rho = 0; rho < 0.985; rho += 0.02) {
     for (std::size_t k = 0; k < power.size(); ++k)
@@ -155,7 +158,7 @@ StructureMap history_structure(const HistoryProblem& problem, const Eigen::Vecto
           ++here;
           middle += record.times[std::size_t(i)];
         }
-      if (here < 8) continue;
+      if (here < kFewestInRow) continue;
       middle /= here;
       for (std::ptrdiff_t i = 0; i < rows; ++i) {
         const double v = z[first + i] / scale;
@@ -185,7 +188,7 @@ StructureMap history_structure(const HistoryProblem& problem, const Eigen::Vecto
       // Padding makes neighbours depend on one another: fewer than counted are free.
       const double free = here / double(size);
       for (std::size_t b = 0; b < band.size(); ++b)
-        if (band_count[b] * free >= 8) {
+        if (band_count[b] * free >= kFewestInRow) {
           const double mean = band[b] / band_count[b], dof = 2 * band_count[b] * free;
           add(c, "band",
               fmt::format("{:.3g} to {:.3g} Hz", double(std::size_t(1) << b) / (double(size) * step),
@@ -195,10 +198,10 @@ StructureMap history_structure(const HistoryProblem& problem, const Eigen::Vecto
       std::ranges::fill(band, 0.0);
       std::ranges::fill(band_count, 0.0);
     }
-    if (n < 16) continue;
+    if (n < kFewestOfAll) continue;
     add(c, "constant", "", sum / std::sqrt(n), tail(sum * sum / n, 1), 1);
     if (time2 > 0) add(c, "trend", "", slope / std::sqrt(time2), tail(slope * slope / time2, 1), 1);
-    if (pairs > 16) add(c, "neighbours", "alike", lag / std::sqrt(pairs), tail(lag * lag / pairs, 1), 1);
+    if (pairs > kFewestOfAll) add(c, "neighbours", "alike", lag / std::sqrt(pairs), tail(lag * lag / pairs, 1), 1);
     add(c, "oscillation", fmt::format("at {:.3g} Hz", peak.frequency), std::sqrt(2 * peak.power), std::exp(-peak.power),
         std::max(1.0, 1.5 * ordinates));
   }

@@ -31,8 +31,6 @@ double rough_noise(const std::vector<HistoryRecord>& records, int channel) {
   return robust_deviation(size) / std::sqrt(20.0);
 }
 
-double noise_floor(const Channel& c) { return std::max(rounding_deviation(c.resolution), 1e-9); }
-
 }  // namespace
 
 HistoryProblem::HistoryProblem(const HistoryModel& model, const HistorySetting& setting,
@@ -49,7 +47,7 @@ HistoryProblem::HistoryProblem(const HistoryModel& model, const HistorySetting& 
   }
   for (int c = 0; c < width(); ++c) {
     HistoryChannel& ch = setting_.channels[std::size_t(c)];
-    ch.noise = ch.declared ? *ch.declared : std::max(rough_noise(records_, c), noise_floor(ch));
+    ch.noise = ch.declared ? *ch.declared : std::max(rough_noise(records_, c), ch.least_noise());
   }
   split(how);
 }
@@ -87,9 +85,7 @@ void HistoryProblem::split(const Split& how) {
 
 std::vector<Parametrisation> HistoryProblem::forms() const {
   std::vector<Parametrisation> all;
-  for (const EffectEntry& e : effects_with(own_))
-    if (e.on_tests)
-      for (Parametrisation& f : e.on_tests(setting_)) all.push_back(std::move(f));
+  for (const EffectEntry& e : effects_with(own_)) std::ranges::move(e.forms(setting_), std::back_inserter(all));
   return all;
 }
 
@@ -316,7 +312,7 @@ bool HistoryProblem::screen(const Selection& selection) {
                           fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -here(i),
                                       record.times[std::size_t(i)], record.name),
                           int(flags_.size()) + 1});
-        record.measured(i, c) = measured_(first + i, c) = std::numeric_limits<double>::quiet_NaN();
+        record.measured(i, c) = measured_(first + i, c) = kNaN;
       }
     }
     first += record.measured.rows();
@@ -337,7 +333,7 @@ double HistoryProblem::update_noise(const Fit&, const Fit& richest) {
     HistoryChannel& ch = setting_.channels[std::size_t(c)];
     Colour noise = colour(*this, e, c, false);
     if (noise.rho < 0.06) noise = colour(*this, e, c, true);
-    const double sigma = std::max(ch.trusted() ? *ch.declared : noise.sigma, noise_floor(ch));
+    const double sigma = std::max(ch.trusted() ? *ch.declared : noise.sigma, ch.least_noise());
     change = std::max({change, std::abs(std::log(sigma / ch.noise)), std::abs(noise.rho - ch.colour)});
     ch.noise = sigma;
     ch.colour = noise.rho;
@@ -374,30 +370,27 @@ std::vector<Location> HistoryProblem::places(const Selection& s) const {
 }
 
 NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
-  NextExperiment next;
-  if (too_few()) {
-    next.text = "a longer record";
-  } else if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
+  if (too_few()) return {.text = "a longer record"};
+  if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const auto placed = std::ranges::find_if(so_far.unexplained, [](const Location& l) { return !l.channel.empty(); });
     const std::string left = placed == so_far.unexplained.end() ? so_far.unexplained.front().detail
                                                                 : fmt::format("{} holds {} that no candidate explains",
                                                                               placed->channel, placed->detail);
-    next.text =
-        fmt::format("repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left);
-  } else if (so_far.verdict == Verdict::ambiguous) {
-    next.sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, own_), "; or "));
-    next.text = fmt::format(
-        "this record cannot separate {}: measure {}; or record the same club with a known mass at the tip and with a "
-        "shorter free length",
-        fmt::join(so_far.ties | std::views::join, ", "), *next.sensor);
-  } else if (so_far.verdict == Verdict::insufficient) {
-    next.text = "a longer or stronger record: the list of smallest effects says what this one could have shown";
-  } else if (so_far.verdict == Verdict::noise_contradicted) {
-    next.text = "a record at rest, to find the instrument's own scatter";
-  } else {
-    next.text = "nothing is tied; a longer record would narrow the parameters most";
+    return {.text = fmt::format(
+                "repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left)};
   }
-  return next;
+  if (so_far.verdict == Verdict::ambiguous) {
+    const std::string sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, own_), "; or "));
+    return {.text = fmt::format("this record cannot separate {}: measure {}; or record the same club with a known mass "
+                                "at the tip and with a shorter free length",
+                                fmt::join(so_far.ties | std::views::join, ", "), sensor),
+            .sensor = sensor};
+  }
+  if (so_far.verdict == Verdict::insufficient)
+    return {.text = "a longer or stronger record: the list of smallest effects says what this one could have shown"};
+  if (so_far.verdict == Verdict::noise_contradicted)
+    return {.text = "a record at rest, to find the instrument's own scatter"};
+  return {.text = "nothing is tied; a longer record would narrow the parameters most"};
 }
 
 }  // namespace hosel::loop

@@ -5,9 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -23,6 +21,8 @@ struct Term {
   int a = 0, b = -1;
   char how = ' ';  ///< ' ', '/', '*'
 };
+
+constexpr double kRoundOff = 1e-9;  // of a column's spread
 
 struct Source {
   const Column* column;
@@ -102,9 +102,16 @@ constexpr Identity kIdentities[] = {
     {"", "face_angle", "club_path", "face_angle - club_path: the face to the path", kDifference},
 };
 
+/// All but a twentieth on either side lies between these.
+std::pair<double, double> bulk(std::vector<double> x) {
+  std::ranges::sort(x);
+  const std::size_t beyond = x.size() / 20;
+  return {x[beyond], x[x.size() - 1 - beyond]};
+}
+
 /// Root mean square of all but the worst tenth: a few bad rows must not hide an identity.
 double trimmed_rms(std::vector<double> r) {
-  if (r.empty()) return std::numeric_limits<double>::infinity();
+  if (r.empty()) return kInfinity;
   for (double& x : r) x *= x;
   std::ranges::sort(r);
   const std::size_t keep = std::max<std::size_t>(1, r.size() - r.size() / 10);
@@ -131,7 +138,7 @@ class Audit {
       std::ranges::sort(seen);
       const std::set<double> different(seen.begin(), seen.end());
       if (different.size() < 4) continue;
-      s.spread = seen[std::size_t(0.9 * double(seen.size() - 1))] - seen[std::size_t(0.1 * double(seen.size() - 1))];
+      s.spread = at_share(seen, 0.9) - at_share(seen, 0.1);
       if (!(s.spread > 0)) continue;
       s.fine = different.size() >= 8;
       sources_.push_back(std::move(s));
@@ -143,15 +150,15 @@ class Audit {
     std::set<int> gone;
     const auto accept = [&](int target, const Formula& f) {
       std::vector<std::string> from;
-      for (const int k : f.from) from.push_back(sources_[std::size_t(k)].column->name);
-      found.push_back(derived_column(*sources_[std::size_t(target)].column, std::move(from), f.text, f.residual));
+      for (const int k : f.from) from.push_back(source(k).column->name);
+      found.push_back(derived_column(*source(target).column, std::move(from), f.text, f.residual));
       found.back().rows = f.rows;
       gone.insert(target);
     };
     // Formulas of the field first, magnitudes before components.
     for (const bool component : {false, true})
       for (int target = 0; target < int(sources_.size()); ++target) {
-        const Source& y = sources_[std::size_t(target)];
+        const Source& y = source(target);
         const bool part = y.column->stem == "backspin" || y.column->stem == "sidespin";
         if (part != component || y.spread < 3 * y.resolution) continue;
         Formula f;
@@ -163,7 +170,7 @@ class Audit {
     for (int k = 0; k < int(sources_.size()); ++k) stale.insert(k);
     for (;;) {
       for (const int target : stale) {
-        const Source& y = sources_[std::size_t(target)];
+        const Source& y = source(target);
         best.erase(target);
         // Coarse columns cannot show a formula with free numbers.
         if (gone.contains(target) || !y.fine || y.spread < 12 * y.resolution) continue;
@@ -175,7 +182,7 @@ class Audit {
       const auto [target, formula] = *std::ranges::min_element(best, {}, [&](const auto& b) {
         return same_relation(likeliest->first, likeliest->second, b.first, b.second)
                    ? b.second.direction + 6 * rank(b.first)
-                   : std::numeric_limits<double>::infinity();
+                   : kInfinity;
       });
       accept(target, formula);
       stale = {target};
@@ -191,25 +198,25 @@ class Audit {
   std::vector<int> sources_for(int target, const std::set<int>& gone, bool fine) const {
     std::vector<int> use;
     for (int k = 0; k < int(sources_.size()); ++k)
-      if (k != target && !gone.contains(k) && (!fine || sources_[std::size_t(k)].fine)) use.push_back(k);
+      if (k != target && !gone.contains(k) && (!fine || source(k).fine)) use.push_back(k);
     return use;
   }
 
-  int rank(int k) const { return rank_if_computed(*sources_[std::size_t(k)].column); }
+  const Source& source(int k) const { return sources_[std::size_t(k)]; }
+  int rank(int k) const { return rank_if_computed(*source(k).column); }
 
   /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
   bool divides(int k) const {
     std::vector<double> v;
-    for (const double x : sources_[std::size_t(k)].x)
+    for (const double x : source(k).x)
       if (std::isfinite(x)) v.push_back(x);
-    std::ranges::sort(v);
-    const double low = v[v.size() / 20], high = v[v.size() - 1 - v.size() / 20];
+    const auto [low, high] = bulk(std::move(v));
     return low * high > 0 && std::max(std::abs(low), std::abs(high)) < 8 * std::min(std::abs(low), std::abs(high));
   }
 
   int of(std::string_view stem, const std::vector<int>& use) const {
     for (const int k : use)
-      if (sources_[std::size_t(k)].column->stem == stem) return k;
+      if (source(k).column->stem == stem) return k;
     return -1;
   }
 
@@ -217,11 +224,11 @@ class Audit {
   template <class F>
   bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f,
              Formula& out) const {
-    const Source& y = sources_[std::size_t(target)];
+    const Source& y = source(target);
     if (rows.empty()) return false;
     std::vector<double> residual, wobbles, x(sources_.size());
     for (const Eigen::Index i : rows) {
-      for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
+      for (const int k : from) x[std::size_t(k)] = source(k).x[i];
       residual.push_back(y.x[i] - f(x));
     }
     out.residual = trimmed_rms(residual);
@@ -229,10 +236,10 @@ class Audit {
     const double finer = parameters ? 12 : 6;
     if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
     for (const Eigen::Index i : rows) {
-      for (const int k : from) x[std::size_t(k)] = sources_[std::size_t(k)].x[i];
+      for (const int k : from) x[std::size_t(k)] = source(k).x[i];
       double wobble = y.resolution * y.resolution / 12;
       for (const int k : from) {
-        const double h = 0.5 * sources_[std::size_t(k)].resolution, at = x[std::size_t(k)];
+        const double h = 0.5 * source(k).resolution, at = x[std::size_t(k)];
         x[std::size_t(k)] = at + h;
         const double up = f(x);
         x[std::size_t(k)] = at - h;
@@ -245,19 +252,19 @@ class Audit {
     out.tolerance = std::sqrt(median(std::move(wobbles)));
     out.from = from;
     // The numbers of the formula are fitted: the edge is not sharper than they are.
-    const double edge = 0.5 * y.resolution + 1e-9 * y.spread +
+    const double edge = 0.5 * y.resolution + kRoundOff * y.spread +
                         2 * out.residual * std::sqrt(parameters / double(rows.size()));
     out.beyond = int(std::ranges::count_if(
         residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
-    return out.residual < 1.6 * out.tolerance + 1e-9 * y.spread && out.tolerance * finer < y.spread;
+    return out.residual < 1.6 * out.tolerance + kRoundOff * y.spread && out.tolerance * finer < y.spread;
   }
 
   std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
     std::vector<Eigen::Index> rows;
     for (Eigen::Index i = 0; i < sources_[0].x.size(); ++i) {
-      bool good = std::isfinite(sources_[std::size_t(target)].x[i]);
-      for (const int k : from) good = good && std::isfinite(sources_[std::size_t(k)].x[i]);
+      bool good = std::isfinite(source(target).x[i]);
+      for (const int k : from) good = good && std::isfinite(source(k).x[i]);
       if (good) rows.push_back(i);
     }
     return rows;
@@ -265,7 +272,7 @@ class Audit {
 
   /// Formulas of the field without free numbers.
   bool identity(int target, const std::vector<int>& use, Formula& best) const {
-    const Column& y = *sources_[std::size_t(target)].column;
+    const Column& y = *source(target).column;
     const auto attempt = [&](const std::set<int>& from, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < kFewestRows) return false;
@@ -301,7 +308,7 @@ class Audit {
 
   /// Fits y to one, two or three features on every second row and judges it on the others.
   bool search(int target, const std::vector<int>& use, Formula& best) const {
-    const Source& y = sources_[std::size_t(target)];
+    const Source& y = source(target);
     bool found = false;
     const auto consider = [&](const std::vector<Term>& features, bool logarithmic) {
       std::set<int> from;
@@ -313,14 +320,15 @@ class Audit {
       const auto p = std::ptrdiff_t(features.size()) + 1;
       if (std::ptrdiff_t(rows.size()) < 10 + 5 * p) return false;
       // Rows that repeat (one value per cluster) count once.
+      const auto needed = std::size_t(8 + 4 * p);
       std::set<std::vector<double>> distinct;
       for (const Eigen::Index i : rows) {
-        if (std::ptrdiff_t(distinct.size()) == 8 + 4 * p) break;
+        if (distinct.size() == needed) break;
         std::vector<double> key;
-        for (const int k : from) key.push_back(sources_[std::size_t(k)].x[i]);
+        for (const int k : from) key.push_back(source(k).x[i]);
         distinct.insert(std::move(key));
       }
-      if (std::ptrdiff_t(distinct.size()) < 8 + 4 * p) return false;
+      if (distinct.size() < needed) return false;
       const auto transform = [&](double x) { return logarithmic ? std::log(std::abs(x)) : x; };
       std::vector<Eigen::Index> fitted, judged;
       for (std::size_t k = 0; k < rows.size(); ++k) (k % 2 ? judged : fitted).push_back(rows[k]);
@@ -393,18 +401,18 @@ class Audit {
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
       // sees. Each counts as e^3 times as likely.
-      const bool seen = y.column->role == Role::input && std::ranges::all_of(from, [&](int k) {
-                          return sources_[std::size_t(k)].column->role == Role::output;
-                        });
+      const bool seen = y.column->role == Role::input &&
+                        std::ranges::all_of(from, [&](int k) { return source(k).column->role == Role::output; });
       const auto composite = std::ranges::count_if(features, [](const Term& g) { return g.b >= 0; });
-      const double own = rounding_deviation(y.resolution) + 1e-9 * y.spread;
-      const double all_rounding = out.tolerance + 1e-9 * y.spread, share = std::pow(out.residual / all_rounding, 2),
-                   terms = 6 * double(p + composite - seen), n_judged = double(judged.size());
+      const double own = rounding_deviation(y.resolution) + kRoundOff * y.spread;
+      const double all_rounding = out.tolerance + kRoundOff * y.spread,
+                   share = std::pow(out.residual / all_rounding, 2), terms = 6 * double(p + composite - seen),
+                   n_judged = double(judged.size());
       out.cost = n_judged * (share - 1 + 2 * std::log(std::max(1.0, out.residual / own))) + terms;
       // Between the columns of a relation the rounding of all of them is no evidence. That one of them is missed by
       // nothing but its own rounding is: it was computed from the others as they stand. Nor does an instrument compute
       // what is made of the others' last digits: twice their rounding counts as one more term.
-      const double uniform = std::log(2 * std::sqrt(3.0) * own / all_rounding) - 0.5 * std::log(2 * std::numbers::pi);
+      const double uniform = std::log(2 * std::sqrt(3.0) * own / all_rounding) - kLogRootTwoPi;
       out.form = composite ? Formula::Form::other : logarithmic ? Formula::Form::powers : Formula::Form::linear;
       out.direction = n_judged * (share - 1) + terms + 6 * std::log2(all_rounding / own) +
                       std::min(0.0, n_judged * (2 * uniform - share) + kOutsideEdge * out.beyond);
@@ -459,9 +467,7 @@ class Audit {
     const auto ranks = [&](auto&& value) {
       Eigen::VectorXd v(n);
       for (std::ptrdiff_t i = 0; i < n; ++i) v[i] = value(rows[std::size_t(i)]);
-      std::vector<double> s(v.data(), v.data() + n);
-      std::ranges::sort(s);
-      const double lo = s[std::size_t(n / 20)], hi = s[std::size_t(n - 1 - n / 20)];
+      const auto [lo, hi] = bulk({v.data(), v.data() + n});
       v = v.cwiseMax(lo).cwiseMin(hi);  // bad rows drawn in
       v.array() -= v.mean();
       return Eigen::VectorXd(v / std::max(v.norm(), 1e-300));
@@ -472,7 +478,7 @@ class Audit {
       columns.push_back(v);
       kept.push_back(&f);
     }
-    const Eigen::VectorXd y = ranks([&](Eigen::Index i) { return sources_[std::size_t(target)].x[i]; });
+    const Eigen::VectorXd y = ranks([&](Eigen::Index i) { return source(target).x[i]; });
     Eigen::MatrixXd X(n, std::ptrdiff_t(columns.size()));
     for (std::size_t k = 0; k < columns.size(); ++k) X.col(std::ptrdiff_t(k)) = columns[k];
     const Eigen::MatrixXd G = X.transpose() * X;

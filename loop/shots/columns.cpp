@@ -19,9 +19,10 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kMostRows = 240;
-constexpr double kSure = 30;     // least fall of the deviance,
-constexpr double kShare = 0.15;  // and share of it
-constexpr double kClean = 1.7;   // deviance per value that a slip of free size may leave
+constexpr double kSure = 30;      // least fall of the deviance,
+constexpr double kShare = 0.15;   // and share of it
+constexpr double kFaint = 1e-12;  // norm of whitened derivatives: nothing moves
+constexpr double kClean = 1.7;    // deviance per value that a slip of free size may leave
 
 /// Quantities whose sign is a convention.
 bool has_sign(const Column& c) {
@@ -35,6 +36,8 @@ Dimension dimension(const Column& c) {
   if (const auto i = input_of(c.stem)) return quantity(*i).dimension;
   return quantity(*output_of(c.stem)).dimension;
 }
+
+bool same_unit(double a, double b) { return std::abs(a / b - 1) < 1e-9; }
 
 /// Units that launch monitors and people write, beside those that the project reads.
 std::vector<Unit> likely_units(Dimension d) {
@@ -105,7 +108,7 @@ void Columns::read() {
       columns_.push_back(c);
       outputs_.push_back(Output(o));
     }
-  std::vector<double> loft(shots.rows(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> loft(shots.rows(), kNaN);
   if (case_.loft_unknown) {
     const Inputs found = make_inputs(shots, case_.blow, case_.head_mass_declared, {}, true);
     for (std::size_t t = 0; t < found.trials.size(); ++t)
@@ -158,7 +161,7 @@ Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& m
       possible = values(i, k) >= q.low && values(i, k) <= q.high;
     }
     if (!possible || !model_->predict(shot(i, values), -1, model, p.data(), out.data())) {
-      r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      r.row(i).setConstant(kNaN);
       continue;
     }
     for (std::ptrdiff_t c = 0; c < m; ++c) {
@@ -322,7 +325,7 @@ void Columns::try_constants() {
   for (int k = 0; k < count; ++k) {
     const Column& c = *columns_[std::size_t(k)];
     for (const Unit& u : likely_units(dimension(c))) {
-      if (std::abs(u.si / c.si - 1) < 1e-9) continue;
+      if (same_unit(u.si, c.si)) continue;
       attempt({.finding = "unit", .column = k, .factor = u.si / c.si, .what = std::string(u.suffix), .cost = 2});
     }
     if (has_sign(c)) attempt({.finding = "sign", .column = k, .factor = -1, .cost = 2});
@@ -332,9 +335,9 @@ void Columns::try_constants() {
       if (dimension(c) != dimension(d)) continue;
       attempt({.finding = "swapped", .column = k, .second = l, .cost = 4});
       // Both in the same other unit: one monitor, one setting.
-      if (std::abs(c.si / d.si - 1) > 1e-9) continue;
+      if (!same_unit(c.si, d.si)) continue;
       for (const Unit& u : likely_units(dimension(c)))
-        if (std::abs(u.si / c.si - 1) > 1e-9)
+        if (!same_unit(u.si, c.si))
           attempt({.finding = "unit",
                    .column = k,
                    .second = l,
@@ -443,7 +446,7 @@ void Columns::try_sizes() {
   for (const Column& c : case_.shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
-    if (g.name.size() < 2 || g.name.size() > 12) continue;
+    if (g.name.size() < 2 || g.name.size() > kMostGroups) continue;
     std::vector<std::vector<char>> of(g.name.size(), std::vector<char>(static_cast<std::size_t>(n), 0));
     for (Eigen::Index i = 0; i < n; ++i)
       if (const int group = g.of_row[std::size_t(rows_[std::size_t(i)])]; group >= 0)  // the cell may be empty
@@ -459,7 +462,7 @@ void Columns::try_sizes() {
   }
   for (int k = 0; k < int(columns_.size()); ++k) {
     const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
-    if (J.norm() < 1e-12) continue;
+    if (J.norm() < kFaint) continue;
     const auto consider = [&](Slip slip, const Eigen::MatrixXd& j) {
       const auto [t, value] = fitted(z, j);
       (slip.finding == "scale" ? slip.factor : slip.offset) += t;
@@ -485,13 +488,13 @@ void Columns::try_sizes() {
   for (const auto& [of, largest] :
        {std::pair{&ContactLaw::restitution, 0.1}, {&ContactLaw::tangential_restitution, 0.3}}) {
     const Eigen::MatrixXd J = sensitivity(of) * W.transpose();
-    if (J.norm() < 1e-12) continue;
+    if (J.norm() < kFaint) continue;
     for (const PartOfRows& part : parts) {
       const Eigen::MatrixXd even = members_only(J, part.member);
       auto [size, value] = fitted(z, even);
       if (std::abs(size) > largest) continue;
       const Eigen::MatrixXd off_centre = square.asDiagonal() * even;
-      if (off_centre.norm() > 1e-12)
+      if (off_centre.norm() > kFaint)
         value = std::min(value, fitted(z + size * even, off_centre).second + case_.rules.parameter_cost);
       const auto known = physics.try_emplace(part.what, value).first;
       known->second = std::min(known->second, value);

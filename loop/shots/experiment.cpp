@@ -93,7 +93,7 @@ struct Box {
 std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std::string& name,
                         const std::vector<Parametrisation>& forms) {
   std::vector<Fit> all = {as_fitted};
-  double usual = std::numeric_limits<double>::infinity();
+  double usual = kInfinity;
   std::size_t widest = 0;
   for (const Parametrisation& f : forms)
     if (f.effect == name) usual = std::min(usual, f.complexity);
@@ -105,16 +105,12 @@ std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std:
       continue;
     Model m;
     std::vector<double> start;
-    std::ptrdiff_t at = 0;
-    for (const Parametrisation* old : as_fitted.model.forms) {
-      const auto n = std::ptrdiff_t(old->parameters.size());
-      m.forms.push_back(old->effect == name ? &f : old);
-      if (old->effect == name) start.resize(start.size() + f.parameters.size());
-      else start.insert(start.end(), as_fitted.p.data() + at, as_fitted.p.data() + at + n);
-      at += n;
-    }
-    all.push_back(fit(problem, Part::select, m,
-                      {Eigen::Map<const Eigen::VectorXd>(start.data(), std::ptrdiff_t(start.size()))}, 1));
+    as_fitted.model.each(as_fitted.p.data(), [&](const Parametrisation& old, std::span<const double> p) {
+      m.forms.push_back(old.effect == name ? &f : &old);
+      if (old.effect == name) start.resize(start.size() + f.parameters.size());
+      else start.insert(start.end(), p.begin(), p.end());
+    });
+    all.push_back(fit(problem, Part::select, m, {as_vector(start)}, 1));
   }
   return all;
 }
@@ -140,7 +136,7 @@ class Separation {
     Eigen::VectorXd one(m), two(m);
     out.J.resize(m, rival_.size());
     if (!model_.predict(t, shot, truth_.model, truth_.p.data(), one.data()) ||
-        !model_.differences(t, shot, rival_.model, rival_.p.data(), 1e-3, true, two.data(), out.J.data()))
+        !model_.differences(t, shot, rival_.model, rival_.p.data(), true, two.data(), out.J.data()))
       return false;
     out.d = (one - two).cwiseQuotient(noise_);
     out.J = noise_.cwiseInverse().asDiagonal() * out.J;
@@ -152,11 +148,6 @@ class Separation {
     dd_ += s.d.squaredNorm();
   }
   double squared() const { return std::max(0.0, dd_ - g_.dot(dense::Ldlt(G_).solve(g_))); }
-  double squared_with(const Site& s) const {
-    Separation more = *this;
-    more.add(s);
-    return more.squared();
-  }
 
  private:
   const ShotModel& model_;
@@ -186,14 +177,14 @@ class Contest {
     for (std::size_t k = 0; k < each_.size(); ++k) each_[k].add(s[k]);
   }
   double squared() const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Separation& e : each_) least = std::min(least, e.squared());
     return least;
   }
   double squared_with(const Site& s) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < each_.size(); ++k) least = std::min(least, each_[k].squared_with(s[k]));
-    return least;
+    Contest more = *this;
+    more.add(s);
+    return more.squared();
   }
 
  private:
@@ -204,41 +195,38 @@ class Contest {
 
 NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
                       const LoopResult& so_far) {
-  NextExperiment next;
   switch (so_far.verdict) {
-    case Verdict::unexplained:
+    case Verdict::unexplained: {
       if (so_far.unexplained.empty()) break;
-      if (const auto l =
-              std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
-          l != so_far.unexplained.end())
-        next.text =
-            l->regressor == "constant"
-                ? fmt::format(
-                      "check the zero of {} against another instrument: it is off by the same amount everywhere",
-                      l->channel.empty() ? "every channel" : l->channel)
-            : l->regressor == "shot"
-                ? fmt::format("repeat the first shots of the session at its end, in the same order: {}",
-                              l->channel.empty() ? l->detail : l->channel + " follows the order of the shots")
-                : fmt::format(
-                      "change {} on purpose, keep everything else as it is, and repeat each setting: {}", l->regressor,
-                      l->channel.empty() ? l->detail : l->channel + " follows it in a way that no candidate explains");
-      else
-        next.text = fmt::format("repeat one setting ten times, ball, player and instrument noted for every shot: {}",
-                                so_far.unexplained.front().detail);
-      return next;
+      const auto l = std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
+      if (l == so_far.unexplained.end())
+        return {
+            .text = fmt::format("repeat one setting ten times, ball, player and instrument noted for every shot: {}",
+                                so_far.unexplained.front().detail)};
+      const auto said = [&](const char* of_channel) {
+        return l->channel.empty() ? l->detail : l->channel + of_channel;
+      };
+      if (l->regressor == "constant")
+        return {.text = fmt::format(
+                    "check the zero of {} against another instrument: it is off by the same amount everywhere",
+                    l->channel.empty() ? "every channel" : l->channel)};
+      if (l->regressor == "shot")
+        return {.text = fmt::format("repeat the first shots of the session at its end, in the same order: {}",
+                                    said(" follows the order of the shots"))};
+      return {.text = fmt::format("change {} on purpose, keep everything else as it is, and repeat each setting: {}",
+                                  l->regressor, said(" follows it in a way that no candidate explains"))};
+    }
     case Verdict::insufficient:
-      next.text = "more shots of the same kind: the list of smallest effects says what these could have shown";
-      return next;
+      return {.text = "more shots of the same kind: the list of smallest effects says what these could have shown"};
     case Verdict::noise_contradicted:
-      next.text = "replicates: ten shots at one setting, to find the instrument's own scatter";
-      return next;
+      return {.text = "replicates: ten shots at one setting, to find the instrument's own scatter"};
     case Verdict::explained:
     case Verdict::no_residual:
-      next.text = "nothing is tied; shots at the edges of the recorded range would narrow the parameters most";
-      return next;
+      return {.text = "nothing is tied; shots at the edges of the recorded range would narrow the parameters most"};
     case Verdict::ambiguous: break;
   }
 
+  NextExperiment next;
   const Box box(c.shots, model, rows);
   const std::vector<Shot> sites = box.sites(model.trial(rows[rows.size() / 2]));
   Eigen::VectorXd noise(model.width());

@@ -14,11 +14,11 @@
 namespace hosel::loop {
 namespace {
 
-/// The loft at which the closed form shows a launch angle; some 0.8 of a change of loft show.
+/// The loft at which the closed form shows a launch angle.
 double loft_of(Blow blow, double launch_angle) {
   double& loft = blow.delivery.dynamic_loft;
   loft = launch_angle;
-  for (int k = 0; k < 8; ++k) loft += (launch_angle - closed_form().launch(blow).launch_angle()) / 0.8;
+  for (int k = 0; k < 8; ++k) loft += (launch_angle - closed_form().launch(blow).launch_angle()) / kLaunchPerLoft;
   return loft;
 }
 
@@ -112,7 +112,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
       if (std::isfinite(c->value[std::size_t(row)])) x.push_back(c->value[std::size_t(row)]);
     if (x.empty()) continue;
     const auto [mid, mad] = robust_moments(x);
-    const double fence = mad > 0 ? 4 * mad : std::numeric_limits<double>::infinity();
+    const double fence = mad > 0 ? 4 * mad : kInfinity;
     double sum = 0, square = 0, count = 0;
     for (const double v : x)
       if (std::abs(v - mid) <= fence) {

@@ -12,6 +12,7 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kKnots = 150;  // rows whose covariance makes a basis
+constexpr double kNoMotion = 1e-9;   // norm of whitened derivatives: nothing moves
 constexpr double kPrice = 8;         // of the choice among some hundred functions and mechanisms [units of deviance]
 
 /// One way in which a shot's channels move together.
@@ -96,7 +97,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
       if (std::isfinite(v)) sum += v, ++count;
     for (double& v : out) v = (std::isfinite(v) ? v : sum / count) - sum / count;
     const double sd = std::sqrt(out.squaredNorm() / double(n));
-    return Eigen::VectorXd(sd > 1e-9 * (1 + std::abs(sum / count)) ? out / (2 * sd) : Eigen::VectorXd());
+    return Eigen::VectorXd(varies(sd, sum / count) ? out / (2 * sd) : Eigen::VectorXd());
   };
   std::vector<int> every(rows.size());
   std::iota(every.begin(), every.end(), 0);
@@ -161,7 +162,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
   for (const Column& c : shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
-    if (g.name.size() < 2 || g.name.size() > 12) continue;
+    if (g.name.size() < 2 || g.name.size() > kMostGroups) continue;
     const auto group = [&](auto i) { return g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(i)])])]; };
     const auto same = [&](auto i, auto j) { return double(group(i) == group(j)); };
     all.push_back({.along = c.name, .smoothness = {basis(covariance(same), knots)}});
@@ -171,9 +172,9 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
 
 /// The function of largest posterior density for one way and one basis, over a grid of amplitudes.
 struct Found {
-  double fall = -std::numeric_limits<double>::infinity();  ///< of -2 log evidence, with the weights given
-  Eigen::VectorXd g;                                       ///< per row, in the way's scale
-  double price = 0;                                        ///< of the function: prior and determinant
+  double fall = -kInfinity;  ///< of -2 log evidence, with the weights given
+  Eigen::VectorXd g;         ///< per row, in the way's scale
+  double price = 0;          ///< of the function: prior and determinant
 };
 
 /// `z` (width x rows) whitened residuals, `j` their derivatives by the way, `w` the weights of the rows.
@@ -336,7 +337,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   const bool alone = chosen.size() == base.size();
   std::vector<Eigen::MatrixXd> shrinks;
   for (std::size_t k = 0; alone && k < every.size(); ++k)
-    if (every[k].kind == Way::Kind::input && !noisy.contains(every[k].column) && columns[k].norm() > 1e-9)
+    if (every[k].kind == Way::Kind::input && !noisy.contains(every[k].column) && columns[k].norm() > kNoMotion)
       shrinks.emplace_back(columns[k] * towards_mean(*shots.find(every[k].column), row_of, rows).asDiagonal() /
                            every[k].form.parameters.front().scale);
   Eigen::MatrixXd left = z;
@@ -348,7 +349,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
 
   std::vector<std::vector<Trial>> of_way(every.size());
   for_all(std::size_t(0), every.size(), [&](std::size_t k) {
-    if (!(columns[k].norm() > 1e-9)) return;
+    if (!(columns[k].norm() > kNoMotion)) return;
     for (std::size_t f = 0; f < functions.size(); ++f)
       of_way[k].push_back({k, f, likeliest(left, columns[k], weight, functions[f])});
   });

@@ -2,25 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "golf/dense.hpp"
+#include "loop/deviation.hpp"
 
 namespace hosel::loop {
 namespace {
 
 constexpr double kLeastShare = 0.125, kLeastApart = 2.4;
+constexpr Eigen::Index kFewestToPart = 16;  // rows
+constexpr double kNoScatter = 1e-9;
 
-double log_normal(double u, double s) {
-  return -0.5 * u * u / (s * s) - std::log(s) - 0.5 * std::log(2 * std::numbers::pi);
-}
+double log_normal(double u, double s) { return -0.5 * u * u / (s * s) - std::log(s) - kLogRootTwoPi; }
 
 /// Largest log-likelihood of one population: normal, or Student of some degrees of freedom.
 double one_population(const Eigen::VectorXd& y) {
   const double n = double(y.size()), mean = y.mean(), s = std::sqrt((y.array() - mean).square().sum() / n);
-  if (!(s > 0)) return std::numeric_limits<double>::infinity();
-  double best = -n * (std::log(s) + 0.5 * std::log(2 * std::numbers::pi) + 0.5);
+  if (!(s > 0)) return kInfinity;
+  double best = -n * (std::log(s) + kLogRootTwoPi + 0.5);
   for (const double nu : {2.0, 3.0, 5.0, 10.0}) {
     double centre = mean, scale = s;
     Eigen::ArrayXd weight;
@@ -42,9 +42,9 @@ Mixture two_populations(const Eigen::VectorXd& y) {
   std::vector<double> sorted(y.data(), y.data() + n);
   std::ranges::sort(sorted);
   Mixture best;
-  best.gain = -std::numeric_limits<double>::infinity();
+  best.gain = -kInfinity;
   for (const double q : {0.2, 0.35, 0.5, 0.65, 0.8}) {
-    const double cut = sorted[std::size_t(q * double(n - 1))];
+    const double cut = at_share(sorted, q);
     Eigen::ArrayXd second = (y.array() > cut).cast<double>();
     double share = 0, a = 0, b = 0, s = 1, sum = 0;
     for (int pass = 0; pass < 40; ++pass) {
@@ -53,7 +53,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
       b = (second * y.array()).sum() / second.sum();
       a = ((1 - second) * y.array()).sum() / (1 - second).sum();
       s = std::sqrt((second * (y.array() - b).square() + (1 - second) * (y.array() - a).square()).mean());
-      if (!(s > 1e-9)) break;
+      if (!(s > kNoScatter)) break;
       sum = 0;
       for (Eigen::Index i = 0; i < n; ++i) {
         const double one = std::log(1 - share) + log_normal(y[i] - a, s),
@@ -63,7 +63,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
         sum += both;
       }
     }
-    if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2 && s > 1e-9) || sum <= best.gain) continue;
+    if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2 && s > kNoScatter) || sum <= best.gain) continue;
     best = {.gain = sum, .share = share, .apart = (b - a) / s, .deviation = s, .second = {}};
     for (const double p : second) best.second.push_back(p > 0.5);
   }
@@ -74,7 +74,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
 
 std::optional<Mixture> mixture(const Eigen::MatrixXd& z) {
   const Eigen::Index n = z.rows(), m = z.cols();
-  if (n < 16) return {};
+  if (n < kFewestToPart) return {};
   // The principal direction of the bulk: what is far off is drawn in.
   const Eigen::MatrixXd bulk = z.cwiseMax(-12.0).cwiseMin(12.0);
   const Eigen::MatrixXd centred = bulk.rowwise() - bulk.colwise().mean();
@@ -102,7 +102,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
   constexpr double step = 0.01, cost = 4, told = 0.05, untold_share = 1.0 / 7;
   constexpr int passes = 15;
   const Eigen::Index n = first.rows(), m = first.cols(), size = start.size();
-  if (n < 16) return {};
+  if (n < kFewestToPart) return {};
   Eigen::VectorXd p = start;
   Eigen::MatrixXd z, moved;
   if (!second(p, z)) return {};
@@ -137,7 +137,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
     scatter = (((z.array().square().colwise() * in) + (first.array().square().colwise() * (1 - in))).colwise().mean())
                   .sqrt()
                   .transpose();
-    if (!(scatter.minCoeff() > 1e-9)) return {};
+    if (!(scatter.minCoeff() > kNoScatter)) return {};
     log_likelihood = -0.5 * double(n * m) * std::log(2 * std::numbers::pi) - double(n) * scatter.log().sum();
     const auto distance = [&](const Eigen::MatrixXd& a) -> Eigen::ArrayXd {
       return (a.array().rowwise() / scatter.transpose()).square().rowwise().sum();

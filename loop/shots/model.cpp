@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kImpossible = 100;                 // noise units
 constexpr double kCentral = 1e-3, kForward = 1e-5;  // difference steps, of a parameter's scale
-constexpr double kLaunchPerLoft = 0.8;              // nearly: what a search for the loft begins with
 // Flights step where their error tells them to, so that neighbours differ by their tolerance: closer, and wider apart.
 constexpr double kFlightStep = 1e-2;
 constexpr models::FlightOptions kFlight = {.tolerance = 1e-6};
@@ -30,16 +29,16 @@ Launch plus(Launch a, const Launch& b, double sign) {
   return a;
 }
 
-/// Row of models::FlightAnswers.
-int answer_of(Output o) { return int(o) - kLaunchOutputs; }
-static_assert(models::kFlightAnswers == kOutputs - kLaunchOutputs &&
-              int(Output::carry) - kLaunchOutputs == models::kCarry &&
-              int(Output::side) - kLaunchOutputs == models::kSide &&
-              int(Output::apex) - kLaunchOutputs == models::kApex &&
-              int(Output::flight_time) - kLaunchOutputs == models::kTime &&
-              int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle);
-
 }  // namespace
+
+int flight_answer(Output o) {
+  static_assert(
+      models::kFlightAnswers == kOutputs - kLaunchOutputs && int(Output::carry) - kLaunchOutputs == models::kCarry &&
+      int(Output::side) - kLaunchOutputs == models::kSide && int(Output::apex) - kLaunchOutputs == models::kApex &&
+      int(Output::flight_time) - kLaunchOutputs == models::kTime &&
+      int(Output::landing_angle) - kLaunchOutputs == models::kLandingAngle);
+  return int(o) - kLaunchOutputs;
+}
 
 const models::ImpactModel& closed_form() {
   static const models::RigidEccentric model;
@@ -136,7 +135,7 @@ void ShotModel::follow_seen(int shot) {
   }
   if (seen) return;
   for (int c = 0; c < width(); ++c)
-    if (of_flight(channels_[std::size_t(c)].output)) measured_(shot, c) = std::numeric_limits<double>::quiet_NaN();
+    if (of_flight(channels_[std::size_t(c)].output)) measured_(shot, c) = kNaN;
 }
 
 models::FlightConditions ShotModel::conditions(const Model& model, const double* parameters) const {
@@ -164,7 +163,7 @@ bool ShotModel::read(const Shot& trial, int shot, const Model& model, const doub
   if (flies_) flight = follow(trial, shot, model, parameters, launch);
   for (int c = 0; c < width(); ++c) {
     const ShotChannel& channel = channels_[std::size_t(c)];
-    const double base = of_flight(channel.output) ? flight[answer_of(channel.output)] : get(launch, channel.output);
+    const double base = of_flight(channel.output) ? flight[flight_answer(channel.output)] : get(launch, channel.output);
     double value = reading(channel, trial, model, parameters, base);
     if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
       value -= 2 * kPi * std::round((value - measured_(shot, c) * channel.si) / (2 * kPi));
@@ -230,8 +229,9 @@ bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const d
   } catch (const std::invalid_argument&) { return false; }
 }
 
-bool ShotModel::differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step,
-                            bool central, double* out, double* derivative) const {
+bool ShotModel::differences(const Shot& trial, int shot, const Model& model, const double* parameters, bool central,
+                            double* out, double* derivative) const {
+  const double step = central ? kCentral : kForward;
   try {
     Shot near = trial;
     if (seen_ && shot >= 0 && !find_loft(near, shot, model, parameters)) return false;
@@ -391,7 +391,7 @@ void ShotModel::add_launch_noise(int shot, const models::FlightConditions& condi
     const double sd = launch.noise * launch.si;
     const auto moved = [&](int a) {
       const ShotChannel& f = channels_[std::size_t(a)];
-      return of_flight(f.output) ? sd * slope[answer_of(f.output)] / f.si : 0.0;
+      return of_flight(f.output) ? sd * slope[flight_answer(f.output)] / f.si : 0.0;
     };
     for (int a = 0; a < width(); ++a) {
       for (int b = 0; b < width(); ++b) covariance(a, b) += moved(a) * moved(b);
@@ -482,7 +482,7 @@ Eigen::MatrixXd ShotModel::residuals(const Model& model, const double* parameter
   Eigen::VectorXd out(width());
   for (int i = 0; i < shots(); ++i) {
     if (predict(i, model, parameters, out.data())) r.row(i) = out.transpose() - expected_.row(i);
-    else r.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    else r.row(i).setConstant(kNaN);
   }
   return r;
 }
@@ -498,11 +498,11 @@ void ShotModel::whiten(int shot, const Model& model, const double* p, double* sc
   out.noalias() = whitening(shot) * Eigen::Map<const Eigen::VectorXd>(scratch, m);
 }
 
-void ShotModel::linearise(int shot, const Model& model, const double* p, double step, bool central,
-                          Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) const {
+void ShotModel::linearise(int shot, const Model& model, const double* p, bool central, Eigen::Ref<Eigen::VectorXd> z,
+                          Eigen::MatrixXd& J) const {
   const int m = width();
   std::array<double, 16> scratch{};
-  if (!differences(trial(shot), shot, model, p, step, central, scratch.data(), J.data())) {
+  if (!differences(trial(shot), shot, model, p, central, scratch.data(), J.data())) {
     J.setZero();
     whiten(shot, model, p, scratch.data(), z.data());
     return;
@@ -525,7 +525,7 @@ Eigen::VectorXd ShotModel::whitened(const std::vector<int>& shots, const Model& 
   return z;
 }
 
-void ShotModel::linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p,
+void ShotModel::linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, bool central,
                           Eigen::VectorXd& z, Eigen::MatrixXd& J) const {
   const int m = width();
   z.resize(std::ptrdiff_t(shots.size()) * m);
@@ -533,19 +533,15 @@ void ShotModel::linearise(const std::vector<int>& shots, const Model& model, con
   Eigen::MatrixXd part(m, p.size());
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const auto at = std::ptrdiff_t(i) * m;
-    linearise(shots[i], model, p.data(), kForward, false, z.segment(at, m), part);
+    linearise(shots[i], model, p.data(), central, z.segment(at, m), part);
     J.middleRows(at, m) = part;
   }
 }
 
 Eigen::MatrixXd ShotModel::jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const {
-  const int m = width();
-  Eigen::MatrixXd J(std::ptrdiff_t(shots.size()) * m, p.size()), part(m, p.size());
-  Eigen::VectorXd z(m);
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    linearise(shots[i], model, p.data(), kCentral, true, z, part);
-    J.middleRows(std::ptrdiff_t(i) * m, m) = part;
-  }
+  Eigen::MatrixXd J;
+  Eigen::VectorXd z;
+  linearise(shots, model, p, true, z, J);
   return J;
 }
 

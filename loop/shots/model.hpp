@@ -2,6 +2,7 @@
 /// whitening by the covariance of every shot.
 #pragma once
 
+#include <cmath>
 #include <map>
 
 #include "loop/problem.hpp"
@@ -14,6 +15,10 @@ namespace hosel::loop {
 
 /// What stands for a base that answers slowly: the closed-form eccentric impact of rigid bodies.
 const models::ImpactModel& closed_form();
+/// Nearly: what a search for the loft that shows a launch angle begins with.
+inline constexpr double kLaunchPerLoft = 0.8;
+/// Row of models::FlightAnswers.
+int flight_answer(Output o);
 
 struct ShotChannel : Channel {
   Output output;
@@ -50,8 +55,8 @@ class ShotModel {
   const Eigen::MatrixXd& measured() const { return measured_; }
   /// What was measured of a shot [SI], the launch angle that its loft is found from with it.
   std::map<Output, double> seen(int shot) const;
-  bool observed(int shot, int channel) const { return measured_(shot, channel) == measured_(shot, channel); }
-  int observed(int shot) const { return int((measured_.row(shot).array() == measured_.row(shot).array()).count()); }
+  bool observed(int shot, int channel) const { return !std::isnan(measured_(shot, channel)); }
+  int observed(int shot) const { return int((!measured_.row(shot).array().isNaN()).count()); }
 
   /// Channel values [header's units] of the base with effects, parameters in SI. False where the blow cannot
   /// happen.
@@ -59,11 +64,11 @@ class ShotModel {
   bool predict(int shot, const Model& model, const double* parameters, double* out) const {
     return predict(trial(shot), shot, model, parameters, out);
   }
-  /// The same and its derivatives by the parameters, per Parameter::scale, by differences over `step` scales; what a
+  /// The same and its derivatives by the parameters, per Parameter::scale, by central or one-sided differences; what a
   /// parameter does not touch is not computed again. `derivative` is width x size, column-major. Also false where a
   /// neighbour cannot happen.
-  bool differences(const Shot& trial, int shot, const Model& model, const double* parameters, double step, bool central,
-                   double* out, double* derivative) const;
+  bool differences(const Shot& trial, int shot, const Model& model, const double* parameters, bool central, double* out,
+                   double* derivative) const;
   /// The shot as the base is asked about it: at its loft, with the effects in it. False where there is none.
   bool asked(int shot, const Model& model, const double* parameters, Shot& out) const;
   /// Channel values where another model answers, asked anew until the launch angle is the seen one within 0.02 deg.
@@ -109,7 +114,9 @@ class ShotModel {
   /// The same with the derivatives per Parameter::scale, by one-sided differences; zero derivatives where the blow or
   /// a neighbour cannot happen.
   void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
-                 Eigen::MatrixXd& jacobian) const;
+                 Eigen::MatrixXd& jacobian) const {
+    linearise(shots, model, p, false, z, jacobian);
+  }
   /// The derivatives by central differences.
   Eigen::MatrixXd jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
 
@@ -152,8 +159,10 @@ class ShotModel {
   /// What the noise of the seen launch does to the flight's readings and to their agreement with the launch's.
   void add_launch_noise(int shot, const models::FlightConditions& conditions, Eigen::MatrixXd& covariance) const;
   void whiten(int shot, const Model& model, const double* p, double* scratch, double* z) const;
-  void linearise(int shot, const Model& model, const double* p, double step, bool central,
-                 Eigen::Ref<Eigen::VectorXd> z, Eigen::MatrixXd& J) const;
+  void linearise(int shot, const Model& model, const double* p, bool central, Eigen::Ref<Eigen::VectorXd> z,
+                 Eigen::MatrixXd& J) const;
+  void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, bool central,
+                 Eigen::VectorXd& z, Eigen::MatrixXd& J) const;
   /// Sensitivity of the channels to the inputs about a model: width x 8, header's units per SI.
   Eigen::MatrixXd input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const;
   /// What the rows' scatter does to the residual of their mean, header's units.

@@ -6,8 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <set>
 
@@ -98,17 +96,14 @@ class Predictable {
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
       const bool enough = f.weight.sum() >= double((f.plain ? kRowsIfPlain : kRowsPerNumber) * f.coefficients.size());
-      return f.gain > chance && f.evidence > kBeyondChance + chance && enough
-                 ? f.gain
-                 : -std::numeric_limits<double>::infinity();
+      return f.gain > chance && f.evidence > kBeyondChance + chance && enough ? f.gain : -kInfinity;
     };
     const auto found = std::ranges::max_element(all, {}, shown);
     if (found == all.end() || !std::isfinite(shown(*found))) return {};
     // A relation may be solved for any of its columns: the one that was computed scatters least.
     const std::set<int> related = found->columns();
-    const auto best = std::ranges::max_element(all, {}, [&](const Smooth& f) {
-      return std::ranges::includes(related, f.columns()) ? f.gain : -std::numeric_limits<double>::infinity();
-    });
+    const auto best = std::ranges::max_element(
+        all, {}, [&](const Smooth& f) { return std::ranges::includes(related, f.columns()) ? f.gain : -kInfinity; });
     const int column = best->of;
     const Column& c = *columns_[std::size_t(column)];
     std::vector<std::string> from;
@@ -194,8 +189,7 @@ class Predictable {
       // The fit to all rows is drawn to those where f does not hold.
       if (first) f.scatter *= 0.7;
       f.scatter = std::max(f.scatter, least_scatter);
-      const ArrayXd here = -0.5 * (r / f.scatter).square() - std::log(f.scatter) -
-                           0.5 * std::log(2 * std::numbers::pi) + std::log(f.share);
+      const ArrayXd here = -0.5 * (r / f.scatter).square() - std::log(f.scatter) - kLogRootTwoPi + std::log(f.share);
       const ArrayXd there = elsewhere + std::log(1 - f.share), most = here.max(there);
       const ArrayXd both = most + ((here - most).exp() + (there - most).exp()).log();
       f.likelihood = both.sum();
@@ -217,8 +211,7 @@ class Predictable {
     const ArrayXd apart = left_by(plane, y);
     const double scatter =
         std::max(std::sqrt(apart.square().sum() / std::max(1.0, double(n_ - plane.cols()))), error_[target]);
-    const ArrayXd elsewhere = -0.5 * (apart / scatter).square() - std::log(scatter) -
-                              0.5 * std::log(2 * std::numbers::pi);
+    const ArrayXd elsewhere = -0.5 * (apart / scatter).square() - std::log(scatter) - kLogRootTwoPi;
     const double numbers = 0.5 * std::log(double(n_)), by_plane = elsewhere.sum() - numbers * double(plane.cols());
 
     // All sets of up to three columns, the likeliest three with a fourth.

@@ -175,8 +175,8 @@ std::vector<Parametrisation> ShotProblem::forms() const {
   }
   std::vector<Parametrisation> all;
   for (const EffectEntry& e : effects_with(case_.own)) {
-    if (!e.on_shots || (e.name == "session-drift" && sorted_by(as_read(case_)))) continue;
-    for (Parametrisation& f : e.on_shots(setting)) {
+    if (e.name == "session-drift" && sorted_by(as_read(case_))) continue;
+    for (Parametrisation& f : e.forms(setting)) {
       // Rows without a shot number may stand in any order: that it is the session's is an assumption more. Likewise
       // where one club was hit after the other: what differs between clubs then follows the order too.
       if (f.effect == "session-drift" && (!case_.shots.has_shot_column || one_club_after_another(as_read(case_))))
@@ -204,10 +204,6 @@ void ShotProblem::split(const std::set<int>& without) {
   std::erase_if(all.holdout, flagged);
   rows_ = std::move(all);
   select_ = evenly(rows_.train, kMostToSelect);
-}
-
-const std::vector<int>& ShotProblem::shots(Part part) const {
-  return part == Part::select ? select_ : part == Part::train ? rows_.train : rows_.holdout;
 }
 
 std::vector<Problem::Row> ShotProblem::rows() const {
@@ -253,25 +249,6 @@ std::optional<std::string> ShotProblem::too_few() const {
   return {};
 }
 
-bool ShotProblem::whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, double) const {
-  z = model_->whitened(shots(part), model, p);
-  return true;
-}
-
-bool ShotProblem::linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
-                            Eigen::MatrixXd& jacobian, double) const {
-  model_->linearise(shots(part), model, p, z, jacobian);
-  return true;
-}
-
-Eigen::MatrixXd ShotProblem::jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const {
-  return model_->jacobian(shots(part), model, p);
-}
-
-Eigen::MatrixXd ShotProblem::residuals(const Model& model, const Eigen::VectorXd& p) const {
-  return model_->residuals(model, p.data());
-}
-
 Problem::Density ShotProblem::density(Part part) const {
   Density d;
   for (const int i : shots(part)) {
@@ -313,8 +290,6 @@ std::vector<std::vector<bool>> ShotProblem::subsets(Part part) const {
   return all;
 }
 
-std::vector<Stage> ShotProblem::stages() const { return stages_of_shots(width()); }
-
 bool ShotProblem::screen(const Selection& selection) {
   const auto look = [&](const Fit& at, bool clean) {
     return loop::screen(*model_, case_.shots, inputs_.row_of, uses_, at, clean, early_);
@@ -344,17 +319,14 @@ Scatter ShotProblem::scatter(int channel, const Eigen::MatrixXd& residuals, int 
 }
 
 double ShotProblem::update_noise(const Fit& selected, const Fit&) {
-  std::vector<double> before;
-  for (int c = 0; c < width(); ++c) before.push_back(channel(c).noise);
+  const Eigen::ArrayXd before = noise();
   estimate_noise(&selected);
   set_covariance(selected.model, selected.p.data());
-  double change = 0;
-  for (int c = 0; c < width(); ++c) change = std::max(change, std::abs(channel(c).noise / before[std::size_t(c)] - 1));
   regressors_ = regressors(case_.shots, inputs_.row_of, select_, *model_);
   // Noisy inputs and launches weigh otherwise once they are carried through the effects.
   const bool anew = !updated_ && (!inputs_.covariance.empty() || case_.flight) && !selected.model.forms.empty();
   updated_ = updated_ || anew;
-  return anew ? std::numeric_limits<double>::infinity() : change;
+  return anew ? kInfinity : (noise() / before - 1).abs().maxCoeff();
 }
 
 /// Of means the noise is what their rows' scatter does about a model.
@@ -390,7 +362,7 @@ void ShotProblem::estimate_noise(const Fit* at) {
         for (const int i : rows_.train)
           from_inputs += std::max(0.0, model_->sigma(i, c) * model_->sigma(i, c) - ch.noise * ch.noise) / rows;
     }
-    const double floor = std::max({rounding_deviation(ch.resolution), 1e-3 * sd, 1e-9});
+    const double floor = std::max(ch.least_noise(), 1e-3 * sd);
     ch.noise = std::max(std::sqrt(std::max(sd * sd - from_inputs, 0.09 * sd * sd)), floor);
   }
 }
@@ -562,12 +534,12 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
     const std::string& name = channel(c).name;
     if (!channel(c).refuted && name != widespread_) continue;
     for (const Finding& f : s.after.findings)
-      if (f.channel == c && f.p_adjusted < 0.05) return {place_of(*this, f)};
+      if (f.channel == c && f.p_adjusted < kTold) return {place_of(*this, f)};
     if (name == widespread_) {
       Location l = told(name, "");
       for (const StructureMap* map : {&s.after, &s.before})
         for (const Finding& f : map->findings)
-          if (f.channel == c && f.p_adjusted < 0.05 && l.regressor.empty()) l.regressor = f.regressor;
+          if (f.channel == c && f.p_adjusted < kTold && l.regressor.empty()) l.regressor = f.regressor;
       return {l};
     }
   }
@@ -609,7 +581,7 @@ std::optional<std::string> ShotProblem::heavy_tails(const Selection& s) const {
 /// A fifth of the rows is flagged or so far off that the loss is flat there, or half of them are off by many noise
 /// scales.
 std::vector<Location> ShotProblem::doubts(const Selection& s) const {
-  constexpr double lost_share = 0.2, many = 3, wide = 1.75;
+  constexpr double many = 3;
   const std::vector<int> used = rows_.all();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
   std::vector<Location> told;
@@ -620,7 +592,7 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   // Too few shots to refute the declared noise are too few to call what goes beyond it noise.
   const Eigen::MatrixXd residuals = this->residuals(s.chosen.model, s.chosen.p);
   for (int c = 0; c < width(); ++c)
-    if (const double ratio = scatter(c, residuals, s.chosen.size()).ratio; channel(c).trusted() && ratio > wide)
+    if (const double ratio = scatter(c, residuals, s.chosen.size()).ratio; channel(c).trusted() && ratio > kWide)
       told.push_back({channel(c).name, "",
                       fmt::format("scatters {:.1f} times as much as the {}", ratio,
                                   channel(c).repeated ? "rows that it is the mean of tell" : "noise declared")});
@@ -628,7 +600,7 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
     if (const double middle = median(size[std::size_t(c)]); middle > many)
       told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});
   const FarOff far = far_off(s);
-  if (const double share = double(far.lost) / far.all; share >= lost_share)
+  if (const double share = double(far.lost) / far.all; share >= kLost)
     told.push_back({"", "",
                     fmt::format("{:.0f} % of the rows are flagged or explained by nothing: what fits the others "
                                 "is no explanation of the set",
@@ -643,7 +615,7 @@ std::string ShotProblem::FarOff::said() const {
 }
 
 NextExperiment ShotProblem::next_experiment(const LoopResult& so_far) const {
-  if (too_few()) return {.text = "more shots", .shots = {}, .sensor = {}};
+  if (too_few()) return {.text = "more shots"};
   return design(case_, *this, *model_, select_, so_far);
 }
 

@@ -37,15 +37,24 @@ class ShotProblem : public Problem {
   std::vector<std::string> notes() const override;
   std::optional<std::string> too_few() const override;
 
-  bool whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
-                double window) const override;
+  bool whitened(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, double) const override {
+    z = model_->whitened(shots(part), model, p);
+    return true;
+  }
   bool linearise(Part part, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z, Eigen::MatrixXd& jacobian,
-                 double window) const override;
-  Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override;
-  Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override;
+                 double) const override {
+    model_->linearise(shots(part), model, p, z, jacobian);
+    return true;
+  }
+  Eigen::MatrixXd jacobian(Part part, const Model& model, const Eigen::VectorXd& p) const override {
+    return model_->jacobian(shots(part), model, p);
+  }
+  Eigen::MatrixXd residuals(const Model& model, const Eigen::VectorXd& p) const override {
+    return model_->residuals(model, p.data());
+  }
   Density density(Part part) const override;
   std::vector<std::vector<bool>> subsets(Part part) const override;
-  std::vector<Stage> stages() const override;
+  std::vector<Stage> stages() const override { return stages_of_shots(width()); }
 
   bool screen(const Selection& selection) override;
   Scatter scatter(int channel, const Eigen::MatrixXd& residuals, int fitted) const override;
@@ -69,7 +78,9 @@ class ShotProblem : public Problem {
   void split(const std::set<int>& without);
   void estimate_noise(const Fit* at);
   void set_covariance(const Model& model, const double* parameters);
-  const std::vector<int>& shots(Part part) const;
+  const std::vector<int>& shots(Part part) const {
+    return part == Part::select ? select_ : part == Part::train ? rows_.train : rows_.holdout;
+  }
   std::optional<Location> two_populations(const Selection& s) const;
   /// Shots beyond what noise does to one in a thousand.
   struct FarOff {

@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 
 #include "golf/vector.hpp"
+#include "loop/deviation.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
-constexpr std::size_t kMostRelated = 300;
+constexpr std::size_t kFewestRelated = 20, kMostRelated = 300;
 
 struct RelationSource {
   const Column* column;
@@ -43,9 +43,6 @@ struct Relation {
   }
 };
 
-Vec3 direction(double up, double right) {
-  return {std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up)};
-}
 double up(const Vec3& v) { return std::asin(v.z() / v.norm()); }
 double right(const Vec3& v) { return std::atan2(-v.y(), v.x()); }
 
@@ -118,9 +115,9 @@ class Relations {
         s.x.push_back(c.value[row]);
         if (std::isfinite(s.x.back())) seen.push_back(s.x.back());
       }
-      if (seen.size() < 20 || seen.size() * 2 < rows.size()) continue;
+      if (seen.size() < kFewestRelated || seen.size() * 2 < rows.size()) continue;
       std::ranges::sort(seen);
-      const auto at = [&](double q) { return seen[std::size_t(q * double(seen.size() - 1))]; };
+      const auto at = [&](double q) { return at_share(seen, q); };
       s.spread = at(0.9) - at(0.1);
       // A coarse column cannot show a formula.
       if (!(s.spread > 5 * s.step)) continue;
@@ -151,16 +148,17 @@ class Relations {
     });
     return found_;
   }
-  const std::string& header(int k) const { return sources_[std::size_t(k)].column->name; }
-  const Column& column(int k) const { return *sources_[std::size_t(k)].column; }
+  const std::string& header(int k) const { return source(k).column->name; }
+  const Column& column(int k) const { return *source(k).column; }
 
  private:
   std::vector<RelationSource> sources_;
   std::vector<Relation> found_;
   long tried_ = 0;  ///< formulas
 
+  const RelationSource& source(int k) const { return sources_[std::size_t(k)]; }
   int count() const { return int(sources_.size()); }
-  double x(int k, std::size_t row) const { return sources_[std::size_t(k)].x[row]; }
+  double x(int k, std::size_t row) const { return source(k).x[row]; }
   std::size_t rows() const { return sources_.empty() ? 0 : sources_[0].x.size(); }
 
   bool same_dimension(int a, int b) const {
@@ -168,6 +166,7 @@ class Relations {
     return p && q && p->dimension == q->dimension;
   }
   double si(int k) const { return column(k).si; }
+  double half_step(int k) const { return 0.5 * source(k).step; }
   /// A number and the header that it multiplies, as they stand in the units of the headers: none where it is one.
   std::string times(double number, int k, int y) const {
     number *= si(k) / si(y);
@@ -187,10 +186,10 @@ class Relations {
   /// zeros where nothing was read) count once.
   void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
     ++tried_;
-    const double t = 0.5 * sources_[std::size_t(y)].step * 1.02 + 1e-9 * sources_[std::size_t(y)].spread;
+    const double t = half_step(y) * 1.02 + 1e-9 * source(y).spread;
     const auto within = [&](const Residual& r) { return std::abs(r.value) <= t; };
     const int rows = int(std::ranges::count_if(residual, within));
-    if (residual.size() < 20 || rows < kLeastHeld * double(residual.size())) return;
+    if (residual.size() < kFewestRelated || rows < kLeastHeld * double(residual.size())) return;
     std::set<std::vector<double>> seen;
     std::set<double> values;
     std::vector<double> distinct;
@@ -204,7 +203,7 @@ class Relations {
       for (const int k : from) key.push_back(x(k, r.row));
       if (seen.insert(std::move(key)).second) distinct.push_back(r.value);
     }
-    if (values.size() < 8 || distinct.size() < 20) return;
+    if (values.size() < 8 || distinct.size() < kFewestRelated) return;
     const double evidence = edge_evidence(distinct, t);
     if (evidence > kBeyondChance)
       found_.push_back({y, from, text, std::sqrt(square / rows), int(residual.size()), rows, evidence});
@@ -219,7 +218,7 @@ class Relations {
       double a, b;  // y - u, v
     };
     std::vector<Part> parts;
-    const double t = 0.5 * sources_[std::size_t(y)].step;
+    const double t = half_step(y);
     for (std::size_t i = 0; i < rows(); ++i) {
       const double a = x(y, i) - u(i), b = v(i);
       if (!std::isfinite(a) || !std::isfinite(b) || b == 0) continue;
@@ -227,7 +226,7 @@ class Relations {
       ends.emplace_back(a / b - t / std::abs(b), 1);
       ends.emplace_back(a / b + t / std::abs(b), -1);
     }
-    if (parts.size() < 20) return;
+    if (parts.size() < kFewestRelated) return;
     double k = known.value_or(0);
     if (!known) {
       std::ranges::sort(ends, {}, &End::first);
@@ -258,7 +257,7 @@ class Relations {
               [&](double k) {
                 return fmt::format("{:.5g} * {} * {}", k * si(a) * si(b) / si(y), header(a), header(b));
               });
-        if (sources_[std::size_t(b)].divides)
+        if (source(b).divides)
           linear(
               y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) / x(b, i); },
               [&](double k) {
@@ -279,7 +278,7 @@ class Relations {
         }
         if (!same_dimension(y, a)) continue;
         for (int c = 0; c < count(); ++c)
-          if (c != y && c != a && c != b && sources_[std::size_t(c)].divides)
+          if (c != y && c != a && c != b && source(c).divides)
             linear(
                 y, {a, b, c}, {}, xa, [&](std::size_t i) { return x(b, i) / x(c, i); },
                 [&](double k) {
@@ -298,12 +297,12 @@ class Relations {
 
   /// y = value(row, k) [SI], the number between 0.4 and 1.1 that most rows agree on.
   void directed(int y, const std::vector<int>& from, bool free, const std::string& text, auto&& value) {
-    const double t = 0.5 * sources_[std::size_t(y)].step;
+    const double t = half_step(y);
     const auto miss = [&](std::size_t i, double k) { return x(y, i) - value(i, k); };
     std::vector<std::size_t> good;
     for (std::size_t i = 0; i < rows(); ++i)
       if (std::isfinite(miss(i, 0.8))) good.push_back(i);
-    if (good.size() < 20) return;
+    if (good.size() < kFewestRelated) return;
     double k = 1;
     if (free) {
       std::vector<End> ends;

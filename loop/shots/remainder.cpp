@@ -32,7 +32,7 @@ struct RemainderInputs {
       const double mean = Eigen::Map<Eigen::VectorXd>(seen.data(), std::ptrdiff_t(seen.size())).mean();
       double square = 0;
       for (const double v : seen) square += (v - mean) * (v - mean) / double(seen.size());
-      if (!(std::sqrt(square) > 1e-9 * (1 + std::abs(mean)))) continue;
+      if (!varies(std::sqrt(square), mean)) continue;
       const auto [low, high] = std::ranges::minmax(seen);
       const double half = 2 * std::sqrt(square);
       Eigen::VectorXd scaled = l.x;

@@ -65,11 +65,10 @@ std::vector<int> places_in(const LoopResult& fold, const LoopResult& whole) {
 
 /// What the folds adopted must not fail on the rows that they did not see: squares over the noise, each up to a cap.
 bool fails_held_out(const LoopResult& r, double loss) {
-  constexpr double cap = 36;
   double more = 0;
   for (const UsedRow& row : r.rows)
     for (std::size_t c = 0; c < r.channels.size(); ++c) {
-      const auto square = [&](double x) { return std::min(std::pow(x / r.channels[c].expected, 2), cap); };
+      const auto square = [&](double x) { return std::min(std::pow(x / r.channels[c].expected, 2), kMostSquare); };
       if (std::isfinite(row.before[c]) && std::isfinite(row.after[c]))
         more += square(row.after[c]) - square(row.before[c]);
     }
@@ -119,8 +118,9 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
       expected[j].second += ch.before.holdout;
     }
     if (fold.corrected && whole.corrected)
-      for (const Corrected::Row& r : fold.corrected->rows)
-        whole.corrected->rows.push_back({r.id, in_order(r.before), in_order(r.after)});
+      for (const UsedRow& r : fold.corrected->rows)
+        whole.corrected->rows.push_back(
+            {.id = r.id, .holdout = true, .before = in_order(r.before), .after = in_order(r.after)});
     if (fold.holdout > 0)
       whole.notes.push_back(
           fmt::format("without {} '{}': adopted {}{}", c.split.by, g.name[k],
@@ -153,7 +153,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   whole.balance_after = whole.balance_before;
   whole.selection.chosen = whole.selection.base;
   if (whole.corrected) {
-    for (Corrected::Row& r : whole.corrected->rows) r.after = r.before;
+    for (UsedRow& r : whole.corrected->rows) r.after = r.before;
     whole.corrected->shots.clear();
     whole.corrected->instrument.clear();
   }
@@ -197,9 +197,7 @@ LoopResult run(const ShotCase& c) {
     std::vector<DerivedColumn> others = derived;
     for (DerivedColumn& x : others) x.share = x.column == d.column ? 1 : x.share;
     std::optional<Input> doubted;
-    for (int k = 0; k < kInputs; ++k)
-      if (const Column* column = c.shots.find_stem(stem(Input(k))); column && column->name == d.column)
-        doubted = Input(k);
+    if (const Column* column = c.shots.find(d.column); column->role == Role::input) doubted = input_of(column->stem);
     if (d.input != doubted.has_value() || (c.loft_unknown && doubted == Input::dynamic_loft)) continue;
     if (!d.input && c.shots.find(d.column)->role != Role::output) continue;
     const LoopResult without = pass(c, columns, others, held, doubted);

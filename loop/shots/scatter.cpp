@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "golf/dense.hpp"
-#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 
@@ -62,7 +62,7 @@ Scatter scatter_of(const std::vector<double>& readings, double fitted) {
   double sum = 0, fourth = 0;
   const double n = double(readings.size());
   for (const double u : readings) {
-    const double s = std::min(u * u, 36.0);
+    const double s = std::min(u * u, kMostSquare);
     sum += s;
     fourth += s * s;
   }

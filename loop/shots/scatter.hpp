@@ -10,7 +10,7 @@ namespace hosel::loop {
 double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int channel,
                       const Eigen::MatrixXd& residuals);
 
-/// Of readings in units of their own sigma, of which a fit took up `fitted`; one beyond 6 sigma counts as one at 6.
+/// Of readings in units of their own sigma, of which a fit took up `fitted`; no square counts more than `kMostSquare`.
 Scatter scatter_of(const std::vector<double>& readings, double fitted);
 /// The same of a channel about a fit.
 Scatter scatter(const ShotModel& model, const std::vector<int>& rows, int channel, const Eigen::MatrixXd& residuals,

@@ -8,7 +8,7 @@
 #include <functional>
 #include <map>
 
-#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -18,6 +18,8 @@ struct Slip {
   double distance = 0;
   double cost = 0;  ///< rarer slips need a better fit
 };
+
+constexpr double kPerhaps = 2e-4;  // share of the rows beyond which one slip may be sought
 
 struct Factor {
   double value;
@@ -159,7 +161,7 @@ std::string copied_from(const Shots& shots, const Column& u, const std::vector<i
     std::vector<double> x;
     for (std::size_t i = 0; i < c.value.size(); ++i)
       if (std::isfinite(c.value[i]) && (std::ranges::binary_search(rows, int(i)) == inside)) x.push_back(c.native(i));
-    return x.empty() ? std::numeric_limits<double>::quiet_NaN() : median(x);
+    return x.empty() ? kNaN : median(x);
   };
   const double here = typical(u, true), elsewhere = typical(u, false);
   std::string best;
@@ -264,7 +266,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     const boost::math::chi_squared law(seen);
     const double distance = row.distance();
     const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))),
-                 perhaps = bulk * quantile(complement(law, 2e-4));
+                 perhaps = bulk * quantile(complement(law, kPerhaps));
     if (distance < perhaps) continue;
 
     const std::size_t file_row = std::size_t(row_of[std::size_t(i)]);
@@ -304,7 +306,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     for (const RowFlag& f : flags)
       if (single(f)) ++slipping[f.column];
     widespread(slipping);
-    const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(model.width()), 2e-4));
+    const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(model.width()), kPerhaps));
     std::erase_if(flags, [&](const RowFlag& f) { return single(f) && f.distance < plain; });
   }
   // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.

@@ -21,9 +21,6 @@ struct RowFlag {
   bool cluster = false;  ///< one slip explains most of its cluster
 };
 
-/// Share of the shots beyond which those far off are no exceptions; three at least.
-constexpr double kMany = 0.08;
-
 struct Screening {
   std::vector<RowFlag> flags;  ///< by row
   /// So many shots are far off that they are no exceptions: those that no slip would bring back, or only a slip of a

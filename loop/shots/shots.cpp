@@ -377,6 +377,10 @@ bool one_club_after_another(const Shots& shots) {
   return g.name.size() > 1 && changes + 1 == g.name.size();
 }
 
+Vec3 direction(double up, double right) {
+  return {std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up)};
+}
+
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
   const auto read = [&](Output o) -> std::optional<double> {
     const Column* c = shots.find_stem(stem(o));
@@ -390,9 +394,8 @@ std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
     side = *rate * std::sin(tilt);
   }
   if (!speed || !(*speed > 0) || !up || !back) return {};
-  const double right = read(Output::azimuth).value_or(0);
   Launch l;
-  l.velocity = *speed * Vec3(std::cos(*up) * std::cos(right), -std::cos(*up) * std::sin(right), std::sin(*up));
+  l.velocity = *speed * direction(*up, read(Output::azimuth).value_or(0));
   l.spin = Vec3(0, -*back, -side.value_or(0));
   return l;
 }

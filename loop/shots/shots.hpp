@@ -56,6 +56,8 @@ std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
 /// same quantity twice. `flights`: carry and the like are outputs, too; otherwise columns like any other.
 Shots read_shots(const post::Sheet& sheet, bool flights = false);
 
+/// Of unit length.
+Vec3 direction(double up, double right);
 /// The launch that a row records: ball speed, launch angle and spin (by components, or by rate and tilt), straight
 /// where no azimuth is there. Absent where one of them is missing.
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row);
@@ -70,6 +72,8 @@ struct Groups {
   std::vector<std::string> name;
 };
 Groups groups(const Column& column);
+/// More groups than this are no few clubs or players.
+inline constexpr std::size_t kMostGroups = 12;
 /// The text column by which rows without a shot number stand sorted, every value in one block: they are not in the
 /// order in which they were struck. nullptr where there is none.
 const Column* sorted_by(const Shots& shots);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -22,9 +21,8 @@ namespace {
 
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
 constexpr int kRounds = 6;                         // of asking where the decision hangs
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSmallDoubt = 3;  // of deviance: an error that moves it by less decides nothing
-constexpr double kSurprise = 2;    // chi-squared per output up to which its error was told truly
+constexpr double kSmallDoubt = 3;                  // of deviance: an error that moves it by less decides nothing
+constexpr double kSurprise = 2;                    // chi-squared per output up to which its error was told truly
 
 /// It sticks and knows one law of restitution: what a slow base does otherwise is smooth beside it.
 Launch first_answer(const Shot& s) {
@@ -270,10 +268,10 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
   out.rows.resize(asked.size());
   for_all(std::size_t(0), asked.size(), [&](std::size_t k) {
     const int i = asked[k];
-    Corrected::Row& row = out.rows[k];
-    row.id = id.at(i);
+    UsedRow& row = out.rows[k];
+    row = {.id = id.at(i), .holdout = true};
     for (const auto& [fit, into] : {std::pair{&before, &row.before}, {&after, &row.after}}) {
-      into->assign(std::size_t(model.width()), kNone);
+      into->assign(std::size_t(model.width()), kNaN);
       if (into == &row.after && after.size() == before.size()) {  // nothing was added
         row.after = row.before;
         continue;
@@ -287,7 +285,7 @@ Corrected close(const ShotCase& c, const ShotProblem& problem, const Fit& before
     }
     // Before and after are compared on the same shots.
     for (std::size_t j = 0; j < row.before.size(); ++j)
-      if (!std::isfinite(row.before[j] + row.after[j])) row.before[j] = row.after[j] = kNone;
+      if (!std::isfinite(row.before[j] + row.after[j])) row.before[j] = row.after[j] = kNaN;
   });
   return out;
 }

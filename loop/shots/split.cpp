@@ -31,6 +31,20 @@ std::vector<int> Rows::all() const {
   return both;
 }
 
+std::vector<char> hold_out(const std::vector<std::vector<std::size_t>>& clusters, std::size_t all, double fraction,
+                           std::mt19937_64& random) {
+  std::vector<char> held(all, 0);
+  const double wanted = fraction * double(all);
+  double have = 0;
+  for (const std::size_t k : solvers::shuffled(clusters.size(), random)) {
+    const double more = double(clusters[k].size());
+    if (have + more > wanted + 0.5 * more) continue;
+    for (const std::size_t i : clusters[k]) held[i] = 1;
+    have += more;
+  }
+  return held;
+}
+
 Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
                 const std::vector<int>& usable) {
   // Thresholds show at the most oblique shots only, so these are never held out: beyond them nothing would be learnt.
@@ -40,8 +54,7 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
     if (!c.head_turns)
       blow.delivery.impact_toe = blow.delivery.impact_high = 0;  // such a base knows the face's centre only
     const FirstContact g = first_contact(blow);
-    const double approach = g.approach.dot(g.normal);
-    oblique.push_back((g.approach - approach * g.normal).norm() / approach);
+    oblique.push_back(g.slip().norm() / g.approach.dot(g.normal));
   }
   std::mt19937_64 random(c.split.seed);
   const double fraction = c.split.holdout_fraction;
@@ -58,17 +71,9 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
     }
     const auto most = std::ranges::max_element(oblique) - oblique.begin();
     std::erase_if(members, [&](const auto& m) { return std::ranges::count(m.second, std::size_t(most)) > 0; });
-    std::vector<const std::vector<std::size_t>*> order;
-    for (const auto& [name, list] : members) order.push_back(&list);
-    const double wanted = fraction * double(usable.size());
-    double have = 0;
-    for (const std::size_t k : solvers::shuffled(order.size(), random)) {
-      const double more = double(order[k]->size());
-      if (have + more > wanted + 0.5 * more) continue;
-      for (const std::size_t i : *order[k]) held[i] = 1;
-      have += more;
-      if (have >= wanted) break;
-    }
+    std::vector<std::vector<std::size_t>> clusters;
+    for (auto& [name, list] : members) clusters.push_back(std::move(list));
+    held = hold_out(clusters, usable.size(), fraction, random);
   } else {
     // Single rows: of every three (at one third) neighbours in obliquity one is held out, so that both sets reach
     // over the whole range.

@@ -1,6 +1,8 @@
 /// Which shots train and which are held out.
 #pragma once
 
+#include <random>
+
 #include "loop/shots/case.hpp"
 #include "loop/shots/model.hpp"
 
@@ -16,5 +18,10 @@ struct Rows {
 /// ones. `row_of[shot]` is the row of the file, `usable` the shots to be divided.
 Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int>& row_of,
                 const std::vector<int>& usable);
+
+/// Whole clusters by a shuffle, until about this fraction of `all` is held: one that would overshoot by more than half
+/// of it is left. Per member whether it is held.
+std::vector<char> hold_out(const std::vector<std::vector<std::size_t>>& clusters, std::size_t all, double fraction,
+                           std::mt19937_64& random);
 
 }  // namespace hosel::loop

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 
@@ -43,19 +42,18 @@ bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
   return true;
 }
 
-void remove_trend(Eigen::VectorXd& q, const Eigen::VectorXd& x, const std::vector<int>& rows) {
-  double xx = 0, xq = 0;
-  for (const int i : rows) {
-    xx += x[i] * x[i];
-    xq += x[i] * q[i];
-  }
-  if (xx > 0) q -= (xq / xx) * x;
-}
-
 /// What a regressor adds to some lines; false where that is little.
 bool beside(Eigen::VectorXd& x, const std::vector<const Eigen::VectorXd*>& lines, const std::vector<int>& rows) {
   if (!standardise(x, rows)) return false;
-  for (const Eigen::VectorXd* line : lines) remove_trend(x, *line, rows);
+  for (const Eigen::VectorXd* line : lines) {
+    const Eigen::VectorXd& l = *line;
+    double ll = 0, lx = 0;
+    for (const int i : rows) {
+      ll += l[i] * l[i];
+      lx += l[i] * x[i];
+    }
+    if (ll > 0) x -= (lx / ll) * l;
+  }
   return x.norm() >= 0.05 * std::sqrt(double(x.size())) && standardise(x, rows);
 }
 
@@ -69,7 +67,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
   std::vector<double> out(static_cast<std::size_t>(m));
   for (int i = 0; i < n; ++i) {
     const bool good = model.predict(i, Model{}, nullptr, out.data());
-    for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : std::nan("");
+    for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : kNaN;
   }
   std::vector<int> by_order(static_cast<std::size_t>(n));
   std::iota(by_order.begin(), by_order.end(), 0);
@@ -81,7 +79,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
       if (std::isfinite(y(i, c))) sorted.push_back(y(i, c));
     if (sorted.size() < kFewestRows) continue;
     std::ranges::sort(sorted);
-    const auto at = [&](double q) { return sorted[std::size_t(q * double(sorted.size() - 1))]; };
+    const auto at = [&](double q) { return at_share(sorted, q); };
     Eigen::VectorXd line = y.col(c);
     if (!standardise(line, rows)) continue;
     const auto add = [&](std::string detail, auto&& value) {
@@ -115,9 +113,7 @@ std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of,
     for (int i = 0; i < n; ++i) {
       x[i] = c.value[std::size_t(row_of[std::size_t(i)])];
       // What the fit sees of an input (filled, shrunk towards its mean) is what the residual depends on.
-      if (c.role == Role::input)
-        for (int k = 0; k < kInputs; ++k)
-          if (stem(Input(k)) == c.stem) x[i] = get(model.trial(i).blow, Input(k));
+      if (c.role == Role::input) x[i] = get(model.trial(i).blow, *input_of(c.stem));
     }
     lines.push_back({c.name, c.role == Role::other, std::move(x)});
   }
@@ -315,7 +311,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   }
   std::ranges::sort(largest);
   bool all = true;
-  double least_of_any = std::numeric_limits<double>::infinity();
+  double least_of_any = kInfinity;
   for (int c = 0; c < m; ++c) {
     all = all && problem.channel(c).trusted();
     least_of_any = std::min(least_of_any, least_signal(problem.channel(c)));
@@ -357,7 +353,7 @@ std::vector<Location> plainest_places(const Problem& problem, const Selection& s
   for (const StructureMap* map : {&s.after, &s.before})
     for (const Finding& f : map->findings)
       if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
-          f.p_adjusted < 0.05)
+          f.p_adjusted < kTold)
         add(&f);
   return told;
 }

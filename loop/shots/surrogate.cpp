@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -49,7 +48,7 @@ void Surrogate::learn(const std::vector<Shot>& shots, const std::function<void(i
 }
 
 double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std::optional<Vec6>>& found) const {
-  if (shots_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (shots_.empty()) return kNaN;
   double sum = 0;
   int readings = 0;
   for (std::size_t i = 0; i < shots.size(); ++i) {
@@ -62,7 +61,7 @@ double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std
         ++readings;
       }
   }
-  return readings ? sum / readings : std::numeric_limits<double>::quiet_NaN();
+  return readings ? sum / readings : kNaN;
 }
 
 void Surrogate::fit() {
@@ -76,7 +75,7 @@ void Surrogate::fit() {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto column = value.col(Eigen::Index(k));
     const double low = column.minCoeff(), high = column.maxCoeff();
-    if (high - low > 1e-9 * (1 + std::abs(low))) features_.push_back(k);  // false for infinite values too
+    if (varies(high - low, low)) features_.push_back(k);
   }
   const auto d = Eigen::Index(features_.size());
   middle_.resize(d);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -13,10 +12,7 @@
 
 namespace hosel::loop {
 
-/// Ball's velocity and spin over the club speed, in the face frame.
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-
+/// Its vectors of six: the ball's velocity and spin over the club speed, in the face frame.
 class Surrogate {
  public:
   using Answer = std::function<Launch(const Shot&)>;
@@ -53,7 +49,7 @@ class Surrogate {
 
   Answer slow_, quick_;
   int failed_ = 0;
-  double surprise_ = std::numeric_limits<double>::quiet_NaN();
+  double surprise_ = kNaN;
   std::vector<Shot> shots_;
   std::vector<Vec6> beyond_;           ///< what the slow model says beyond the quick one
   std::vector<std::size_t> features_;  ///< that vary over the shots

@@ -35,8 +35,7 @@ class OnModel : public testing::TestWithParam<const char*> {
         .outputs = {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin},
         .thin_face = true};
     for (const EffectEntry& e : effects())
-      if (e.on_shots)
-        for (Parametrisation& f : e.on_shots(setting)) forms.push_back(f);
+      for (Parametrisation& f : e.forms(setting)) forms.push_back(f);
     std::vector<ShotChannel> channels;
     const double noise[] = {0.25, 0.2, 0.25, 60, 60},
                  si[] = {1, kRadPerDeg, kRadPerDeg, kRadPerSecPerRpm, kRadPerSecPerRpm};

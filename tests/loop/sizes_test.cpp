@@ -43,10 +43,7 @@ template <class Of>
 Parametrisation form_of(const char* effect, const std::string& what, const Of& setting) {
   const EffectEntry* e = find_effect(effect);
   if (!e) throw std::runtime_error(std::string("no effect ") + effect);
-  std::vector<Parametrisation> forms;
-  if constexpr (std::is_same_v<Of, Setting>) forms = e->on_shots(setting);
-  else forms = e->on_tests(setting);
-  for (const Parametrisation& f : forms)
+  for (const Parametrisation& f : e->forms(setting))
     if (f.what == what) return f;
   throw std::runtime_error(std::string(effect) + " has no form " + what);
 }

@@ -91,8 +91,7 @@ TEST(SlowBase, ASurrogateOverBlowsAndEffectsTellsItsError) {
   std::vector<Parametrisation> effects;
   const Setting setting{.head_turns = true, .inertia_declared = true, .outputs = {}, .deformable = true};
   for (const EffectEntry& e : loop::effects())
-    if (e.on_shots)
-      for (Parametrisation& p : e.on_shots(setting)) effects.push_back(std::move(p));
+    for (Parametrisation& p : e.forms(setting)) effects.push_back(std::move(p));
   EXPECT_GE(changed_quantities(recorded, effects), 12);
   const auto closed = [](const Shot& s) {
     Blow b = s.blow;
@@ -149,8 +148,7 @@ TEST(SlowBase, EveryEffectInsideABaseMovesACoordinateAndNoneAtZero) {
                           .shaft = true,
                           .full_club = full};
     for (const EffectEntry& e : loop::effects()) {
-      if (!e.on_shots) continue;
-      for (const Parametrisation& f : e.on_shots(setting)) {
+      for (const Parametrisation& f : e.forms(setting)) {
         if (!f.before) continue;
         Shot plain;
         plain.blow = c.blow;
@@ -194,8 +192,8 @@ TEST(SlowBase, NamesWhatIsHiddenInsideTheModelAlthoughRowsAreBadAndEndsWithTheMo
   ASSERT_GT(r.corrected->rows.size(), 15U);
   const auto spin =
       std::size_t(std::ranges::find(r.channels, "backspin_rpm", &ChannelResult::name) - r.channels.begin());
-  EXPECT_GT(rms(r.corrected->rows, &Corrected::Row::before, spin), 300);
-  EXPECT_LT(rms(r.corrected->rows, &Corrected::Row::after, spin), 80);  // the noise is 60
+  EXPECT_GT(errors(r.corrected->rows, &UsedRow::before, spin).holdout_rmse, 300);
+  EXPECT_LT(errors(r.corrected->rows, &UsedRow::after, spin).holdout_rmse, 80);  // the noise is 60
   EXPECT_NEAR(r.corrected->shots.front().shot.change.cover_stiffness, r.selection.chosen.p[0], 1e-12);
   EXPECT_LT(asked, 600);
 }
@@ -209,8 +207,8 @@ TEST(SlowBase, NothingHiddenNothingAdopted) {
   EXPECT_TRUE(r.ties.empty());
   // The base is asked about what was held out all the same.
   ASSERT_TRUE(r.corrected && r.corrected->rows.size() > 10);
-  EXPECT_EQ(answered(r.corrected->rows, 0), int(r.corrected->rows.size()));
-  for (const Corrected::Row& row : r.corrected->rows) EXPECT_EQ(row.before, row.after);
+  EXPECT_EQ(errors(r.corrected->rows, &UsedRow::before, 0).holdout, int(r.corrected->rows.size()));
+  for (const UsedRow& row : r.corrected->rows) EXPECT_EQ(row.before, row.after);
 }
 
 TEST(SlowBase, AnUnknownLoftIsFoundFromTheLaunchAngle) {
@@ -227,8 +225,8 @@ TEST(SlowBase, AnUnknownLoftIsFoundFromTheLaunchAngle) {
   ASSERT_TRUE(r.corrected);
   const auto spin =
       std::size_t(std::ranges::find(r.channels, "backspin_rpm", &ChannelResult::name) - r.channels.begin());
-  EXPECT_LT(rms(r.corrected->rows, &Corrected::Row::after, spin),
-            0.5 * rms(r.corrected->rows, &Corrected::Row::before, spin));
+  EXPECT_LT(errors(r.corrected->rows, &UsedRow::after, spin).holdout_rmse,
+            0.5 * errors(r.corrected->rows, &UsedRow::before, spin).holdout_rmse);
 }
 
 }  // namespace
