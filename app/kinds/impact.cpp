@@ -63,7 +63,11 @@ class ImpactJob final : public Job {
       compared_.push_back(read_side(other.root()));
       compared_.back().name = name;
       for (const std::string_view key : kOfTheCase) other.root().leave({key});
-      other.finish();
+      try {
+        other.finish();
+      } catch (const InputError& e) {  // the case's own models may know the key
+        throw InputError(fmt::format("{} (by the column '{}' of [[compare]])", e.what(), name));
+      }
       if (!compared_.back().missing.empty()) missing_ = compared_.back().missing;
     }
   }

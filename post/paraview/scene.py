@@ -191,6 +191,5 @@ def blow(folder, view):
 
 
 def save(view, picture):
-    Render(view)
     SaveScreenshot(picture, view)
     print("wrote", picture)

@@ -357,6 +357,17 @@ TEST(ImpactCase, AComparedColumnTakesNoUnknownKey) {
   expect_refused(misspelt, "club_speed_mps");
   const Outcome shared = checked("output.vtk=false");
   expect_refused(shared, "output is the case's own");
+  // A table that the case's own model reads, and that of the column does not.
+  std::string text = kEccentricBlow +
+                     "[contact]\nface_friction = 0.3\n[shaft]\nname = \"steel-7-iron\"\n"
+                     "[grip]\nelements = 16\n[[compare]]\nname = \"impulse\"\n";
+  text.replace(text.find("[\"rigid-eccentric\"]"), 19, "[\"fe-full-club\"]\naccuracy = \"look\"");
+  write(dir / "case.toml", text + "set = [\"ball.mass_kg=0.045\"]\n");
+  ASSERT_EQ(command("check " + dir.string()).status, 0);
+  write(dir / "case.toml", text + "set = [\"models=['rigid-eccentric']\"]\n");
+  const Outcome unread = command("check " + dir.string());
+  expect_refused(unread, "grip: unknown table");
+  EXPECT_NE(unread.text.find("by the column 'impulse' of [[compare]]"), std::string::npos) << unread.text;
   const Outcome set = command("check reduced-tour --set 'sets[1].set=[\"head.mas_kg=0.3\"]'");
   EXPECT_EQ(set.status, 2) << set.text;
 }
