@@ -10,8 +10,10 @@ Vec3 Delivery::velocity() const {
 }
 
 Mat3 Delivery::face_to_global() const {
-  return (Eigen::AngleAxisd(-face_angle, Vec3::UnitZ()) * Eigen::AngleAxisd(-dynamic_loft, Vec3::UnitY()))
-      .toRotationMatrix();
+  const double ca = std::cos(face_angle), sa = std::sin(face_angle);
+  const double cl = std::cos(dynamic_loft), sl = std::sin(dynamic_loft);
+  // About Z by minus the face angle, of about Y by minus the loft.
+  return Mat3{{ca * cl, sa, -ca * sl}, {-sa * cl, ca, sa * sl}, {sl, 0, cl}};
 }
 
 }  // namespace hosel

@@ -242,7 +242,8 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
     change(model, parameters, t, l);
     if (!read(t, shot, model, parameters, l, out)) return false;
     const int m = width();
-    std::array<double, 64> moved{}, there{}, here{};
+    std::array<double, 64> moved{};
+    std::array<double, 16> there{}, here{};
     const int n = model.size();
     if (n > int(moved.size()) || m > int(there.size())) throw std::length_error("too many parameters for one model");
     std::copy_n(parameters, n, moved.begin());

@@ -25,7 +25,8 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   const bool wall = std::isinf(head.mass);
   const Mat3 inverse_inertia = wall ? Mat3(Mat3::Zero()) : Mat3(g.head_inertia.inverse());
   const Mat3 head_mobility = Mat3::Identity() / head.mass - skew(g.head_arm) * inverse_inertia * skew(g.head_arm);
-  const Mat3 ball_mobility = Mat3::Identity() / ball.mass - skew(arm) * skew(arm) / ball.inertia();
+  const Mat3 ball_mobility = (1 / ball.mass + arm.squaredNorm() / ball.inertia()) * Mat3::Identity() -
+                             arm * arm.transpose() / ball.inertia();
   const Mat3 K = ball_mobility + head_mobility;
   if (!K.allFinite()) throw std::invalid_argument("the head's mass and inertia must be positive");
 
@@ -39,7 +40,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   const double e = normal_restitution(blow.contact, approach, distance);
   const double et = blow.contact.tangential_restitution;
   const Vec3 wanted = (1 + e) * approach * g.normal + (1 + et) * slip;
-  Vec3 J = effect.partialPivLu().solve(wanted);
+  Vec3 J = effect.inverse() * wanted;
   const double Jn = J.dot(g.normal);
   const Vec3 Jt = J - Jn * g.normal;
   if (Jt.norm() > blow.contact.friction * Jn) {
@@ -50,7 +51,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   Launch out;
   out.velocity = J / ball.mass;
   out.spin = (arm.cross(J) + offset.cross(g.normal) * J.dot(g.normal)) / ball.inertia();
-  out.head_velocity = blow.delivery.velocity() - J / head.mass;
+  out.head_velocity = g.approach - blow.delivery.head_angular_velocity.cross(g.head_arm) - J / head.mass;
   out.head_spin = blow.delivery.head_angular_velocity - inverse_inertia * g.head_arm.cross(J);
   return out;
 }
