@@ -12,7 +12,7 @@ Vec3 Delivery::velocity() const {
 Mat3 Delivery::face_to_global() const {
   const double ca = std::cos(face_angle), sa = std::sin(face_angle);
   const double cl = std::cos(dynamic_loft), sl = std::sin(dynamic_loft);
-  // About Z by minus the face angle, of about Y by minus the loft.
+  // About Y by minus the loft, then about Z by minus the face angle.
   return Mat3{{ca * cl, sa, -ca * sl}, {-sa * cl, ca, sa * sl}, {sl, 0, cl}};
 }
 
