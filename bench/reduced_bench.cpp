@@ -15,6 +15,7 @@
 #include "models/reduced/shaft_impedance.hpp"
 #include "models/reduced/volumetric.hpp"
 #include "models/rigid/hertz_maw.hpp"
+#include "models/rigid/rigid_eccentric.hpp"
 #include "models/rigid/stick_slip.hpp"
 
 namespace {
@@ -71,6 +72,16 @@ void VolumetricCvode(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(model.launch(b));
 }
 BENCHMARK(VolumetricCvode)->Unit(benchmark::kMicrosecond);
+
+/// The loop's base, asked for every shot of a table many times.
+void RigidEccentric(benchmark::State& state) {
+  Blow b = blow(0.014);
+  for (auto _ : state) {
+    b.delivery.dynamic_loft += 1e-12;
+    benchmark::DoNotOptimize(models::RigidEccentric().launch(b));
+  }
+}
+BENCHMARK(RigidEccentric)->Unit(benchmark::kNanosecond);
 
 void StickSlip(benchmark::State& state) {
   Blow b = blow(0.014);

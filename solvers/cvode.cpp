@@ -49,7 +49,7 @@ double integrate_to_event(const std::function<void(double, const double*, double
   sundials::check(CVodeSetUserData(m, &functions), "CVODE: initialisation");
   sundials::check(CVodeSVtolerances(m, options.relative_tolerance, absolute.get()), "CVODE: tolerances");
   sundials::check(CVodeSetMaxNumSteps(m, options.most_steps), "CVODE: step limit");
-  // By default seven, which reduce a step by 1e-5: a corner of friction may ask for less.
+  // By default seven: a corner of friction may ask for a smaller step than they lead to.
   sundials::check(CVodeSetMaxErrTestFails(m, 30), "CVODE: failures of a step");
   if (options.first_step > 0) sundials::check(CVodeSetInitStep(m, options.first_step), "CVODE: first step");
   if (options.largest_step > 0) sundials::check(CVodeSetMaxStep(m, options.largest_step), "CVODE: largest step");

@@ -51,7 +51,7 @@ Launch RigidEccentric::launch(const Blow& blow) const {
   Launch out;
   out.velocity = J / ball.mass;
   out.spin = (arm.cross(J) + offset.cross(g.normal) * J.dot(g.normal)) / ball.inertia();
-  // The delivery's velocity without its sines.
+  // The velocity of the delivery from the approach: its sines are not computed again.
   out.head_velocity = g.approach - blow.delivery.head_angular_velocity.cross(g.head_arm) - J / head.mass;
   out.head_spin = blow.delivery.head_angular_velocity - inverse_inertia * g.head_arm.cross(J);
   return out;

@@ -212,8 +212,6 @@ TEST(Volumetric, HeadThatMovesAwayIsRefused) {
   EXPECT_THROW(Volumetric().launch(b), std::invalid_argument);
 }
 
-/// Rising stiffness, rigid joint, large friction, v_tr -> 0: the eccentric rigid impact with the
-/// restitution that the law realised at the contact point.
 /// A law that tends to an impulse without a slip.
 VolumetricLaw stiffened(double factor) {
   VolumetricLaw law;
@@ -225,6 +223,8 @@ VolumetricLaw stiffened(double factor) {
   return law;
 }
 
+/// Rising stiffness, rigid joint, large friction, v_tr -> 0: the eccentric rigid impact with the
+/// restitution that the law realised at the contact point.
 TEST(Volumetric, TendsToTheEccentricRigidImpact) {
   double before = INFINITY;
   post::Series curve{.label = "largest of ball velocity and spin", .style = "linespoints"};
