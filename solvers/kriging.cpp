@@ -15,9 +15,10 @@ constexpr double kShortest = 0.1, kLongest = 200, kLeastNugget = 1e-8, kLargestN
 constexpr double kLengthStep = 2.5, kNuggetStep = 10;  // factors of the search
 constexpr double kNuggetGain = 0.1;                    // of log likelihood: less is not worth a step of the nugget
 
-double matern(double distance) {
-  const double d = std::sqrt(5.0) * distance;
-  return (1 + d + d * d / 3) * std::exp(-d);
+/// Of squared distances, in vector registers.
+Eigen::ArrayXXd matern(const Eigen::ArrayXXd& square) {
+  const Eigen::ArrayXXd d = (5 * square.max(0.0)).sqrt();
+  return (1 + d + d.square() / 3) * (-d).exp();
 }
 
 /// Of so many points a plane may be asked, or a constant.
@@ -30,7 +31,7 @@ Eigen::MatrixXd covariance(const Eigen::MatrixXd& x, const Kriging::Correlation&
   Eigen::MatrixXd k = (at.transpose() * at) * -2;
   k.colwise() += square;
   k.rowwise() += square.transpose();
-  k = k.unaryExpr([](double d) { return matern(std::sqrt(std::max(d, 0.0))); });
+  k = matern(k.array()).matrix();
   k.diagonal().setConstant(1 + c.nugget);
   return k;
 }
@@ -129,9 +130,7 @@ Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation
 
 Eigen::VectorXd Kriging::covariances(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd there = x.cwiseQuotient(correlation_.length);
-  Eigen::ArrayXd d = (points_.transpose() * there).array() * -2 + (square_ + there.squaredNorm());
-  d = (5 * d.max(0.0)).sqrt();
-  return (1 + d + d.square() / 3) * (-d).exp();
+  return matern((points_.transpose() * there).array() * -2 + (square_ + there.squaredNorm())).matrix();
 }
 
 Eigen::VectorXd Kriging::trend(const Eigen::VectorXd& x) const {
@@ -151,6 +150,23 @@ Eigen::MatrixXd Kriging::error(const Eigen::VectorXd& x) const {
   return (std::max(share, 0.0) + correlation_.nugget) * process_;
 }
 
+Kriging Kriging::through(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) const {
+  const Eigen::Index n = x.rows(), p = plane_.rows(), m = points_.cols();
+  Eigen::MatrixXd basis(n, p + m), normal;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd at = x.row(i).transpose();
+    basis.row(i) << trend(at).transpose(), covariances(at).transpose();
+  }
+  normal = basis.transpose() * basis;
+  const Eigen::MatrixXd own = correlation_.length.asDiagonal() * points_;
+  normal.bottomRightCorner(m, m) += correlation_.nugget * covariance(own.transpose(), {correlation_.length, kLeastNugget});
+  const Eigen::MatrixXd found = dense::Cholesky(normal).solve(Eigen::MatrixXd(basis.transpose() * y));
+  Kriging out = *this;
+  out.plane_ = found.topRows(p);
+  out.weight_ = found.bottomRows(m);
+  return out;
+}
+
 Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {
   const Eigen::Index n = x.rows();
   const Eigen::MatrixXd there = correlation_.length.cwiseInverse().asDiagonal() * x.transpose();
@@ -158,7 +174,7 @@ Eigen::MatrixXd Kriging::errors_together(const Eigen::MatrixXd& x) const {
   for (Eigen::Index i = 0; i < n; ++i) {
     of_points.col(i) = covariances(x.row(i).transpose());
     open.col(i) = trend(x.row(i).transpose()) - of_trend_.transpose() * of_points.col(i);
-    shared.col(i) = (there.colwise() - there.col(i)).colwise().norm().unaryExpr(&matern).transpose();
+    shared.col(i) = matern((there.colwise() - there.col(i)).colwise().squaredNorm().transpose().array()).matrix();
   }
   shared.diagonal().array() += correlation_.nugget;
   const Eigen::MatrixXd told = inverse_.triangularView<Eigen::Lower>() * of_points;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "golf/parallel.hpp"
 #include "loop/deviation.hpp"
@@ -12,7 +13,8 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 150;  // rows
+constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 5000;  // rows
+constexpr std::size_t kMostPoints = 300;  // of a process, whose search for lengths takes a factor a step
 constexpr int kParts = 5;                                                 // of the rows, each foretold by the others
 
 /// Columns that a remainder may follow, over the model's shots: standardised to some two units, inside the range of
@@ -49,6 +51,16 @@ struct RemainderInputs {
   }
 };
 
+/// Of some of the rows, evenly spread, then through all of them.
+solvers::Kriging process_of(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
+  std::vector<int> all(std::size_t(x.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> some = evenly(all, kMostPoints);
+  const Eigen::MatrixXd of = x(some, Eigen::all), told = y(some, Eigen::all);
+  const solvers::Kriging likeliest(of, told, solvers::Kriging::noisy());
+  return some.size() == all.size() ? likeliest : likeliest.through(x, y);
+}
+
 /// One channel's: its value over all shots, of training rows as the other parts foretell it; empty: none.
 struct OfChannel {
   Eigen::VectorXd value;
@@ -82,7 +94,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
       (part[std::size_t(seen[std::size_t(i)])] == k ? in_part : outside).push_back(i);
     if (in_part.empty() || outside.size() < kFewestForRemainder / 2) return {};
     const Eigen::MatrixXd from = x(outside, Eigen::all), of = y(outside, Eigen::all);
-    const solvers::Kriging process(from, of, solvers::Kriging::noisy());
+    const solvers::Kriging process = process_of(from, of);
     for (const std::ptrdiff_t i : in_part) others[i] = process(x.row(i).transpose())[0];
   }
   double fall = 0;
@@ -93,7 +105,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   }
   // Rows that others foretell gain t by chance in exp(-t / 2) of such channels at most.
   if (!(fall > 2 * (kBeyondChance + std::log(model.width())))) return {};
-  const solvers::Kriging process(x, y, solvers::Kriging::noisy());
+  const solvers::Kriging process = process_of(x, y);
   OfChannel out{.value = Eigen::VectorXd(model.shots()), .place = {.channel = c}};
   Eigen::VectorXd without = Eigen::VectorXd::Zero(in.x.cols());
   double whole = 0;

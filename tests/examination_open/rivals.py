@@ -111,9 +111,11 @@ def value(cell):
 def compare(sets, run):
     """{channel: {"base", "loop", rival: error on the rows held out}}, or None where too few rows were used."""
     shots, rows = columns(sets / "shots.csv"), columns(run / "residuals.csv")
-    regressors = [c for c in shots[0] if plain(c) not in CHANNELS and c != "club"]
+    outputs = {*CHANNELS, *(plain(c[: -len("__measured")]) for c in rows[0] if c.endswith("__measured"))}
+    regressors = [c for c in shots[0] if plain(c) not in outputs and c != "club"]
     where = {s["shot"]: i for i, s in enumerate(shots)}
     x = np.array([[value(shots[where[r["shot"]]][c]) for c in regressors] for r in rows])
+    x = x[:, np.isfinite(x).any(axis=0)]
     x = np.where(np.isfinite(x), x, np.nanmean(x, axis=0))
     held = np.array([r["set"] == "holdout" for r in rows])
     if held.sum() < 5 or (~held).sum() < 15:

@@ -128,5 +128,29 @@ TEST(Kriging, NoiseIsNotInterpolated) {
   EXPECT_NEAR(fit.error(Eigen::Vector3d(0.1, 0.2, 0.3))(0, 0), 1.0 / 3, 0.1);
 }
 
+/// Through its own points a process is itself; through many more it comes nearer to what they scatter about.
+TEST(Kriging, GoesThroughMorePointsThanItHas) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd x = anywhere(1500, 3, random), truth = bumps(x);
+  const Eigen::MatrixXd y = truth + 0.3 * Eigen::MatrixXd::NullaryExpr(1500, 2, [&] { return normal(random); });
+  const Eigen::MatrixXd few = x.topRows(120), of = y.topRows(120);
+  for (const bool plane : {false, true}) {
+    Kriging::Search search = Kriging::noisy();
+    search.plane = plane;
+    const Kriging fit(few, of, search), same = fit.through(few, of), more = fit.through(x, y);
+    const Eigen::MatrixXd there = anywhere(200, 3, random), meant = bumps(there);
+    double change = 0, before = 0, after = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::VectorXd at = there.row(i).transpose();
+      change = std::max(change, (same(at) - fit(at)).norm());
+      before += std::pow(fit(at)[0] - meant(i, 0), 2);
+      after += std::pow(more(at)[0] - meant(i, 0), 2);
+    }
+    EXPECT_LT(change, 1e-5);           // round-off, as large as the points' correlation is nearly singular
+    EXPECT_LT(after, 0.3 * before);    // twelve times the points: a twelfth, but for what 120 of them cannot make up
+  }
+}
+
 }  // namespace
 }  // namespace hosel::solvers
