@@ -135,6 +135,27 @@ std::string without_name(const LoopResult& r) {
              "of the library is: learnt from the rows to learn from, it corrects the prediction of the others.");
 }
 
+/// How far groups differ.
+std::string between_groups(const LoopResult& r) {
+  std::string s =
+      "<h2>How groups differ</h2><div class='scroll'><table><tr><th>groups<th class='l'>of<th class='l'>what "
+      "differs<th>standard "
+      "deviation between groups<th>95 %<th>p</tr>";
+  for (const GroupSpread& g : r.groups)
+    s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}<td>{} to {}<td>{:.2g}</tr>", g.groups,
+                     escape_html(g.along == "shot" ? "stretches of the session" : g.along),
+                     escape_html(g.unit == "1" ? post::spoken(g.of) : "reading of " + post::label(g.of)), number(g.sd),
+                     number(g.low), number(g.high), g.p);
+  return s + "</table></div>" +
+         gloss(
+             "What the corrected model leaves, put down to one quantity at a time, whose value differs from group to "
+             "group: "
+             "heads, balls and players that the data do not tell apart otherwise. Several rows may show one cause: a "
+             "restitution that differs moves the reading of ball speed too. p: chance of as large a difference between "
+             "groups "
+             "that are alike.");
+}
+
 const char* mood(Verdict v) {
   switch (v) {
     case Verdict::no_residual:
@@ -185,6 +206,7 @@ std::string page(const LoopResult& r, const Shots& table) {
       "square of the residuals, its 95 % interval in brackets and as whiskers; by noise: what the noise of readings "
       "and of inputs makes of it about the right model. Bias: their mean.");
   if (smooth) s += without_name(r);
+  if (!r.groups.empty()) s += between_groups(r);
   if (r.corrected && !r.corrected->rows.empty()) {
     const auto& rows = r.corrected->rows;
     s += fmt::format(

@@ -118,6 +118,17 @@ struct Remainder {
   double fall() const { return before - after; }
 };
 
+/// How far one quantity differs between groups of shots, if the residual comes from it alone: standard deviation and
+/// its 95 % interval.
+struct GroupSpread {
+  std::string along;  ///< the column whose values are the groups; "shot": stretches of the session
+  std::string of;     ///< restitution, tangential_restitution, or the channel whose reading is off
+  std::string unit;   ///< 1: none
+  int groups = 0;
+  double sd = 0, low = 0, high = 0;
+  double p = 1;  ///< of a difference as large, if the groups are alike
+};
+
 class Problem {
  public:
   virtual ~Problem() = default;
@@ -186,6 +197,8 @@ class Problem {
   /// One free function through one mechanism in place of the chosen effects: the likeliest, and what is as likely.
   /// Where none is chosen, on what was held out too.
   virtual std::vector<Mechanism> mechanisms(const Selection& /*selection*/, const Rules& /*rules*/) const { return {}; }
+  /// How far groups of shots differ in what a fit leaves.
+  virtual std::vector<GroupSpread> between_groups(const Fit& /*fit*/) const { return {}; }
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;
   /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.

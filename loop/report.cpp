@@ -93,6 +93,16 @@ json to_json(const LoopResult& r) {
                                   {"largest", value(p.largest)},
                                   {"at", value(p.at)}});
   out["remainder_fall"] = r.remainder ? value(r.remainder->fall()) : json(nullptr);
+  out["groups"] = json::array();
+  for (const GroupSpread& g : r.groups)
+    out["groups"].push_back({{"along", g.along},
+                             {"of", g.of},
+                             {"unit", g.unit},
+                             {"groups", g.groups},
+                             {"sd", value(g.sd)},
+                             {"low", value(g.low)},
+                             {"high", value(g.high)},
+                             {"p", value(g.p)}});
   out["structure"] = json::array();
   const Selection& s = r.selection;
   int shown = 0;

@@ -122,6 +122,7 @@ struct LoopResult {
   std::vector<Detectable> minimum_detectable;
   std::vector<Location> unexplained;
   std::optional<Remainder> remainder;  ///< of the model behind `after`
+  std::vector<GroupSpread> groups;     ///< of the same model, without the remainder
   NextExperiment next;
   std::vector<UsedRow> rows;
   std::string tails;               ///< that the noise is not normal, in words; empty: nothing says so

@@ -326,6 +326,7 @@ void conclude(const Study& study, LoopResult& result) {
   }
   const Fit& after = shown ? chosen : some_kept ? kept.fit : s.base;
   result.remainder = &after == &s.base ? bare : problem.remainder(after);
+  result.groups = problem.between_groups(after);
   tell_errors(problem, s.base, after, result);
   for (const ChannelResult& c : result.channels)
     if (c.refuted) result.notes.push_back(c.refutation());

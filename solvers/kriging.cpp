@@ -159,7 +159,8 @@ Kriging Kriging::through(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) con
   }
   normal = basis.transpose() * basis;
   const Eigen::MatrixXd own = correlation_.length.asDiagonal() * points_;
-  normal.bottomRightCorner(m, m) += correlation_.nugget * covariance(own.transpose(), {correlation_.length, kLeastNugget});
+  normal.bottomRightCorner(m, m) += correlation_.nugget *
+                                    covariance(own.transpose(), {correlation_.length, kLeastNugget});
   const Eigen::MatrixXd found = dense::Cholesky(normal).solve(Eigen::MatrixXd(basis.transpose() * y));
   Kriging out = *this;
   out.plane_ = found.topRows(p);

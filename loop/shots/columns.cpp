@@ -167,7 +167,9 @@ Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& m
     for (std::ptrdiff_t c = 0; c < m; ++c) {
       const double y = values(i, first + c);
       double d = std::isfinite(y) ? out[c] - y : 0.0;
-      if (is_angle(outputs_[std::size_t(c)])) d -= 2 * kPi * std::round(d / (2 * kPi));
+      // Less than a turn may be counted from another zero. Beyond it no angle is written.
+      if (is_angle(outputs_[std::size_t(c)]))
+        d = std::abs(y) > 2 * kPi ? kNaN : d - 2 * kPi * std::round(d / (2 * kPi));
       r(i, c) = d;
     }
   }

@@ -7,6 +7,7 @@
 
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
+#include "loop/shots/between.hpp"
 #include "loop/shots/experiment.hpp"
 #include "loop/shots/mechanism.hpp"
 #include "loop/shots/mixture.hpp"
@@ -395,15 +396,25 @@ std::optional<Remainder> ShotProblem::remainder(const Fit& fit) const {
 /// look.
 std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& rules) const {
   if (!case_.direct || case_.averages || case_.loft_unknown || s.base.size() > 0) return {};
-  const Shots& shots = as_read(case_);
-  const bool session = case_.shots.has_shot_column && !sorted_by(shots) && !one_club_after_another(shots);
   // Where nothing is chosen, nothing was fitted: what was held out may ask as well.
   std::vector<int> rows = s.level == 0 ? rows_.all() : select_;
   std::ranges::sort(rows);
   std::set<std::string> noisy;
   for (const auto& [column, sd] : case_.input_noise)
     if (sd > 0) noisy.insert(column);
-  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, session, noisy, s.base, s.chosen, rules.tie);
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, in_session(), noisy, s.base, s.chosen, rules.tie);
+}
+
+/// Neither means of clubs nor a base that answers slowly.
+std::vector<GroupSpread> ShotProblem::between_groups(const Fit& fit) const {
+  if (!case_.direct || case_.averages) return {};
+  return loop::between_groups(*model_, case_.shots, inputs_.row_of, rows_.all(), case_.split.by, in_session(), fit);
+}
+
+/// Whether a shot's place in the order says when it was struck.
+bool ShotProblem::in_session() const {
+  const Shots& shots = as_read(case_);
+  return case_.shots.has_shot_column && !sorted_by(shots) && !one_club_after_another(shots);
 }
 
 std::vector<Location> ShotProblem::places(const Selection& s) const {

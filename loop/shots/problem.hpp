@@ -65,6 +65,7 @@ class ShotProblem : public Problem {
                          const Rules& rules) const override;
   std::optional<Remainder> remainder(const Fit& fit) const override;
   std::vector<Mechanism> mechanisms(const Selection& selection, const Rules& rules) const override;
+  std::vector<GroupSpread> between_groups(const Fit& fit) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
   std::optional<std::string> heavy_tails(const Selection& selection) const override;
@@ -82,6 +83,7 @@ class ShotProblem : public Problem {
     return part == Part::select ? select_ : part == Part::train ? rows_.train : rows_.holdout;
   }
   std::optional<Location> two_populations(const Selection& s) const;
+  bool in_session() const;
   /// Shots beyond what noise does to one in a thousand.
   struct FarOff {
     int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 5000;  // rows
 constexpr std::size_t kMostPoints = 300;  // of a process, whose search for lengths takes a factor a step
-constexpr int kParts = 5;                                                 // of the rows, each foretold by the others
+constexpr int kParts = 5;                 // of the rows, each foretold by the others
 
 /// Columns that a remainder may follow, over the model's shots: standardised to some two units, inside the range of
 /// `rows`.

@@ -108,9 +108,9 @@ def value(cell):
         return np.nan
 
 
-def compare(sets, run):
+def compare(shots, run, rivals=RIVALS):
     """{channel: {"base", "loop", rival: error on the rows held out}}, or None where too few rows were used."""
-    shots, rows = columns(sets / "shots.csv"), columns(run / "residuals.csv")
+    shots, rows = columns(shots), columns(run / "residuals.csv")
     outputs = {*CHANNELS, *(plain(c[: -len("__measured")]) for c in rows[0] if c.endswith("__measured"))}
     regressors = [c for c in shots[0] if plain(c) not in outputs and c != "club"]
     where = {s["shot"]: i for i, s in enumerate(shots)}
@@ -130,14 +130,24 @@ def compare(sets, run):
             continue
         rms = lambda d: float(np.sqrt(np.mean(d**2)))
         errors[plain(channel)] = {"base": rms((m - b)[h]), "loop": rms((m - a)[h]), **{
-            name: rms((m - b)[h] - rival(x[t], (m - b)[t], x[h])) for name, rival in RIVALS.items()}}
+            name: rms((m - b)[h] - rival(x[t], (m - b)[t], x[h])) for name, rival in rivals.items()}}
     return errors or None
 
 
 def main():
     p = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    p.add_argument("folders", nargs="+", type=pathlib.Path)
+    p.add_argument("folders", nargs="*", type=pathlib.Path, help="of examinations")
+    p.add_argument("--run", nargs=2, type=pathlib.Path, metavar=("SHOTS.csv", "OUT"), help="one run of the loop on these shots")
+    p.add_argument("--rivals", nargs="+", choices=RIVALS, default=list(RIVALS), help="of --run (a Gaussian process takes a matrix of all rows)")
     a = p.parse_args()
+    if a.run:
+        errors = compare(*a.run, {name: RIVALS[name] for name in a.rivals})
+        if errors is None:
+            p.error(f"{a.run[1]}: too few rows")
+        print("held-out error (RMS)\n\n| channel | base | loop | " + " | ".join(a.rivals) + " |\n" + "|---" * (3 + len(a.rivals)) + "|")
+        for channel, e in errors.items():
+            print(f"| {channel} | " + " | ".join(f"{e[k]:.4g}" for k in ["base", "loop", *a.rivals]) + " |")
+        return
     channels, families, missing = collections.defaultdict(list), collections.defaultdict(list), 0
     for folder in a.folders:
         for f in sorted((folder / "truth").glob("*.json")):
@@ -145,7 +155,7 @@ def main():
             if not (run / "report.json").exists() or not (run / "residuals.csv").exists():
                 missing += 1
                 continue
-            errors = compare(folder / "sets" / f.stem, run)
+            errors = compare(folder / "sets" / f.stem / "shots.csv", run)
             if errors is None:
                 missing += 1
                 continue

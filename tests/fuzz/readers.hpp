@@ -2,9 +2,11 @@
 /// throws what the command turns into a sentence. Anything else is a finding.
 #pragma once
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <ostream>
 #include <span>
@@ -28,12 +30,18 @@ namespace hosel::fuzz {
 
 namespace fs = std::filesystem;
 
-/// A file of these bytes, this process's own.
+/// A file of these bytes, this process's own: the same for every input of a name, overwritten.
 inline fs::path file_of(std::string_view bytes, const char* name) {
-  const fs::path place = fs::temp_directory_path() / ("hosel_fuzz_" + std::to_string(::getpid()));
-  fs::create_directories(place / "points");
-  post::write_file(place / name, bytes, false);
-  return place / name;
+  static const fs::path place = [] {
+    const fs::path own = fs::temp_directory_path() / ("hosel_fuzz_" + std::to_string(::getpid()));
+    fs::create_directories(own / "points");
+    return own;
+  }();
+  fs::path file = place / name;
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const bool whole = descriptor >= 0 && ::write(descriptor, bytes.data(), bytes.size()) == ssize_t(bytes.size());
+  if (!whole || ::close(descriptor) != 0) std::abort();  // else an older input would be read
+  return file;
 }
 
 inline void read_case(std::string_view bytes) {

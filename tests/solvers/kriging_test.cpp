@@ -147,8 +147,8 @@ TEST(Kriging, GoesThroughMorePointsThanItHas) {
       before += std::pow(fit(at)[0] - meant(i, 0), 2);
       after += std::pow(more(at)[0] - meant(i, 0), 2);
     }
-    EXPECT_LT(change, 1e-5);           // round-off, as large as the points' correlation is nearly singular
-    EXPECT_LT(after, 0.3 * before);    // twelve times the points: a twelfth, but for what 120 of them cannot make up
+    EXPECT_LT(change, 1e-5);         // round-off, as large as the points' correlation is nearly singular
+    EXPECT_LT(after, 0.3 * before);  // twelve times the points: a twelfth, but for what 120 of them cannot make up
   }
 }
 

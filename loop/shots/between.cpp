@@ -1,0 +1,163 @@
+#include "loop/shots/between.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+#include "loop/deviation.hpp"
+
+namespace hosel::loop {
+namespace {
+
+constexpr int kFewest = 5, kStretch = 50;  // shots of a group
+constexpr double kMovesNothing = 1e-9;     // norm of whitened derivatives
+
+/// What may differ from group to group.
+struct Differing {
+  std::string name, unit;
+  double si;
+  Parametrisation form;
+};
+
+std::vector<Differing> may_differ(const ShotModel& model) {
+  std::vector<Differing> all;
+  const auto add = [&](std::string name, std::string unit, double si, double scale) -> Parametrisation& {
+    all.push_back(
+        {std::move(name), std::move(unit), si, {.effect = "", .parameters = {{"size", "1", 1, -1e9, 1e9, scale}}}});
+    return all.back().form;
+  };
+  add("restitution", "1", 1, 0.01).before = [](std::span<const double> p, Shot& s) {
+    s.blow.contact.restitution += p[0];
+  };
+  add("tangential_restitution", "1", 1, 0.02).before = [](std::span<const double> p, Shot& s) {
+    s.blow.contact.tangential_restitution += p[0];
+  };
+  for (int c = 0; c < model.width(); ++c) {
+    const ShotChannel& ch = model.channel(c);
+    const SplitName name = split_unit(ch.name);
+    add(ch.name, name.unit ? std::string(name.unit->suffix) : "1", ch.si, ch.noise * ch.si).reading =
+        [o = ch.output](std::span<const double> p, const Shot&, Output of, double value) {
+          return of == o ? value + p[0] : value;
+        };
+  }
+  return all;
+}
+
+/// Means of groups, and the variance of each.
+struct Means {
+  std::vector<double> mean, variance;
+
+  /// Squares about the common mean over variances that have `between` added.
+  double square_sum(double between) const {
+    double weights = 0, centre = 0, sum = 0;
+    for (std::size_t g = 0; g < mean.size(); ++g) {
+      const double w = 1 / (variance[g] + between);
+      weights += w;
+      centre += w * mean[g];
+    }
+    centre /= weights;
+    for (std::size_t g = 0; g < mean.size(); ++g) sum += std::pow(mean[g] - centre, 2) / (variance[g] + between);
+    return sum;
+  }
+
+  /// The standard deviation between groups that makes the square sum this large: it falls as that grows. Zero: none
+  /// does.
+  double deviation(double wanted) const {
+    const auto excess = [&](double sd) { return square_sum(sd * sd) - wanted; };
+    if (!(excess(0) > 0)) return 0;
+    double high = std::sqrt(*std::ranges::max_element(variance));
+    while (excess(high) > 0) high *= 4;
+    std::uintmax_t evaluations = 100;
+    const auto [a, b] = boost::math::tools::toms748_solve(excess, 0.0, high,
+                                                          boost::math::tools::eps_tolerance<double>(30), evaluations);
+    return 0.5 * (a + b);
+  }
+};
+
+/// Of what whitened residuals `z` (width x rows) say of a quantity with derivatives `j`, per scale; `w` weights the
+/// rows.
+Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::VectorXd& w, const std::vector<int>& group,
+            int groups) {
+  struct Sums {
+    double precision = 0, pull = 0, square = 0;
+    int shots = 0;
+  };
+  std::vector<Sums> of(std::size_t(groups), Sums{});
+  const Eigen::VectorXd precision = w.cwiseProduct(j.colwise().squaredNorm().transpose()),
+                        pull = -w.cwiseProduct(z.cwiseProduct(j).colwise().sum().transpose());
+  const auto each = [&](const auto& act) {
+    for (Eigen::Index i = 0; i < z.cols(); ++i)
+      if (const int g = group[std::size_t(i)]; g >= 0 && precision[i] > 0)
+        act(of[std::size_t(g)], precision[i], pull[i]);
+  };
+  each([](Sums& s, double p, double b) { s.precision += p, s.pull += b, ++s.shots; });
+  each([](Sums& s, double p, double b) { s.square += std::pow(b - p * s.pull / s.precision, 2); });
+  Means out;
+  for (const Sums& s : of) {
+    if (s.shots < kFewest || !(s.square > 0)) continue;
+    out.mean.push_back(s.pull / s.precision);
+    out.variance.push_back(s.square / std::pow(s.precision, 2) * s.shots / (s.shots - 1));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                        const std::vector<int>& rows, const std::string& by, bool session,
+                                        const Fit& fit) {
+  const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
+  struct Grouping {
+    std::string along;
+    std::vector<int> of;  // per row
+    int groups;
+  };
+  std::vector<Grouping> groupings;
+  for (const Column& c : shots.columns) {
+    if (c.role == Role::output || (c.numeric && c.name != by)) continue;
+    const Groups g = groups(c);
+    Grouping own{c.name, {}, int(g.name.size())};
+    for (const int i : rows) own.of.push_back(g.of_row[std::size_t(row_of[std::size_t(i)])]);
+    groupings.push_back(std::move(own));
+  }
+  if (session) {
+    std::vector<int> in_order(rows.size()), stretch(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) in_order[i] = int(i);
+    std::ranges::stable_sort(in_order, {}, [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
+    const int stretches = std::max(1, int(rows.size()) / kStretch);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      stretch[std::size_t(in_order[i])] = int(i * std::size_t(stretches) / rows.size());
+    groupings.push_back({"shot", std::move(stretch), stretches});
+  }
+  if (groupings.empty()) return {};
+
+  const Eigen::MatrixXd z = model.whitened(rows, fit.model, fit.p).reshaped(width, n);
+  const solvers::Loss loss = loss_of_shot(model.width());
+  Eigen::VectorXd w(n);
+  for (Eigen::Index i = 0; i < n; ++i) w[i] = loss.weight(z.col(i).squaredNorm());
+  std::vector<GroupSpread> out;
+  for (const Differing& q : may_differ(model)) {
+    const Fit with = beside(fit, &q.form);
+    const Eigen::MatrixXd j = model.jacobian(rows, with.model, with.p).rightCols(1).reshaped(width, n);
+    if (!(j.norm() > kMovesNothing)) continue;
+    const double unit = q.form.parameters.front().scale / q.si;
+    for (const Grouping& g : groupings) {
+      const Means m = means(z, j, w, g.of, g.groups);
+      if (m.mean.size() < 2) continue;
+      const auto freedom = double(m.mean.size() - 1);
+      const boost::math::chi_squared chance(freedom);
+      out.push_back({.along = g.along,
+                     .of = q.name,
+                     .unit = q.unit,
+                     .groups = int(m.mean.size()),
+                     .sd = unit * m.deviation(freedom),
+                     .low = unit * m.deviation(quantile(chance, 0.975)),
+                     .high = unit * m.deviation(quantile(chance, 0.025)),
+                     .p = cdf(complement(chance, m.square_sum(0)))});
+    }
+  }
+  return out;
+}
+
+}  // namespace hosel::loop
