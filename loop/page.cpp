@@ -101,19 +101,22 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   return svg(plot);
 }
 
-/// Held-out root mean square over the noise of readings and inputs, before and after, with 95 % intervals; the noise
-/// itself is the line at 1.
-std::string bars(const std::vector<ChannelResult>& channels) {
+/// Held-out root mean square over the noise of readings and inputs, before, after and with the remainder where it is
+/// `smooth`, with 95 % intervals; the noise itself is the line at 1.
+std::string bars(const std::vector<ChannelResult>& channels, bool smooth) {
   post::SvgBars picture{
       "errors before and after", "the noise", "held-out RMS in units of the noise of readings and inputs", {}};
+  std::vector<std::pair<Errors ChannelResult::*, const char*>> stages{{&ChannelResult::before, "before"},
+                                                                      {&ChannelResult::after, "after"}};
+  if (smooth) stages.emplace_back(&ChannelResult::with_remainder, "remainder");
   for (const ChannelResult& c : channels) {
     picture.rows.push_back({post::label(c.name), {}});
     const double noise = c.expected > 0 ? c.expected : c.noise;
-    for (const auto& [e, style] : {std::pair{&c.before, "before"}, {&c.after, "after"}})
-      if (std::isfinite(e->holdout_rmse) && noise > 0) {
-        const double ratio = e->holdout_rmse / noise;
-        const auto [low, high] = interval(ratio, e->holdout);
-        picture.rows.back().bars.push_back({style, ratio, low, high, fmt::format("{:.4g}", e->holdout_rmse)});
+    for (const auto& [stage, style] : stages)
+      if (const Errors& e = c.*stage; std::isfinite(e.holdout_rmse) && noise > 0) {
+        const double ratio = e.holdout_rmse / noise;
+        const auto [low, high] = interval(ratio, e.holdout);
+        picture.rows.back().bars.push_back({style, ratio, low, high, fmt::format("{:.4g}", e.holdout_rmse)});
       }
     if (picture.rows.back().bars.empty()) picture.rows.pop_back();  // nothing of it is held out
   }
@@ -142,10 +145,10 @@ std::string between_groups(const LoopResult& r) {
       "differs<th>standard "
       "deviation between groups<th>95 %<th>p</tr>";
   for (const GroupSpread& g : r.groups)
-    s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}<td>{} to {}<td>{:.2g}</tr>", g.groups,
+    s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}<td>{} to {}<td>{}</tr>", g.groups,
                      escape_html(g.along == "shot" ? "stretches of the session" : g.along),
                      escape_html(g.unit == "1" ? post::spoken(g.of) : "reading of " + post::label(g.of)), number(g.sd),
-                     number(g.low), number(g.high), g.p);
+                     number(g.low), number(g.high), g.p < 0.001 ? "&lt; 0.001" : fmt::format("{:.3f}", g.p));
   return s + "</table></div>" +
          gloss(
              "What the corrected model leaves, put down to one quantity at a time, whose value differs from group to "
@@ -184,9 +187,14 @@ std::string page(const LoopResult& r, const Shots& table) {
   s += fmt::format("<p class='verdict {}'><b>{}</b><span>{}</span></p>", mood(r.verdict), name(r.verdict),
                    escape_html(sentence(r)));
 
-  s += "<h2>Before and after</h2>";
-  if (!r.channels.empty()) s += "<figure class='wide'>" + bars(r.channels) + "</figure>";
   const bool smooth = r.remainder && !r.remainder->places.empty();
+  s += "<h2>Before and after</h2>";
+  if (!r.channels.empty())
+    s += fmt::format(
+        "<p class='key'><small><i style='background:var(--grey)'></i>before<i "
+        "style='background:var(--blue)'></i>after{}</small></p>"
+        "<figure class='wide'>{}</figure>",
+        smooth ? "<i style='background:var(--green)'></i>after, remainder taken away" : "", bars(r.channels, smooth));
   s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise";
   s += "<th>held out: RMS by noise<th>RMS before<th>RMS after";
   s += smooth ? "<th>RMS after, remainder taken away" : "";

@@ -125,7 +125,8 @@ std::string svg(const SvgBars& b) {
       X(1), top - 4, height - 24, top - 8, escape_html(b.one));
   double y = top;
   for (const auto& row : b.rows) {
-    s += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>", left - 10, y + 24, escape_html(row.label));
+    s += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>", left - 10,
+                     y + 6 + 9 * double(row.bars.size()), escape_html(row.label));
     y += 4;
     for (const SvgBar& x : row.bars) {
       s += fmt::format("<rect class='{}' x='{}' y='{:.1f}' width='{:.1f}' height='{}' rx='2'/>", x.style, left, y,

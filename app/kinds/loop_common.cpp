@@ -86,12 +86,14 @@ void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots&
     out.say(
         fmt::format("  {}: {} {} ± {}{}", s.effect, post::spoken(s.parameter), digits.value, digits.deviation, unit));
   }
+  const bool remainder = result.remainder && !result.remainder->places.empty();
   for (const auto& c : result.channels) {
     constexpr double seen = 1.01;  // less is no other number to a reader
     out.say(fmt::format(
-        "  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({}){}", c.name,
-        c.before.holdout_rmse, c.after.holdout_rmse, c.before.holdout_bias, c.after.holdout_bias, c.noise,
-        c.noise_source,
+        "  {:<22} holdout rmse {:>10.4g} -> {:>10.4g}{}   bias {:>+10.4g} -> {:>+10.4g}   noise {:.4g} ({}){}", c.name,
+        c.before.holdout_rmse, c.after.holdout_rmse,
+        remainder ? fmt::format(" ({:.4g} with the remainder)", c.with_remainder.holdout_rmse) : "",
+        c.before.holdout_bias, c.after.holdout_bias, c.noise, c.noise_source,
         c.expected > seen * c.noise ? fmt::format(", {:.4g} with that of the inputs", c.expected) : ""));
   }
   if (const std::size_t n = result.flagged.size(); n > 0)
