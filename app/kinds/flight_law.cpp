@@ -9,6 +9,7 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_paths.hpp"
+#include "post/labels.hpp"
 #include "post/table.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/robust_regression.hpp"
