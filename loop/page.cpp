@@ -142,8 +142,7 @@ std::string without_name(const LoopResult& r) {
 std::string between_groups(const LoopResult& r) {
   std::string s =
       "<h2>How groups differ</h2><div class='scroll'><table><tr><th>groups<th class='l'>of<th class='l'>what "
-      "differs<th>standard "
-      "deviation between groups<th>95 %<th>p</tr>";
+      "differs<th>standard deviation between groups<th>95 %<th>p</tr>";
   for (const GroupSpread& g : r.groups)
     s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}<td>{} to {}<td>{}</tr>", g.groups,
                      escape_html(g.along == "shot" ? "stretches of the session" : g.along),
@@ -152,11 +151,10 @@ std::string between_groups(const LoopResult& r) {
   return s + "</table></div>" +
          gloss(
              "What the corrected model leaves, put down to one quantity at a time, whose value differs from group to "
-             "group: "
-             "heads, balls and players that the data do not tell apart otherwise. Several rows may show one cause: a "
-             "restitution that differs moves the reading of ball speed too. p: chance of as large a difference between "
-             "groups "
-             "that are alike.");
+             "group: heads, balls and players that the data do not tell apart otherwise. Several rows may show one "
+             "cause: a restitution that differs moves the reading of ball speed too. p: chance of as large a "
+             "difference "
+             "between groups that are alike.");
 }
 
 const char* mood(Verdict v) {

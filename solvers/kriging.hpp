@@ -38,6 +38,11 @@ class Kriging {
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Search& search);
   Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, Correlation from, const Search& search);
 
+  /// The same through many more points than can be factored together: of all functions that the plane and the
+  /// covariances with this process's own points make up, the likeliest (the subset of regressors [@gp-ml, 8.3.1]). Its
+  /// errors stay those of this process.
+  Kriging through(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) const;
+
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) const;
   /// Mean square of the error to be expected there, outputs x outputs.
   Eigen::MatrixXd error(const Eigen::VectorXd& x) const;
@@ -57,10 +62,6 @@ class Kriging {
     Eigen::MatrixXd plane, weight;  ///< a column an output
     Eigen::MatrixXd process;
   };
-  /// The same through many more points than can be factored together: of all functions that the plane and the
-  /// covariances with this process's own points make up, the likeliest (the subset of regressors [@gp-ml, 8.3.1]). Its
-  /// errors stay those of this process.
-  Kriging through(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) const;
   Parts parts() const { return {correlation_.length, correlation_.nugget, points_, plane_, weight_, process_}; }
 
  private:

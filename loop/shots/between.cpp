@@ -1,7 +1,7 @@
 #include "loop/shots/between.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
@@ -44,9 +44,10 @@ std::vector<Differing> may_differ(const ShotModel& model) {
   return all;
 }
 
-/// Means of groups, and the variance of each.
+/// Means of groups, and the variance of each: their shots scatter alike, in `rest` degrees of freedom.
 struct Means {
   std::vector<double> mean, variance;
+  double rest = 0;
 
   /// Squares about the common mean over variances that have `between` added.
   double square_sum(double between) const {
@@ -92,13 +93,17 @@ Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::Vec
         act(of[std::size_t(g)], precision[i], pull[i]);
   };
   each([](Sums& s, double p, double b) { s.precision += p, s.pull += b, ++s.shots; });
-  each([](Sums& s, double p, double b) { s.square += std::pow(b - p * s.pull / s.precision, 2); });
+  each([](Sums& s, double p, double b) { s.square += std::pow(b - p * s.pull / s.precision, 2) / p; });
   Means out;
+  double square = 0;
   for (const Sums& s : of) {
-    if (s.shots < kFewest || !(s.square > 0)) continue;
+    if (s.shots < kFewest) continue;
     out.mean.push_back(s.pull / s.precision);
-    out.variance.push_back(s.square / std::pow(s.precision, 2) * s.shots / (s.shots - 1));
+    out.variance.push_back(1 / s.precision);
+    square += s.square;
+    out.rest += s.shots - 1;
   }
+  for (double& v : out.variance) v *= square / out.rest;
   return out;
 }
 
@@ -144,17 +149,17 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
     const double unit = q.form.parameters.front().scale / q.si;
     for (const Grouping& g : groupings) {
       const Means m = means(z, j, w, g.of, g.groups);
-      if (m.mean.size() < 2) continue;
+      if (m.mean.size() < 2 || !(m.variance.front() > 0)) continue;
       const auto freedom = double(m.mean.size() - 1);
-      const boost::math::chi_squared chance(freedom);
+      const boost::math::fisher_f chance(freedom, m.rest);
       out.push_back({.along = g.along,
                      .of = q.name,
                      .unit = q.unit,
                      .groups = int(m.mean.size()),
                      .sd = unit * m.deviation(freedom),
-                     .low = unit * m.deviation(quantile(chance, 0.975)),
-                     .high = unit * m.deviation(quantile(chance, 0.025)),
-                     .p = cdf(complement(chance, m.square_sum(0)))});
+                     .low = unit * m.deviation(freedom * quantile(chance, 0.975)),
+                     .high = unit * m.deviation(freedom * quantile(chance, 0.025)),
+                     .p = cdf(complement(chance, m.square_sum(0) / freedom))});
     }
   }
   return out;

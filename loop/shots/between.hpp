@@ -10,11 +10,11 @@
 namespace hosel::loop {
 
 /// The residual of `fit` over `rows`, put down to one quantity at a time: each restitution, the error of each reading.
-/// A group's value is the weighted mean of its shots', its error comes from their scatter. The variance between the
-/// groups is the one that makes the weighted square sum as large as its degrees of freedom [@paule-mandel]; its
-/// interval is where the sum is a likely one [@q-profile]. Groups: values of every text column and of `by` (empty:
-/// none); where `session`, stretches of fifty shots. Groups of fewer than five shots do not count. Quantities that move
-/// no channel are left out.
+/// A group's value is the weighted mean of its shots', its error comes from the scatter of all within their groups. The
+/// variance between the groups is the one that makes the weighted square sum as large as its degrees of freedom
+/// [@paule-mandel]; its interval is where the sum is a likely one [@q-profile]. Groups: values of every text column and
+/// of `by` (empty: none); where `session`, stretches of fifty shots. Groups of fewer than five shots do not count.
+/// Quantities that move no channel are left out.
 std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                         const std::vector<int>& rows, const std::string& by, bool session,
                                         const Fit& fit);
