@@ -2,6 +2,7 @@
 """Held-out error of the loop beside that of regressions on the base model's residual.
 
     rivals.py OUT/1 [OUT/2 ...]                 each holds truth/, sets/ and runs/, as `run` makes them
+    rivals.py --run SHOTS.csv OUT [--rivals quadratic]    one run of the loop on these shots
 
 Base predictions, the loop's own (named effects, and the remainder beside them where there is one) and the split are those of
 the loop's residuals.csv. The rivals see the training rows alone: recorded inputs, shot number, every other numeric column that is
