@@ -43,7 +43,8 @@ pre.command{border-left:3px solid var(--rule);padding-left:.8rem;white-space:pre
 .wide{max-width:44rem}.figures figure.alone{grid-column:1/-1;max-width:44rem}figcaption{font-size:.85rem;color:var(--soft)}
 :not(svg)>svg,img{width:100%;height:auto;display:block}img{border-radius:4px}svg text{font-size:12px;fill:var(--ink)}
 .grid{stroke:var(--rule)}.band{fill:var(--band)}.before{fill:var(--grey);opacity:.65}
-.after{fill:var(--blue);opacity:.85}.remainder{fill:var(--green);opacity:.8}.holdout{fill:var(--orange);opacity:.9}.one{stroke:var(--gold);stroke-dasharray:4 3}
+.after{fill:var(--blue);opacity:.85}.remainder{fill:var(--green);opacity:.8}
+.holdout{fill:var(--orange);opacity:.9}.one{stroke:var(--gold);stroke-dasharray:4 3}
 .whisker{stroke:var(--ink);stroke-width:1.4}.line-before{fill:none;stroke:var(--grey);stroke-width:1.4}
 .line-after{fill:none;stroke:var(--blue);stroke-width:1.4}.measured{fill:var(--ink);opacity:.45}
 .line-1,.line-2,.line-3,.line-4,.line-5{fill:none;stroke-width:1.8}.line-1{stroke:var(--blue)}

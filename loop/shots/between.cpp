@@ -6,43 +6,12 @@
 #include <cmath>
 
 #include "loop/deviation.hpp"
+#include "loop/shots/way.hpp"
 
 namespace hosel::loop {
 namespace {
 
 constexpr int kFewest = 5, kStretch = 50;  // shots of a group
-constexpr double kMovesNothing = 1e-9;     // norm of whitened derivatives
-
-/// What may differ from group to group.
-struct Differing {
-  std::string name, unit;
-  double si;
-  Parametrisation form;
-};
-
-std::vector<Differing> may_differ(const ShotModel& model) {
-  std::vector<Differing> all;
-  const auto add = [&](std::string name, std::string unit, double si, double scale) -> Parametrisation& {
-    all.push_back(
-        {std::move(name), std::move(unit), si, {.effect = "", .parameters = {{"size", "1", 1, -1e9, 1e9, scale}}}});
-    return all.back().form;
-  };
-  add("restitution", "1", 1, 0.01).before = [](std::span<const double> p, Shot& s) {
-    s.blow.contact.restitution += p[0];
-  };
-  add("tangential_restitution", "1", 1, 0.02).before = [](std::span<const double> p, Shot& s) {
-    s.blow.contact.tangential_restitution += p[0];
-  };
-  for (int c = 0; c < model.width(); ++c) {
-    const ShotChannel& ch = model.channel(c);
-    const SplitName name = split_unit(ch.name);
-    add(ch.name, name.unit ? std::string(name.unit->suffix) : "1", ch.si, ch.noise * ch.si).reading =
-        [o = ch.output](std::span<const double> p, const Shot&, Output of, double value) {
-          return of == o ? value + p[0] : value;
-        };
-  }
-  return all;
-}
 
 /// Means of groups, and the variance of each: their shots scatter alike, in `rest` degrees of freedom.
 struct Means {
@@ -142,19 +111,23 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
   Eigen::VectorXd w(n);
   for (Eigen::Index i = 0; i < n; ++i) w[i] = loss.weight(z.col(i).squaredNorm());
   std::vector<GroupSpread> out;
-  for (const Differing& q : may_differ(model)) {
-    const Fit with = beside(fit, &q.form);
+  for (const Way& way : ways(model, shots)) {
+    if (way.kind == Way::Kind::input) continue;
+    const Fit with = beside(fit, &way.form);
     const Eigen::MatrixXd j = model.jacobian(rows, with.model, with.p).rightCols(1).reshaped(width, n);
-    if (!(j.norm() > kMovesNothing)) continue;
-    const double unit = q.form.parameters.front().scale / q.si;
+    if (!(j.norm() > kNoMotion)) continue;
+    const std::optional<Unit> of = split_unit(way.column).unit;
+    const double unit = way.form.parameters.front().scale / (of ? of->si : 1);
     for (const Grouping& g : groupings) {
       const Means m = means(z, j, w, g.of, g.groups);
       if (m.mean.size() < 2 || !(m.variance.front() > 0)) continue;
       const auto freedom = double(m.mean.size() - 1);
       const boost::math::fisher_f chance(freedom, m.rest);
       out.push_back({.along = g.along,
-                     .of = q.name,
-                     .unit = q.unit,
+                     .of = way.kind == Way::Kind::normal       ? "restitution"
+                           : way.kind == Way::Kind::tangential ? "tangential_restitution"
+                                                               : way.column,
+                     .unit = of ? std::string(of->suffix) : "1",
                      .groups = int(m.mean.size()),
                      .sd = unit * m.deviation(freedom),
                      .low = unit * m.deviation(freedom * quantile(chance, 0.975)),

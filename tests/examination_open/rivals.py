@@ -141,6 +141,8 @@ def main():
     p.add_argument("--run", nargs=2, type=pathlib.Path, metavar=("SHOTS.csv", "OUT"), help="one run of the loop on these shots")
     p.add_argument("--rivals", nargs="+", choices=RIVALS, default=list(RIVALS), help="of --run (a Gaussian process takes a matrix of all rows)")
     a = p.parse_args()
+    if bool(a.run) == bool(a.folders):
+        p.error("either folders of examinations or --run")
     if a.run:
         errors = compare(*a.run, {name: RIVALS[name] for name in a.rivals})
         if errors is None:
