@@ -118,6 +118,13 @@ struct Remainder {
   double fall() const { return before - after; }
 };
 
+/// An effect that draws the records of an input to their mean and leaves the mean where it is: noise of the records
+/// does so too.
+struct Attenuation {
+  std::string effect, column;
+  double share = 0;  ///< of noise in the variance of the records
+};
+
 /// How far one quantity differs between groups of shots, if the residual comes from it alone: standard deviation and
 /// its 95 % interval.
 struct GroupSpread {
@@ -197,6 +204,8 @@ class Problem {
   /// One free function through one mechanism in place of the chosen effects: the likeliest, and what is as likely.
   /// Where none is chosen, on what was held out too.
   virtual std::vector<Mechanism> mechanisms(const Selection& /*selection*/, const Rules& /*rules*/) const { return {}; }
+  /// Effects of a fit that do no more than noise of a recorded input does.
+  virtual std::vector<Attenuation> attenuations(const Fit& /*fit*/) const { return {}; }
   /// How far groups of shots differ in what a fit leaves.
   virtual std::vector<GroupSpread> between_groups(const Fit& /*fit*/) const { return {}; }
   /// Where it sits, the plainest first.

@@ -83,6 +83,10 @@ json to_json(const LoopResult& r) {
                                {"before", errors(c.before)},
                                {"after", errors(c.after)},
                                {"with_remainder", errors(c.with_remainder)}});
+  out["functions"] = json::array();
+  for (const Mechanism& m : r.functions)
+    out["functions"].push_back(
+        {{"along", m.along}, {"through", m.acts}, {"step", m.step}, {"is", m.names}, {"ahead", value(-m.criterion)}});
   out["remainder"] = json::array();
   if (r.remainder)
     for (const Remainder::Place& p : r.remainder->places)
@@ -302,9 +306,11 @@ std::string sentence(const LoopResult& r) {
       if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
       return s + tied;
     }
-    case Verdict::insufficient:
-      if (r.minimum_detectable.empty()) return "Too little to name anything.";
-      return "Too little to name anything: the smallest effects that these data would have shown are listed.";
+    case Verdict::insufficient: {
+      std::string s = "Too little to name anything" + (r.faint.empty() ? "" : ": " + r.faint) + ".";
+      if (!r.minimum_detectable.empty()) s += " The smallest effects that these data would have shown are listed.";
+      return s;
+    }
     case Verdict::noise_contradicted: {
       std::string which = r.tails;
       for (const ChannelResult& c : r.channels)

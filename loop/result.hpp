@@ -121,11 +121,13 @@ struct LoopResult {
   Verdict verdict = Verdict::no_residual;
   std::vector<Detectable> minimum_detectable;
   std::vector<Location> unexplained;
+  std::vector<Mechanism> functions;    ///< the likeliest; their criterion is less that of the chosen effects
   std::optional<Remainder> remainder;  ///< of the model behind `after`
   std::vector<GroupSpread> groups;     ///< of the same model, without the remainder
   NextExperiment next;
   std::vector<UsedRow> rows;
   std::string tails;               ///< that the noise is not normal, in words; empty: nothing says so
+  std::string faint;               ///< what is likelier than what is told, not beyond doubt, in words; empty: nothing
   std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
   Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories

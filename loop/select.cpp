@@ -111,6 +111,10 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     tell_ties(tied, s);
     // Many sets without a name in common: the data do not name anything.
     s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;
+    for (const Candidate& c : s.level == 1 ? search.pairs : search.triples)
+      if (!s.likelier && c.effects.size() > best.effects.size() && !c.fit.at_bound &&
+          c.criterion + rules.tie < best.criterion)
+        s.likelier = c;
   }
   s.richest = search.richest();
   for (auto* list : {&search.singles, &search.pairs, &search.triples})

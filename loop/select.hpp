@@ -1,6 +1,8 @@
 /// The rule for adopting: how many effects the data require, which, and their ties.
 #pragma once
 
+#include <optional>
+
 #include "loop/search.hpp"
 #include "loop/structure.hpp"
 
@@ -17,6 +19,8 @@ struct Selection {
   bool structured = false;  ///< the gate
   bool clean = true;        ///< nothing remains after `chosen`
   bool nameless = false;    ///< many sets of effects tie and no name is common to them
+  /// A larger set than the chosen, likelier by more than a tie and not by as much as a further effect must be.
+  std::optional<Candidate> likelier;
   /// In words, what acts in proportion to the place in the session and does as well without it, chosen or as likely as
   /// what was chosen; empty: none.
   std::string at_every_shot;

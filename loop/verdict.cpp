@@ -50,16 +50,16 @@ std::vector<Location> nameless(const Study& study, const std::optional<Remainder
 
 /// Beside the chosen effects, or where there are none: one free function through one mechanism.
 struct Rival {
-  std::vector<Location> unexplained;   ///< it says more, or as much as several effects, and is none of them
-  const Candidate* lone = nullptr;     ///< it says as much as several effects, and is this one of them
-  std::vector<std::string> same = {};  ///< every effect that such a function is
+  std::vector<Location> unexplained = {};  ///< it says more or as much, and is none of the effects
+  const Candidate* lone = nullptr;         ///< it says as much as several effects, and is this one of them
+  std::vector<std::string> same = {};      ///< every effect that such a function is
+  std::string faint = {};                  ///< where no effect is chosen: it is likelier than none, not beyond doubt
 };
 
-Rival one_function(const Study& study) {
-  const Selection& s = study.selection;
-  if (!s.clean || study.problem.too_few()) return {};
-  const std::vector<Mechanism> found = study.problem.mechanisms(s, study.rules);
+/// `found`: the functions, the likeliest first.
+Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
   if (found.empty()) return {};
+  const Selection& s = study.selection;
   const Mechanism& best = found.front();
   const double of_names = criterion(s.chosen, study.rules);
   const std::vector<std::string> names = s.chosen.model.effects(study.base.size());
@@ -68,24 +68,28 @@ Rival one_function(const Study& study) {
   const bool known = best.step || !best.names.empty();
   const bool more = best.criterion + study.rules.tie < of_names,
              as_much = best.criterion < of_names + std::max(study.rules.tie, known ? further : 0);
-  // A drift is slow and steady: where no function is likelier than a step there is none.
-  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.step;
-  if (!more && !drift && !(as_much && names.size() > 1)) return {};
+  // A drift is slow and steady: where a function of the order is likeliest that is not, there is none.
+  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
+                     !std::ranges::count(best.names, names.front());
+  const auto told = [&](std::string_view says) {
+    return fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
+                       best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")), says);
+  };
+  if (names.empty() && !more)
+    return {.faint = best.criterion < of_names ? told(" is likelier than no effect, not beyond doubt") : ""};
+  if (!more && !drift && !as_much) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
   const auto is = [&](const std::string& e) { return std::ranges::count(same, e) > 0; };
-  // A form of the library for a function of another form keeps its name.
-  if (names.size() == 1 && !drift && is(names.front())) return {};
-  if (!more && !drift)
+  // A form of the library for a function of another form keeps its name, if no other function is likelier.
+  if (names.size() == 1 && !drift && std::ranges::count(best.names, names.front())) return {};
+  if (names.size() > 1 && !more)
     for (const Candidate& c : s.candidates)
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)
-        return {.unexplained = {}, .lone = &c, .same = std::move(same)};
-  return {.unexplained = {
-              {study.problem.channel(best.channel).name, best.along,
-               fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
-                           best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")),
-                           names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and ")))}}};
+        return {.lone = &c, .same = std::move(same)};
+  const std::string says = names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and "));
+  return {.unexplained = {{study.problem.channel(best.channel).name, best.along, told(says)}}};
 }
 
 /// Several names that all act through the normal restitution are one function of it, and so is what else acts through
@@ -125,6 +129,38 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
+/// What is likelier than what was chosen, and not beyond doubt, in words. `open`: what was chosen is not in it, or of
+/// another size.
+struct Faint {
+  std::string text;
+  bool open = false;
+};
+
+Faint faint(const Study& study, const Rival& one) {
+  const Selection& s = study.selection;
+  if (s.level == 0) return {one.faint, !one.faint.empty()};
+  if (one.lone || !s.likelier) return {};
+  Faint out{fmt::format("{} together are likelier than {}, not beyond doubt", fmt::join(s.likelier->effects, " and "),
+                        fmt::join(s.chosen.model.effects(study.base.size()), " and "))};
+  const Eigen::VectorXd variance = covariance(study.problem, Part::select, s.chosen).diagonal();
+  Eigen::Index at = 0;
+  s.chosen.model.each(s.chosen.p.data(), [&](const Parametrisation& form, std::span<const double> own) {
+    bool there = false;
+    s.likelier->fit.model.each(s.likelier->fit.p.data(), [&](const Parametrisation& f, std::span<const double> other) {
+      if (&f != &form) return;
+      there = true;
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        const double allowed =
+            std::max(study.rules.steady * std::abs(own[k]), 2 * std::sqrt(variance[at + Eigen::Index(k)]));
+        out.open = out.open || !(std::abs(own[k] - other[k]) < allowed);
+      }
+    });
+    out.open = out.open || !there;
+    at += Eigen::Index(own.size());
+  });
+  return out;
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -143,6 +179,13 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
+  for (const Attenuation& a : problem.attenuations(s.chosen))
+    unexplained.push_back(
+        {"", a.column,
+         fmt::format("its records lie too far from their mean, as noise or slips in them do ({:.0f} % of "
+                     "their variance); {} says no more",
+                     100 * a.share, a.effect)});
+  if (!unexplained.empty()) return Verdict::unexplained;
   if (!s.at_every_shot.empty()) {
     unexplained.push_back({"", "", s.at_every_shot});
     return Verdict::unexplained;
@@ -154,7 +197,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     refuted = refuted || problem.channel(c).refuted;
   }
   if (refuted) return Verdict::noise_contradicted;
-  if (s.nameless) return Verdict::insufficient;
+  if (s.nameless || faint(study, one).open) return Verdict::insufficient;
   if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
@@ -263,9 +306,15 @@ void conclude(const Study& study, LoopResult& result) {
     bare = s.level > 0 ? problem.remainder(s.base) : left;
   }
   const std::vector<Location> without_name = nameless(study, left, bare);
-  Rival one = one_function(study);
+  if (s.clean && !problem.too_few()) result.functions = problem.mechanisms(s, study.rules);
+  Rival one = one_function(study, result.functions);
+  for (Mechanism& m : result.functions) m.criterion -= criterion(s.chosen, study.rules);
   const std::vector<std::string> restitution = through_one_restitution(study);
   result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
+  if (const Faint f = faint(study, one); !f.text.empty() && !problem.too_few()) {
+    if (result.verdict == Verdict::insufficient) result.faint = f.text;
+    else if (result.verdict == Verdict::explained) result.notes.push_back(f.text);
+  }
   std::ranges::move(problem.notes(), std::back_inserter(result.notes));
   if (result.verdict == Verdict::noise_contradicted) result.tails = problem.heavy_tails(s).value_or("");
   else if (result.verdict == Verdict::no_residual)
@@ -317,7 +366,9 @@ void conclude(const Study& study, LoopResult& result) {
   BeyondDoubt kept;
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
-    if (kept.fit.size() > 0 && !beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules)) kept = {};
+    if (kept.fit.size() > 0 && (!beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules) ||
+                                !problem.attenuations(kept.fit).empty()))
+      kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();
   if (some_kept) {

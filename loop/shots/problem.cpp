@@ -7,6 +7,7 @@
 
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
+#include "loop/shots/attenuation.hpp"
 #include "loop/shots/between.hpp"
 #include "loop/shots/experiment.hpp"
 #include "loop/shots/mechanism.hpp"
@@ -403,6 +404,10 @@ std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& 
   for (const auto& [column, sd] : case_.input_noise)
     if (sd > 0) noisy.insert(column);
   return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, in_session(), noisy, s.base, s.chosen, rules.tie);
+}
+
+std::vector<Attenuation> ShotProblem::attenuations(const Fit& fit) const {
+  return loop::attenuations(*model_, case_.shots, select_, fit, covariance(*this, Part::select, fit));
 }
 
 /// Neither means of clubs nor a base that answers slowly.
