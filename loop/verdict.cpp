@@ -71,25 +71,32 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
   // A drift is slow and steady: where a function of the order is likeliest that is not, there is none.
   const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
                      !std::ranges::count(best.names, names.front());
-  const auto told = [&](std::string_view says) {
-    return fmt::format("one function of {}, acting through {}{}{}", best.along, best.acts,
-                       best.names.empty() ? "" : fmt::format(" ({})", fmt::join(best.names, " or ")), says);
+  const auto told = [](const Mechanism& m, std::string_view of_it) {
+    return fmt::format("one function of {}, acting through {}{}{}", m.along, m.acts,
+                       m.names.empty() ? "" : fmt::format(" ({})", fmt::join(m.names, " or ")), of_it);
   };
   if (names.empty() && !more)
-    return {.faint = best.criterion < of_names ? told(" is likelier than no effect, not beyond doubt") : ""};
+    return {.faint = best.criterion < of_names ? told(best, " is likelier than no effect, not beyond doubt") : ""};
   if (!more && !drift && !as_much) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
   const auto is = [&](const std::string& e) { return std::ranges::count(same, e) > 0; };
-  // A form of the library for a function of another form keeps its name, if no other function is likelier.
-  if (names.size() == 1 && !drift && std::ranges::count(best.names, names.front())) return {};
+  // A form of the library for a function of another form keeps its name, where no other function says as much.
+  const Mechanism* says = &best;
+  if (names.size() == 1 && !drift) {
+    const auto other = std::ranges::find_if(found, [&](const Mechanism& m) {
+      return m.criterion < of_names + study.rules.tie && !std::ranges::count(m.names, names.front());
+    });
+    if (other == found.end()) return {};
+    says = &*other;
+  }
   if (names.size() > 1 && !more)
     for (const Candidate& c : s.candidates)
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)
         return {.lone = &c, .same = std::move(same)};
-  const std::string says = names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and "));
-  return {.unexplained = {{study.problem.channel(best.channel).name, best.along, told(says)}}};
+  const std::string as = names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and "));
+  return {.unexplained = {{study.problem.channel(says->channel).name, says->along, told(*says, as)}}};
 }
 
 /// Several names that all act through the normal restitution are one function of it, and so is what else acts through
