@@ -103,18 +103,20 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
       if (likelihood(c) <= likelihood(best) + rules.tie) tied.push_back(&c);
     };
     std::ranges::for_each(*level, add);
-    // A larger set is another explanation where it does without one of these names.
+    // A larger set is another explanation where it does without one of these names; of two for one, if it is likelier.
+    const auto all_in = [&](const Candidate& c) {
+      return std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); });
+    };
     for (const Candidate& c : search.triples)
-      if (c.effects.size() > best.effects.size() &&
-          !std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); }))
-        add(c);
+      if (c.effects.size() > best.effects.size() && !all_in(c)) add(c);
+    for (const Candidate& c : search.pairs) {
+      if (s.level > 1 || c.fit.at_bound || !(c.criterion + rules.tie < best.criterion)) continue;
+      if (!all_in(c)) add(c);
+      else if (!s.likelier) s.likelier = c;
+    }
     tell_ties(tied, s);
     // Many sets without a name in common: the data do not name anything.
     s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;
-    for (const Candidate& c : s.level == 1 ? search.pairs : search.triples)
-      if (!s.likelier && c.effects.size() > best.effects.size() && !c.fit.at_bound &&
-          c.criterion + rules.tie < best.criterion)
-        s.likelier = c;
   }
   s.richest = search.richest();
   for (auto* list : {&search.singles, &search.pairs, &search.triples})

@@ -19,7 +19,7 @@ struct Selection {
   bool structured = false;  ///< the gate
   bool clean = true;        ///< nothing remains after `chosen`
   bool nameless = false;    ///< many sets of effects tie and no name is common to them
-  /// A larger set than the chosen, likelier by more than a tie and not by as much as a further effect must be.
+  /// Two effects, of which the chosen is one: likelier by more than a tie and not by as much as a second must be.
   std::optional<Candidate> likelier;
   /// In words, what acts in proportion to the place in the session and does as well without it, chosen or as likely as
   /// what was chosen; empty: none.

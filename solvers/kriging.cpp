@@ -15,12 +15,6 @@ constexpr double kShortest = 0.1, kLongest = 200, kLeastNugget = 1e-8, kLargestN
 constexpr double kLengthStep = 2.5, kNuggetStep = 10;  // factors of the search
 constexpr double kNuggetGain = 0.1;                    // of log likelihood: less is not worth a step of the nugget
 
-/// Of squared distances, in vector registers.
-Eigen::ArrayXXd matern(const Eigen::ArrayXXd& square) {
-  const Eigen::ArrayXXd d = (5 * square.max(0.0)).sqrt();
-  return (1 + d + d.square() / 3) * (-d).exp();
-}
-
 /// Of so many points a plane may be asked, or a constant.
 Eigen::Index terms(Eigen::Index points, Eigen::Index inputs) { return points > 3 * (inputs + 1) ? inputs + 1 : 1; }
 
@@ -66,6 +60,11 @@ struct Regression {
 };
 
 }  // namespace
+
+Eigen::ArrayXXd matern(const Eigen::ArrayXXd& square) {
+  const Eigen::ArrayXXd d = (5 * square.max(0.0)).sqrt();
+  return (1 + d + d.square() / 3) * (-d).exp();
+}
 
 Kriging::Kriging(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) : Kriging(x, y, Correlation{}) {}
 

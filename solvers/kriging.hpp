@@ -6,6 +6,9 @@
 
 namespace hosel::solvers {
 
+/// Matern's correlation of smoothness 5/2 [@gp-ml], of squares of distances over the length.
+Eigen::ArrayXXd matern(const Eigen::ArrayXXd& square);
+
 /// Universal kriging [@gp-ml] of several outputs with one correlation: Matern's of smoothness 5/2 over a distance with
 /// a length per input, and a nugget. Under it lies a plane, or a constant where the points are too few for one. Lengths
 /// and nugget are those of largest restricted likelihood, by a search along one of them at a time.

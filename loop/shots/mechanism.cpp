@@ -8,6 +8,7 @@
 #include "golf/parallel.hpp"
 #include "loop/rules.hpp"
 #include "loop/shots/way.hpp"
+#include "solvers/kriging.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -26,11 +27,6 @@ struct Field {
   };
   std::vector<Basis> smoothness;
 };
-
-double matern(double r) {
-  const double a = std::sqrt(5.0) * r;
-  return (1 + a + a * a / 3) * std::exp(-a);
-}
 
 /// The leading terms of a covariance between rows and knots, which are some of the rows, its level taken out. Over the
 /// other rows its eigenfunctions are continued by the covariance [@gp-ml].
@@ -77,11 +73,10 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     return K;
   };
   const auto smooth_covariance = [&](const std::vector<Eigen::VectorXd>& x, double length) {
-    return covariance([&](Eigen::Index i, Eigen::Index j) {
-      double square = 0;
-      for (const Eigen::VectorXd& v : x) square += std::pow((v[i] - v[j]) / length, 2);
-      return matern(std::sqrt(square));
-    });
+    Eigen::ArrayXXd square = Eigen::ArrayXXd::Zero(n, Eigen::Index(knots.size()));
+    for (const Eigen::VectorXd& v : x)
+      square += ((v.replicate(1, square.cols()).rowwise() - v(knots).transpose()).array() / length).square();
+    return Eigen::MatrixXd(solvers::matern(square));
   };
   const auto smooth = [&](std::string along, const std::vector<Eigen::VectorXd>& x, bool place) {
     Field f{.along = std::move(along), .place = place};
