@@ -63,20 +63,29 @@ class Cost final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
     const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(x[0], scale_.size()).cwiseProduct(scale_);
+    const bool derive = jacobians && jacobians[0];
+    Eigen::Map<Eigen::VectorXd> out(residuals, problem_.residuals);
+    if (!derive && p == last_) {
+      out = residuals_;
+      return true;
+    }
     Eigen::VectorXd r(problem_.residuals);
     Eigen::MatrixXd J;
-    const bool derive = jacobians && jacobians[0];
     if (!(derive && problem_.linearised ? problem_.linearised(p, r, J) : problem_.value(p, r))) return false;
     if (derive && !problem_.linearised && !differences(problem_, p, J)) return false;
     apply(problem_.loss, r.size() - problem_.plain, r, derive ? &J : nullptr);
-    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    out = r;
     if (derive) Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J * scale_.asDiagonal();
+    last_ = p;
+    residuals_ = std::move(r);
     return true;
   }
 
  private:
   const LeastSquares& problem_;
   Eigen::VectorXd scale_;
+  // A step is asked for where its line search ended.
+  mutable Eigen::VectorXd last_, residuals_;
 };
 
 }  // namespace
@@ -119,6 +128,8 @@ std::optional<Minimum> minimise(const LeastSquares& problem, const Eigen::Vector
   how.function_tolerance = until.cost;
   how.parameter_tolerance = until.parameters;
   how.logging_type = ceres::SILENT;
+  // Between bounds every step is searched along. A cubic would ask for the derivatives there, which are dear.
+  how.line_search_interpolation_type = ceres::QUADRATIC;
   // Its warnings come all the same; the summary says what failed.
   [[maybe_unused]] static const int quiet = FLAGS_minloglevel = google::GLOG_FATAL;
   ceres::Solver::Summary summary;
