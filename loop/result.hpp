@@ -127,7 +127,7 @@ struct LoopResult {
   NextExperiment next;
   std::vector<UsedRow> rows;
   std::string tails;               ///< that the noise is not normal, in words; empty: nothing says so
-  std::string faint;               ///< what is likelier than what is told, not beyond doubt, in words; empty: nothing
+  std::string faint;               ///< the function that is likelier than no effect, not beyond doubt; empty: none
   std::vector<std::string> notes;  ///< sentences for people: assumptions, absorptions, contradictions
   Likeness likeness;               ///< of the effects to each other and to what is fitted
   std::optional<Balance> balance_before, balance_after;  ///< of the training shots; absent for time histories

@@ -112,7 +112,7 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     for (const Candidate& c : search.pairs) {
       if (s.level > 1 || c.fit.at_bound || !(c.criterion + rules.tie < best.criterion)) continue;
       if (!all_in(c)) add(c);
-      else if (!s.likelier) s.likelier = c;
+      else if (s.likelier.empty()) s.likelier = c.effects;
     }
     tell_ties(tied, s);
     // Many sets without a name in common: the data do not name anything.

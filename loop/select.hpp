@@ -1,8 +1,6 @@
 /// The rule for adopting: how many effects the data require, which, and their ties.
 #pragma once
 
-#include <optional>
-
 #include "loop/search.hpp"
 #include "loop/structure.hpp"
 
@@ -20,7 +18,7 @@ struct Selection {
   bool clean = true;        ///< nothing remains after `chosen`
   bool nameless = false;    ///< many sets of effects tie and no name is common to them
   /// Two effects, of which the chosen is one: likelier by more than a tie and not by as much as a second must be.
-  std::optional<Candidate> likelier;
+  std::vector<std::string> likelier;
   /// In words, what acts in proportion to the place in the session and does as well without it, chosen or as likely as
   /// what was chosen; empty: none.
   std::string at_every_shot;

@@ -136,32 +136,9 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
-/// What is likelier than what was chosen, and not beyond doubt, in words. `open`: the chosen is of another size in it.
-struct Faint {
-  std::string text;
-  bool open = false;
-};
-
-Faint faint(const Study& study, const Rival& one) {
-  const Selection& s = study.selection;
-  if (s.level == 0) return {one.faint, !one.faint.empty()};
-  if (one.lone || !s.likelier) return {};
-  Faint out{fmt::format("{} together are likelier than {} alone, not beyond doubt",
-                        fmt::join(s.likelier->effects, " and "), fmt::join(s.adopted, " and "))};
-  const Parametrisation* chosen = s.chosen.model.forms.back();
-  const auto n = Eigen::Index(chosen->parameters.size());
-  const Eigen::VectorXd own = s.chosen.p.tail(n);
-  const Fit there = reduced(s.likelier->fit, [&](const Parametrisation* form) { return form == chosen; });
-  const Eigen::VectorXd variance = covariance(study.problem, Part::select, s.chosen).diagonal().tail(n);
-  const Eigen::VectorXd allowed = (study.rules.steady * own.cwiseAbs()).cwiseMax(2 * variance.cwiseSqrt());
-  out.open = there.size() != n || !((own - there.p).cwiseAbs().array() < allowed.array()).all();
-  return out;
-}
-
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
-              const Rival& one, const Faint& weak, const std::vector<std::string>& restitution,
-              std::vector<Location>& unexplained) {
+              const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
   if (!columns.empty()) {
@@ -195,7 +172,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     refuted = refuted || problem.channel(c).refuted;
   }
   if (refuted) return Verdict::noise_contradicted;
-  if (s.nameless || weak.open) return Verdict::insufficient;
+  if (s.nameless || !one.faint.empty()) return Verdict::insufficient;
   if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
@@ -308,10 +285,11 @@ void conclude(const Study& study, LoopResult& result) {
   Rival one = one_function(study, result.functions);
   for (Mechanism& m : result.functions) m.criterion -= criterion(s.chosen, study.rules);
   const std::vector<std::string> restitution = through_one_restitution(study);
-  const Faint weak = problem.too_few() ? Faint{} : faint(study, one);
-  result.verdict = judge(study, result.columns, without_name, one, weak, restitution, result.unexplained);
-  if (result.verdict == Verdict::insufficient) result.faint = weak.text;
-  else if (result.verdict == Verdict::explained && !weak.text.empty()) result.notes.push_back(weak.text);
+  result.verdict = judge(study, result.columns, without_name, one, restitution, result.unexplained);
+  if (result.verdict == Verdict::insufficient) result.faint = one.faint;
+  if (result.verdict == Verdict::explained && !s.likelier.empty())
+    result.notes.push_back(fmt::format("{} together are likelier than {} alone, not beyond doubt",
+                                       fmt::join(s.likelier, " and "), fmt::join(s.adopted, " and ")));
   std::ranges::move(problem.notes(), std::back_inserter(result.notes));
   if (result.verdict == Verdict::noise_contradicted) result.tails = problem.heavy_tails(s).value_or("");
   else if (result.verdict == Verdict::no_residual)

@@ -675,12 +675,12 @@ TEST_F(Loop, NothingIsSaidToRemainOnlyWhereNoFunctionIsLikelier) {
   EXPECT_EQ(sure.verdict, "unexplained") << sure.sentence;
 }
 
-TEST_F(Loop, ASecondEffectThatIsLikelierIsSaidBesideAFirstOfTheSameSize) {
+TEST_F(Loop, ASecondEffectThatIsLikelierIsSaidBesideTheFirst) {
   // The drift is by more than a tie likelier than none, and by less than a second effect must be.
   const ShotCase c = case_of(csv({.tangential = 0.05, .drift = 0.3}));
   const LoopResult r = run(c);
   ASSERT_EQ(r.selection.level, 1);
-  ASSERT_TRUE(r.selection.likelier) << sentence(r);
+  ASSERT_EQ(r.selection.likelier.size(), 2U) << sentence(r);
   EXPECT_EQ(r.adopted, std::vector<std::string>{"ball-tangential-compliance"});
   EXPECT_EQ(name(r.verdict), "explained");
   const auto said = [](const LoopResult& of) {
@@ -690,7 +690,7 @@ TEST_F(Loop, ASecondEffectThatIsLikelierIsSaidBesideAFirstOfTheSameSize) {
   EXPECT_TRUE(said(r));
   // None beside it.
   const LoopResult alone = run(case_of(csv({.tangential = 0.05, .seed = 2})));
-  EXPECT_FALSE(alone.selection.likelier) << sentence(alone);
+  EXPECT_TRUE(alone.selection.likelier.empty()) << sentence(alone);
   EXPECT_FALSE(said(alone));
 }
 
