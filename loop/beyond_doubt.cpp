@@ -113,10 +113,14 @@ std::optional<Candidate> keep(const Study& study, const Fit& start) {
     const std::vector<const Parametrisation*> passed = steady(study, out.fit);
     if (passed.empty()) return {};
     if (study.base.size() + passed.size() == out.fit.model.forms.size()) break;
-    const Fit less = reduced(out.fit, [&](const Parametrisation* form) {
-      return std::ranges::count(passed, form) > 0 || std::ranges::count(study.base, form) > 0;
+    Model model{study.base};
+    std::vector<double> p;
+    out.fit.model.each(out.fit.p.data(), [&](const Parametrisation& form, std::span<const double> own) {
+      const bool passes = std::ranges::count(passed, &form) > 0;
+      if (passes) model = model.with(&form);
+      if (passes || std::ranges::count(study.base, &form)) p.insert(p.end(), own.begin(), own.end());
     });
-    out.fit = fit(problem, Part::train, less.model, {less.p}, 1, true);
+    out.fit = fit(problem, Part::train, model, {as_vector(p)}, 1, true);
   } while (true);
   const Fit& base = study.selection.base;
   if (!(deviance(problem, Part::holdout, out.fit) < deviance(problem, Part::holdout, base) - study.rules.gain))

@@ -175,18 +175,6 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
   return best;
 }
 
-Fit reduced(const Fit& fit, const std::function<bool(const Parametrisation*)>& take) {
-  Fit out;
-  std::vector<double> p;
-  fit.model.each(fit.p.data(), [&](const Parametrisation& form, std::span<const double> own) {
-    if (!take(&form)) return;
-    out.model.forms.push_back(&form);
-    p.insert(p.end(), own.begin(), own.end());
-  });
-  out.p = as_vector(p);
-  return out;
-}
-
 Fit beside(const Fit& f, const Parametrisation* more) {
   Fit out{.model = f.model.with(more), .p = Eigen::VectorXd::Zero(f.size() + Eigen::Index(more->parameters.size()))};
   out.p.head(f.size()) = f.p;

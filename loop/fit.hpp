@@ -1,8 +1,6 @@
 /// Least squares of effects' parameters on whitened residuals.
 #pragma once
 
-#include <functional>
-
 #include "loop/problem.hpp"
 
 namespace hosel::loop {
@@ -29,8 +27,6 @@ Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, 
 double deviance(const Problem& problem, Part part, const Fit& fit);
 /// A fit with one more form, its parameters zero: where a look beside the fit begins.
 Fit beside(const Fit& fit, const Parametrisation* more);
-/// Those forms of a fit that `take` takes, their parameters as they are: where a smaller fit begins.
-Fit reduced(const Fit& fit, const std::function<bool(const Parametrisation*)>& take);
 
 /// What is known of a fit's parameters beside the data, as a part of its deviance.
 double known(const Fit& fit);

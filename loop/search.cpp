@@ -142,20 +142,7 @@ void Search::fit_pairs() {
   pairs = refined(std::move(all));
 }
 
-void Search::fit_triples() {
-  std::vector<Candidate> all = grown(pairs, effort_.pairs_grown);
-  if (effort_.pairs > 0 && !all.empty()) {
-    // What may stand for one of the likeliest three is looked for beside the other two.
-    const Fit best = std::ranges::min_element(all, {}, &Candidate::criterion)->fit;
-    std::vector<Candidate> others;
-    for (auto one = best.model.forms.begin() + std::ptrdiff_t(base_forms_); one != best.model.forms.end(); ++one) {
-      const Fit two = reduced(best, [&](const Parametrisation* form) { return form != *one; });
-      others.push_back(candidate(fit(problem_, Part::select, two.model, {two.p}, 1, true)));
-    }
-    std::ranges::move(grown(others, others.size()), std::back_inserter(all));
-  }
-  triples = refined(std::move(all));
-}
+void Search::fit_triples() { triples = refined(grown(pairs, effort_.pairs_grown)); }
 
 /// The first few sets with each of the forms that promise most beside them.
 std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::size_t few) const {

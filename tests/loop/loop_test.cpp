@@ -694,21 +694,6 @@ TEST_F(Loop, ASecondEffectThatIsLikelierIsSaidBesideTheFirst) {
   EXPECT_FALSE(said(alone));
 }
 
-TEST_F(Loop, WhatMayStandForOneOfThreeIsLookedForBesideTheOtherTwo) {
-  const ShotCase c = case_of(csv({.tangential = 0.05, .level = -0.02, .loft = 1.5, .drift = 2}));
-  const LoopResult r = run(c);
-  ASSERT_EQ(r.selection.level, 3) << sentence(r);
-  const std::vector<std::string> chosen = r.selection.chosen.model.effects();
-  for (const std::string& one : chosen) {
-    const auto without = std::ranges::count_if(r.selection.candidates, [&](const Candidate& s) {
-      const auto of_chosen =
-          std::ranges::count_if(s.effects, [&](auto& e) { return std::ranges::count(chosen, e) > 0; });
-      return s.effects.size() == 3 && of_chosen == 2 && !std::ranges::count(s.effects, one);
-    });
-    EXPECT_GE(without, 2) << one;
-  }
-}
-
 TEST_F(Loop, NoiseOfARecordIsNoBiasOfIt) {
   // A noisy record is too far from the mean of all; read in proportion too high it is so from zero.
   const auto found = [&](const std::string& text) {
