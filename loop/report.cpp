@@ -298,6 +298,8 @@ std::string sentence(const LoopResult& r) {
       if (!r.unexplained.empty()) {
         const auto& first = r.unexplained.front();
         s = first.regressor.empty() ? fmt::format("Something remains that no candidate explains: {}.", first.detail)
+            : first.channel.empty()
+                ? fmt::format("Structure remains that no candidate explains: {}: {}.", first.regressor, first.detail)
             : first.regressor == "constant"
                 ? fmt::format("Structure remains that no candidate explains: {} is off in the mean.", first.channel)
                 : fmt::format("Structure remains that no candidate explains: {} against {}.", first.channel,

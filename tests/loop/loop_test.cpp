@@ -739,6 +739,7 @@ TEST_F(Loop, WhatNoiseOfARecordDoesHasNoName) {
   EXPECT_TRUE(r.adopted.empty());
   ASSERT_FALSE(r.unexplained.empty());
   EXPECT_EQ(r.unexplained.front().regressor, "dynamic_loft_deg");
+  EXPECT_NE(sentence(r).find("explains: dynamic_loft_deg: its records"), std::string::npos) << sentence(r);
 }
 
 TEST_F(Loop, ADriftIsNotTheSameOnEveryShot) {
