@@ -2,6 +2,10 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
+#include <utility>
+
+#include "loop/fit.hpp"
 
 namespace hosel::loop {
 namespace {
