@@ -258,6 +258,16 @@ std::string beside_noise(const LoopResult& r) {
       post::spoken(name.stem), worst->after.holdout_rmse, unit, worst->expected, unit, ratio(*worst));
 }
 
+/// What stands in the way of a name, in a sentence.
+std::string remains(const Location& l) {
+  if (l.rival) return fmt::format("No effect is named: {}.", l.detail);
+  if (l.regressor.empty()) return fmt::format("Something remains that no candidate explains: {}.", l.detail);
+  std::string what = fmt::format("{} against {}", l.channel, l.regressor);
+  if (l.channel.empty()) what = fmt::format("{}: {}", l.regressor, l.detail);
+  else if (l.regressor == "constant") what = l.channel + " is off in the mean";
+  return fmt::format("Structure remains that no candidate explains: {}.", what);
+}
+
 }  // namespace
 
 std::vector<AdoptedSize> adopted_sizes(const LoopResult& r) {
@@ -294,17 +304,8 @@ std::string sentence(const LoopResult& r) {
       if (!r.columns.empty())
         return fmt::format("A whole column contradicts its header: {}. Mend the file or its header, then run again.",
                            r.columns.front().text);
-      std::string s = "Structure remains that no candidate explains.";
-      if (!r.unexplained.empty()) {
-        const auto& first = r.unexplained.front();
-        s = first.regressor.empty() ? fmt::format("Something remains that no candidate explains: {}.", first.detail)
-            : first.channel.empty()
-                ? fmt::format("Structure remains that no candidate explains: {}: {}.", first.regressor, first.detail)
-            : first.regressor == "constant"
-                ? fmt::format("Structure remains that no candidate explains: {} is off in the mean.", first.channel)
-                : fmt::format("Structure remains that no candidate explains: {} against {}.", first.channel,
-                              first.regressor);
-      }
+      std::string s = r.unexplained.empty() ? "Structure remains that no candidate explains."
+                                            : remains(r.unexplained.front());
       if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
       return s + tied;
     }

@@ -53,6 +53,7 @@ struct Detectable {
 
 struct Location {
   std::string channel, regressor, detail;
+  bool rival = false;  ///< no structure, but what says as much as a name
 };
 /// Where a finding in one channel is.
 Location place_of(const Problem& problem, const Finding& finding);

@@ -76,7 +76,7 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
                        m.names.empty() ? "" : fmt::format(" ({})", fmt::join(m.names, " or ")), of_it);
   };
   if (names.empty() && !more)
-    return {.faint = best.criterion < of_names ? told(best, " is likelier than no effect, not beyond doubt") : ""};
+    return {.faint = best.criterion < of_names ? told(best, ", is likelier than no effect, not beyond doubt") : ""};
   if (!more && !drift && !as_much) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
@@ -95,8 +95,13 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
       if (c.effects.size() == 1 && is(c.effects.front()) && std::ranges::count(names, c.effects.front()) &&
           !c.fit.at_bound)
         return {.lone = &c, .same = std::move(same)};
-  const std::string as = names.empty() ? "" : fmt::format(", says as much as {}", fmt::join(names, " and "));
-  return {.unexplained = {{study.problem.channel(says->channel).name, says->along, told(*says, as)}}};
+  Location place{study.problem.channel(says->channel).name, says->along, told(*says, "")};
+  if (!names.empty()) {
+    place.rival = true;
+    place.detail += as_much ? fmt::format(", says as much as {}", fmt::join(names, " and "))
+                            : ", is likelier than any that is a drift";
+  }
+  return {.unexplained = {std::move(place)}};
 }
 
 /// Several names that all act through the normal restitution are one function of it, and so is what else acts through
@@ -136,6 +141,14 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
+/// Effects beyond the base that do no more than noise of an input.
+std::vector<Attenuation> attenuated(const Study& study, const Fit& f) {
+  std::vector<Attenuation> found = study.problem.attenuations(f);
+  const std::vector<std::string> names = f.model.effects(study.base.size());
+  std::erase_if(found, [&](const Attenuation& a) { return !std::ranges::count(names, a.effect); });
+  return found;
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -154,7 +167,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
-  for (const Attenuation& a : problem.attenuations(s.chosen))
+  for (const Attenuation& a : attenuated(study, s.chosen))
     unexplained.push_back(
         {"", a.column,
          fmt::format("its records lie too far from their mean, as noise or slips in them do ({:.0f} % of "
@@ -342,7 +355,7 @@ void conclude(const Study& study, LoopResult& result) {
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && (!beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules) ||
-                                !problem.attenuations(kept.fit).empty()))
+                                !attenuated(study, kept.fit).empty()))
       kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "golf/units.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/random.hpp"
 
@@ -85,7 +86,7 @@ class Cost final : public ceres::CostFunction {
   const LeastSquares& problem_;
   Eigen::VectorXd scale_;
   // A step is asked for where its line search ended.
-  mutable Eigen::VectorXd last_, residuals_;
+  mutable Eigen::VectorXd last_ = Eigen::VectorXd::Constant(scale_.size(), kNaN), residuals_;
 };
 
 }  // namespace

@@ -553,20 +553,16 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) c
   if (slips_.empty()) return {};
   const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
   const double scale = log_scale(values_, whitening(values_, noise_));
-  // Of several effects every further one must pay for itself; one that is likelier without that is a rival all the
-  // same.
-  double library = as_recorded_, likeliest = as_recorded_;
+  double library = as_recorded_;
   for (const Fit& f : rivals)
-    if (quick() && !f.at_bound) {
-      const double own = deviance(values_, noise_, f.model, f.p) + case_.rules.parameter_cost * f.size();
-      likeliest = std::min(likeliest, own);
-      library = std::min(library, own + case_.rules.further_gain * (double(f.model.forms.size()) - 1));
-    }
+    if (quick() && !f.at_bound)
+      library = std::min(library, deviance(values_, noise_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
+                                      case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
     const bool free = s.finding == "offset" || s.finding == "scale" || s.finding == "level-shift";
     const double base = as_recorded_ - scale;
     return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
-           likeliest + case_.rules.tie > s.criterion() && (!free || s.deviance - scale < kClean * values);
+           (!free || s.deviance - scale < kClean * values);
   };
   const auto best = std::ranges::find_if(slips_, holds);
   if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie || best->disputed)

@@ -653,6 +653,8 @@ TEST_F(Loop, ANameIsNotToldWhereAFunctionThatItIsNotSaysAsMuch) {
   for (const Beside* b : {&own, &far}) EXPECT_EQ(b->verdict, "explained") << b->sentence;
   EXPECT_EQ(near.verdict, "unexplained") << near.sentence;
   EXPECT_TRUE(near.adopted.empty());
+  EXPECT_NE(near.sentence.find("No effect is named"), std::string::npos) << near.sentence;
+  EXPECT_NE(near.sentence.find("says as much as ball-tangential-compliance"), std::string::npos) << near.sentence;
 }
 
 TEST_F(Loop, AFunctionOfTheSessionThatIsNoDriftIsNotToldAsOne) {
@@ -663,9 +665,10 @@ TEST_F(Loop, AFunctionOfTheSessionThatIsNoDriftIsNotToldAsOne) {
   const Beside drift = beside(c, far, slow), other = beside(c, far, otherwise);
   EXPECT_EQ(drift.adopted, std::vector<std::string>{"session-drift"}) << drift.sentence;
   EXPECT_EQ(other.verdict, "unexplained") << other.sentence;
+  EXPECT_NE(other.sentence.find("is likelier than any that is a drift"), std::string::npos) << other.sentence;
 }
 
-TEST_F(Loop, NothingIsSaidToRemainOnlyWhereNoFunctionIsLikelier) {
+TEST_F(Loop, NoResidualIsToldOnlyWhereNoFunctionIsLikelier) {
   const ShotCase c = case_of(csv({}));
   const Beside less = beside(c, 1), more = beside(c, -1), sure = beside(c, -Rules{}.tie - 1);
   ASSERT_EQ(less.level, 0);
@@ -692,6 +695,13 @@ TEST_F(Loop, ASecondEffectThatIsLikelierIsSaidBesideTheFirst) {
   const LoopResult alone = run(case_of(csv({.tangential = 0.05, .seed = 2})));
   EXPECT_TRUE(alone.selection.likelier.empty()) << sentence(alone);
   EXPECT_FALSE(said(alone));
+}
+
+TEST_F(Loop, TwoEffectsThatAreLikelierThanOneJoinItsTie) {
+  const LoopResult r = run(case_of(csv({.shots = 60, .tangential = 0.02, .bell = 0.005})));
+  ASSERT_EQ(r.selection.level, 1);
+  EXPECT_EQ(name(r.verdict), "ambiguous") << sentence(r);
+  ASSERT_FALSE(r.ties.empty()) << sentence(r);
 }
 
 TEST_F(Loop, NoiseOfARecordIsNoBiasOfIt) {
@@ -740,6 +750,17 @@ TEST_F(Loop, WhatNoiseOfARecordDoesHasNoName) {
   ASSERT_FALSE(r.unexplained.empty());
   EXPECT_EQ(r.unexplained.front().regressor, "dynamic_loft_deg");
   EXPECT_NE(sentence(r).find("explains: dynamic_loft_deg: its records"), std::string::npos) << sentence(r);
+}
+
+TEST_F(Loop, WhatNoiseOfARecordDoesIsNotKeptBesideWhatIsUnexplained) {
+  const ShotCase c = case_of(csv({.shots = 240, .humidity = 0.05, .face = true}));
+  ASSERT_FALSE(run(c).adopted.empty());
+  Attenuated problem(c, {}, {}, {});
+  LoopResult r;
+  r.forms = problem.forms();
+  conclude(Study(problem, r.forms, {}, c.rules), r);
+  EXPECT_EQ(r.verdict, Verdict::unexplained) << sentence(r);
+  EXPECT_TRUE(r.adopted.empty() && r.ties.empty()) << sentence(r);
 }
 
 TEST_F(Loop, ADriftIsNotTheSameOnEveryShot) {
