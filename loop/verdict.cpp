@@ -149,6 +149,20 @@ std::vector<Attenuation> attenuated(const Study& study, const Fit& f) {
   return found;
 }
 
+/// Names of which too little is left where shots of a group share errors.
+std::vector<Location> shared_by_groups(const Study& study, const Fit& f) {
+  std::vector<Location> told;
+  const std::size_t names = f.model.effects(study.base.size()).size();
+  const double least = names > 1 ? study.rules.further_gain : study.rules.gain;
+  for (const Clustered& c : study.problem.clustered(study.selection.base, f))
+    if (c.fall < least)
+      told.push_back({"", c.along,
+                      fmt::format("its values share errors; beside these {} takes off {:.3g} squared noise units, "
+                                  "a name must {:.3g}",
+                                  c.effect, c.fall, least)});
+  return told;
+}
+
 /// The first that applies, in the contract's order.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
@@ -174,6 +188,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
                      "their variance); {} says no more",
                      100 * a.share, a.effect)});
   if (!unexplained.empty()) return Verdict::unexplained;
+  if (unexplained = shared_by_groups(study, s.chosen); !unexplained.empty()) return Verdict::unexplained;
   if (!s.at_every_shot.empty()) {
     unexplained.push_back({"", "", s.at_every_shot});
     return Verdict::unexplained;
@@ -355,7 +370,7 @@ void conclude(const Study& study, LoopResult& result) {
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && (!beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules) ||
-                                !attenuated(study, kept.fit).empty()))
+                                !attenuated(study, kept.fit).empty() || !shared_by_groups(study, kept.fit).empty()))
       kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();

@@ -4,7 +4,10 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <span>
+#include <utility>
 
+#include "golf/dense.hpp"
 #include "loop/deviation.hpp"
 #include "loop/shots/way.hpp"
 
@@ -76,25 +79,98 @@ Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::Vec
   return out;
 }
 
+/// Of rows by one column.
+struct Grouping {
+  std::string along;
+  std::vector<int> of;  // per row; -1: in none
+  int groups = 0;
+};
+
+/// By every text column and by `by`.
+std::vector<Grouping> by_columns(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+                                 const std::string& by) {
+  std::vector<Grouping> all;
+  for (const Column& c : shots.columns) {
+    if (c.role == Role::output || (c.numeric && c.name != by)) continue;
+    const Groups g = groups(c);
+    Grouping own{c.name, {}, int(g.name.size())};
+    for (const int i : rows) own.of.push_back(g.of_row[std::size_t(row_of[std::size_t(i)])]);
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+Eigen::VectorXd weights(const Eigen::MatrixXd& z) {
+  const solvers::Loss loss = loss_of_shot(int(z.rows()));
+  Eigen::VectorXd w(z.cols());
+  for (Eigen::Index i = 0; i < z.cols(); ++i) w[i] = loss.weight(z.col(i).squaredNorm());
+  return w;
+}
+
+/// Errors that the shots of a group share.
+class SharedErrors {
+ public:
+  SharedErrors(const Grouping& grouping, const Eigen::VectorXd& w) : grouping_(grouping), w_(w) {}
+
+  /// Their variance in each channel, as residuals `z` (width x rows) have it [squared noise units]; also the
+  /// probability that groups which do not differ do so as much.
+  Eigen::VectorXd learn(const Eigen::MatrixXd& z) {
+    const auto width = z.rows();
+    variance_ = Eigen::VectorXd::Zero(width);
+    double sum = 0, freedom = 0, rest = 0;
+    for (Eigen::Index c = 0; c < width; ++c) {
+      Eigen::MatrixXd one = Eigen::MatrixXd::Zero(width, z.cols());
+      one.row(c).setOnes();
+      const Means m = means(z, one, w_, grouping_.of, grouping_.groups);
+      if (m.mean.size() < kFewestGroups || !(m.variance.front() > 0)) return variance_;
+      const auto own = double(m.mean.size() - 1);
+      // Few groups say little of it: at the upper end of one standard error.
+      const double low = quantile(boost::math::fisher_f(own, m.rest), 0.16);
+      variance_[c] = std::pow(m.deviation(own * low), 2);
+      sum += m.square_sum(0);
+      freedom += own;
+      rest += m.rest;
+    }
+    p = cdf(complement(boost::math::fisher_f(freedom, rest), sum / freedom));
+    return variance_;
+  }
+
+  /// Columns `a` (width * rows high) as generalised least squares weighs them.
+  Eigen::MatrixXd partly_demeaned(Eigen::MatrixXd a) const {
+    const Eigen::Index width = variance_.size();
+    for (Eigen::Index c = 0; c < width; ++c) {
+      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(grouping_.groups, a.cols());
+      Eigen::VectorXd count = Eigen::VectorXd::Zero(grouping_.groups);
+      const auto each = [&](const auto& act) {
+        for (Eigen::Index i = 0; i < w_.size(); ++i) act(grouping_.of[std::size_t(i)], w_[i], a.row(i * width + c));
+      };
+      each([&](int g, double w, const auto& row) {
+        if (g >= 0) sum.row(g) += w * row, count[g] += w;
+      });
+      each([&](int g, double w, auto&& row) {
+        if (g >= 0 && count[g] > 0) row -= (1 - 1 / std::sqrt(1 + count[g] * variance_[c])) / count[g] * sum.row(g);
+        row *= std::sqrt(w);
+      });
+    }
+    return a;
+  }
+
+  double p = 1;
+
+ private:
+  static constexpr std::size_t kFewestGroups = 3;
+  const Grouping& grouping_;
+  const Eigen::VectorXd& w_;
+  Eigen::VectorXd variance_;
+};
+
 }  // namespace
 
 std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                         const std::vector<int>& rows, const std::string& by, bool session,
                                         const Fit& fit) {
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
-  struct Grouping {
-    std::string along;
-    std::vector<int> of;  // per row
-    int groups;
-  };
-  std::vector<Grouping> groupings;
-  for (const Column& c : shots.columns) {
-    if (c.role == Role::output || (c.numeric && c.name != by)) continue;
-    const Groups g = groups(c);
-    Grouping own{c.name, {}, int(g.name.size())};
-    for (const int i : rows) own.of.push_back(g.of_row[std::size_t(row_of[std::size_t(i)])]);
-    groupings.push_back(std::move(own));
-  }
+  std::vector<Grouping> groupings = by_columns(shots, row_of, rows, by);
   if (session) {
     std::vector<int> in_order(rows.size()), stretch(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) in_order[i] = int(i);
@@ -107,9 +183,7 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
   if (groupings.empty()) return {};
 
   const Eigen::MatrixXd z = model.whitened(rows, fit.model, fit.p).reshaped(width, n);
-  const solvers::Loss loss = loss_of_shot(model.width());
-  Eigen::VectorXd w(n);
-  for (Eigen::Index i = 0; i < n; ++i) w[i] = loss.weight(z.col(i).squaredNorm());
+  const Eigen::VectorXd w = weights(z);
   std::vector<GroupSpread> out;
   for (const Way& way : ways(model, shots)) {
     if (way.kind == Way::Kind::input) continue;
@@ -134,6 +208,44 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
                      .high = unit * m.deviation(freedom * quantile(chance, 0.025)),
                      .p = cdf(complement(chance, m.square_sum(0) / freedom))});
     }
+  }
+  return out;
+}
+
+std::vector<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                 const std::vector<int>& rows, const std::string& by, const Fit& base, const Fit& fit) {
+  constexpr double by_chance = 0.05;
+  constexpr int passes = 30;
+  const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
+  const Eigen::VectorXd z = model.whitened(rows, fit.model, fit.p), of_base = model.whitened(rows, base.model, base.p);
+  const Eigen::MatrixXd J = model.jacobian(rows, fit.model, fit.p);
+  const Eigen::VectorXd w = weights(z.reshaped(width, n));
+  std::vector<Clustered> out;
+  double likeliest = by_chance;
+  for (const Grouping& g : by_columns(shots, row_of, rows, by)) {
+    SharedErrors shared(g, w);
+    // From all that groups differ in to what the effects leave of it.
+    Eigen::VectorXd variance = shared.learn(of_base.reshaped(width, n)), step;
+    Eigen::MatrixXd covariance;
+    for (int pass = 0; pass < passes; ++pass) {
+      const Eigen::MatrixXd A = shared.partly_demeaned(J);
+      covariance = dense::Ldlt(Eigen::MatrixXd(A.transpose() * A)).inverse();
+      step = -covariance * (A.transpose() * shared.partly_demeaned(z));
+      const Eigen::VectorXd before = std::exchange(variance, shared.learn((z + J * step).reshaped(width, n)));
+      if ((variance - before).cwiseAbs().maxCoeff() < 1e-3) break;
+    }
+    if (!(shared.p < likeliest)) continue;
+    likeliest = shared.p;
+    out.clear();
+    Eigen::Index at = 0;
+    fit.model.each(fit.p.data(), [&](const Parametrisation& form, std::span<const double> p) {
+      const auto k = Eigen::Index(p.size()), first = std::exchange(at, at + k);
+      if (first < base.size()) return;
+      Eigen::VectorXd size = step.segment(first, k);
+      for (Eigen::Index j = 0; j < k; ++j) size[j] += p[std::size_t(j)] / form.parameters[std::size_t(j)].scale;
+      const Eigen::MatrixXd inverse = dense::Ldlt(Eigen::MatrixXd(covariance.block(first, first, k, k))).inverse();
+      out.push_back({form.effect, g.along, size.dot(inverse * size)});
+    });
   }
   return out;
 }

@@ -763,6 +763,81 @@ TEST_F(Loop, WhatNoiseOfARecordDoesIsNotKeptBesideWhatIsUnexplained) {
   EXPECT_TRUE(r.adopted.empty() && r.ties.empty()) << sentence(r);
 }
 
+/// Three players, each with a third of the club speeds and with an error of the recorded ball speed [m/s].
+std::string by_player(const World& w, const std::array<double, 3>& error) {
+  return changed(csv(w), ",player", [&](int, std::vector<std::string>& cells) {
+    const double speed = std::stod(cells[kClubSpeed]);
+    const std::size_t who = speed < 43.7 ? 0 : speed < 46.3 ? 1 : 2;
+    cells[kBallSpeed] = fmt::format("{:.2f}", std::stod(cells[kBallSpeed]) + error[who]);
+    cells.push_back(fmt::format("P{}", who));
+  });
+}
+
+TEST_F(Loop, WhatGroupsShareIsNoEvidenceOfAnEffect) {
+  struct Falls {
+    double alone = 0;
+    std::optional<double> beside;  // errors that players share
+  };
+  const auto falls = [&](const std::string& text, const std::string& effect) {
+    const ShotCase c = case_of(text);
+    ShotProblem problem(c, {}, {}, {});
+    const std::vector<Parametrisation> forms = problem.forms();
+    const Fit none;
+    Fit f{.deviance = deviance(problem, Part::select, none)};
+    const double before = f.deviance;
+    for (const Parametrisation& form : forms) {
+      if (form.effect != effect) continue;
+      const Model model = Model{}.with(&form);
+      Fit own = fit(problem, Part::select, model, {Eigen::VectorXd::Zero(Eigen::Index(model.size()))}, 1, true);
+      if (own.deviance < f.deviance) f = std::move(own);
+    }
+    Falls out{before - f.deviance, {}};
+    for (const Clustered& left : problem.clustered(none, f)) {
+      EXPECT_EQ(left.effect, effect);
+      EXPECT_EQ(left.along, "player");
+      out.beside = left.fall;
+    }
+    return out;
+  };
+  // A restitution that rises with speed, or players of whom the faster have larger errors.
+  const Falls confounded = falls(by_player({.shots = 150}, {-0.4, 0, 0.4}), "restitution-law");
+  EXPECT_GT(confounded.alone, 2 * Rules{}.gain);
+  ASSERT_TRUE(confounded.beside);
+  EXPECT_LT(*confounded.beside, Rules{}.gain);
+  // Spin says of the tangential restitution what shots of one player do; less of it is what players have in common.
+  const Falls apart =
+      falls(by_player({.shots = 150, .tangential = 0.05}, {0.4, -0.8, 0.4}), "ball-tangential-compliance");
+  ASSERT_TRUE(apart.beside);
+  EXPECT_GT(*apart.beside, 0.5 * apart.alone);
+  EXPECT_FALSE(falls(by_player({.shots = 150, .tangential = 0.05}, {}), "ball-tangential-compliance").beside);
+}
+
+/// Shots of whose effects nothing is left beside errors that players share.
+struct Shared : ShotProblem {
+  using ShotProblem::ShotProblem;
+  double left = 0;
+  std::vector<Clustered> clustered(const Fit&, const Fit& f) const override {
+    if (f.model.forms.empty()) return {};
+    return {{f.model.forms.front()->effect, "player", left}};
+  }
+};
+
+TEST_F(Loop, AnEffectIsNamedBesideErrorsThatGroupsShare) {
+  const ShotCase c = case_of(csv({.tangential = 0.05}));
+  for (const double left : {Rules{}.gain - 1, Rules{}.gain + 1}) {
+    Shared problem(c, {}, {}, {});
+    problem.left = left;
+    LoopResult r;
+    r.forms = problem.forms();
+    const Study study(problem, r.forms, {}, c.rules);
+    ASSERT_EQ(study.selection.level, 1);
+    conclude(study, r);
+    EXPECT_EQ(r.adopted.empty(), left < Rules{}.gain) << sentence(r);
+    EXPECT_EQ(name(r.verdict), left < Rules{}.gain ? "unexplained" : "explained") << sentence(r);
+    EXPECT_EQ(sentence(r).find("player") != std::string::npos, left < Rules{}.gain) << sentence(r);
+  }
+}
+
 TEST_F(Loop, ADriftIsNotTheSameOnEveryShot) {
   // Restitution is lower throughout. No effect but drifts is offered: one from the first shot says three quarters of
   // it.
