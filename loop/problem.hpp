@@ -125,10 +125,10 @@ struct Attenuation {
   double share = 0;  ///< of noise in the variance of the records
 };
 
-/// What is left of an effect beside errors that the shots of a group share.
+/// What is left of effects beside errors that the shots of a group share.
 struct Clustered {
-  std::string effect, along;  ///< and the column whose values are the groups
-  double fall = 0;            ///< of the deviance [squared noise units]
+  std::string along;  ///< the column whose values are the groups
+  double fall = 0;    ///< of the deviance, by all effects together [squared noise units]
 };
 
 /// How far one quantity differs between groups of shots, if the residual comes from it alone: standard deviation and
@@ -212,9 +212,9 @@ class Problem {
   virtual std::vector<Mechanism> mechanisms(const Selection& /*selection*/, const Rules& /*rules*/) const { return {}; }
   /// Effects of a fit that do no more than noise of a recorded input does.
   virtual std::vector<Attenuation> attenuations(const Fit& /*fit*/) const { return {}; }
-  /// The effects of a fit beyond those of the base, beside errors that the shots of a group share; empty where groups
+  /// The effects of a fit beyond those of the base, beside errors that the shots of a group share; absent where groups
   /// differ by no more than chance lets them.
-  virtual std::vector<Clustered> clustered(const Fit& /*base*/, const Fit& /*fit*/) const { return {}; }
+  virtual std::optional<Clustered> clustered(const Fit& /*base*/, const Fit& /*fit*/) const { return {}; }
   /// How far groups of shots differ in what a fit leaves.
   virtual std::vector<GroupSpread> between_groups(const Fit& /*fit*/) const { return {}; }
   /// Where it sits, the plainest first.

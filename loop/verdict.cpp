@@ -149,18 +149,17 @@ std::vector<Attenuation> attenuated(const Study& study, const Fit& f) {
   return found;
 }
 
-/// Names of which too little is left where shots of a group share errors.
-std::vector<Location> shared_by_groups(const Study& study, const Fit& f) {
-  std::vector<Location> told;
-  const std::size_t names = f.model.effects(study.base.size()).size();
-  const double least = names > 1 ? study.rules.further_gain : study.rules.gain;
-  for (const Clustered& c : study.problem.clustered(study.selection.base, f))
-    if (c.fall < least)
-      told.push_back({"", c.along,
-                      fmt::format("its values share errors; beside these {} takes off {:.3g} squared noise units, "
-                                  "a name must {:.3g}",
-                                  c.effect, c.fall, least)});
-  return told;
+/// Where shots of a group share errors: that too little is left of the names.
+std::optional<Location> shared_by_groups(const Study& study, const Fit& f) {
+  const std::vector<std::string> names = f.model.effects(study.base.size());
+  if (names.empty()) return {};
+  const std::optional<Clustered> left = study.problem.clustered(study.selection.base, f);
+  const double least = study.rules.gain + study.rules.further_gain * (double(names.size()) - 1);
+  if (!left || left->fall > least) return {};
+  return Location{"", left->along,
+                  fmt::format("its values share errors; beside these {} takes off {:.3g} squared noise units, less "
+                              "than {:.3g}",
+                              fmt::join(names, " and "), left->fall, least)};
 }
 
 /// The first that applies, in the contract's order.
@@ -188,7 +187,10 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
                      "their variance); {} says no more",
                      100 * a.share, a.effect)});
   if (!unexplained.empty()) return Verdict::unexplained;
-  if (unexplained = shared_by_groups(study, s.chosen); !unexplained.empty()) return Verdict::unexplained;
+  if (auto by_groups = shared_by_groups(study, s.chosen)) {
+    unexplained.push_back(*std::move(by_groups));
+    return Verdict::unexplained;
+  }
   if (!s.at_every_shot.empty()) {
     unexplained.push_back({"", "", s.at_every_shot});
     return Verdict::unexplained;
@@ -370,7 +372,7 @@ void conclude(const Study& study, LoopResult& result) {
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && (!beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules) ||
-                                !attenuated(study, kept.fit).empty() || !shared_by_groups(study, kept.fit).empty()))
+                                !attenuated(study, kept.fit).empty() || shared_by_groups(study, kept.fit)))
       kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();

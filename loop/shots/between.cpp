@@ -212,15 +212,16 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
   return out;
 }
 
-std::vector<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                                 const std::vector<int>& rows, const std::string& by, const Fit& base, const Fit& fit) {
-  constexpr double by_chance = 0.05;
+std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                   const std::vector<int>& rows, const std::string& by, const Fit& base,
+                                   const Fit& fit) {
+  constexpr double by_chance = 0.01;
   constexpr int passes = 30;
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   const Eigen::VectorXd z = model.whitened(rows, fit.model, fit.p), of_base = model.whitened(rows, base.model, base.p);
   const Eigen::MatrixXd J = model.jacobian(rows, fit.model, fit.p);
   const Eigen::VectorXd w = weights(z.reshaped(width, n));
-  std::vector<Clustered> out;
+  std::optional<Clustered> out;
   double likeliest = by_chance;
   for (const Grouping& g : by_columns(shots, row_of, rows, by)) {
     SharedErrors shared(g, w);
@@ -236,16 +237,12 @@ std::vector<Clustered> clustered(const ShotModel& model, const Shots& shots, con
     }
     if (!(shared.p < likeliest)) continue;
     likeliest = shared.p;
-    out.clear();
-    Eigen::Index at = 0;
-    fit.model.each(fit.p.data(), [&](const Parametrisation& form, std::span<const double> p) {
-      const auto k = Eigen::Index(p.size()), first = std::exchange(at, at + k);
-      if (first < base.size()) return;
-      Eigen::VectorXd size = step.segment(first, k);
-      for (Eigen::Index j = 0; j < k; ++j) size[j] += p[std::size_t(j)] / form.parameters[std::size_t(j)].scale;
-      const Eigen::MatrixXd inverse = dense::Ldlt(Eigen::MatrixXd(covariance.block(first, first, k, k))).inverse();
-      out.push_back({form.effect, g.along, size.dot(inverse * size)});
-    });
+    Eigen::VectorXd size = step;
+    Eigen::Index k = 0;
+    for (const Parameter* q : fit.model.parameters()) size[k] += fit.p[k] / q->scale, ++k;
+    const Eigen::Index effects = size.size() - base.size();
+    const dense::Ldlt of_effects(Eigen::MatrixXd(covariance.bottomRightCorner(effects, effects)));
+    out = Clustered{g.along, size.tail(effects).dot(of_effects.solve(Eigen::VectorXd(size.tail(effects))))};
   }
   return out;
 }

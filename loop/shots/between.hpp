@@ -20,12 +20,13 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
                                         const std::vector<int>& rows, const std::string& by, bool session,
                                         const Fit& fit);
 
-/// Every effect of `fit` beyond the parameters of `base`, beside errors that the shots of a group share: one random
-/// effect in each whitened channel, whose variance is that between its groups, at the upper end of one standard error.
-/// Generalised least squares by partial demeaning [@fuller-battese], linear about the fit. Groups: three or more values
-/// of the text column, or of `by`, in which they differ most. Empty where they differ by no more than groups that are
-/// alike do in one case of twenty.
-std::vector<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
-                                 const std::vector<int>& rows, const std::string& by, const Fit& base, const Fit& fit);
+/// The effects of `fit` beyond `base`, beside errors that the shots of a group share: one random effect in each
+/// whitened channel, whose variance is that between its groups, at the upper end of one standard error. Generalised
+/// least squares by partial demeaning [@fuller-battese], linear about the fit. Groups: three or more values of the text
+/// column, or of `by`, in which they differ most. Absent where they differ by no more than groups that are alike do in
+/// one case of a hundred.
+std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
+                                   const std::vector<int>& rows, const std::string& by, const Fit& base,
+                                   const Fit& fit);
 
 }  // namespace hosel::loop

@@ -410,7 +410,7 @@ std::vector<Attenuation> ShotProblem::attenuations(const Fit& fit) const {
   return loop::attenuations(*model_, case_.shots, select_, fit, covariance(*this, Part::select, fit));
 }
 
-std::vector<Clustered> ShotProblem::clustered(const Fit& base, const Fit& fit) const {
+std::optional<Clustered> ShotProblem::clustered(const Fit& base, const Fit& fit) const {
   if (case_.averages) return {};
   return loop::clustered(*model_, case_.shots, inputs_.row_of, select_, case_.split.by, base, fit);
 }

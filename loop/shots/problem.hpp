@@ -66,7 +66,7 @@ class ShotProblem : public Problem {
   std::optional<Remainder> remainder(const Fit& fit) const override;
   std::vector<Mechanism> mechanisms(const Selection& selection, const Rules& rules) const override;
   std::vector<Attenuation> attenuations(const Fit& fit) const override;
-  std::vector<Clustered> clustered(const Fit& base, const Fit& fit) const override;
+  std::optional<Clustered> clustered(const Fit& base, const Fit& fit) const override;
   std::vector<GroupSpread> between_groups(const Fit& fit) const override;
   std::vector<Location> places(const Selection& selection) const override;
   std::vector<Location> shapes(const Selection& selection) const override;
