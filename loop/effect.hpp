@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "golf/face_compliance.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "models/fe/fe_change.hpp"
@@ -97,7 +98,7 @@ struct Setting {
   bool deformable = false;        ///< the base computes the ball's deformation: it has no impact law to change
   bool shaft = false;             ///< the case declares a shaft that such a base can hang on its free head
   bool full_club = false;         ///< such a base has its shaft already
-  bool thin_face = false;         ///< the head is a driver's: models::wants_yielding_face
+  FaceCompliance face = {};       ///< of a head like this one: models::usual_face
 };
 
 /// What an effect on shots is where it is one free function through one mechanism, whatever its form.

@@ -215,8 +215,7 @@ class LoopJob final : public Job {
                                 .flies = true,
                                 .deformable = case_.deformable,
                                 .shaft = case_.shaft_declared,
-                                .full_club = case_.full_club,
-                                .thin_face = true};
+                                .full_club = case_.full_club};
     std::vector<loop::Known> all;
     for (Table table : data.tables(name)) {
       loop::Known known;

@@ -1,20 +1,18 @@
 // A thin face yields: the ball loses less on it, most at the face centre.
-#include "golf/face_library.hpp"
 #include "loop/effects/all.hpp"
 #include "models/reduced/face_strike.hpp"
 
 namespace hosel::loop::forms {
 
 std::vector<Parametrisation> face_compliance(const Setting& s) {
-  if (!s.thin_face && !s.deformable) return {};
-  // Up to faces a third softer than the rules' limit (186 nm/N), with the fall-off of that one.
+  // Up to faces a third softer than the rules' limit (186 nm/N), with the fall-off of a face of that kind.
   Parametrisation f{.what = "compliance at the face centre, falling to the edge like a clamped plate's",
                     .parameters = {{"compliance", "nm/N", 1e-9, 0, 250e-9, 20e-9}}};
   if (s.deformable) {  // its face is a surface that moves: irons' as well
     f.before = [](std::span<const double> p, Shot& t) { t.change.face_compliance += p[0]; };
     return {f};
   }
-  f.before = [face = find_face("modern-driver")->face](std::span<const double> p, Shot& t) {
+  f.before = [face = s.face](std::span<const double> p, Shot& t) {
     const double shape = face.shape(-t.blow.delivery.impact_toe, t.blow.delivery.impact_high).value;
     const double left = models::loss_on_face(p[0] * shape * shape);
     ContactLaw& law = t.blow.contact;

@@ -170,7 +170,7 @@ std::vector<Parametrisation> ShotProblem::forms() const {
                   .deformable = case_.deformable,
                   .shaft = case_.shaft_declared,
                   .full_club = case_.full_club,
-                  .thin_face = models::wants_yielding_face(case_.blow.club.head)};
+                  .face = models::usual_face(case_.blow.club.head)};
   for (int c = 0; c < width(); ++c) {
     if (of_flight(model_->channel(c).output)) setting.flies = true;
     else setting.outputs.push_back(model_->channel(c).output);

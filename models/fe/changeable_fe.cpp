@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "golf/face_library.hpp"
 #include "golf/shaft_library.hpp"
 #include "golf/units.hpp"
 #include "models/fe/impact.hpp"
@@ -65,7 +64,7 @@ Shaft changed(Shaft shaft, double share, double stiffness) {
 std::optional<FaceCompliance> changed(std::optional<FaceCompliance> face, double compliance, const Head& head) {
   if (compliance == 0) return face;
   if (face) compliance += 1 / face->stiffness;
-  else face = find_face(wants_yielding_face(head) ? "modern-driver" : "steel-iron")->face;
+  else face = usual_face(head);
   if (!(compliance > 0)) throw std::invalid_argument("face: no compliance left");
   face->stiffness = 1 / compliance;
   return face;

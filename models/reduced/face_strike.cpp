@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "golf/face_library.hpp"
 #include "golf/units.hpp"
 #include "solvers/peak.hpp"
 #include "solvers/rosenbrock_w.hpp"
@@ -105,6 +106,10 @@ double mass_at(const Head& head, double yc, double zc) {
 }
 
 bool wants_yielding_face(const Head& head) { return std::isfinite(head.mass) && head.cg.x() < -0.02; }
+
+const FaceCompliance& usual_face(const Head& head) {
+  return find_face(wants_yielding_face(head) ? "modern-driver" : "steel-iron")->face;
+}
 
 FaceStrike strike(const Striker& striker, double head_mass, const std::optional<FaceCompliance>& face, double shape,
                   double speed) {

@@ -30,6 +30,8 @@ double mass_at(const Head& head, double yc, double zc);
 
 /// Whether a rigid face leaves out what a driver has: a free head whose centre of gravity lies deeper than an iron's.
 bool wants_yielding_face(const Head& head);
+/// The shipped face of such a head: a driver's or an iron's.
+const FaceCompliance& usual_face(const Head& head);
 
 struct FaceStrike {
   double restitution = 0;   ///< relative speed of striker and head's point after over before [-]
