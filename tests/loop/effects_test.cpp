@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "golf/face_library.hpp"
 #include "loop/shots/model.hpp"
 #include "models/registry.hpp"
 
@@ -33,7 +34,7 @@ class OnModel : public testing::TestWithParam<const char*> {
         .head_turns = turns,
         .inertia_declared = true,
         .outputs = {Output::ball_speed, Output::launch_angle, Output::azimuth, Output::backspin, Output::sidespin},
-        .thin_face = true};
+        .face = find_face("modern-driver")->face};
     for (const EffectEntry& e : effects())
       for (Parametrisation& f : e.forms(setting)) forms.push_back(f);
     std::vector<ShotChannel> channels;

@@ -858,6 +858,25 @@ TEST_F(Loop, AnEffectIsNamedBesideErrorsThatGroupsShare) {
   }
 }
 
+TEST_F(Loop, AnIronsFaceYieldsNearerItsCentreThanADrivers) {
+  const auto gain = [&](double depth, double toe) {
+    ShotCase c = case_of(csv({}));
+    c.blow.club.head.cg = Vec3(-depth, 0, 0);
+    const std::vector<Parametrisation> forms = ShotProblem(c, {}, {}, {}).forms();
+    const auto form = std::ranges::find(forms, "face-compliance", &Parametrisation::effect);
+    Shot shot;
+    const double rigid = shot.blow.contact.restitution, compliance = 50e-9;
+    shot.blow.delivery.impact_toe = toe;
+    form->before({&compliance, 1}, shot);
+    return shot.blow.contact.restitution - rigid;
+  };
+  const double driver = 0.035, iron = 0.012;
+  EXPECT_GT(gain(iron, 0), 0.01);
+  EXPECT_DOUBLE_EQ(gain(iron, 0), gain(driver, 0));
+  EXPECT_GT(gain(driver, 0.03), 0.005);
+  EXPECT_LT(gain(iron, 0.03), 0.5 * gain(driver, 0.03));
+}
+
 TEST_F(Loop, ADriftIsNotTheSameOnEveryShot) {
   // Restitution is lower throughout. No effect but drifts is offered: one from the first shot says three quarters of
   // it.
