@@ -873,7 +873,7 @@ TEST_F(Loop, AnIronsFaceYieldsNearerItsCentreThanADrivers) {
   const double driver = 0.035, iron = 0.012;
   EXPECT_GT(gain(iron, 0), 0.01);
   EXPECT_DOUBLE_EQ(gain(iron, 0), gain(driver, 0));
-  EXPECT_GT(gain(driver, 0.03), 0.005);
+  EXPECT_GT(gain(driver, 0.03), 0.003);  // compliance times (1 - 0.6^2)^4, of a loss of 0.14
   EXPECT_LT(gain(iron, 0.03), 0.5 * gain(driver, 0.03));
 }
 
