@@ -180,14 +180,15 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
   if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
-  for (const Attenuation& a : attenuated(study, s.chosen))
+  const Fit& told = one.lone ? one.lone->fit : s.chosen;
+  for (const Attenuation& a : attenuated(study, told))
     unexplained.push_back(
         {"", a.column,
          fmt::format("its records lie too far from their mean, as noise or slips in them do ({:.0f} % of "
                      "their variance); {} says no more",
                      100 * a.share, a.effect)});
   if (!unexplained.empty()) return Verdict::unexplained;
-  if (auto by_groups = shared_by_groups(study, s.chosen)) {
+  if (auto by_groups = shared_by_groups(study, told)) {
     unexplained.push_back(*std::move(by_groups));
     return Verdict::unexplained;
   }

@@ -110,17 +110,20 @@ Eigen::VectorXd weights(const Eigen::MatrixXd& z) {
 /// Errors that the shots of a group share.
 class SharedErrors {
  public:
-  SharedErrors(const Grouping& grouping, const Eigen::VectorXd& w) : grouping_(grouping), w_(w) {}
+  /// `w` weights the rows; `seen` (width x rows): 1 where a shot has a channel, else 0.
+  SharedErrors(const Grouping& grouping, const Eigen::VectorXd& w, const Eigen::MatrixXd& seen)
+      : grouping_(grouping), w_(w), seen_(seen) {}
 
   /// Their variance in each channel, as residuals `z` (width x rows) have it [squared noise units]; also the
   /// probability that groups which do not differ do so as much.
   Eigen::VectorXd learn(const Eigen::MatrixXd& z) {
     const auto width = z.rows();
     variance_ = Eigen::VectorXd::Zero(width);
+    p = 1;
     double sum = 0, freedom = 0, rest = 0;
     for (Eigen::Index c = 0; c < width; ++c) {
       Eigen::MatrixXd one = Eigen::MatrixXd::Zero(width, z.cols());
-      one.row(c).setOnes();
+      one.row(c) = seen_.row(c);
       const Means m = means(z, one, w_, grouping_.of, grouping_.groups);
       if (m.mean.size() < kFewestGroups || !(m.variance.front() > 0)) return variance_;
       const auto own = double(m.mean.size() - 1);
@@ -142,7 +145,8 @@ class SharedErrors {
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(grouping_.groups, a.cols());
       Eigen::VectorXd count = Eigen::VectorXd::Zero(grouping_.groups);
       const auto each = [&](const auto& act) {
-        for (Eigen::Index i = 0; i < w_.size(); ++i) act(grouping_.of[std::size_t(i)], w_[i], a.row(i * width + c));
+        for (Eigen::Index i = 0; i < w_.size(); ++i)
+          act(grouping_.of[std::size_t(i)], w_[i] * seen_(c, i), a.row(i * width + c));
       };
       each([&](int g, double w, const auto& row) {
         if (g >= 0) sum.row(g) += w * row, count[g] += w;
@@ -161,6 +165,7 @@ class SharedErrors {
   static constexpr std::size_t kFewestGroups = 3;
   const Grouping& grouping_;
   const Eigen::VectorXd& w_;
+  const Eigen::MatrixXd& seen_;
   Eigen::VectorXd variance_;
 };
 
@@ -221,10 +226,13 @@ std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, c
   const Eigen::VectorXd z = model.whitened(rows, fit.model, fit.p), of_base = model.whitened(rows, base.model, base.p);
   const Eigen::MatrixXd J = model.jacobian(rows, fit.model, fit.p);
   const Eigen::VectorXd w = weights(z.reshaped(width, n));
+  Eigen::MatrixXd seen(width, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index c = 0; c < width; ++c) seen(c, i) = model.observed(rows[std::size_t(i)], int(c)) ? 1 : 0;
   std::optional<Clustered> out;
   double likeliest = by_chance;
   for (const Grouping& g : by_columns(shots, row_of, rows, by)) {
-    SharedErrors shared(g, w);
+    SharedErrors shared(g, w, seen);
     // From all that groups differ in to what the effects leave of it.
     Eigen::VectorXd variance = shared.learn(of_base.reshaped(width, n)), step;
     Eigen::MatrixXd covariance;

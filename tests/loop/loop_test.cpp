@@ -804,6 +804,14 @@ TEST_F(Loop, WhatGroupsShareIsNoEvidenceOfAnEffect) {
   EXPECT_GT(confounded.alone, 2 * Rules{}.gain);
   ASSERT_TRUE(confounded.beside);
   EXPECT_LT(*confounded.beside, Rules{}.gain);
+  // Every other shot without a ball speed: what is not there is no error that is shared, and none that is not.
+  const std::string fewer = changed(by_player({.shots = 300}, {-0.4, 0, 0.4}), "", [](int i, auto& cells) {
+    if (i % 2) cells[kBallSpeed] = "";
+  });
+  const Falls missing = falls(case_of(fewer), "restitution-law");
+  EXPECT_GT(missing.alone, 2 * Rules{}.gain);
+  ASSERT_TRUE(missing.beside);
+  EXPECT_LT(*missing.beside, Rules{}.gain);
   // Spin says of the tangential restitution what shots of one player do; less of it is what players have in common.
   const Falls apart =
       falls(case_of(by_player({.shots = 150, .tangential = 0.05}, {0.4, -0.8, 0.4})), "ball-tangential-compliance");
