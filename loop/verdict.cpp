@@ -68,9 +68,10 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
   const bool known = best.step || !best.names.empty();
   const bool more = best.criterion + study.rules.tie < of_names,
              as_much = best.criterion < of_names + std::max(study.rules.tie, known ? further : 0);
-  // A drift is slow and steady: where a function of the order is likeliest that is not, there is none.
-  const bool drift = names.size() == 1 && names.front() == "session-drift" && best.along == "shot" &&
-                     !std::ranges::count(best.names, names.front());
+  // A drift is slow and steady: where a function of the order that is not says as much, there need be none.
+  const auto no_drift = std::ranges::find_if(
+      found, [&](const Mechanism& m) { return m.along == "shot" && !std::ranges::count(m.names, "session-drift"); });
+  const bool drift = names.size() == 1 && names.front() == "session-drift" && no_drift != found.end();
   const auto told = [](const Mechanism& m, std::string_view of_it) {
     return fmt::format("one function of {}, acting through {}{}{}", m.along, m.acts,
                        m.names.empty() ? "" : fmt::format(" ({})", fmt::join(m.names, " or ")), of_it);
@@ -82,7 +83,7 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());
   const auto is = [&](const std::string& e) { return std::ranges::count(same, e) > 0; };
   // A form of the library for a function of another form keeps its name, where no other function says as much.
-  const Mechanism* says = &best;
+  const Mechanism* says = drift && !more ? &*no_drift : &best;
   if (names.size() == 1 && !drift) {
     const auto other = std::ranges::find_if(found, [&](const Mechanism& m) {
       return m.criterion < of_names + study.rules.tie && !std::ranges::count(m.names, names.front());
@@ -99,7 +100,7 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
   if (!names.empty()) {
     place.rival = true;
     place.detail += as_much ? fmt::format(", says as much as {}", fmt::join(names, " and "))
-                            : ", is likelier than any that is a drift";
+                            : ", says as much as one that is a drift";
   }
   return {.unexplained = {std::move(place)}};
 }

@@ -601,10 +601,12 @@ struct WithRival : ShotProblem {
                      .along = "club_speed_mps",
                      .channel = 0,
                      .names = {"ball-tangential-compliance"}};
+  std::vector<Mechanism> also = {};  // by so much worse too
   double worse = 0;
   std::vector<Mechanism> mechanisms(const Selection& s, const Rules& rules) const override {
-    std::vector<Mechanism> out = {rival};
-    out.front().criterion = criterion(s.chosen, rules) + worse;
+    std::vector<Mechanism> out = also;
+    out.insert(out.begin(), rival);
+    for (Mechanism& m : out) m.criterion = criterion(s.chosen, rules) + worse;
     return out;
   }
 };
@@ -616,9 +618,11 @@ struct Beside {
   std::string sentence;
   int level;
 };
-Beside beside(const ShotCase& c, double worse, const std::function<void(Mechanism&)>& other = {}) {
+Beside beside(const ShotCase& c, double worse, const std::function<void(Mechanism&)>& other = {},
+              const std::vector<Mechanism>& also = {}) {
   WithRival problem(c, {}, {}, {});
   problem.worse = worse;
+  problem.also = also;
   if (other) other(problem.rival);
   LoopResult r;
   r.forms = problem.forms();
@@ -662,10 +666,12 @@ TEST_F(Loop, AFunctionOfTheSessionThatIsNoDriftIsNotToldAsOne) {
   const double far = 2 * Rules{}.tie;
   const auto slow = [](Mechanism& m) { m.along = "shot", m.names = {"session-drift"}; };
   const auto otherwise = [](Mechanism& m) { m.along = "shot", m.names.clear(); };
-  const Beside drift = beside(c, far, slow), other = beside(c, far, otherwise);
+  const Mechanism step = {.acts = "the normal restitution", .along = "shot", .step = true, .channel = 0};
+  const Beside drift = beside(c, far, slow), other = beside(c, far, otherwise), both = beside(c, far, slow, {step});
   EXPECT_EQ(drift.adopted, std::vector<std::string>{"session-drift"}) << drift.sentence;
-  EXPECT_EQ(other.verdict, "unexplained") << other.sentence;
-  EXPECT_NE(other.sentence.find("is likelier than any that is a drift"), std::string::npos) << other.sentence;
+  for (const Beside* b : {&other, &both}) EXPECT_EQ(b->verdict, "unexplained") << b->sentence;
+  EXPECT_NE(both.sentence.find("acting through the normal restitution"), std::string::npos) << both.sentence;
+  EXPECT_NE(other.sentence.find("says as much as one that is a drift"), std::string::npos) << other.sentence;
 }
 
 TEST_F(Loop, NoResidualIsToldOnlyWhereNoFunctionIsLikelier) {
