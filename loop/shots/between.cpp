@@ -4,7 +4,6 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "golf/dense.hpp"
