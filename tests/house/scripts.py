@@ -6,6 +6,7 @@ import importlib.util
 import io
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -210,6 +211,11 @@ class Deep(Test):
         self.assertNotIn("accuracy=look", (self.at / "log").read_text())
         self.assertEqual(self.case("[ $1 = check ] && exit 0\necho $@\n"), 0)
         self.assertIn("accuracy=look", (self.at / "log").read_text())
+
+    def test_lines_are_counted_where_their_share_is_asked_for(self):
+        counted = re.findall(r"^source:\*/(\w+)/\*=allow$", (ROOT / "tests/support/counted_floors").read_text(), re.M)
+        self.assertEqual(counted, module("deep-check").COVERED)
+        self.assertIn(f"-fprofile-list={ROOT}/tests/support/counted_floors", " ".join(module("deep-check").sanitized_options()))
 
     def test_what_a_job_depends_on(self):
         deep = module("deep-check")
