@@ -26,8 +26,13 @@ INPUT_NOISE = {"club_speed": 0.2, "attack_angle": 0.25 * DEG, "dynamic_loft": 0.
 
 
 class Session:
-    """A set in the making. A kind changes `law`, `head`, `turning` (of the head, face frame) and `delivered` (the blow); `seen`
-    (functions on a table of values in SI) and `scatter` (the record); `columns`, `holes`, `steps`, `declare` (the file)."""
+    """A set in the making. A kind changes
+
+    - the blow: `law`, `head`, `turning` (of the head, face frame), `delivered` (what the ball met);
+    - the record: `turned` (the monitor about the vertical: the ball appears further to the right), `seen` (functions on a table of
+      values in SI), `scatter` (of standard normal deviates);
+    - the file: `columns`, `holes`, `steps`, `declare`.
+    """
 
     def __init__(self, rng, number, name, kind):
         self.rng, self.number = rng, number
@@ -49,7 +54,8 @@ class Session:
         self.x = {"club_speed": around(np.array(speed)[which], 1.7) + 1.5 * habit[:, 0], "attack_angle": around(np.array(attack)[which], 1.1) * DEG,
                   "dynamic_loft": (around(np.array(loft, float)[which], 1.6) + habit[:, 1]) * DEG, "club_path": (around(0, 2.0) + habit[:, 2]) * DEG,
                   "face_angle": around(0, 1.7) * DEG, "impact_toe": around(rng.normal(0, 0.002), 0.0095), "impact_high": around(0, 0.006)}
-        self.delivered, self.law, self.turning = dict(self.x), {}, None
+        self.ball = physics.Ball(round(rng.uniform(0.0452, 0.04593), 5), round(rng.uniform(0.02134, 0.02145), 6))
+        self.delivered, self.law, self.turning, self.turned = dict(self.x), {}, None, 0.0
         self.channels = ["ball_speed", "launch_angle", "azimuth"]
         self.channels += ["spin_rate", "spin_axis"] if rng.random() < 0.3 and not kind.cartesian else ["backspin", "sidespin"]
         self.noise = {k: NOISE[k] * f for k, f in zip(self.channels, rng.uniform(0.6, 1.6) * rng.uniform(0.8, 1.25, 5))}
@@ -77,14 +83,8 @@ class Session:
     def either(self, value):
         return value * self.rng.choice([-1, 1])
 
-    def yaw(self, angle):
-        """The monitor's axes turned about the vertical: the ball appears further to the right, spin with it."""
-        self.turned = angle
-
-    turned = 0.0
-
     def outputs(self):
-        c = physics.Contact(self.delivered, self.head, physics.Ball(), self.turning)
+        c = physics.Contact(self.delivered, self.head, self.ball, self.turning)
         q = physics.strike(c, **self.law)[0]
         frame = physics.turn(np.zeros(self.n), np.full(self.n, self.turned)) @ c.frame
         return physics.readings(*(np.einsum("nij,nj->ni", frame, q[:, k : k + 3]) for k in (0, 3)))
@@ -102,12 +102,12 @@ class Session:
 
     def signal(self, exact):
         """Length of the exact residual of the base, in noise units over the whole set: noise of outputs and, to first order, of inputs."""
-        expect = lambda x: np.stack([physics.base(x, self.declared)[k] for k in self.channels], -1)
+        expect = lambda x: np.stack([physics.base(x, self.declared, self.ball)[k] for k in self.channels], -1)
         x = {k: exact[k] for k in physics.INPUTS}
         middle = expect(x)
         covariance = np.zeros((self.n, 5, 5)) + np.diag([self.noise[k] ** 2 for k in self.channels])
         for k, sd in self.input_noise.items():
-            slope = (expect({**x, k: x[k] + sd / 2}) - expect({**x, k: x[k] - sd / 2}))
+            slope = expect({**x, k: x[k] + sd}) - middle
             covariance += slope[:, :, None] * slope[:, None, :]
         d = np.stack([exact[k] for k in self.channels], -1) - middle
         return float(np.sqrt(np.sum(d * np.linalg.solve(covariance, d[..., None])[..., 0])))
@@ -148,12 +148,13 @@ def write(folder, truths, name, s, kind, plain_exact):
     h = s.declared
     millimetres = lambda v: "inf" if np.isinf(v) else f"{v * 1e3:.1f}"
     lines = ["# A set of the second examination; its truth is kept elsewhere.", 'kind = "loop"', f'title = "{name}"', "[model]", 'base = "rigid-eccentric"',
-             "[ball]", "mass_kg = 0.04593", "radius_mm = 21.335", "inertia_factor = 0.4", "[head]", f"mass_kg = {h.mass}",
+             "[ball]", f"mass_kg = {s.ball.mass}", f"radius_mm = {s.ball.radius * 1e3:.3f}", "inertia_factor = 0.4", "[head]", f"mass_kg = {h.mass}",
              f"cg_mm = {[round(float(v) * 1e3, 2) for v in h.cg]}", f"inertia_kg_m2 = {h.inertia.tolist()}", f"bulge_mm = {millimetres(h.bulge)}",
              f"roll_mm = {millimetres(h.roll)}", "[data]", 'shots = "shots.csv"']
     declared = lambda noise: [f"{k}_{unit[k]} = {sd / UNITS[unit[k]]:.5g}" for k, sd in noise.items()]
-    lines += ["[data.noise]", *declared(s.noise)] if s.declare else []
-    lines += ["[data.input_noise]", *declared(s.input_noise), "[split]", "seed = 1"]
+    lines += ["[data.noise]", *declared(s.noise)] if s.declare and not plain_exact else []
+    lines += ["[data.input_noise]", *declared(s.input_noise)] if not plain_exact else []  # none: inputs are exact
+    lines += ["[split]", "seed = 1"]
     (folder / "case.toml").write_text("\n".join(lines) + "\n")
     truth = {"kind": name.rsplit("-", 1)[0], **{k: getattr(kind, k) for k in ("family", "listed", "names", "kin", "guilty", "place", "acceptable", "about")},
              "total": round(s.signal(exact), 2), "shots": s.n, "bag": bool(s.bag), "clusters": s.clusters, "declared": s.declare}
@@ -165,9 +166,6 @@ def make(seed, name, number):
     kind = KINDS[name]
     s = Session(np.random.default_rng([seed, 2, zlib.crc32(name.encode()), number]), number, name, kind)
     kind.change(s)
-    for k in s.x:  # a kind of noise may change the habits themselves
-        if kind.family == 5:
-            s.delivered[k] = s.x[k]
     return s, kind
 
 
