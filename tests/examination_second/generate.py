@@ -44,16 +44,20 @@ class Session:
         self.clusters = rng.random() < 0.5
         self.players = rng.integers(0, 4, n)
         self.head = self.declared = self.draw_head(club)
-        names, speed, attack, loft = {"driver": (["1W"], [46.0], [1.5], [13.0]), "irons": (["5i", "7i", "9i"], [38.0, 36.0, 34.0], [-2.5, -3.5, -4.5], [20, 25.5, 33]),
+        names, speed, attack, loft = {"driver": (["1W"], [46.0], [1.5], [13.0]),
+                                      "irons": (["5i", "7i", "9i"], [38.0, 36.0, 34.0], [-2.5, -3.5, -4.5], [20, 25.5, 33]),
                                       "wedge": (["PW", "52", "58"], [33.0, 31.0, 29.0], [-4.0, -4.5, -5.0], [36.0, 41, 47])}[club]
         which = rng.integers(0, len(names), n) if self.bag else np.full(n, rng.integers(len(names)))
         self.club = np.array(names)[which]
         habit = rng.normal(0, 1, (4, 3))[self.players] * (0.8 if self.clusters else 0)
         skill = rng.uniform(0.7, 1.5)  # large: a beginner, whose blows spread
         around = lambda centre, sd: centre + skill * rng.normal(0, sd, n)
-        self.x = {"club_speed": around(np.array(speed)[which], 1.7) + 1.5 * habit[:, 0], "attack_angle": around(np.array(attack)[which], 1.1) * DEG,
-                  "dynamic_loft": (around(np.array(loft, float)[which], 1.6) + habit[:, 1]) * DEG, "club_path": (around(0, 2.0) + habit[:, 2]) * DEG,
-                  "face_angle": around(0, 1.7) * DEG, "impact_toe": around(rng.normal(0, 0.002), 0.0095), "impact_high": around(0, 0.006)}
+        self.x = {"club_speed": around(np.array(speed)[which], 1.7) + 1.5 * habit[:, 0],
+                  "attack_angle": around(np.array(attack)[which], 1.1) * DEG,
+                  "dynamic_loft": (around(np.array(loft, float)[which], 1.6) + habit[:, 1]) * DEG,
+                  "club_path": (around(0, 2.0) + habit[:, 2]) * DEG,
+                  "face_angle": around(0, 1.7) * DEG, "impact_toe": around(rng.normal(0, 0.002), 0.0095),
+                  "impact_high": around(0, 0.006)}
         self.ball = physics.Ball(round(rng.uniform(0.0452, 0.04593), 5), round(rng.uniform(0.02134, 0.02145), 6))
         self.delivered, self.law, self.turning, self.turned = dict(self.x), {}, None, 0.0
         self.channels = ["ball_speed", "launch_angle", "azimuth"]
@@ -70,8 +74,10 @@ class Session:
         if club == "driver":
             product = r.normal(0, 8e-6, 3)
             off = np.array([[0, product[0], product[1]], [product[0], 0, product[2]], [product[1], product[2], 0]])
-            return physics.Head(round(r.uniform(0.193, 0.208), 4), np.round([r.uniform(-0.041, -0.033), r.normal(0, 0.001), r.uniform(0, 0.005)], 4),
-                                np.round(np.diag(r.uniform(0.9, 1.1, 3) * [3.1e-4, 3.0e-4, 4.9e-4]) + off, 8), round(r.uniform(0.26, 0.34), 3), round(r.uniform(0.24, 0.34), 3))
+            return physics.Head(round(r.uniform(0.193, 0.208), 4),
+                                np.round([r.uniform(-0.041, -0.033), r.normal(0, 0.001), r.uniform(0, 0.005)], 4),
+                                np.round(np.diag(r.uniform(0.9, 1.1, 3) * [3.1e-4, 3.0e-4, 4.9e-4]) + off, 8),
+                                round(r.uniform(0.26, 0.34), 3), round(r.uniform(0.24, 0.34), 3))
         mass, depth = (r.uniform(0.245, 0.275), -0.010) if club == "irons" else (r.uniform(0.285, 0.305), -0.006)
         return physics.Head(round(mass, 4), np.round([depth, r.normal(0.001, 0.001), r.normal(0.001, 0.001)], 4),
                             np.round(np.diag(r.uniform(0.9, 1.1, 3) * [3.0e-4, 1.05e-4, 2.6e-4]), 8))
@@ -101,7 +107,7 @@ class Session:
         return exact, noisy
 
     def signal(self, exact):
-        """Length of the exact residual of the base, in noise units over the whole set: noise of outputs and, to first order, of inputs."""
+        """Length of the exact residual of the base, in noise units of outputs and, to first order, of inputs, over the whole set."""
         expect = lambda x: np.stack([physics.base(x, self.declared, self.ball)[k] for k in self.channels], -1)
         x = {k: exact[k] for k in physics.INPUTS}
         middle = expect(x)
@@ -116,8 +122,10 @@ class Session:
 def bystanders(s):
     """Columns that have nothing to do with the blow."""
     pool = {"temperature_c": np.round(18 + 3 * np.sin(np.arange(s.n) / s.n * 3) + s.rng.normal(0, 0.4, s.n), 1),
-            "tee_height_mm": np.round(s.rng.normal(30, 4, s.n)), "humidity_pct": np.round(50 + np.cumsum(s.rng.normal(0, 0.3, s.n)), 1),
-            "comment": s.rng.choice(["", "", "good", "thin, a bit low", 'felt "dead"'], s.n), "ball": s.rng.choice(["sleeve 1", "sleeve 2", "sleeve 3"], s.n)}
+            "tee_height_mm": np.round(s.rng.normal(30, 4, s.n)),
+            "humidity_pct": np.round(50 + np.cumsum(s.rng.normal(0, 0.3, s.n)), 1),
+            "comment": s.rng.choice(["", "", "good", "thin, a bit low", 'felt "dead"'], s.n),
+            "ball": s.rng.choice(["sleeve 1", "sleeve 2", "sleeve 3"], s.n)}
     return {k: v for k, v in pool.items() if s.rng.random() < 0.3 and k not in s.columns}
 
 
@@ -127,7 +135,8 @@ def write(folder, truths, name, s, kind, plain_exact):
         noisy = exact
     used = list(physics.INPUTS) + list(s.channels)
     speeds = s.rng.choice(["mps", "mph", "kmh"], 2)
-    unit = {k: str(speeds[int(k == "ball_speed")]) if "speed" in k else "mm" if "impact" in k else "rpm" if "spin" in k and k != "spin_axis" else "deg" for k in used}
+    unit = dict.fromkeys(used, "deg") | {"club_speed": str(speeds[0]), "ball_speed": str(speeds[1]), "impact_toe": "mm", "impact_high": "mm"}
+    unit |= dict.fromkeys(("backspin", "sidespin", "spin_rate"), "rpm")
     text = {"shot": np.arange(1, s.n + 1), **s.columns, **bystanders(s)}
     if s.bag:
         text["club"] = s.club
@@ -147,16 +156,20 @@ def write(folder, truths, name, s, kind, plain_exact):
             out.writerow(row)
     h = s.declared
     millimetres = lambda v: "inf" if np.isinf(v) else f"{v * 1e3:.1f}"
-    lines = ["# A set of the second examination; its truth is kept elsewhere.", 'kind = "loop"', f'title = "{name}"', "[model]", 'base = "rigid-eccentric"',
-             "[ball]", f"mass_kg = {s.ball.mass}", f"radius_mm = {s.ball.radius * 1e3:.3f}", "inertia_factor = 0.4", "[head]", f"mass_kg = {h.mass}",
-             f"cg_mm = {[round(float(v) * 1e3, 2) for v in h.cg]}", f"inertia_kg_m2 = {h.inertia.tolist()}", f"bulge_mm = {millimetres(h.bulge)}",
+    lines = ["# A set of the second examination; its truth is kept elsewhere.", 'kind = "loop"', f'title = "{name}"', "[model]",
+             'base = "rigid-eccentric"',
+             "[ball]", f"mass_kg = {s.ball.mass}", f"radius_mm = {s.ball.radius * 1e3:.3f}", "inertia_factor = 0.4", "[head]",
+             f"mass_kg = {h.mass}",
+             f"cg_mm = {[round(float(v) * 1e3, 2) for v in h.cg]}", f"inertia_kg_m2 = {h.inertia.tolist()}",
+             f"bulge_mm = {millimetres(h.bulge)}",
              f"roll_mm = {millimetres(h.roll)}", "[data]", 'shots = "shots.csv"']
     declared = lambda noise: [f"{k}_{unit[k]} = {sd / UNITS[unit[k]]:.5g}" for k, sd in noise.items()]
     lines += ["[data.noise]", *declared(s.noise)] if s.declare and not plain_exact else []
     lines += ["[data.input_noise]", *declared(s.input_noise)] if not plain_exact else []  # none: inputs are exact
     lines += ["[split]", "seed = 1"]
     (folder / "case.toml").write_text("\n".join(lines) + "\n")
-    truth = {"kind": name.rsplit("-", 1)[0], **{k: getattr(kind, k) for k in ("family", "listed", "names", "kin", "guilty", "place", "acceptable", "about")},
+    truth = {"kind": name.rsplit("-", 1)[0],
+             **{k: getattr(kind, k) for k in ("family", "listed", "names", "kin", "guilty", "place", "acceptable", "about")},
              "total": round(s.signal(exact), 2), "shots": s.n, "bag": bool(s.bag), "clusters": s.clusters, "declared": s.declare}
     truths.mkdir(parents=True, exist_ok=True)
     (truths / f"{name}.json").write_text(json.dumps(truth, indent=1) + "\n")

@@ -14,7 +14,8 @@ from physics import attached, base_restitution, readings
 DEG, RPM = np.pi / 180, np.pi / 30
 # One set seldom tells these apart: restitution and what acts like it; what makes spin; what turns the head.
 SPEED = ("restitution-law", "face-compliance", "head-mass", "restitution-falloff")
-SPIN = ("ball-tangential-compliance", "ball-inertia", "normal-force-offset", "loft-bias", "friction-limit", "ball-relaxation", "ball-cover-stiffness")
+SPIN = ("ball-tangential-compliance", "ball-inertia", "normal-force-offset", "loft-bias", "friction-limit", "ball-relaxation",
+        "ball-cover-stiffness")
 TURN = ("head-inertia", "head-rotation", "shaft-coupling", "cg-shift", "restitution-falloff", "head-mass")
 HONEST = ("ambiguous", "insufficient", "unexplained")
 SCATTER = HONEST + ("noise-contradicted",)  # where the truth is scatter as well
@@ -56,7 +57,8 @@ def power_law(s):
     s.law["e"] = lambda c: (0.86 - 0.0029 * middle + level) * (c.closing / middle) ** -power
 
 
-@one("ball-tangential-compliance", SPIN, "tangential restitution grows from zero with the angle of incidence", clubs=("irons", "wedge"))
+@one("ball-tangential-compliance", SPIN, "tangential restitution grows from zero with the angle of incidence",
+     clubs=("irons", "wedge"))
 def rising_return(s):
     most = s.size(0.03, 0.2)
     s.law["et"] = lambda c: most * np.sin(c.obliquity) ** 2 / np.sin(45 * DEG) ** 2
@@ -76,31 +78,39 @@ def gauss_rim(s):
 @one("face-compliance", SPEED, "a face like a clamped dome takes part of the ball's loss, most at the centre", clubs=("driver",))
 def dome(s):
     centre, half = s.size(0.04, 0.5), s.size(0.032, 0.045)
-    s.law["e"] = lambda c: 1 - (1 - base_restitution(c)) / (1 + centre * np.clip(1 - (c.toe**2 + 2 * c.high**2) / half**2, 0, 1) ** 2)
+    s.law["e"] = lambda c: 1 - (1 - base_restitution(c)) / (1 + centre * np.clip(1 - (c.toe**2 + 2 * c.high**2) / half**2, 0,
+                                                                                 1) ** 2)
 
 
-@one("shaft-coupling", TURN + ("head-closure",), "the shaft's tip at the hosel resists across its axis and about it, not along it", clubs=("driver", "irons"))
+@one("shaft-coupling", TURN + ("head-closure",), "the shaft's tip at the hosel resists across its axis and about it, not along it",
+     clubs=("driver", "irons"))
 def tip_across(s):
     lie = s.size(56, 64) * DEG
     axis = np.array([0, np.cos(lie), np.sin(lie)])
     along = np.outer(axis, axis)
     hosel = np.array([-0.01, 0.045, 0.02]) + s.rng.normal(0, 0.003, 3)
-    s.head = dataclasses.replace(s.head, added=attached(s.size(0.015, 0.09) * (np.eye(3) - along), s.size(2e-5, 1e-4) * along, hosel - s.head.cg))
+    s.head = dataclasses.replace(s.head,
+                                 added=attached(s.size(0.015, 0.09) * (np.eye(3) - along), s.size(2e-5, 1e-4) * along,
+                                                hosel - s.head.cg))
 
 
-@one("head-closure", ("cg-shift",), "the head closes about a leaning shaft, at a rate in proportion to the club's speed", clubs=("driver", "irons"))
+@one("head-closure", ("cg-shift",), "the head closes about a leaning shaft, at a rate in proportion to the club's speed",
+     clubs=("driver", "irons"))
 def closing_shaft(s):
     lie = s.size(56, 64) * DEG
     rate = s.size(6, 45) * s.x["club_speed"] / np.mean(s.x["club_speed"])
     s.turning = rate[:, None] * np.array([0, np.cos(lie), np.sin(lie)])
 
 
-@one("loft-bias", SPIN + ("monitor-misalignment",), "the shaft's lead adds loft with the square of the club's speed, unseen by the record")
+@one("loft-bias", SPIN + ("monitor-misalignment",),
+     "the shaft's lead adds loft with the square of the club's speed, unseen by the record")
 def loft_kick(s):
-    s.delivered["dynamic_loft"] = s.x["dynamic_loft"] + s.either(s.size(0.4, 2.5) * DEG) * (s.x["club_speed"] / np.mean(s.x["club_speed"])) ** 2
+    most, speed = s.either(s.size(0.4, 2.5) * DEG), s.x["club_speed"]
+    s.delivered["dynamic_loft"] = s.x["dynamic_loft"] + most * (speed / np.mean(speed)) ** 2
 
 
-@one("cg-shift", TURN + ("head-closure",), "a weight sits in another port than declared: centre of gravity and inertia move together", clubs=("driver",))
+@one("cg-shift", TURN + ("head-closure",),
+     "a weight sits in another port than declared: centre of gravity and inertia move together", clubs=("driver",))
 def weight_port(s):
     h, weight = s.head, s.size(0.008, 0.025)
     old, new = h.cg + [-0.03, 0, -0.015], h.cg + [-0.01, s.either(s.size(0.03, 0.05)), s.either(0.012)]
@@ -110,13 +120,15 @@ def weight_port(s):
     s.head = dataclasses.replace(h, cg=cg, inertia=h.inertia - part(old - h.cg) + part(new - h.cg) - whole)
 
 
-@one("normal-force-offset", SPIN, "the patch moves uphill with the tangent of incidence, and the normal force with it", clubs=("irons", "wedge"))
+@one("normal-force-offset", SPIN, "the patch moves uphill with the tangent of incidence, and the normal force with it",
+     clubs=("irons", "wedge"))
 def uphill_patch(s):
     share = s.either(s.size(0.008, 0.05))
     s.law["offset"] = lambda c: share * np.tan(c.obliquity)
 
 
-@one("monitor-misalignment", ("loft-bias", "cg-shift"), "the camera of the flight's direction leans on its tripod; the spin sensor does not",
+@one("monitor-misalignment", ("loft-bias", "cg-shift"),
+     "the camera of the flight's direction leans on its tripod; the spin sensor does not",
      guilty=("launch_angle", "azimuth"))
 def leaning_tripod(s):
     yaw, pitch = s.either(s.size(0.15, 1.5) * DEG), s.either(s.size(0.1, 0.8) * DEG)
@@ -127,7 +139,8 @@ def leaning_tripod(s):
     s.seen.append(change)
 
 
-@one("session-drift", ("restitution-law",), "balls warm up during the session: restitution rises, fast at first", guilty=("ball_speed",))
+@one("session-drift", ("restitution-law",), "balls warm up during the session: restitution rises, fast at first",
+     guilty=("ball_speed",))
 def warming_balls(s):
     rise, i = s.size(0.012, 0.06), np.arange(s.n) / s.n
     s.law["e"] = lambda c: base_restitution(c) + rise * np.log1p(4 * i) / np.log(5)
@@ -146,13 +159,15 @@ def several(names, about, **more):
     return kind(2, "library", about, names=names, **more)
 
 
-@several(("ball-tangential-compliance", "friction-limit"), "a lively cover on a face that lets it slide at high loft", clubs=("wedge",), bag=True,
+@several(("ball-tangential-compliance", "friction-limit"), "a lively cover on a face that lets it slide at high loft",
+         clubs=("wedge",), bag=True,
          kin=("normal-force-offset", "ball-inertia", "loft-bias"))
 def lively_and_slippery(s):
     s.law.update(et=s.size(0.06, 0.18), friction=s.size(0.19, 0.25))
 
 
-@several(("restitution-law", "cg-shift"), "a dead ball on a head whose centre of gravity is towards the toe", kin=("face-compliance", "head-mass", "head-inertia", "head-rotation"),
+@several(("restitution-law", "cg-shift"), "a dead ball on a head whose centre of gravity is towards the toe",
+         kin=("face-compliance", "head-mass", "head-inertia", "head-rotation"),
          clubs=("driver", "irons"))
 def dead_and_toe_heavy(s):
     loss = s.size(0.015, 0.06)
@@ -160,21 +175,24 @@ def dead_and_toe_heavy(s):
     s.head = dataclasses.replace(s.head, cg=s.head.cg + [0, -s.size(0.0025, 0.008), s.either(0.002)])
 
 
-@several(("loft-bias", "head-closure"), "loft read too low, on a head that closes", kin=("cg-shift", "ball-tangential-compliance", "normal-force-offset", "ball-inertia"),
+@several(("loft-bias", "head-closure"), "loft read too low, on a head that closes",
+         kin=("cg-shift", "ball-tangential-compliance", "normal-force-offset", "ball-inertia"),
          clubs=("driver", "irons"))
 def low_loft_and_closure(s):
     s.delivered["dynamic_loft"] = s.x["dynamic_loft"] + s.size(0.6, 2.2) * DEG
     s.turning = np.array([0, 0.4, 0.9]) * s.size(12, 45)
 
 
-@several(("monitor-misalignment", "ball-tangential-compliance"), "the monitor is aimed off the target; the cover returns energy", kin=("normal-force-offset", "ball-inertia", "loft-bias"),
+@several(("monitor-misalignment", "ball-tangential-compliance"), "the monitor is aimed off the target; the cover returns energy",
+         kin=("normal-force-offset", "ball-inertia", "loft-bias"),
          guilty=("spin_axis",), clubs=("irons", "wedge"))
 def aimed_off_and_lively(s):
     s.law["et"] = s.size(0.03, 0.12)
     s.turned = s.either(s.size(0.25, 1.2) * DEG)
 
 
-@several(("face-compliance", "ball-tangential-compliance", "session-drift"), "a thin face, a lively cover, and a radar whose speed drifts", kin=SPEED + SPIN,
+@several(("face-compliance", "ball-tangential-compliance", "session-drift"),
+         "a thin face, a lively cover, and a radar whose speed drifts", kin=SPEED + SPIN,
          clubs=("driver",))
 def thin_lively_drifting(s):
     gain, drift = s.size(0.06, 0.25), s.either(s.size(0.010, 0.03))
@@ -189,8 +207,9 @@ def instrument(guilty, about, **more):
     return kind(3, "instrument", about, guilty=guilty, **{"cartesian": True, **more})
 
 
-@instrument(("club_speed",), "the radar reads the toe, the fastest part: all club speeds too high by one factor", kin=("restitution-law", "head-mass"))
-def toe_speed(s):
+@instrument(("club_speed",), "the radar corrects for a wrong angle: all club speeds are too high by one factor",
+            kin=("restitution-law", "head-mass"))
+def wrong_cosine(s):
     gain = 1 + s.size(0.012, 0.06)
     s.seen.append(lambda t: t.update(club_speed=t["club_speed"] * gain))
 
@@ -200,7 +219,8 @@ def path_turned(s):
     s.seen.append(lambda t: t.update(club_path=-t["club_path"]))
 
 
-@instrument(("impact_toe", "impact_high"), "the places across and up the face stand in each other's column", clubs=("driver", "irons"))
+@instrument(("impact_toe", "impact_high"), "the places across and up the face stand in each other's column",
+            clubs=("driver", "irons"))
 def places_swapped(s):
     s.seen.append(lambda t: t.update(impact_toe=t["impact_high"], impact_high=t["impact_toe"]))
 
@@ -229,14 +249,16 @@ def ceiling(s):
     s.seen.append(lambda t: t.update(backspin=np.minimum(t["backspin"], limit)))
 
 
-@instrument(("dynamic_loft",), "dynamic loft is computed from launch, spin and speed, by a formula that is not the ball's", names=("loft-bias",), kin=tuple(k for k in SPIN if k != "loft-bias"), acceptable=HONEST + ("explained",))
+@instrument(("dynamic_loft",), "dynamic loft is computed from launch, spin and speed, by a formula that is not the ball's",
+            names=("loft-bias",), kin=tuple(k for k in SPIN if k != "loft-bias"), acceptable=HONEST + ("explained",))
 def computed_loft(s):
     share, lever = s.size(0.7, 0.9), s.size(0.5, 1.0)
     middle = np.mean(s.x["dynamic_loft"])
 
     def change(t):
         spin_part = np.arctan(lever * t["backspin"] * 0.0213 / t["ball_speed"])
-        t["dynamic_loft"] = middle + (1 / share) * (t["launch_angle"] - np.mean(t["launch_angle"])) + 0.5 * (spin_part - np.mean(spin_part))
+        centred = lambda v: v - np.mean(v)
+        t["dynamic_loft"] = middle + centred(t["launch_angle"]) / share + 0.5 * centred(spin_part)
     s.seen.append(change)
 
 
@@ -246,7 +268,8 @@ def zero_for_nothing(s):
     s.seen.append(lambda t: t.update(sidespin=np.where(lost, 0.0, t["sidespin"])))
 
 
-@instrument(("azimuth",), "the tripod was kicked: from one shot on, directions are off by a constant", kin=("monitor-misalignment", "session-drift"))
+@instrument(("azimuth",), "the tripod was kicked: from one shot on, directions are off by a constant",
+            kin=("monitor-misalignment", "session-drift"))
 def kicked_tripod(s):
     step, first = s.either(s.size(0.3, 2.0) * DEG), int(s.size(0.3, 0.7) * s.n)
     s.seen.append(lambda t: t.update(azimuth=t["azimuth"] + step * (np.arange(s.n) >= first)))
@@ -258,7 +281,8 @@ def unlisted(place, about, **more):
     return kind(4, "none", about, place=place, **more)
 
 
-@unlisted(("temperature_c",), "the ball is livelier when it is warm; a column has the temperature of each shot", kin=("restitution-law",))
+@unlisted(("temperature_c",), "the ball is livelier when it is warm; a column has the temperature of each shot",
+          kin=("restitution-law",))
 def warm_ball(s):
     t = 15 + 6 * np.sin(2 * np.pi * (s.rng.random() + np.arange(s.n) / s.n * s.size(1.5, 3))) + s.rng.normal(0, 3, s.n)
     s.columns["temperature_c"] = np.round(t, 1)
@@ -266,13 +290,15 @@ def warm_ball(s):
     s.law["e"] = lambda c: base_restitution(c) + slope * (t - 15)
 
 
-@unlisted(("mixture",), "two sorts of ball without a label: one rolls, one returns tangential energy", kin=SPIN, acceptable=SCATTER, clubs=("irons", "wedge"))
+@unlisted(("mixture",), "two sorts of ball without a label: one rolls, one returns tangential energy", kin=SPIN, acceptable=SCATTER,
+          clubs=("irons", "wedge"))
 def unlabelled_balls(s):
     lively, et = s.rng.random(s.n) < s.size(0.3, 0.6), s.size(0.04, 0.2)
     s.law["et"] = lambda c: np.where(lively, et, 0)
 
 
-@unlisted(("ball",), "two sorts of ball with their label: restitution and return differ", kin=("ball-tangential-compliance", "restitution-law"))
+@unlisted(("ball",), "two sorts of ball with their label: restitution and return differ",
+          kin=("ball-tangential-compliance", "restitution-law"))
 def labelled_balls(s):
     other, et, loss = s.rng.random(s.n) < s.size(0.3, 0.6), s.size(0.05, 0.3), s.size(0.005, 0.03)
     s.columns["ball"] = np.where(other, "urethane", "ionomer")
@@ -286,25 +312,29 @@ def swinging(s):
     s.seen.append(lambda t: t.update(azimuth=t["azimuth"] + swing * np.sin(phase)))
 
 
-@unlisted(("impact_toe", "impact_high"), "a hot spot of the face, a third of the way to the toe", kin=("restitution-falloff", "face-compliance", "cg-shift"), clubs=("driver",))
+@unlisted(("impact_toe", "impact_high"), "a hot spot of the face, a third of the way to the toe",
+          kin=("restitution-falloff", "face-compliance", "cg-shift"), clubs=("driver",))
 def hot_spot(s):
     more, toe, high = s.size(0.015, 0.09), s.size(0.008, 0.014), s.either(0.004)
     s.law["e"] = lambda c: base_restitution(c) + more * np.exp(-((c.toe - toe) ** 2 + (c.high - high) ** 2) / (2 * 0.006**2))
 
 
-@unlisted(("impact_high",), "the lower face is wet: no more than a little friction below a line", kin=("friction-limit", "ball-tangential-compliance"), clubs=("irons", "wedge"))
+@unlisted(("impact_high",), "the lower face is wet: no more than a little friction below a line",
+          kin=("friction-limit", "ball-tangential-compliance"), clubs=("irons", "wedge"))
 def wet_below(s):
     line, stick = s.size(0.001, 0.006), 0.18 * np.tan(np.median(s.x["dynamic_loft"] - s.x["attack_angle"]))  # what rolling needs
     friction = stick * s.size(0.88, 1.02)
     s.law["friction"] = lambda c: np.where(c.high < -line, friction, np.inf)
 
 
-@unlisted(("impact_toe",), "the face is rounder or flatter from heel to toe than declared", kin=("cg-shift", "head-inertia", "head-rotation"), clubs=("driver",))
+@unlisted(("impact_toe",), "the face is rounder or flatter from heel to toe than declared",
+          kin=("cg-shift", "head-inertia", "head-rotation"), clubs=("driver",))
 def other_bulge(s):
     s.head = dataclasses.replace(s.head, bulge=1 / (1 / s.head.bulge + s.either(s.size(0.3, 2.0))))
 
 
-@unlisted(("club_path", "face_angle"), "milled lines: energy comes back across them, not along them", kin=("ball-tangential-compliance",), clubs=("irons", "wedge"))
+@unlisted(("club_path", "face_angle"), "milled lines: energy comes back across them, not along them",
+          kin=("ball-tangential-compliance",), clubs=("irons", "wedge"))
 def one_way_return(s):
     back = s.size(0.15, 0.8)
     s.law["et"] = lambda c: np.stack([np.zeros(s.n), np.full(s.n, back)], -1)
@@ -336,7 +366,8 @@ def uneven(s):
     s.scatter = lambda z: {k: v * size for k, v in z.items()}
 
 
-@nothing("errors of launch angle and spin share a cause: correlation 0.7, and direction with sidespin", acceptable=ODD, cartesian=True)
+@nothing("errors of launch angle and spin share a cause: correlation 0.7, and direction with sidespin", acceptable=ODD,
+         cartesian=True)
 def shared_error(s):
     def scatter(z):
         z["backspin"] = -0.7 * z["launch_angle"] + np.sqrt(0.51) * z["backspin"]
@@ -366,7 +397,8 @@ def habits(s):
     s.clusters, s.delivered = True, s.x
 
 
-@nothing("inputs that hang together: loft, attack and speed by one swing, face and path by another, high on the face by toe", bag=False)
+@nothing("inputs that hang together: loft, attack and speed by one swing, face and path by another, high on the face by toe",
+         bag=False)
 def tied_inputs(s):
     for names in (("club_speed", "attack_angle", "dynamic_loft"), ("club_path", "face_angle"), ("impact_toe", "impact_high")):
         common = s.rng.normal(0, 1, s.n)

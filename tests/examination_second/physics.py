@@ -131,7 +131,8 @@ def strike(c, e=base_restitution, et=0.0, friction=np.inf, soft=False, offset=0.
 def readings(velocity, spin):
     """Launch of global vectors, in radians and SI."""
     speed, rate = np.linalg.norm(velocity, axis=1), np.linalg.norm(spin, axis=1)
-    return {"ball_speed": speed, "launch_angle": np.arcsin(velocity[:, 2] / speed), "azimuth": np.arctan2(-velocity[:, 1], velocity[:, 0]),
+    return {"ball_speed": speed, "launch_angle": np.arcsin(velocity[:, 2] / speed),
+            "azimuth": np.arctan2(-velocity[:, 1], velocity[:, 0]),
             "backspin": -spin[:, 1], "sidespin": -spin[:, 2], "spin_rate": rate, "spin_axis": np.arctan2(-spin[:, 2], -spin[:, 1])}
 
 

@@ -68,7 +68,8 @@ def closed_form():
     n, b = 7, physics.Ball()
     loft, attack, v = np.linspace(8, 45, n) * DEG, np.linspace(-5, 4, n) * DEG, np.linspace(50, 30, n)
     zero = np.zeros(n)
-    x = {"club_speed": v, "attack_angle": attack, "dynamic_loft": loft, "club_path": zero, "face_angle": zero, "impact_toe": zero, "impact_high": zero}
+    x = {"club_speed": v, "attack_angle": attack, "dynamic_loft": loft, "club_path": zero, "face_angle": zero, "impact_toe": zero,
+         "impact_high": zero}
     got = physics.base(x, physics.Head(0.25, np.array([-0.02, 0.0, 0.0]), np.eye(3) * 1e6))
     a = loft - attack
     normal = v * np.cos(a) * (1.86 - 0.0029 * v * np.cos(a)) / (1 + b.mass / 0.25)
@@ -100,9 +101,11 @@ def attached_part():
 
 def answer(truth):
     """The report that is right."""
-    r = {"verdict": "explained", "adopted": truth["names"], "ties": [], "columns": [], "unexplained": [], "rows": {"read": truth["shots"]}}
+    r = {"verdict": "explained", "adopted": truth["names"], "ties": [], "columns": [], "unexplained": [],
+         "rows": {"read": truth["shots"]}}
     if truth["listed"] == "instrument":
-        return {**r, "verdict": "unexplained", "adopted": [], "columns": [{"column": truth["guilty"][0] + "_deg", "finding": "scale"}]}
+        return {**r, "verdict": "unexplained", "adopted": [],
+                "columns": [{"column": truth["guilty"][0] + "_deg", "finding": "scale"}]}
     if truth["listed"] == "none":
         return {**r, "verdict": "unexplained", "adopted": [], "unexplained": [{"regressor": truth["place"][0], "detail": ""}]}
     return {**r, "verdict": "no-residual", "adopted": []} if truth["listed"] == "null" else r
@@ -122,7 +125,8 @@ def truths():
         assert all(np.isfinite(noisy[c]).all() and len(noisy[c]) == s.n for c in (*physics.INPUTS, *s.channels)), name
         total = s.signal(exact)
         assert total < 1e-6 if k.family == 5 else total > 1, (name, total)
-        truth = {**{f: getattr(k, f) for f in ("family", "listed", "names", "kin", "guilty", "place", "acceptable")}, "total": total, "shots": s.n}
+        truth = {**{f: getattr(k, f) for f in ("family", "listed", "names", "kin", "guilty", "place", "acceptable")},
+                 "total": total, "shots": s.n}
         assert grade(answer(truth), truth)[0] == "right", name
         assert np.linalg.eigvalsh(s.head.inertia).min() > 0, name
     assert len(KINDS) >= 30 and counts[5] >= 6, counts
@@ -134,7 +138,7 @@ def seeds():
 
         def text(seed, run):
             generate.write(f / run, f / "truth", "holes-4", *generate.make(seed, "holes", 4), False)
-            return (f / run / "shots.csv").read_text() + (f / run / "case.toml").read_text() + (f / "truth" / "holes-4.json").read_text()
+            return "".join(p.read_text() for p in (f / run / "shots.csv", f / run / "case.toml", f / "truth" / "holes-4.json"))
         assert text(1, "a") == text(1, "b") != text(2, "c"), "the seed decides"
 
 
