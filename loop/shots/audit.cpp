@@ -220,6 +220,12 @@ class Audit {
     return -1;
   }
 
+  /// Residual of so many rows over what rounding leaves, at most: what is computed has rounding alone, to four standard
+  /// errors of a scatter, and to a fifth for constants of the instrument's own. Noise of coarse columns is little more.
+  static double most_by_rounding(std::size_t rows) {
+    return std::clamp(1 + 4 / std::sqrt(2.0 * double(rows)), 1.2, 1.6);
+  }
+
   /// Judges y = f(sources): rounding of every column passed through f by differences.
   template <class F>
   bool judge(int target, const std::set<int>& from, int parameters, const std::vector<Eigen::Index>& rows, F&& f,
@@ -257,7 +263,8 @@ class Audit {
     out.beyond = int(std::ranges::count_if(
         residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
-    return out.residual < 1.6 * out.tolerance + kRoundOff * y.spread && out.tolerance * finer < y.spread;
+    return out.residual < most_by_rounding(rows.size()) * out.tolerance + kRoundOff * y.spread &&
+           out.tolerance * finer < y.spread;
   }
 
   std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
@@ -372,7 +379,10 @@ class Audit {
         return logarithmic ? std::exp(sum) : sum;
       };
       // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
-      if (Formula again; !judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again))
+      Formula again;
+      if (!judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
+      if (!(std::hypot(out.residual, again.residual) <
+            std::sqrt(2.0) * most_by_rounding(rows.size()) * out.tolerance + kRoundOff * y.spread))
         return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {

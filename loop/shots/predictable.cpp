@@ -263,7 +263,9 @@ class Predictable {
   /// The likeliest functions of these sets of columns: all of them a few steps, the foremost to their ends.
   std::vector<Smooth> settled(int target, const VectorXd& y, const ArrayXd& elsewhere,
                               const std::vector<std::vector<int>>& sets) const {
-    const double numbers = 0.5 * std::log(double(n_)), least = 1e-3 * std::max(error_[target], 1e-3);
+    // Of columns on coarse grids some rows agree more closely than the last digit allows: by chance.
+    const double numbers = 0.5 * std::log(double(n_)),
+                 least = std::max(1e-3 * std::max(error_[target], 1e-3), rounding_[target]);
     std::vector<Smooth> all;
     for (const std::vector<int>& from : sets) {
       const MatrixXd a = features(from, 2);

@@ -1358,6 +1358,31 @@ TEST_F(Loop, AColumnMayBeComputedBeforeTheOthersAreRounded) {
   }
 }
 
+TEST_F(Loop, CoarseColumnsThatAgreeWithinTheirNoiseAreNotComputed) {
+  // A ball that rolls has such a loft. What an instrument computes of it misses by rounding alone; what two of them
+  // measure misses by their noise too, which is as small as the steps of 0.5 deg here.
+  const double arm = Ball{}.inertia_factor * Ball{}.radius;
+  const auto rounded = [](double x, double to) { return to * std::round(x / to); };
+  for (const bool measured : {false, true})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> gauss;
+      std::string text = "club_speed_mps,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,backspin_rpm\n";
+      for (int i = 0; i < 160; ++i) {
+        const double speed = 35 + 2 * gauss(random), launch = 30 + 2 * gauss(random), spin = 6700 + 500 * gauss(random);
+        const double loft = launch + std::asin(arm * spin * kPi / 30 / speed) * 180 / kPi;
+        const auto seen = [&](double x, double noise, double step) {
+          return rounded(x + (measured ? noise : 0) * gauss(random), step);
+        };
+        text += fmt::format("{:.1f},{:.1f},{:.1f},{:.1f},{:.0f}\n", 32 + 2 * gauss(random), seen(loft, 0.22, 0.5),
+                            seen(speed, 0.26, 0.5), seen(launch, 0.24, 0.5), seen(spin, 80, 100));
+      }
+      const std::vector<DerivedColumn> found = audit(shots(text), {});
+      ASSERT_EQ(found.size(), measured ? 0U : 1U) << seed;
+      for (const DerivedColumn& d : found) EXPECT_EQ(d.column, "dynamic_loft_deg") << d.formula;
+    }
+}
+
 /// Thirty shots whose loft is computed from three columns in the first rows, and nothing in the others.
 std::string with_computed_loft(int computed, double step, unsigned seed) {
   std::mt19937 random(seed);
