@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "golf/dense.hpp"
+#include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
@@ -70,7 +71,7 @@ struct Columns::Slip {
   double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
   double deviance = 0;
   double criterion() const { return deviance + cost; }
-  bool disputed = false;  ///< of a level shift: physics that changes there does as well, or every group differs
+  bool disputed = false;  ///< physics does as well, which of a level shift changes there; or every group differs
 };
 
 Columns::~Columns() = default;
@@ -176,11 +177,9 @@ Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& m
   return r;
 }
 
-/// Derivatives of the channels by a quantity of the contact law: rows x channels.
-Eigen::MatrixXd Columns::sensitivity(double ContactLaw::*of) const {
-  constexpr double h = 1e-3;
-  Parametrisation form{.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, h}}};
-  form.before = [of](std::span<const double> p, Shot& s) { s.blow.contact.*of += p[0]; };
+/// Derivatives of the channels by the parameter of a form: rows x channels.
+Eigen::MatrixXd Columns::sensitivity(const Parametrisation& form) const {
+  const double h = form.parameters.front().scale;
   const Model with{{&form}};
   const Eigen::MatrixXd d = (residuals(values_, with, Eigen::VectorXd::Constant(1, h)) -
                              residuals(values_, with, Eigen::VectorXd::Constant(1, -h))) /
@@ -352,6 +351,39 @@ void Columns::try_constants() {
 
 namespace {
 
+/// What the contact may do that the library does not say of a part of the rows, or of one direction of the face.
+struct OfContact {
+  Parametrisation form;
+  double largest;  ///< change that is no wonder
+};
+
+Parametrisation change_of_contact() {
+  return {.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, 1e-3}}};
+}
+
+OfContact changed(double ContactLaw::*of, double largest) {
+  OfContact c{change_of_contact(), largest};
+  c.form.before = [of](std::span<const double> p, Shot& s) { s.blow.contact.*of += p[0]; };
+  return c;
+}
+
+/// Tangential energy comes back along one axis of the face alone: 1 across it, 2 up it.
+OfContact returned_along(int axis) {
+  OfContact c{change_of_contact(), 0.8};
+  c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
+    Blow with = s.blow;
+    with.contact.tangential_restitution += p[0];
+    const Launch a = closed_form().launch(with), b = closed_form().launch(s.blow);
+    const FirstContact g = first_contact(s.blow);
+    const Vec3 axis_of_face = g.face_axes.col(axis),
+               along = (axis_of_face - axis_of_face.dot(g.normal) * g.normal).normalized(),
+               about = g.normal.cross(along);
+    launch.velocity += along.dot(a.velocity - b.velocity) * along;
+    launch.spin += about.dot(a.spin - b.spin) * about;
+  };
+  return c;
+}
+
 /// The rows of `j` that are members.
 Eigen::MatrixXd members_only(const Eigen::MatrixXd& j, const std::vector<char>& member) {
   Eigen::MatrixXd out = j;
@@ -487,23 +519,43 @@ void Columns::try_sizes() {
   for (const Input i : {Input::impact_toe, Input::impact_high})
     if (index(i) < std::ptrdiff_t(inputs_.size())) square += (values_.col(index(i)) / 0.01).cwiseAbs2();
   std::map<std::string, double> physics;
-  for (const auto& [of, largest] :
-       {std::pair{&ContactLaw::restitution, 0.1}, {&ContactLaw::tangential_restitution, 0.3}}) {
-    const Eigen::MatrixXd J = sensitivity(of) * W.transpose();
-    if (J.norm() < kFaint) continue;
-    for (const PartOfRows& part : parts) {
-      const Eigen::MatrixXd even = members_only(J, part.member);
-      auto [size, value] = fitted(z, even);
-      if (std::abs(size) > largest) continue;
-      const Eigen::MatrixXd off_centre = square.asDiagonal() * even;
-      if (off_centre.norm() > kFaint)
-        value = std::min(value, fitted(z + size * even, off_centre).second + case_.rules.parameter_cost);
-      const auto known = physics.try_emplace(part.what, value).first;
-      known->second = std::min(known->second, value);
+  const auto rival = [&](const std::string& where, double value) {
+    const auto known = physics.try_emplace(where, value).first;
+    known->second = std::min(known->second, value);
+  };
+  struct Change {
+    Eigen::MatrixXd by;
+    double largest;
+  };
+  std::vector<Change> changes;
+  for (const OfContact& c : {changed(&ContactLaw::restitution, 0.1), changed(&ContactLaw::tangential_restitution, 0.3)})
+    if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
+      changes.push_back({std::move(by), c.largest});
+  for (const PartOfRows& part : parts) {
+    Eigen::MatrixXd left = z;  // by what changed before: another ball differs in both
+    double cost = 0;
+    for (const Change& c : changes) {
+      const Eigen::MatrixXd even = members_only(c.by, part.member);
+      if (const auto [size, value] = fitted(z, even); std::abs(size) <= c.largest) {
+        rival(part.what, value);
+        const Eigen::MatrixXd off_centre = square.asDiagonal() * even;
+        if (off_centre.norm() > kFaint)
+          rival(part.what, fitted(z + size * even, off_centre).second + case_.rules.parameter_cost);
+      }
+      if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest) {
+        rival(part.what, value + cost);
+        left += size * even;
+        cost = case_.rules.parameter_cost;
+      }
     }
   }
+  for (const OfContact& c : {returned_along(1), returned_along(2)}) {
+    const Eigen::MatrixXd by = sensitivity(c.form) * W.transpose();
+    if (by.norm() < kFaint) continue;
+    if (const auto [size, value] = fitted(z, by); std::abs(size) <= c.largest) rival("", value);
+  }
   for (Slip& t : trials)
-    if (const auto it = physics.find(t.what); t.finding == "level-shift" && it != physics.end())
+    if (const auto it = physics.find(t.what); it != physics.end())
       t.disputed = t.disputed || it->second + t.cost < t.criterion() + case_.rules.tie;
   std::ranges::stable_sort(trials, {}, &Slip::criterion);
   // The best few, of different columns or kinds, about themselves.

@@ -38,7 +38,7 @@ class Columns {
   Shot shot(Eigen::Index row, const Eigen::MatrixXd& values) const;
   Eigen::MatrixXd residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
   Eigen::MatrixXd sensitivity(const Eigen::MatrixXd& values, int column) const;
-  Eigen::MatrixXd sensitivity(double ContactLaw::*of) const;
+  Eigen::MatrixXd sensitivity(const Parametrisation& form) const;
   double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                   const Eigen::VectorXd& p) const;
   double log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const;

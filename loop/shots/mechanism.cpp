@@ -14,7 +14,6 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kKnots = 150;  // rows whose covariance makes a basis
-constexpr double kPrice = 8;         // of the choice among some hundred functions and mechanisms [units of deviance]
 
 /// Functions of one quantity: each a basis over the rows with the variance of its coefficients, a level apart. The
 /// basis is orthonormal over the knots.
@@ -318,6 +317,8 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   for (auto& t : of_way)
     for (Trial& trial : t)
       if (std::isfinite(trial.found.fall)) trials.push_back(std::move(trial));
+  // Of the choice: each function through each mechanism is as likely as any other before the data are seen.
+  const double price = 2 * std::log(double(std::max<std::size_t>(trials.size(), 1)));
   std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
   if (trials.size() > 12) trials.resize(12);
 
@@ -336,7 +337,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
     Eigen::Index most = 0;
     moved.maxCoeff(&most);
     m.channel = int(most);
-    m.criterion = chosen.deviance + deviance + bare - of_chosen + t.found.price + kPrice;
+    m.criterion = chosen.deviance + deviance + bare - of_chosen + t.found.price + price;
     m.names = names_of(every[t.way], functions[t.field], shots, monotone(t.found.g, order));
     out.push_back(std::move(m));
   }

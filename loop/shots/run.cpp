@@ -8,6 +8,7 @@
 
 #include "golf/units.hpp"
 #include "loop/shots/problem.hpp"
+#include "loop/shots/recurring.hpp"
 #include "loop/shots/slow.hpp"
 #include "loop/verdict.hpp"
 
@@ -160,10 +161,35 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   whole.next = ShotProblem(c, derived, std::set<int>{}, {}).next_experiment(whole);
 }
 
+/// Numbers that are no readings are left out of their columns; the other results of these shots are used.
+ShotCase without_numbers(const ShotCase& given, const std::vector<Recurring>& found) {
+  ShotCase c = given;
+  for (const Recurring& r : found) {
+    for (Column& column : c.shots.columns)
+      if (column.name == r.column)
+        for (const int row : r.rows) column.value[std::size_t(row)] = kNaN;
+    c.notes.push_back(fmt::format("{}: {}: no readings, left out", r.column, r.reason));
+  }
+  return c;
+}
+
+/// Behind the flags of single rows: one finding each.
+void tell(const std::vector<Recurring>& found, const Shots& shots, LoopResult& result) {
+  int finding = 0;
+  for (const Flag& f : result.flagged) finding = std::max(finding, f.finding);
+  for (const Recurring& r : found) {
+    ++finding;
+    for (const int row : r.rows)
+      result.flagged.push_back({row, shots.id[std::size_t(row)], r.column, r.reason, finding});
+  }
+}
+
 }  // namespace
 
-LoopResult run(const ShotCase& c) {
-  if (c.slow) return run_slow(c);
+LoopResult run(const ShotCase& given) {
+  if (given.slow) return run_slow(given);
+  const std::vector<Recurring> found = given.averages ? std::vector<Recurring>{} : recurring(given.shots);
+  const ShotCase c = without_numbers(given, found);
   if (c.shots.rows() > kMostShots)
     throw DataError(fmt::format("{}: {} rows; a loop takes at most {}: give it a sample", c.shots.file, c.shots.rows(),
                                 kMostShots));
@@ -210,6 +236,7 @@ LoopResult run(const ShotCase& c) {
                     fmt::join(d.from, ", "), d.share < 1 ? fmt::format(" on {:.0f} % of the rows", 100 * d.share) : "",
                     name(without.verdict), names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
   }
+  tell(found, given.shots, result);
   return result;
 }
 
