@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Writes sets of shots with a known truth: SETS/<kind>-<number>/{case.toml,shots.csv}, and TRUTH/<kind>-<number>.json.
 
-    generate.py --seed 1 --sets out/sets --truth out/truth [--kinds A B] [--numbers 0 1] [--exact]
+    generate.py --seed 1 --sets out/sets --truth out/truth [--more] [--kinds A B] [--numbers 0 1] [--exact]
 """
 
 import argparse
@@ -14,6 +14,7 @@ import numpy as np
 
 import physics
 from kinds import DEG, KINDS, RPM
+from more_kinds import MORE
 
 UNITS = {"mps": 1, "kmh": 1 / 3.6, "mph": 0.44704, "deg": DEG, "mm": 1e-3, "rpm": RPM}
 DECIMALS = {"mps": 2, "kmh": 1, "mph": 1, "deg": 2, "mm": 1, "rpm": 0}
@@ -28,7 +29,7 @@ INPUT_NOISE = {"club_speed": 0.2, "attack_angle": 0.25 * DEG, "dynamic_loft": 0.
 class Session:
     """A set in the making. A kind changes
 
-    - the blow: `law`, `head`, `turning` (of the head, face frame), `delivered` (what the ball met);
+    - the blow: `law`, `head`, `struck` (the ball), `turning` (of the head, face frame), `delivered` (what the ball met);
     - the record: `turned` (the monitor about the vertical: the ball appears further to the right), `seen` (functions on a table of
       values in SI), `scatter` (of standard normal deviates);
     - the file: `columns`, `holes`, `steps`, `declare`.
@@ -58,7 +59,7 @@ class Session:
                   "club_path": (around(0, 2.0) + habit[:, 2]) * DEG,
                   "face_angle": around(0, 1.7) * DEG, "impact_toe": around(rng.normal(0, 0.002), 0.0095),
                   "impact_high": around(0, 0.006)}
-        self.ball = physics.Ball(round(rng.uniform(0.0452, 0.04593), 5), round(rng.uniform(0.02134, 0.02145), 6))
+        self.ball = self.struck = physics.Ball(round(rng.uniform(0.0452, 0.04593), 5), round(rng.uniform(0.02134, 0.02145), 6))
         self.delivered, self.law, self.turning, self.turned = dict(self.x), {}, None, 0.0
         self.channels = ["ball_speed", "launch_angle", "azimuth"]
         self.channels += ["spin_rate", "spin_axis"] if rng.random() < 0.3 and not kind.cartesian else ["backspin", "sidespin"]
@@ -90,7 +91,7 @@ class Session:
         return value * self.rng.choice([-1, 1])
 
     def outputs(self):
-        c = physics.Contact(self.delivered, self.head, self.ball, self.turning)
+        c = physics.Contact(self.delivered, self.head, self.struck, self.turning)
         q = physics.strike(c, **self.law)[0]
         frame = physics.turn(np.zeros(self.n), np.full(self.n, self.turned)) @ c.frame
         return physics.readings(*(np.einsum("nij,nj->ni", frame, q[:, k : k + 3]) for k in (0, 3)))
@@ -176,7 +177,7 @@ def write(folder, truths, name, s, kind, plain_exact):
 
 
 def make(seed, name, number):
-    kind = KINDS[name]
+    kind = (KINDS | MORE)[name]
     s = Session(np.random.default_rng([seed, 2, zlib.crc32(name.encode()), number]), number, name, kind)
     kind.change(s)
     return s, kind
@@ -187,11 +188,12 @@ def main():
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--sets", type=pathlib.Path, required=True)
     p.add_argument("--truth", type=pathlib.Path, required=True)
-    p.add_argument("--kinds", nargs="*", default=list(KINDS))
+    p.add_argument("--more", action="store_true", help="the kinds of more_kinds.py in place of those of kinds.py")
+    p.add_argument("--kinds", nargs="*", help="these, of either file")
     p.add_argument("--numbers", nargs="*", type=int, default=range(10))
     p.add_argument("--exact", action="store_true", help="no noise and six decimals: to compare the base models")
     a = p.parse_args()
-    for name in a.kinds:
+    for name in a.kinds or (MORE if a.more else KINDS):
         for i in a.numbers:
             write(a.sets / f"{name}-{i}", a.truth, f"{name}-{i}", *make(a.seed, name, i), a.exact)
 

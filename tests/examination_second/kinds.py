@@ -19,7 +19,7 @@ SPIN = ("ball-tangential-compliance", "ball-inertia", "normal-force-offset", "lo
 TURN = ("head-inertia", "head-rotation", "shaft-coupling", "cg-shift", "restitution-falloff", "head-mass")
 HONEST = ("ambiguous", "insufficient", "unexplained")
 SCATTER = HONEST + ("noise-contradicted",)  # where the truth is scatter as well
-KINDS = {}
+KINDS, MORE = {}, {}  # of this file, and of more_kinds.py
 
 
 @dataclasses.dataclass
@@ -40,13 +40,18 @@ class Kind:
 
 def kind(family, listed, about, **truth):
     def register(f):
-        KINDS[f.__name__.replace("_", "-")] = Kind(f, family, listed, about, **truth)
+        (KINDS if f.__module__ == __name__ else MORE)[f.__name__.replace("_", "-")] = Kind(f, family, listed, about, **truth)
         return f
     return register
 
 
 def one(name, kin, about, **more):
     return kind(1, "library", about, names=(name,), kin=tuple(k for k in kin if k != name), **more)
+
+
+def rolling_friction(s):
+    """The friction that rolling needs in a middling blow."""
+    return 0.18 * np.tan(np.median(s.x["dynamic_loft"] - s.x["attack_angle"]))
 
 
 # 1: one effect of the library, in another form
@@ -322,8 +327,8 @@ def hot_spot(s):
 @unlisted(("impact_high",), "the lower face is wet: no more than a little friction below a line",
           kin=("friction-limit", "ball-tangential-compliance"), clubs=("irons", "wedge"))
 def wet_below(s):
-    line, stick = s.size(0.001, 0.006), 0.18 * np.tan(np.median(s.x["dynamic_loft"] - s.x["attack_angle"]))  # what rolling needs
-    friction = stick * s.size(0.88, 1.02)
+    line = s.size(0.001, 0.006)
+    friction = rolling_friction(s) * s.size(0.88, 1.02)
     s.law["friction"] = lambda c: np.where(c.high < -line, friction, np.inf)
 
 
