@@ -3,51 +3,38 @@
 #include "loop/effects/all.hpp"
 
 namespace hosel::loop::forms {
-namespace {
-
-/// Without slip there is no side to go to: in the simplest law that knows it the offset is in proportion to the slip.
-double slip_over_approach(const Shot& t) {
-  const FirstContact g = first_contact(t.blow);
-  const double approach = g.approach.dot(g.normal);
-  return approach > 0 ? g.slip().norm() / approach : 0;
-}
-
-/// The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
-void add_couple(double offset, const Shot& t, Launch& launch) {
-  if (offset == 0) return;
-  const FirstContact g = first_contact(t.blow);
-  const Vec3 slip = g.slip();
-  if (!(slip.norm() > 0)) return;
-  const double impulse = t.blow.ball.mass * launch.velocity.dot(g.normal);
-  launch.spin += offset * t.blow.ball.radius * impulse / t.blow.ball.inertia() * slip.normalized().cross(g.normal);
-}
-
-}  // namespace
 
 std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   if (setting.deformable) return {};  // what its ball does by itself
   // Usual: assumed, a patch that wanders by 1 mm; by as much at 27 deg.
   const Parameter offset = Parameter{"offset", "1", 1, -0.2, 0.2, 0.01}.within(0.05),
                   share = Parameter{"offset_per_slip", "1", 1, -0.4, 0.4, 0.02}.within(0.1);
+  // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
   Parametrisation couple{
       .what = "offset over the ball's radius, its couple added to rolling", .parameters = {offset}, .complexity = 3};
-  couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) { add_couple(p[0], t, launch); };
+  couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
+    if (p[0] == 0) return;
+    const FirstContact g = first_contact(t.blow);
+    const Vec3 slip = g.slip();
+    if (!(slip.norm() > 0)) return;
+    const double impulse = t.blow.ball.mass * launch.velocity.dot(g.normal);
+    launch.spin += p[0] * t.blow.ball.radius * impulse / t.blow.ball.inertia() * slip.normalized().cross(g.normal);
+  };
   // Friction closes the slip all the same: then the offset moves impulse from the tangent to the couple.
   Parametrisation closed{
       .what = "offset over the ball's radius, rolling kept", .parameters = {offset}, .complexity = 3};
   closed.before = [](std::span<const double> p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
-  Parametrisation with_slip{.what = "offset in proportion to slip over approach, its couple added to rolling",
+  // Without slip there is no side to go to: in the simplest law of that kind it is in proportion. It lasts as long as
+  // the slip, which friction closes.
+  Parametrisation with_slip{.what = "offset in proportion to slip over approach, rolling kept",
                             .parameters = {share},
                             .complexity = 3};
-  with_slip.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
-    if (p[0] != 0) add_couple(p[0] * slip_over_approach(t), t, launch);
+  with_slip.before = [](std::span<const double> p, Shot& t) {
+    const FirstContact g = first_contact(t.blow);
+    const double approach = g.approach.dot(g.normal);
+    if (p[0] != 0 && approach > 0) t.blow.contact.normal_force_offset += p[0] * g.slip().norm() / approach;
   };
-  Parametrisation closed_with_slip{
-      .what = "offset in proportion to slip over approach, rolling kept", .parameters = {share}, .complexity = 3};
-  closed_with_slip.before = [](std::span<const double> p, Shot& t) {
-    if (p[0] != 0) t.blow.contact.normal_force_offset += p[0] * slip_over_approach(t);
-  };
-  return {couple, closed, with_slip, closed_with_slip};
+  return {couple, closed, with_slip};
 }
 
 }  // namespace hosel::loop::forms
