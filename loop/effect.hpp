@@ -92,6 +92,7 @@ Parametrisation at_every_shot(const Parametrisation& form);
 struct Setting {
   bool head_turns = false;        ///< the base model lets the head rotate
   bool inertia_declared = false;  ///< the case declares a finite inertia tensor
+  bool hosel_declared = false;    ///< the case says where the shaft enters the head
   std::vector<Output> outputs;    ///< channels of the data, of the launch
   bool flies = false;             ///< and some of the flight
   bool no_blow = false;           ///< the base is the flight alone, from the launch that was seen

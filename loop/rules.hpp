@@ -10,6 +10,8 @@ namespace hosel::loop {
 /// What may come by chance: one in a thousand, and the logarithm of the evidence that is beyond it.
 inline constexpr double kByChance = 1e-3;
 inline constexpr double kBeyondChance = 3 * std::numbers::ln10;
+/// Twice the logarithm of evidence that is worth a mention [@bayes-factors].
+inline constexpr double kMention = 2;
 /// Fewer rows have no form.
 inline constexpr int kFewestRows = 12;
 /// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.

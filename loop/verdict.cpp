@@ -77,7 +77,8 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
                        m.names.empty() ? "" : fmt::format(" ({})", fmt::join(m.names, " or ")), of_it);
   };
   if (names.empty() && !more)
-    return {.faint = best.criterion < of_names ? told(best, ", is likelier than no effect, not beyond doubt") : ""};
+    return {.faint = best.criterion + kMention < of_names ? told(best, ", is likelier than no effect, not beyond doubt")
+                                                          : ""};
   if (!more && !drift && !as_much) return {};
   std::vector<std::string> same;
   for (const Mechanism& m : found) same.insert(same.end(), m.names.begin(), m.names.end());

@@ -55,8 +55,10 @@ class LoopJob final : public Job {
     case_.blow.contact.patch = declared.contact.patch;
     if (fe) case_.blow.contact.friction = case_.blow.contact.patch.coefficient;
     case_.blow.club.geometry = read_club_geometry(root, root.has("shaft"));
+    case_.hosel_declared = root.has("hosel");
     Head& head = case_.blow.club.head;
     if (auto table = root.optional_table("head")) {
+      case_.hosel_declared = case_.hosel_declared || table->has("name");
       case_.head_mass_declared = table->has_quantity("mass") || table->has("name");
       head = read_loop_head(*table, case_.head_turns);
     } else if (case_.head_turns) {
@@ -128,8 +130,7 @@ class LoopJob final : public Job {
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     if (repeated_ > 0)
-      out.lack(
-          fmt::format("{} rows of the shots repeat an earlier row letter for letter: each counts once", repeated_));
+      out.lack(fmt::format("{} rows of the shots are copies of an earlier row: each shot counts once", repeated_));
     const loop::LoopResult result = run_loop(out, case_);
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);

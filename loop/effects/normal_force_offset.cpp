@@ -26,9 +26,8 @@ std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   closed.before = [](std::span<const double> p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
   // Without slip there is no side to go to: in the simplest law of that kind it is in proportion. It lasts as long as
   // the slip, which friction closes.
-  Parametrisation with_slip{.what = "offset in proportion to slip over approach, rolling kept",
-                            .parameters = {share},
-                            .complexity = 3};
+  Parametrisation with_slip{
+      .what = "offset in proportion to slip over approach, rolling kept", .parameters = {share}, .complexity = 3};
   with_slip.before = [](std::span<const double> p, Shot& t) {
     const FirstContact g = first_contact(t.blow);
     const double approach = g.approach.dot(g.normal);

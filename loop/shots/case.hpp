@@ -43,6 +43,7 @@ struct ShotCase : Case {
   Blow blow;  ///< ball, head, contact law; the delivery comes from the shots
   bool head_mass_declared = false;
   bool inertia_declared = false;
+  bool hosel_declared = false;
   std::optional<models::FlightConditions> flight;  ///< absent: readings of the flight are not looked at
   Shots shots;
   std::optional<Averages> averages;           ///< the shots are means of these rows

@@ -166,6 +166,7 @@ void ShotProblem::distrust(Input input) {
 std::vector<Parametrisation> ShotProblem::forms() const {
   Setting setting{.head_turns = case_.head_turns,
                   .inertia_declared = case_.inertia_declared,
+                  .hosel_declared = case_.hosel_declared,
                   .outputs = {},
                   .deformable = case_.deformable,
                   .shaft = case_.shaft_declared,

@@ -45,35 +45,21 @@ std::vector<int> of_the_row_before(const Shots& shots, const Column& c, double& 
   return {};
 }
 
-/// The number that stands out most from those next to it; its rows.
-std::vector<int> one_number(const Column& c, double& beside) {
-  constexpr std::size_t fewest = 20;            // different numbers
-  constexpr std::ptrdiff_t next = 2, near = 5;  // neighbours on either side
+/// The rows of the most frequent number, where it is too frequent beside the next: neighbours tell less, since rounded
+/// numbers may stand among others that are not.
+std::vector<int> one_number(const Column& c, double& next) {
+  constexpr std::size_t fewest = 20;  // different numbers
+  constexpr double peaked = 1.5;      // of the next, as the middle of a peaked distribution in coarse steps has
   std::map<double, std::vector<int>> rows;
   for (std::size_t i = 0; i < c.value.size(); ++i)
     if (std::isfinite(c.value[i])) rows[c.value[i]].push_back(int(i));
   if (rows.size() < fewest) return {};
-  std::vector<const std::vector<int>*> in_order;
-  for (const auto& [number, of] : rows) in_order.push_back(&of);
-  const auto size = std::ssize(in_order);
-  const std::vector<int>* most = nullptr;
-  double least = kLevel;
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    double largest = 0, sum = 0, count = 0;
-    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(k - near, 0); j <= std::min(k + near, size - 1); ++j) {
-      if (j == k) continue;
-      const auto stands = double(in_order[std::size_t(j)]->size());
-      sum += stands, ++count;
-      if (std::abs(j - k) <= next) largest = std::max(largest, stands);
-    }
-    const double expected = std::max(largest, sum / count);
-    const double p = cdf(complement(boost::math::poisson(expected), double(in_order[std::size_t(k)]->size()) - 1));
-    if (p >= least) continue;
-    least = p;
-    most = in_order[std::size_t(k)];
-    beside = largest;
-  }
-  return most ? *most : std::vector<int>{};
+  std::vector<const std::vector<int>*> by_size;
+  for (const auto& [number, of] : rows) by_size.push_back(&of);
+  std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const auto* of) { return of->size(); });
+  next = double(by_size[1]->size());
+  const double stands = double(by_size[0]->size());
+  return cdf(complement(boost::math::poisson(peaked * next), stands - 1)) < kLevel ? *by_size[0] : std::vector<int>{};
 }
 
 }  // namespace
@@ -85,9 +71,9 @@ std::vector<Recurring> recurring(const Shots& shots) {
     double known = 0;
     if (std::vector<int> rows = one_number(c, known); !rows.empty()) {
       const double number = c.native(std::size_t(rows.front()));
-      all.push_back({c.name, rows,
-                     fmt::format("{:g} stands in {} rows, the numbers next to it in {:.0f} at most", number,
-                                 rows.size(), known)});
+      all.push_back(
+          {c.name, rows,
+           fmt::format("{:g} stands in {} rows, every other number in {:.0f} at most", number, rows.size(), known)});
     } else if (rows = of_the_row_before(shots, c, known); !rows.empty()) {
       all.push_back(
           {c.name, rows,

@@ -199,21 +199,31 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
 }
 
 /// Rows that are not, letter for letter, an earlier one. Two shots may well read alike where little is recorded: fewer
-/// than twelve digits, no number of the shot.
+/// than twelve digits, no number of the shot. A shot that stands twice under two numbers has the same letters in every
+/// column of inputs and results, with twelve digits of results.
 std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
   constexpr std::ptrdiff_t kDigits = 12;
   const auto numbered = std::ranges::find(sheet.names, "shot") - sheet.names.begin();
   std::vector<std::size_t> kept;
-  std::set<std::vector<std::string>> seen;
+  std::set<std::vector<std::string>> seen, struck;
+  const auto digits_of = [](const std::string& cell) {
+    return std::ranges::count_if(cell, [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
   for (std::size_t i = 0; i < sheet.rows(); ++i) {
-    std::vector<std::string> row;
-    std::ptrdiff_t digits = 0;
-    for (const auto& column : sheet.columns) {
-      row.push_back(column[i]);
-      digits += std::ranges::count_if(column[i], [](unsigned char c) { return std::isdigit(c) != 0; });
+    std::vector<std::string> row, shot;
+    std::ptrdiff_t digits = 0, of_results = 0;
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+      const std::string& cell = sheet.columns[c][i];
+      row.push_back(cell);
+      digits += digits_of(cell);
+      const std::string stem = split_unit(sheet.names[c]).stem;
+      if (output_of(stem)) of_results += digits_of(cell);
+      if (output_of(stem) || input_of(stem)) shot.push_back(cell);
     }
     const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[std::size_t(numbered)].empty());
-    if (seen.insert(std::move(row)).second || !tells) kept.push_back(i);
+    const bool again = !seen.insert(std::move(row)).second && tells,
+               twice = !struck.insert(std::move(shot)).second && of_results >= kDigits;
+    if (!again && !twice) kept.push_back(i);
   }
   return kept;
 }

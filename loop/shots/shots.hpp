@@ -31,7 +31,7 @@ struct Shots {
   std::vector<std::size_t> line;  ///< in the file
   std::vector<Column> columns;
   bool has_shot_column = false;
-  std::size_t repeated = 0;  ///< rows of the file that repeat an earlier one letter for letter: they count once
+  std::size_t repeated = 0;  ///< rows of the file that are copies of an earlier one: they count once
 
   std::size_t rows() const { return id.size(); }
   const Column* find(std::string_view name) const;       ///< by header
@@ -51,9 +51,10 @@ std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
 
 /// Roles, units, SI values and recording resolution of a sheet. Columns stand in the order of the quantities, rows in
 /// that of their shot numbers where each has one. Values that were recorded in another unit and converted are taken
-/// from there: their resolution is that unit's. A row that repeats an earlier one letter for letter is left out: a file
-/// pasted twice holds no more shots. Throws DataError: an output or input column with a wrong unit, text in it, the
-/// same quantity twice. `flights`: carry and the like are outputs, too; otherwise columns like any other.
+/// from there: their resolution is that unit's. A row that repeats an earlier one letter for letter, or all its inputs
+/// and results under another number, is left out: a file pasted twice holds no more shots. Throws DataError: an output
+/// or input column with a wrong unit, text in it, the same quantity twice. `flights`: carry and the like are outputs,
+/// too; otherwise columns like any other.
 Shots read_shots(const post::Sheet& sheet, bool flights = false);
 
 /// Of unit length.

@@ -1147,6 +1147,11 @@ TEST_F(Recurring, CoarseColumnsAndCopiedRowsAreReadings) {
     })));
     EXPECT_TRUE(r.flagged.empty()) << seed << sentence(r);
   }
+  // Spin in steps of 50 rpm on half of the rows and of 1 rpm on the others: a round number has no neighbours like it.
+  const LoopResult mixed = run(case_of(changed(csv({.shots = 1200}), "", [&](int row, auto& cells) {
+    if (row % 2 == 0) coarse(cells[kBackspin], 50);
+  })));
+  EXPECT_TRUE(mixed.flagged.empty()) << sentence(mixed);
   // A shot that was written again under another number repeats all results.
   std::vector<std::string> before;
   const LoopResult copies = run(case_of(changed(csv({}), "", [&](int row, std::vector<std::string>& cells) {
@@ -1154,6 +1159,8 @@ TEST_F(Recurring, CoarseColumnsAndCopiedRowsAreReadings) {
     before = cells;
   })));
   EXPECT_TRUE(copies.flagged.empty()) << sentence(copies);
+  EXPECT_EQ(copies.read, 90 - 18) << "each shot counts once";
+  EXPECT_EQ(name(copies.verdict), "no-residual") << sentence(copies);
 }
 
 TEST_F(Loop, AColumnThatIsThatOfTheRowBeforeIsAccused) {
