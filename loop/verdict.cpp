@@ -205,7 +205,12 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     refuted = refuted || problem.channel(c).refuted;
   }
   if (refuted) return Verdict::noise_contradicted;
-  if (s.nameless || !one.faint.empty()) return Verdict::insufficient;
+  if (s.nameless) return Verdict::insufficient;
+  // A function that is not beyond doubt is told where nothing else speaks against the base.
+  if (!one.faint.empty()) {
+    unexplained = problem.doubts(s);
+    return unexplained.empty() ? Verdict::insufficient : Verdict::unexplained;
+  }
   if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)

@@ -130,7 +130,7 @@ class LoopJob final : public Job {
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     if (repeated_ > 0)
-      out.lack(fmt::format("{} rows of the shots are copies of an earlier row: each shot counts once", repeated_));
+      out.lack(fmt::format("{} rows of the shots repeat an earlier row: each shot counts once", repeated_));
     const loop::LoopResult result = run_loop(out, case_);
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);

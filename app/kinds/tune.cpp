@@ -199,7 +199,7 @@ class TuneJob final : public Job {
       if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
     } catch (const DataError& e) { throw InputError(e.what()); }
     if (shots.repeated > 0)
-      out.lack(fmt::format("{} rows of the shots are copies of an earlier row: each shot counts once", shots.repeated));
+      out.lack(fmt::format("{} rows of the shots repeat an earlier row: each shot counts once", shots.repeated));
     std::vector<std::pair<Input, const loop::Column*>> inputs;
     for (int i = 0; i < kInputs; ++i) {
       const auto input = static_cast<Input>(i);

@@ -694,7 +694,7 @@ TEST_F(Loop, AFunctionOfTheSessionThatIsNoDriftIsNotToldAsOne) {
 
 TEST_F(Loop, NoResidualIsToldOnlyWhereNoFunctionIsLikelier) {
   const ShotCase c = case_of(csv({}));
-  const Beside less = beside(c, 1), more = beside(c, -1), sure = beside(c, -Rules{}.tie - 1);
+  const Beside less = beside(c, 1 - kMention), more = beside(c, -1 - kMention), sure = beside(c, -Rules{}.tie - 1);
   ASSERT_EQ(less.level, 0);
   EXPECT_EQ(less.verdict, "no-residual") << less.sentence;
   EXPECT_EQ(more.verdict, "insufficient") << more.sentence;
