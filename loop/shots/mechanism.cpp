@@ -14,6 +14,7 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kKnots = 150;  // rows whose covariance makes a basis
+constexpr double kPrice = 8;         // beside names, which are chosen among some seventy forms [units of deviance]
 
 /// Functions of one quantity: each a basis over the rows with the variance of its coefficients, a level apart. The
 /// basis is orthonormal over the knots.
@@ -317,8 +318,9 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   for (auto& t : of_way)
     for (Trial& trial : t)
       if (std::isfinite(trial.found.fall)) trials.push_back(std::move(trial));
-  // Of the choice: each function through each mechanism is as likely as any other before the data are seen.
-  const double price = 2 * std::log(double(std::max<std::size_t>(trials.size(), 1)));
+  // Of the choice, beside nothing: each function through each mechanism is as likely as any other before the data are
+  // seen.
+  const double price = alone ? 2 * std::log(double(std::max<std::size_t>(trials.size(), 1))) : kPrice;
   std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
   if (trials.size() > 12) trials.resize(12);
 

@@ -13,7 +13,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kLevel = kByChance * kByChance;  // for each of some thousand numbers
+constexpr double kLevel = kByChance / 10;  // for each column
 
 /// Rows with the number of the row before, where another result differs.
 std::vector<int> repeats(const Shots& shots, const Column& c, std::size_t lag, double& pairs) {
@@ -45,11 +45,12 @@ std::vector<int> of_the_row_before(const Shots& shots, const Column& c, double& 
   return {};
 }
 
-/// The rows of the most frequent number, where it is too frequent beside the next: neighbours tell less, since rounded
-/// numbers may stand among others that are not.
+/// The rows of the most frequent number, where that many are no coincidence: how many rows a row shares its number with
+/// is told by the other numbers. It must have twice the rows of the next, since rounded numbers may stand among others
+/// that are not.
 std::vector<int> one_number(const Column& c, double& next) {
   constexpr std::size_t fewest = 20;  // different numbers
-  constexpr double peaked = 1.5;      // of the next, as the middle of a peaked distribution in coarse steps has
+  constexpr double peaked = 2.5;  // densest over mean density: 1.4 where the numbers are normal, 2 where exponential
   std::map<double, std::vector<int>> rows;
   for (std::size_t i = 0; i < c.value.size(); ++i)
     if (std::isfinite(c.value[i])) rows[c.value[i]].push_back(int(i));
@@ -57,9 +58,16 @@ std::vector<int> one_number(const Column& c, double& next) {
   std::vector<const std::vector<int>*> by_size;
   for (const auto& [number, of] : rows) by_size.push_back(&of);
   std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const auto* of) { return of->size(); });
-  next = double(by_size[1]->size());
   const double stands = double(by_size[0]->size());
-  return cdf(complement(boost::math::poisson(peaked * next), stands - 1)) < kLevel ? *by_size[0] : std::vector<int>{};
+  next = double(by_size[1]->size());
+  double shared = 1, others = 1;  // one more, so that none in few rows is no certainty
+  for (std::size_t k = 1; k < by_size.size(); ++k) {
+    const double of = double(by_size[k]->size());
+    shared += of * (of - 1);
+    others += of;
+  }
+  const double p = cdf(complement(boost::math::poisson(peaked * shared / others), stands - 1));
+  return stands >= 2 * next && p * double(rows.size()) < kLevel ? *by_size[0] : std::vector<int>{};
 }
 
 }  // namespace

@@ -16,11 +16,11 @@ struct Recurring {
   std::string reason;
 };
 
-/// Two tests of each column of results, each at a level of 1e-6:
+/// Two tests of each column of results, each at a level of 1e-4:
 /// - a row has the number of the row before, more often than rows further apart have the same. Rows in which every
 ///   other result repeats too do not count: such a row is a copy.
-/// - one number stands in more rows than half as many again as the next most frequent does. It needs twenty different
-///   numbers in the column.
+/// - one number stands in more rows than coincidence brings, and in twice as many as any other. The column needs twenty
+///   different numbers.
 std::vector<Recurring> recurring(const Shots& shots);
 
 }  // namespace hosel::loop
