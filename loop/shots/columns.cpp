@@ -532,21 +532,18 @@ void Columns::try_sizes() {
     if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
       changes.push_back({std::move(by), c.largest});
   for (const PartOfRows& part : parts) {
-    Eigen::MatrixXd left = z;  // by what changed before: another ball differs in both
-    double cost = 0;
+    Eigen::MatrixXd left;  // by the first change: another ball differs in both
     for (const Change& c : changes) {
       const Eigen::MatrixXd even = members_only(c.by, part.member);
-      if (const auto [size, value] = fitted(z, even); std::abs(size) <= c.largest) {
-        rival(part.what, value);
-        const Eigen::MatrixXd off_centre = square.asDiagonal() * even;
-        if (off_centre.norm() > kFaint)
-          rival(part.what, fitted(z + size * even, off_centre).second + case_.rules.parameter_cost);
-      }
-      if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest) {
-        rival(part.what, value + cost);
-        left += size * even;
-        cost = case_.rules.parameter_cost;
-      }
+      if (left.size())
+        if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest)
+          rival(part.what, value + case_.rules.parameter_cost);
+      const auto [size, value] = fitted(z, even);
+      if (std::abs(size) > c.largest) continue;
+      rival(part.what, value);
+      const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
+      if (off_centre.norm() > kFaint) rival(part.what, fitted(beside, off_centre).second + case_.rules.parameter_cost);
+      left = beside;
     }
   }
   for (const OfContact& c : {returned_along(1), returned_along(2)}) {

@@ -209,16 +209,22 @@ std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
   const auto digits_of = [](const std::string& cell) {
     return std::ranges::count_if(cell, [](unsigned char c) { return std::isdigit(c) != 0; });
   };
+  std::vector<bool> result, used;  // by column
+  for (const std::string& name : sheet.names) {
+    const std::string stem = split_unit(name).stem;
+    result.push_back(output_of(stem).has_value());
+    used.push_back(result.back() || input_of(stem).has_value());
+  }
   for (std::size_t i = 0; i < sheet.rows(); ++i) {
     std::vector<std::string> row, shot;
     std::ptrdiff_t digits = 0, of_results = 0;
     for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
       const std::string& cell = sheet.columns[c][i];
+      const std::ptrdiff_t count = digits_of(cell);
       row.push_back(cell);
-      digits += digits_of(cell);
-      const std::string stem = split_unit(sheet.names[c]).stem;
-      if (output_of(stem)) of_results += digits_of(cell);
-      if (output_of(stem) || input_of(stem)) shot.push_back(cell);
+      digits += count;
+      if (result[c]) of_results += count;
+      if (used[c]) shot.push_back(cell);
     }
     const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[std::size_t(numbered)].empty());
     const bool again = !seen.insert(std::move(row)).second && tells,
