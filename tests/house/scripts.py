@@ -182,13 +182,13 @@ class Builds(Test):
 
 
 class Deep(Test):
-    def case(self, body):
+    def case(self, body, **more):
         """Status of a case's job where the command does this."""
         deep = module("deep-check")
         deep.WORK = self.at
         self.file("build/some/bin/hosel", "#!/bin/sh\n" + body, True)
         with contextlib.chdir(self.at), mock.patch.dict(os.environ, CASE_SECONDS="1"), open(self.at / "log", "w") as log:
-            return deep.run_case("some", "driver-toe").do(log, 1)
+            return deep.run_case("some", "driver-toe", **more).do(log, 1)
 
     def test_stopped_is_passed_only_by_who_computes(self):
         deadlock = "[ $1 = check ] && exit 0\nexec sleep 100\n"
@@ -211,6 +211,13 @@ class Deep(Test):
         self.assertNotIn("accuracy=look", (self.at / "log").read_text())
         self.assertEqual(self.case("[ $1 = check ] && exit 0\necho $@\n"), 0)
         self.assertIn("accuracy=look", (self.at / "log").read_text())
+
+    def test_a_study_goes_on_from_the_points_that_another_program_left(self):
+        body = "[ $1 = check ] && exit 0\ncat some/driver-toe/shards/1-of-1/points.jsonl\n"
+        points = self.file("begun", "nine in ten\n")
+        self.assertNotEqual(self.case(body, points=self.at / "none"), 0)
+        self.assertEqual(self.case(body, points=points), 0)
+        self.assertIn("nine in ten", (self.at / "log").read_text())
 
     def test_lines_are_counted_where_their_share_is_asked_for(self):
         counted = re.findall(r"^source:\*/(\w+)/\*=allow$", (ROOT / "tests/support/counted_floors").read_text(), re.M)
