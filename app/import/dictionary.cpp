@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <tuple>
 
 #include "app/reader.hpp"
 #include "build_info.hpp"
@@ -28,6 +29,17 @@ std::string plain(std::string_view text) {
   return out;
 }
 
+namespace {
+
+/// As headers are compared: `FaceToTarget` is `face to target`.
+std::string letters(std::string_view header) {
+  std::string out = plain(header);
+  std::erase(out, ' ');
+  return out;
+}
+
+}  // namespace
+
 bool names_a_hand(const std::string& words) {
   const std::vector<std::string> parts = words_of(words);
   return (!parts.empty() && parts.back() == "hand") || std::ranges::any_of(parts, [](const std::string& part) {
@@ -38,8 +50,8 @@ bool names_a_hand(const std::string& words) {
 void Dictionary::read(const fs::path& file) {
   CaseFile text(file);
   Table root = text.root();
-  const auto plains = [](std::vector<std::string> words) {
-    for (std::string& w : words) w = plain(w);
+  const auto each = [](std::vector<std::string> words, std::string (*as)(std::string_view)) {
+    for (std::string& w : words) w = as(w);
     return words;
   };
   for (Table& t : root.tables("quantity")) {
@@ -56,19 +68,19 @@ void Dictionary::read(const fs::path& file) {
                                                                                                   : Sides::across;
     q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
     for (const std::string& h : t.texts("headers"))
-      q.headers.push_back({plain(h), h.find('[') == h.npos ? "" : unit_in(h)});
+      q.headers.push_back({letters(h), h.find('[') == h.npos ? "" : unit_in(h)});
     quantities_.push_back(std::move(q));
   }
-  for (const auto& [name, into] : {std::pair{"bookkeeping", &bookkeeping_}, {"words", &words_}})
+  for (const auto& [name, into, as] : {std::tuple{"bookkeeping", &bookkeeping_, &letters}, {"words", &words_, &plain}})
     if (auto t = root.optional_table(name))
       for (const std::string& key : t->keys()) {
-        const auto words = plains(t->texts(key));
+        const auto words = each(t->texts(key), as);
         auto& known = (*into)[key];
         known.insert(known.end(), words.begin(), words.end());
       }
   for (Table& t : root.tables("club"))
-    clubs_.push_back({plains(t.texts("names")), t.number("head_mass_kg", {0.1, 0.5}), t.number("loft_deg", {0, 70}),
-                      t.text("head", "iron")});
+    clubs_.push_back({each(t.texts("names"), plain), t.number("head_mass_kg", {0.1, 0.5}),
+                      t.number("loft_deg", {0, 70}), t.text("head", "iron")});
   if (auto t = root.optional_table("head"))
     for (const std::string& key : t->keys()) {
       Table head = t->table(key);
@@ -89,32 +101,32 @@ fs::path shipped_dictionary() {
 }
 
 const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const {
-  const std::string word = plain(header);
+  const std::string word = letters(header);
   const auto blank = header.find_last_of(" _");  // `Ball Speed mph`
   const bool tail = blank != std::string::npos && !unit_of(header.substr(blank + 1)).empty() && header.back() != ')';
-  const std::string without = tail ? plain(std::string_view(header).substr(0, blank)) : word;
+  const std::string without = tail ? letters(std::string_view(header).substr(0, blank)) : word;
   const std::string unit = unit_in(header);
   for (const MonitorQuantity& q : quantities_)
     for (const MonitorQuantity::Header& h : q.headers)
       if ((h.words == word || h.words == without) && (h.unit.empty() || h.unit == unit)) return &q;
   for (const MonitorQuantity& q : quantities_)
-    if (word == plain(q.name) || without == plain(q.name)) return &q;
+    if (word == letters(q.name) || without == letters(q.name)) return &q;
   return nullptr;
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
-  const std::string word = plain(header);
+  const std::string word = letters(header);
   for (const auto& [name, words] : bookkeeping_)
     if (std::ranges::count(words, word)) return name;
-  return names_a_hand(word) ? "hand" : "";
+  return names_a_hand(plain(header)) ? "hand" : "";
 }
 
 void Dictionary::learn(const std::string& header, std::string_view quantity) {
-  if (quantity.empty()) bookkeeping_["ignored"].push_back(plain(header));
+  if (quantity.empty()) bookkeeping_["ignored"].push_back(letters(header));
   if (const auto role = bookkeeping_.find(std::string(quantity)); role != bookkeeping_.end())
-    role->second.push_back(plain(header));
+    role->second.push_back(letters(header));
   for (MonitorQuantity& q : quantities_)
-    if (q.name == quantity) q.headers.push_back({plain(header), ""});
+    if (q.name == quantity) q.headers.push_back({letters(header), ""});
 }
 
 const MonitorQuantity* Dictionary::quantity(std::string_view name) const {

@@ -231,10 +231,11 @@ TEST(FlightCase, StatedLaunchesAreSweptAsBlowsAre) {
 TEST(FlightCase, ABallThatIsLaunchedLevelDoesNotRise) {
   for (const char* angle : {"-1", "0"}) {
     const auto s =
-        run("flight_level", std::string("kind = \"study\"\noutputs = [\"ball_speed_mps\", \"carry_m\"]\n") +
-                                "[launch]\nball_speed_mps = 60\nspin_rate_rpm = 500\nlaunch_angle_deg = " + angle +
-                                "\n[flight]\n[flight.ground]\nheight_m = 1\n[[axis]]\nkey = "
-                                "\"launch.ball_speed_mps\"\nvalues = [50, 60]\n");
+        run("flight_level", fmt::format("kind = \"study\"\noutputs = [\"ball_speed_mps\", \"carry_m\"]\n[launch]\n"
+                                        "ball_speed_mps = 60\nspin_rate_rpm = 500\nlaunch_angle_deg = {}\n[flight]\n"
+                                        "[flight.ground]\nheight_m = 1\n[[axis]]\nkey = \"launch.ball_speed_mps\"\n"
+                                        "values = [50, 60]\n",
+                                        angle));
     EXPECT_EQ(s["failed"], 0) << angle;
     EXPECT_EQ(s["points"], 2);
   }

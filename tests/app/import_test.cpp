@@ -242,6 +242,12 @@ INSTANTIATE_TEST_SUITE_P(
             "",
             {{"ball_speed_mph", {115.2, 116.1, 114.9}}, {"club_speed_mph", {82.4, 82.9, 82.0}}},
             {"clubs: 7 Iron 3", "'7Iron' is '7 Iron'", "head_mass_kg"}},
+        Layout{"WordsWithoutBlanks",
+               "Club,BallSpeed[mph],clubHeadSpeed[mph],launchAngle,TotalSpin,FaceToTarget,FacetoPath\n"
+               "7 Iron,115.2,82.4,16.1,6400,1.5,-0.5\n7 Iron,116.1,82.9,16.4,6500,0.5,0.5\n",
+               "",
+               {{"face_angle_deg", {1.5, 0.5}}, {"club_speed_mph", {82.4, 82.9}}, {"spin_rate_rpm", {6400, 6500}}},
+               {"face minus path"}},
         Layout{
             "GarminUnitsAndEstimates",
             "Date,Player,Club Type,Club Speed,Ball Speed,Launch Angle,Launch Direction,Spin Rate,Spin Rate Type,Spin "
