@@ -41,10 +41,9 @@ std::string letters(std::string_view header) {
 }  // namespace
 
 bool names_a_hand(const std::string& words) {
-  const std::vector<std::string> parts = words_of(words);
-  return (!parts.empty() && parts.back() == "hand") || std::ranges::any_of(parts, [](const std::string& part) {
-           return part == "handed" || part == "handedness" || part == "dexterity";
-         });
+  const std::string apart = ' ' + words + ' ';
+  const auto says = [&](const char* word) { return apart.find(word) != apart.npos; };
+  return apart.ends_with(" hand ") || says(" handed ") || says(" handedness ") || says(" dexterity ");
 }
 
 void Dictionary::read(const fs::path& file) {
@@ -69,6 +68,7 @@ void Dictionary::read(const fs::path& file) {
     q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
     for (const std::string& h : t.texts("headers"))
       q.headers.push_back({letters(h), h.find('[') == h.npos ? "" : unit_in(h)});
+    q.headers.push_back({letters(q.name), ""});
     quantities_.push_back(std::move(q));
   }
   for (const auto& [name, into, as] : {std::tuple{"bookkeeping", &bookkeeping_, &letters}, {"words", &words_, &plain}})
@@ -101,17 +101,16 @@ fs::path shipped_dictionary() {
 }
 
 const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const {
-  const std::string word = letters(header);
+  const auto called = [&](const std::string& word) -> const MonitorQuantity* {
+    for (const MonitorQuantity& q : quantities_)
+      for (const MonitorQuantity::Header& h : q.headers)
+        if (h.words == word && (h.unit.empty() || h.unit == unit_in(header))) return &q;
+    return nullptr;
+  };
+  if (const MonitorQuantity* q = called(letters(header))) return q;
   const auto blank = header.find_last_of(" _");  // `Ball Speed mph`
-  const bool tail = blank != std::string::npos && !unit_of(header.substr(blank + 1)).empty() && header.back() != ')';
-  const std::string without = tail ? letters(std::string_view(header).substr(0, blank)) : word;
-  const std::string unit = unit_in(header);
-  for (const MonitorQuantity& q : quantities_)
-    for (const MonitorQuantity::Header& h : q.headers)
-      if ((h.words == word || h.words == without) && (h.unit.empty() || h.unit == unit)) return &q;
-  for (const MonitorQuantity& q : quantities_)
-    if (word == letters(q.name) || without == letters(q.name)) return &q;
-  return nullptr;
+  const bool tail = blank != std::string::npos && header.back() != ')' && !unit_of(header.substr(blank + 1)).empty();
+  return tail ? called(letters(std::string_view(header).substr(0, blank))) : nullptr;
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
